@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Output files that are either whole or absent: written to a temporary file in
+// the target's folder, flushed, then renamed. A full disk or an unwritable path
+// gives an error naming the path and leaves nothing behind.
+#ifndef CARTOGRAPHER_EXT_COMMON_ATOMIC_FILE_H_
+#define CARTOGRAPHER_EXT_COMMON_ATOMIC_FILE_H_
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+
+namespace cartographer_ext {
+
+// Streams into a temporary file; `Commit` renames it. Without `Commit` the
+// destructor removes it.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::string& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  // Not OK when the temporary file could not be created.
+  const absl::Status& status() const { return status_; }
+  std::ostream& stream();
+  // The temporary file's name, for writers that want a path (cairo, rosbag).
+  const std::string& temporary_path() const { return temporary_path_; }
+  absl::Status Commit();
+
+ private:
+  std::string path_;
+  std::string temporary_path_;
+  absl::Status status_;
+  std::unique_ptr<std::ostream> stream_;
+  bool committed_ = false;
+};
+
+// The whole content in one call. "-" writes to standard output.
+absl::Status WriteFileAtomically(const std::string& path,
+                                 absl::string_view content);
+
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_COMMON_ATOMIC_FILE_H_

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A progress line with time left on standard error, only when that is a
+// terminal; silent in a pipe.
+#ifndef CARTOGRAPHER_EXT_COMMON_PROGRESS_H_
+#define CARTOGRAPHER_EXT_COMMON_PROGRESS_H_
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace cartographer_ext {
+
+class Progress {
+ public:
+  // `total` <= 0: unknown, shows counts and elapsed time only.
+  Progress(std::string label, int64_t total);
+  // Clears the line.
+  ~Progress();
+  // `done` of total; redraws at most ten times a second. `note` is appended.
+  void Update(int64_t done, const std::string& note = "");
+  void Finish();
+
+ private:
+  const std::string label_;
+  const int64_t total_;
+  const bool on_terminal_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point last_draw_;
+};
+
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_COMMON_PROGRESS_H_

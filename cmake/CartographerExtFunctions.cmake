@@ -1,0 +1,65 @@
+# SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Helpers shared by the CMake files of the project.
+
+# Sanitizers for every target, so that libraries and tests agree.
+function(cartographer_ext_sanitize_all)
+  if(CARTOGRAPHER_EXT_SANITIZE)
+    add_compile_options(-fsanitize=${CARTOGRAPHER_EXT_SANITIZE} -fno-omit-frame-pointer
+                        -fno-sanitize-recover=all)
+    add_link_options(-fsanitize=${CARTOGRAPHER_EXT_SANITIZE})
+  endif()
+endfunction()
+
+# Our warnings on one of our targets.
+function(cartographer_ext_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter -Wno-sign-compare
+                         -Wno-maybe-uninitialized)
+  if(CARTOGRAPHER_EXT_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# cartographer_ext_module(<name> [PATTERN glob...] [EXCLUDE regex] LINK libs...)
+# One static library `cartographer_ext_<name>` from the sources of the current folder.
+function(cartographer_ext_module name)
+  cmake_parse_arguments(ARG "" "EXCLUDE;INCLUDE" "LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cc")
+  if(ARG_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX "${ARG_EXCLUDE}")
+  endif()
+  if(ARG_INCLUDE)
+    list(FILTER sources INCLUDE REGEX "${ARG_INCLUDE}")
+  endif()
+  set(target cartographer_ext_${name})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}")
+    target_link_libraries(${target} PUBLIC ${ARG_LINK})
+    cartographer_ext_warnings(${target})
+  else()
+    add_library(${target} INTERFACE)
+    target_include_directories(${target} INTERFACE "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}")
+    target_link_libraries(${target} INTERFACE ${ARG_LINK})
+  endif()
+endfunction()
+
+# One test executable per *_test.cc of the current folder.
+function(cartographer_ext_tests)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*_test.cc")
+  file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}/tests" "${CMAKE_CURRENT_SOURCE_DIR}")
+  string(REPLACE "/" "_" prefix "${folder}")
+  foreach(source IN LISTS sources)
+    get_filename_component(stem "${source}" NAME_WE)
+    set(target "${prefix}_${stem}")
+    add_executable(${target} "${source}")
+    set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+    target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}")
+    target_link_libraries(${target} PRIVATE ${ARG_LINK} cartographer_ext_test_main)
+    cartographer_ext_warnings(${target})
+    add_test(NAME ${prefix}/${stem} COMMAND ${target} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
+    set_tests_properties(${prefix}/${stem} PROPERTIES TIMEOUT 600)
+  endforeach()
+endfunction()
