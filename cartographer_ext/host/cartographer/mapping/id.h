@@ -7,8 +7,8 @@
 // visits trajectories in ascending order and, within one, indices in ascending
 // order. Beside it a small table counts the entries of every trajectory and
 // remembers whether Append may still continue the numbering: once an index was
-// chosen by the caller (Insert) or the newest entry was removed (Trim), the next
-// free index is no longer known to be safe.
+// chosen by the caller (Insert) or the newest entry was removed (Trim), the
+// next free index is no longer known to be safe.
 #ifndef CARTOGRAPHER_MAPPING_ID_H_
 #define CARTOGRAPHER_MAPPING_ID_H_
 
@@ -293,43 +293,29 @@ class MapById {
     if (SizeOfTrajectoryOrZero(trajectory_id) == 0) {
       return EndOfTrajectory(trajectory_id);
     }
-    const auto first = BeginPosition(trajectory_id);
     const auto last = std::prev(After(trajectory_id));
     if (internal::GetTime(last->second) < time) {
       return EndOfTrajectory(trajectory_id);
     }
-    // The answer's index lies in [low, high], and an entry named `high` exists.
-    int64 low = internal::IndexOf(first->first);
+    // Bisects for the smallest index at or behind which the next entry is not
+    // earlier than `time`; gaps in the numbering do no harm.
+    int64 low = internal::IndexOf((*BeginOfTrajectory(trajectory_id)).id);
     int64 high = internal::IndexOf(last->first);
     while (low < high) {
       const int64 middle = low + (high - low) / 2;
-      const auto probe =
-          entries_.lower_bound(IdType{trajectory_id, static_cast<int>(middle)});
-      const int64 probe_index = internal::IndexOf(probe->first);
-      if (internal::GetTime(probe->second) < time) {
-        low = probe_index + 1;
-      } else if (probe_index < high) {
-        high = probe_index;
+      if (internal::GetTime(AtOrBehind(trajectory_id, middle)->second) < time) {
+        low = middle + 1;
       } else {
-        // Nothing but a gap between `middle` and `high`.
-        high = middle <= low ? low : middle - 1;
-        const auto before = std::prev(entries_.lower_bound(
-            IdType{trajectory_id, static_cast<int>(middle)}));
-        if (middle == low || internal::GetTime(before->second) < time) {
-          return ConstIterator(probe);
-        }
-        high = internal::IndexOf(before->first);
+        high = middle;
       }
     }
-    return ConstIterator(
-        entries_.lower_bound(IdType{trajectory_id, static_cast<int>(low)}));
+    return ConstIterator(AtOrBehind(trajectory_id, low));
   }
 
  private:
-  typename Storage::const_iterator BeginPosition(
-      const int trajectory_id) const {
-    return entries_.lower_bound(
-        IdType{trajectory_id, std::numeric_limits<int>::min()});
+  typename Storage::const_iterator AtOrBehind(const int trajectory_id,
+                                              const int64 index) const {
+    return entries_.lower_bound(IdType{trajectory_id, static_cast<int>(index)});
   }
   typename Storage::const_iterator After(const int trajectory_id) const {
     return entries_.upper_bound(
