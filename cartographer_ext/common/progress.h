@@ -12,6 +12,15 @@
 
 namespace cartographer_ext {
 
+// "1:05" or "2:00:07"; negative counts as zero.
+std::string FormatDuration(double seconds);
+
+// One line: label, counts, share and time left (elapsed time where `total` is
+// unknown or reached), note.
+std::string FormatProgress(const std::string& label, int64_t done,
+                           int64_t total, double elapsed_seconds,
+                           const std::string& note);
+
 class Progress {
  public:
   // `total` <= 0: unknown, shows counts and elapsed time only.

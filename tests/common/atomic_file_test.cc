@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/common/atomic_file.h"
+
+#include <dirent.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace {
+
+using ::testing::HasSubstr;
+
+class AtomicFileTest : public ::testing::Test {
+ protected:
+  AtomicFileTest() {
+    std::string name = ::testing::TempDir() + "/atomic_file_XXXXXX";
+    folder_ = ::mkdtemp(&name[0]);
+  }
+  ~AtomicFileTest() override {
+    for (const std::string& name : List()) {
+      std::remove((folder_ + "/" + name).c_str());
+    }
+    ::rmdir(folder_.c_str());
+  }
+  std::vector<std::string> List() const {
+    std::vector<std::string> names;
+    DIR* const folder = ::opendir(folder_.c_str());
+    while (const dirent* entry = ::readdir(folder)) {
+      const std::string name = entry->d_name;
+      if (name != "." && name != "..") names.push_back(name);
+    }
+    ::closedir(folder);
+    return names;
+  }
+  static std::string Read(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream content;
+    content << file.rdbuf();
+    return content.str();
+  }
+  std::string folder_;
+};
+
+TEST_F(AtomicFileTest, AppearsOnlyWithCommit) {
+  const std::string path = folder_ + "/out.txt";
+  {
+    AtomicFile file(path);
+    ASSERT_TRUE(file.status().ok());
+    file.stream() << "half";
+    EXPECT_NE(::access(path.c_str(), F_OK), 0);
+    file.stream() << " and half";
+    ASSERT_TRUE(file.Commit().ok());
+    EXPECT_TRUE(file.Commit().ok());  // Twice is harmless.
+  }
+  EXPECT_EQ(Read(path), "half and half");
+  EXPECT_THAT(List(), ::testing::ElementsAre("out.txt"));
+}
+
+TEST_F(AtomicFileTest, WithoutCommitTheOldContentStays) {
+  const std::string path = folder_ + "/out.txt";
+  ASSERT_TRUE(WriteFileAtomically(path, "old").ok());
+  {
+    AtomicFile file(path);
+    file.stream() << "new";
+  }
+  EXPECT_EQ(Read(path), "old");
+  EXPECT_THAT(List(), ::testing::ElementsAre("out.txt"));
+}
+
+TEST_F(AtomicFileTest, WritersMayOpenThePathThemselves) {
+  const std::string path = folder_ + "/out.txt";
+  AtomicFile file(path);
+  std::ofstream(file.temporary_path()) << "by path";
+  ASSERT_TRUE(file.Commit().ok());
+  EXPECT_EQ(Read(path), "by path");
+}
+
+TEST_F(AtomicFileTest, KeepsModeAndLink) {
+  const std::string path = folder_ + "/real.txt";
+  const std::string link = folder_ + "/link.txt";
+  ASSERT_TRUE(WriteFileAtomically(path, "old").ok());
+  ASSERT_EQ(::chmod(path.c_str(), 0600), 0);
+  ASSERT_EQ(::symlink("real.txt", link.c_str()), 0);
+  ASSERT_TRUE(WriteFileAtomically(link, "new").ok());
+  EXPECT_EQ(Read(path), "new");
+  struct stat info;
+  ASSERT_EQ(::lstat(link.c_str(), &info), 0);
+  EXPECT_TRUE(S_ISLNK(info.st_mode));
+  ASSERT_EQ(::stat(path.c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0600);
+}
+
+TEST_F(AtomicFileTest, MissingFolderNamesThePath) {
+  const std::string path = folder_ + "/missing/out.txt";
+  const absl::Status status = WriteFileAtomically(path, "x");
+  EXPECT_EQ(status.code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(status.message()), HasSubstr(path));
+  AtomicFile file(path);
+  file.stream() << "swallowed";
+  EXPECT_FALSE(file.Commit().ok());
+}
+
+TEST_F(AtomicFileTest, FolderIsNoFile) {
+  const absl::Status status = WriteFileAtomically(folder_, "x");
+  EXPECT_FALSE(status.ok());
+  EXPECT_THAT(std::string(status.message()), HasSubstr(folder_));
+  EXPECT_TRUE(List().empty());
+}
+
+TEST_F(AtomicFileTest, FullDiskIsAnErrorAndTheDeviceStays) {
+  if (::access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  for (const size_t size : {1, 1 << 20}) {
+    const absl::Status status =
+        WriteFileAtomically("/dev/full", std::string(size, 'x'));
+    EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted) << status;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("/dev/full"));
+  }
+  struct stat info;
+  ASSERT_EQ(::stat("/dev/full", &info), 0);
+  EXPECT_TRUE(S_ISCHR(info.st_mode));
+}
+
+TEST_F(AtomicFileTest, DashIsStandardOutput) {
+  ::testing::internal::CaptureStdout();
+  const absl::Status status = WriteFileAtomically("-", "to stdout\n");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "to stdout\n");
+  EXPECT_TRUE(status.ok());
+}
+
+}  // namespace
+}  // namespace cartographer_ext
