@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Whether two loop constraints can both be true (paper G, improved graph
+// optimisation 2024, section 3.4, eq. 20).
+//
+// Loop u says where node
+// b_u lies in the frame of anchor a_u, loop v the same for a_v and b_v. Going
+// from a_u over loop u to b_u, along the path to b_v, back over loop v to a_v
+// and along the path back to a_u ends where it began when both are true:
+//
+//   E = T_u  (b_u <- b_v)  T_v^-1  (a_v <- a_u)
+//
+// The print of eq. 20 has the factors in an order that does not close; this is
+// the standard four-edge cycle. |E| is compared
+//
+//   kChiSquare   with its covariance, propagated to first order through all
+//   four
+//                edges, against a quantile of chi^2 with 3 degrees of freedom,
+//   kFixedBound  with fixed bounds in metres and radians (eq. 20 as printed).
+//
+// A fixed bound is too strict for long paths and too lax for short ones.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CYCLE_CONSISTENCY_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_CYCLE_CONSISTENCY_H_
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+// A relative pose (a <- b) with the covariance of its error in frame b, that is
+// of e in  true = measured * Exp(e)  to first order; x, y in metres, theta in
+// radians.
+struct UncertainPose {
+  Pose2 pose;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+// (a <- c) = (a <- b)(b <- c) of independent poses.
+UncertainPose Compose(const UncertainPose& lhs, const UncertainPose& rhs);
+// (b <- a).
+UncertainPose Invert(const UncertainPose& pose);
+
+enum class CycleTest { kChiSquare, kFixedBound };
+
+struct CycleConsistencyOptions {
+  CycleTest test = CycleTest::kChiSquare;
+  double chi_square_bound = 11.345;  // chi^2, 3 degrees of freedom, 0.99
+  double translation_bound = 0.5;    // metres, kFixedBound
+  double rotation_bound = 0.1;       // radians, kFixedBound
+};
+
+struct CycleResult {
+  Pose2 error;             // E above, identity for a perfect cycle
+  double chi_square = 0.;  // squared Mahalanobis norm of E; infinity when the
+                           // covariance is singular and E is not zero
+  bool compatible = false;
+};
+
+// `loop_u` is (a_u <- b_u), `path_b` (b_u <- b_v), `loop_v` (a_v <- b_v),
+// `path_a` (a_v <- a_u).
+CycleResult TestCycle(const CycleConsistencyOptions& options,
+                      const UncertainPose& loop_u, const UncertainPose& path_b,
+                      const UncertainPose& loop_v, const UncertainPose& path_a);
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_CYCLE_CONSISTENCY_H_
