@@ -38,9 +38,12 @@ double LogWeightedDensity(const MixtureComponent& component,
 struct LoopMixtureOptions {
   // Component 0 is "false", 1 is "true".
   std::array<MixtureComponent, 2> prior = DefaultPrior();
-  double prior_strength = 20.;  // pseudo-observations per component, > 0
-  int capacity = 500;           // candidates remembered, > 0
-  int max_iterations = 50;      // of EM per fit
+  // Pseudo-observations per component, > 0. Strong priors are safer with few
+  // candidates, but bias the tails: with 20 and 4000 candidates the middle
+  // probabilities came out 0.1 too high in simulation, with 2 within 0.05.
+  double prior_strength = 5.;
+  int capacity = 500;       // candidates remembered, > 0
+  int max_iterations = 50;  // of EM per fit
   double tolerance = 1e-6;  // change of the mean log-posterior that stops EM
 
   static std::array<MixtureComponent, 2> DefaultPrior();
