@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#ifndef CARTOGRAPHER_IO_PROTO_STREAM_INTERFACE_H_
+#define CARTOGRAPHER_IO_PROTO_STREAM_INTERFACE_H_
+
+#include "google/protobuf/message.h"
+
+namespace cartographer {
+namespace io {
+
+class ProtoStreamWriterInterface {
+ public:
+  virtual ~ProtoStreamWriterInterface() {}
+
+  virtual void WriteProto(const google::protobuf::Message& proto) = 0;
+  // Nothing may be written afterwards. False when something went wrong.
+  virtual bool Close() = 0;
+};
+
+class ProtoStreamReaderInterface {
+ public:
+  ProtoStreamReaderInterface() = default;
+  virtual ~ProtoStreamReaderInterface() {}
+  ProtoStreamReaderInterface(const ProtoStreamReaderInterface&) = delete;
+  ProtoStreamReaderInterface& operator=(const ProtoStreamReaderInterface&) =
+      delete;
+
+  // False at the end and on broken data; eof() tells which.
+  virtual bool ReadProto(google::protobuf::Message* proto) = 0;
+  virtual bool eof() const = 0;
+};
+
+}  // namespace io
+}  // namespace cartographer
+
+#endif  // CARTOGRAPHER_IO_PROTO_STREAM_INTERFACE_H_
