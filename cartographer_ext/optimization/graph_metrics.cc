@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/graph_metrics.h"
+
+#include <cmath>
+
+#include "cartographer_ext/optimization/kernels.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+Pose2 Align(const std::vector<Pose2>& estimate,
+            const std::vector<Pose2>& reference) {
+  CHECK_EQ(estimate.size(), reference.size());
+  if (estimate.empty()) return Pose2();
+  Eigen::Vector2d mean_estimate = Eigen::Vector2d::Zero();
+  Eigen::Vector2d mean_reference = Eigen::Vector2d::Zero();
+  for (size_t i = 0; i != estimate.size(); ++i) {
+    mean_estimate += estimate[i].translation();
+    mean_reference += reference[i].translation();
+  }
+  mean_estimate /= estimate.size();
+  mean_reference /= reference.size();
+  double dot = 0., cross = 0.;
+  for (size_t i = 0; i != estimate.size(); ++i) {
+    const Eigen::Vector2d a = estimate[i].translation() - mean_estimate;
+    const Eigen::Vector2d b = reference[i].translation() - mean_reference;
+    dot += a.dot(b);
+    cross += a.x() * b.y() - a.y() * b.x();
+  }
+  const Pose2 rotation(0., 0., std::atan2(cross, dot));
+  const Eigen::Vector2d translation = mean_reference - rotation * mean_estimate;
+  return Pose2(translation.x(), translation.y(), rotation.theta);
+}
+
+double AbsoluteTrajectoryError(const std::vector<Pose2>& estimate,
+                               const std::vector<Pose2>& reference) {
+  if (estimate.empty()) return 0.;
+  const Pose2 alignment = Align(estimate, reference);
+  double sum = 0.;
+  for (size_t i = 0; i != estimate.size(); ++i) {
+    sum += (alignment * estimate[i].translation() - reference[i].translation())
+               .squaredNorm();
+  }
+  return std::sqrt(sum / estimate.size());
+}
+
+double RelativePoseError(const std::vector<PoseGraphEdge>& edges,
+                         const std::vector<Pose2>& estimate,
+                         const std::vector<Pose2>& reference) {
+  double sum = 0.;
+  int count = 0;
+  for (const PoseGraphEdge& edge : edges) {
+    if (edge.is_loop) continue;
+    const Pose2 a = Between(estimate[edge.from], estimate[edge.to]);
+    const Pose2 b = Between(reference[edge.from], reference[edge.to]);
+    sum += (a.translation() - b.translation()).squaredNorm();
+    ++count;
+  }
+  return count == 0 ? 0. : sum / count;
+}
+
+LoopScore ScoreLoops(const std::vector<WhitenedEdge>& edges,
+                     const size_t first_outlier,
+                     const std::vector<Pose2>& estimate,
+                     const std::vector<Pose2>& reference) {
+  LoopScore score;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    const WhitenedEdge& edge = edges[i];
+    if (!edge.is_loop) continue;
+    const bool accepted =
+        Chi2(edge, estimate[edge.from], estimate[edge.to]) < kChi2Gate;
+    const bool fits_reference =
+        Chi2(edge, reference[edge.from], reference[edge.to]) < kChi2Gate;
+    score.accepted += accepted;
+    if (i < first_outlier) {
+      ++score.true_total;
+      score.true_accepted += accepted;
+    } else {
+      score.false_accepted += accepted && !fits_reference;
+    }
+  }
+  if (score.accepted > 0) {
+    score.precision =
+        1. - static_cast<double>(score.false_accepted) / score.accepted;
+  }
+  if (score.true_total > 0) {
+    score.recall = static_cast<double>(score.true_accepted) / score.true_total;
+  }
+  return score;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/pose_graph.h"
+
+#include <cmath>
+#include <set>
+
+#include "Eigen/Cholesky"
+#include "absl/strings/str_cat.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+bool IsFinite(const Pose2& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) &&
+         std::isfinite(pose.theta);
+}
+
+// Indices of the edges at each pose.
+std::vector<std::vector<int>> EdgesOfPoses(const PoseGraph& graph) {
+  std::vector<std::vector<int>> result(graph.poses.size());
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    result[graph.edges[i].from].push_back(i);
+    result[graph.edges[i].to].push_back(i);
+  }
+  return result;
+}
+
+std::string Name(const PoseGraph& graph, size_t edge_index) {
+  const PoseGraphEdge& edge = graph.edges[edge_index];
+  return absl::StrCat("edge ", edge_index, " (", graph.ids[edge.from], " -> ",
+                      graph.ids[edge.to], ")");
+}
+
+absl::Status ValidateEdge(const PoseGraph& graph, size_t index) {
+  const PoseGraphEdge& edge = graph.edges[index];
+  const int num_poses = graph.poses.size();
+  if (edge.from < 0 || edge.from >= num_poses || edge.to < 0 ||
+      edge.to >= num_poses) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "edge ", index, " names a vertex that does not exist (index ",
+        edge.from, " -> ", edge.to, " of ", num_poses, " vertices)"));
+  }
+  if (edge.from == edge.to) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(Name(graph, index), " joins a vertex to itself"));
+  }
+  if (!IsFinite(edge.measurement) || !edge.information.allFinite()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(Name(graph, index), " has a value that is not finite"));
+  }
+  const double scale = edge.information.cwiseAbs().maxCoeff();
+  if ((edge.information - edge.information.transpose()).cwiseAbs().maxCoeff() >
+      1e-9 * scale) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(Name(graph, index),
+                     " has an information matrix that is not symmetric"));
+  }
+  const Eigen::LLT<Eigen::Matrix3d> factor(edge.information);
+  if (factor.info() != Eigen::Success ||
+      !(factor.matrixLLT().diagonal().minCoeff() > 0.)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(Name(graph, index),
+                     " has an information matrix that is not positive "
+                     "definite"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status ValidatePoseGraph(const PoseGraph& graph) {
+  if (graph.poses.empty()) {
+    return absl::InvalidArgumentError("the graph has no vertices");
+  }
+  if (graph.ids.size() != graph.poses.size()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the graph has ", graph.poses.size(), " poses but ",
+                     graph.ids.size(), " ids"));
+  }
+  std::set<int64_t> seen;
+  for (size_t i = 0; i != graph.poses.size(); ++i) {
+    if (!seen.insert(graph.ids[i]).second) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("vertex ", graph.ids[i], " appears twice"));
+    }
+    if (!IsFinite(graph.poses[i])) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "vertex ", graph.ids[i], " has a value that is not finite"));
+    }
+  }
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    const absl::Status status = ValidateEdge(graph, i);
+    if (!status.ok()) return status;
+  }
+  const std::vector<std::vector<int>> edges_of_poses = EdgesOfPoses(graph);
+  std::vector<bool> reached(graph.poses.size(), false);
+  std::vector<int> stack = {0};
+  reached[0] = true;
+  while (!stack.empty()) {
+    const int pose = stack.back();
+    stack.pop_back();
+    for (const int e : edges_of_poses[pose]) {
+      const int other =
+          graph.edges[e].from == pose ? graph.edges[e].to : graph.edges[e].from;
+      if (!reached[other]) {
+        reached[other] = true;
+        stack.push_back(other);
+      }
+    }
+  }
+  for (size_t i = 0; i != reached.size(); ++i) {
+    if (!reached[i]) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("the graph is not connected: vertex ", graph.ids[i],
+                       " cannot be reached from vertex ", graph.ids[0]));
+    }
+  }
+  return absl::OkStatus();
+}
+
+std::vector<Pose2> DeadReckoning(const PoseGraph& graph) {
+  std::vector<Pose2> poses = graph.poses;
+  if (poses.empty()) return poses;
+  const std::vector<std::vector<int>> edges_of_poses = EdgesOfPoses(graph);
+  std::vector<bool> reached(poses.size(), false);
+  std::vector<int> queue = {0};
+  reached[0] = true;
+  for (size_t next = 0; next != queue.size(); ++next) {
+    const int pose = queue[next];
+    for (const int e : edges_of_poses[pose]) {
+      const PoseGraphEdge& edge = graph.edges[e];
+      if (edge.is_loop) continue;
+      const int other = edge.from == pose ? edge.to : edge.from;
+      if (reached[other]) continue;
+      poses[other] = edge.from == pose
+                         ? poses[pose] * edge.measurement
+                         : poses[pose] * edge.measurement.Inverse();
+      reached[other] = true;
+      queue.push_back(other);
+    }
+  }
+  return poses;
+}
+
+WhitenedEdge Whiten(const PoseGraphEdge& edge) {
+  WhitenedEdge result;
+  result.from = edge.from;
+  result.to = edge.to;
+  result.is_loop = edge.is_loop;
+  result.measurement = Eigen::Vector3d(edge.measurement.x, edge.measurement.y,
+                                       edge.measurement.theta);
+  const double c = std::cos(edge.measurement.theta);
+  const double s = std::sin(edge.measurement.theta);
+  Eigen::Matrix3d rotation;
+  rotation << c, s, 0., -s, c, 0., 0., 0., 1.;
+  const Eigen::Matrix3d upper =
+      Eigen::LLT<Eigen::Matrix3d>(edge.information).matrixU();
+  result.whitening = upper * rotation;
+  return result;
+}
+
+std::vector<WhitenedEdge> Whiten(const std::vector<PoseGraphEdge>& edges) {
+  std::vector<WhitenedEdge> result;
+  result.reserve(edges.size());
+  for (const PoseGraphEdge& edge : edges) result.push_back(Whiten(edge));
+  return result;
+}
+
+Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,
+                         const Pose2& to) {
+  const double c = std::cos(from.theta), s = std::sin(from.theta);
+  const double dx = to.x - from.x, dy = to.y - from.y;
+  const Eigen::Vector3d error(
+      c * dx + s * dy - edge.measurement.x(),
+      -s * dx + c * dy - edge.measurement.y(),
+      NormalizeAngle(to.theta - from.theta - edge.measurement.z()));
+  return edge.whitening * error;
+}
+
+Eigen::Vector3d Linearize(const WhitenedEdge& edge, const Pose2& from,
+                          const Pose2& to, Eigen::Matrix3d* jacobian_from,
+                          Eigen::Matrix3d* jacobian_to) {
+  const double c = std::cos(from.theta), s = std::sin(from.theta);
+  const double dx = to.x - from.x, dy = to.y - from.y;
+  const double along = c * dx + s * dy, across = -s * dx + c * dy;
+  const Eigen::Vector3d error(
+      along - edge.measurement.x(), across - edge.measurement.y(),
+      NormalizeAngle(to.theta - from.theta - edge.measurement.z()));
+  const Eigen::Vector3d w0 = edge.whitening.col(0);
+  const Eigen::Vector3d w1 = edge.whitening.col(1);
+  const Eigen::Vector3d w2 = edge.whitening.col(2);
+  jacobian_to->col(0) = c * w0 - s * w1;
+  jacobian_to->col(1) = s * w0 + c * w1;
+  jacobian_to->col(2) = w2;
+  jacobian_from->col(0) = -jacobian_to->col(0);
+  jacobian_from->col(1) = -jacobian_to->col(1);
+  // d(along)/dtheta = across, d(across)/dtheta = -along.
+  jacobian_from->col(2) = across * w0 - along * w1 - w2;
+  return edge.whitening * error;
+}
+
+double UnweightedSquaredError(const PoseGraphEdge& edge, const Pose2& from,
+                              const Pose2& to) {
+  // The rotation into the measured end's frame keeps the length.
+  const Pose2 relative = Between(from, to);
+  const double dx = relative.x - edge.measurement.x;
+  const double dy = relative.y - edge.measurement.y;
+  const double dtheta = NormalizeAngle(relative.theta - edge.measurement.theta);
+  return dx * dx + dy * dy + dtheta * dtheta;
+}
+
+std::vector<double> Chi2OfEdges(const std::vector<WhitenedEdge>& edges,
+                                const std::vector<Pose2>& poses) {
+  std::vector<double> result;
+  result.reserve(edges.size());
+  for (const WhitenedEdge& edge : edges) {
+    result.push_back(Chi2(edge, poses[edge.from], poses[edge.to]));
+  }
+  return result;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Batch optimisation of a pose graph whose loops may be wrong: iteratively
+// reweighted least squares inside Levenberg-Marquardt. In each iteration
+//
+//   (H + lambda diag H) dx = -g,   H = sum omega J'J,   g = sum omega J'r,
+//
+// with omega = rho'(chi2) at the current poses, and the step is taken when it
+// lowers the robust cost sum rho(chi2). Because omega belongs to the same rho
+// which judges the step, this descends; weights changed behind a solver's back
+// do not (measured with Ceres: it stops after a few rejected steps, calling
+// that convergence).
+//
+// Dead edges: an outlier pulled to weight 1e-6 changes nothing but still fills
+// the factor. Loops whose weight is below `prune_weight` leave the pattern; all
+// loops are weighed anew in each iteration and come back as soon as their
+// weight allows (measured: 10 to 20 times faster at 1000 outliers, same
+// optimum).
+//
+// The first pose is held.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_ROBUST_SOLVER_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_ROBUST_SOLVER_H_
+
+#include <utility>
+#include <vector>
+
+#include "cartographer_ext/optimization/block_ldlt.h"
+#include "cartographer_ext/optimization/kernels.h"
+#include "cartographer_ext/optimization/pose_graph.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct SolverOptions {
+  KernelOptions kernel;  // of the loops; other edges count in full
+  int max_iterations = 100;
+  // Ends when a step lowers the cost by less than this fraction.
+  double cost_tolerance = 1e-7;
+  // Ends when no pose moves more than this (metres or radians).
+  double step_tolerance = 1e-7;
+  double initial_lambda = 1e-4;
+  bool prune = true;
+  double prune_weight = 1e-4;
+  // Empty, or one factor for each edge on top of the kernel's weight.
+  std::vector<double> edge_weights;
+};
+
+struct SolverSummary {
+  int iterations = 0;        // linear systems solved
+  int analyses = 0;          // symbolic factorisations
+  double initial_cost = 0.;  // sum of rho, that is without the usual factor 1/2
+  double final_cost = 0.;
+  bool converged = false;  // a tolerance was met before max_iterations
+  size_t factor_blocks = 0;
+  double cpu_seconds = 0.;
+};
+
+// Improves `poses` in place. The edges must refer to poses that exist.
+SolverSummary SolveRobust(const std::vector<WhitenedEdge>& edges,
+                          const SolverOptions& options,
+                          std::vector<Pose2>* poses);
+
+struct GncOptions {
+  double truncation = kChi2Gate;  // c: chi2 beyond which a loop is an outlier
+  double mu_step = 1.4;
+  int max_outer_iterations = 100;
+  int inner_iterations = 4;
+};
+
+// Graduated non-convexity with truncated least squares (Yang et al. 2020), the
+// odometry known to be right. Weights are returned one per edge.
+SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
+                       const GncOptions& options, std::vector<Pose2>* poses,
+                       std::vector<double>* weights);
+
+// Truncated cost: chi2 of the odometry plus sum over loops of min(chi2, gate).
+// Comparable between kernels, and the criterion that tells a folded map from a
+// right one: every true loop lost costs the gate.
+double TruncatedCost(const std::vector<WhitenedEdge>& edges,
+                     const std::vector<Pose2>& poses);
+
+// Processor time of the calling thread in seconds.
+double ThreadCpuSeconds();
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_ROBUST_SOLVER_H_
