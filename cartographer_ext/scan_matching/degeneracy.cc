@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/scan_matching/degeneracy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "Eigen/Eigenvalues"
+
+namespace cartographer_ext {
+namespace scan_matching {
+namespace {
+
+// 0 below the floor, 1 above full_ratio * floor, smooth in between
+// (3 t^2 - 2 t^3 on a logarithmic scale).
+double Belief(const double information, const double floor,
+              const double full_ratio) {
+  if (information <= 0. || information <= floor) return 0.;
+  if (floor <= 0. || information >= full_ratio * floor) return 1.;
+  const double t = std::log(information / floor) / std::log(full_ratio);
+  return t * t * (3. - 2. * t);
+}
+
+}  // namespace
+
+DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
+                                   const Eigen::Matrix3d& hessian,
+                                   const int num_points) {
+  DegeneracyResult result;
+  const Eigen::Matrix3d h =
+      hessian.allFinite()
+          ? Eigen::Matrix3d(0.5 * (hessian + hessian.transpose()))
+          : Eigen::Matrix3d(Eigen::Matrix3d::Zero());
+  const Eigen::Matrix2d a = h.topLeftCorner<2, 2>();
+  const Eigen::Vector2d b = h.topRightCorner<2, 1>();
+  const double c = h(2, 2);
+
+  // Schur complements: translation without rotation and the reverse.
+  Eigen::Matrix2d translation = a;
+  if (c > 0.) translation -= b * b.transpose() / c;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(translation);
+  result.eigenvalues = solver.eigenvalues().cwiseMax(0.);
+  result.eigenvectors = solver.eigenvectors();
+  result.rotation_information = c;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> of_a(a);
+  for (int i = 0; i < 2; ++i) {
+    const double eigenvalue = of_a.eigenvalues()(i);
+    if (eigenvalue > 1e-12 * std::abs(of_a.eigenvalues()(1))) {
+      const double projection = of_a.eigenvectors().col(i).dot(b);
+      result.rotation_information -= projection * projection / eigenvalue;
+    }
+  }
+  result.rotation_information = std::max(0., result.rotation_information);
+
+  const Eigen::Vector2d weakest = result.eigenvectors.col(0);
+  result.direction = std::atan2(weakest.y(), weakest.x());
+  if (result.direction < 0.) result.direction += kPi;
+  if (result.direction >= kPi) result.direction -= kPi;
+  result.ratio = result.eigenvalues(1) > 0.
+                     ? result.eigenvalues(0) / result.eigenvalues(1)
+                     : 0.;
+
+  switch (options.mode) {
+    case DegeneracyMode::kNoiseFloor: {
+      const double floor = options.translation_floor_per_point * num_points;
+      for (int i = 0; i < 2; ++i) {
+        result.translation_weights(i) =
+            Belief(result.eigenvalues(i), floor, options.full_ratio);
+      }
+      result.rotation_weight = Belief(
+          result.rotation_information,
+          options.rotation_floor_per_point * num_points, options.full_ratio);
+      break;
+    }
+    case DegeneracyMode::kPaperLiteral:
+      // Eigenvalues of the covariance are the inverse ones.
+      result.translation_weights(1) = result.eigenvalues(1) > 0. ? 1. : 0.;
+      result.translation_weights(0) =
+          result.eigenvalues(0) * options.paper_ratio > result.eigenvalues(1)
+              ? 1.
+              : 0.;
+      result.rotation_weight = 1.;
+      break;
+  }
+
+  const bool first = result.translation_weights(0) < 0.5;
+  const bool second = result.translation_weights(1) < 0.5;
+  const bool rotation = result.rotation_weight < 0.5;
+  if (first && second) {
+    result.state =
+        rotation ? DegeneracyState::kEverything : DegeneracyState::kPosition;
+  } else if (first || second) {
+    result.state = DegeneracyState::kTranslation;
+  } else {
+    result.state =
+        rotation ? DegeneracyState::kRotation : DegeneracyState::kNone;
+  }
+  return result;
+}
+
+Pose2 RemapSolution(const DegeneracyResult& degeneracy, const Pose2& prediction,
+                    const Pose2& match) {
+  const Eigen::Vector2d difference =
+      match.translation() - prediction.translation();
+  Eigen::Vector2d accepted = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Vector2d v = degeneracy.eigenvectors.col(i);
+    accepted += degeneracy.translation_weights(i) * v.dot(difference) * v;
+  }
+  const double turn = degeneracy.rotation_weight *
+                      NormalizeAngle(match.theta - prediction.theta);
+  return Pose2(prediction.x + accepted.x(), prediction.y + accepted.y(),
+               NormalizeAngle(prediction.theta + turn));
+}
+
+}  // namespace scan_matching
+}  // namespace cartographer_ext

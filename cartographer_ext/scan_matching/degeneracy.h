@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Where a scan cannot tell the robot's pose, and what to do about it (paper G,
+// improved graph optimisation 2024, section 3.3, eq. 17 to 19).
+//
+// A laser in a corridor sees nothing that moves when the robot does: the cost
+// of the scan matcher has no curvature along the corridor, and whatever it
+// returns in that direction is noise. The paper looks at the covariance of the
+// match,
+//
+//   G eq. 17   Sigma = [cov(x,x) cov(x,y); cov(y,x) cov(y,y)]
+//   G eq. 18   C_d, C_n, C_f: rows are the degenerate, the other, all
+//   eigenvectors G eq. 19   X_f = C_f^-1 C_d X_0 + C_f^-1 C_n X_s
+//
+// with X_0 the prediction (odometry) and X_s the match. (The print of eq. 19
+// has the singular C_d^-1 in the first term.) With orthonormal eigenvectors v_i
+// this is  X_f = sum_i v_i v_i^T (w_i X_s + (1 - w_i) X_0),  w_i = 0 or 1.
+//
+// What is different here, and why:
+//  * The matrix is the Hessian of the occupied-space block alone. That of the
+//    whole problem contains the priors that pull to the prediction, and these
+//    dominate it: its covariance is round even in a corridor.
+//  * Metres and radians are never in one decomposition. Rotation is eliminated
+//  by
+//    the Schur complement, S = A - b b^T / c for H = [A b; b^T c], and S is
+//    decomposed; the rotation has its own information c - b^T A^+ b.
+//  * A bare ratio of eigenvalues fails, because a quantised wall has spurious
+//    curvature along itself. An eigenvalue counts only as far as it exceeds a
+//    floor that grows with the number of points.
+//  * w_i changes smoothly from 0 at the floor to 1 at `full_ratio` times the
+//    floor, so that the map does not jump when a door comes into view.
+//
+// Worked example: H = diag(4, 400, 50), floor 10, full_ratio 10. Along x
+// (4 < 10) w = 0: the match is not believed. Along y (400 >= 100) w = 1.
+#ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_DEGENERACY_H_
+#define CARTOGRAPHER_EXT_SCAN_MATCHING_DEGENERACY_H_
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+
+namespace cartographer_ext {
+namespace scan_matching {
+
+enum class DegeneracyMode {
+  kNoiseFloor,    // as described above
+  kPaperLiteral,  // eq. 17, 18: ratio of the covariance eigenvalues, hard
+                  // switch
+};
+
+struct DegeneracyOptions {
+  DegeneracyMode mode = DegeneracyMode::kNoiseFloor;
+  // Spurious information of one point on a straight wall, 1/m^2 and 1/rad^2, in
+  // the units of the Hessian divided by the number of points.
+  double translation_floor_per_point = 0.05;
+  double rotation_floor_per_point = 0.05;
+  double full_ratio = 10.;   // > 1
+  double paper_ratio = 30.;  // kPaperLiteral: degenerate above, > 1
+};
+
+enum class DegeneracyState {
+  kNone,         // everything is observed
+  kTranslation,  // one direction of the plane is not
+  kPosition,     // no direction of the plane is
+  kRotation,     // only the heading is not
+  kEverything,   // nothing is observed
+};
+
+struct DegeneracyResult {
+  // Translation information with the rotation eliminated: eigenvalues in
+  // ascending order (1/m^2), unit eigenvectors as columns, in the frame of H.
+  Eigen::Vector2d eigenvalues = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d eigenvectors = Eigen::Matrix2d::Identity();
+  double rotation_information = 0.;  // 1/rad^2, with translation eliminated
+  // How far the match is believed along each eigenvector and in rotation,
+  // [0,1].
+  Eigen::Vector2d translation_weights = Eigen::Vector2d::Ones();
+  double rotation_weight = 1.;
+  DegeneracyState state = DegeneracyState::kNone;
+  // Angle of the weakest direction in [0, pi), radians.
+  double direction = 0.;
+  // Ratio of the smaller to the larger eigenvalue, in [0, 1].
+  double ratio = 1.;
+};
+
+// `hessian` is J^T J of the occupied-space residuals with respect to (x, y,
+// theta), metres and radians, any frame; `num_points` the number of residuals.
+// A matrix with NaN or infinity counts as without information.
+DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
+                                   const Eigen::Matrix3d& hessian,
+                                   int num_points);
+
+// G eq. 19 with smooth weights: the match where it is believed, the prediction
+// elsewhere. Both poses in the frame of the Hessian.
+Pose2 RemapSolution(const DegeneracyResult& degeneracy, const Pose2& prediction,
+                    const Pose2& match);
+
+}  // namespace scan_matching
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SCAN_MATCHING_DEGENERACY_H_

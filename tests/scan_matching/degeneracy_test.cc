@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/scan_matching/degeneracy.h"
+
+#include <cmath>
+#include <limits>
+
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace scan_matching {
+namespace {
+
+DegeneracyOptions Options() {
+  DegeneracyOptions options;
+  options.translation_floor_per_point = 1.;
+  options.rotation_floor_per_point = 1.;
+  options.full_ratio = 10.;
+  return options;
+}
+
+// Information of a wall whose normal has the given angle.
+Eigen::Matrix3d Wall(const double angle, const double information) {
+  const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  h.topLeftCorner<2, 2>() = information * normal * normal.transpose();
+  h(2, 2) = information;
+  return h;
+}
+
+TEST(DegeneracyTest, WorkedExampleOfTheHeader) {
+  const Eigen::Vector3d diagonal(4., 400., 50.);
+  const DegeneracyResult result =
+      AnalyzeDegeneracy(Options(), diagonal.asDiagonal(), 10);
+  EXPECT_EQ(result.translation_weights(0), 0.);
+  EXPECT_EQ(result.translation_weights(1), 1.);
+  EXPECT_EQ(result.state, DegeneracyState::kTranslation);
+  EXPECT_NEAR(result.direction, 0., 1e-12);
+  EXPECT_NEAR(result.ratio, 0.01, 1e-12);
+}
+
+TEST(DegeneracyTest, CorridorDirectionIsAlongTheWalls) {
+  for (double angle = 0.05; angle < M_PI; angle += 0.2) {
+    const DegeneracyResult result =
+        AnalyzeDegeneracy(Options(), Wall(angle, 1e4), 10);
+    double along = angle + M_PI / 2.;
+    if (along >= M_PI) along -= M_PI;
+    EXPECT_NEAR(std::sin(result.direction - along), 0., 1e-9);
+    EXPECT_GE(result.direction, 0.);
+    EXPECT_LT(result.direction, M_PI);
+    EXPECT_EQ(result.state, DegeneracyState::kTranslation);
+  }
+}
+
+TEST(DegeneracyTest, SchurComplementRemovesWhatRotationExplains) {
+  // y and theta are seen only together: neither is determined alone.
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  h(0, 0) = 1000.;
+  h(1, 1) = 1000.;
+  h(1, 2) = h(2, 1) = 1000.;
+  h(2, 2) = 1000.;
+  const DegeneracyResult result = AnalyzeDegeneracy(Options(), h, 10);
+  EXPECT_NEAR(result.eigenvalues(0), 0., 1e-9);
+  EXPECT_NEAR(result.eigenvalues(1), 1000., 1e-9);
+  EXPECT_NEAR(result.rotation_information, 0., 1e-9);
+  EXPECT_EQ(result.rotation_weight, 0.);
+}
+
+TEST(DegeneracyTest, WeightIsSmoothAndMonotonic) {
+  double last = -1.;
+  for (double information = 5.; information < 200.; information *= 1.02) {
+    const Eigen::Vector3d diagonal(information, 1e6, 1e6);
+    const double weight =
+        AnalyzeDegeneracy(Options(), diagonal.asDiagonal(), 10)
+            .translation_weights(0);
+    EXPECT_GE(weight, last);
+    if (last >= 0.) {
+      EXPECT_LT(weight - last, 0.02);
+    }
+    last = weight;
+  }
+  EXPECT_EQ(last, 1.);
+}
+
+TEST(DegeneracyTest, RemapKeepsPredictionOnlyInTheWeakDirection) {
+  const DegeneracyResult corridor =
+      AnalyzeDegeneracy(Options(), Wall(M_PI / 2., 1e4), 10);
+  const Pose2 prediction(1., 2., 0.1), match(1.7, 2.3, 0.2);
+  const Pose2 remapped = RemapSolution(corridor, prediction, match);
+  EXPECT_NEAR(remapped.x, 1., 1e-9);   // along the corridor: prediction
+  EXPECT_NEAR(remapped.y, 2.3, 1e-9);  // across: match
+  EXPECT_NEAR(remapped.theta, 0.2, 1e-9);
+
+  const DegeneracyResult full =
+      AnalyzeDegeneracy(Options(), 1e6 * Eigen::Matrix3d::Identity(), 10);
+  const Pose2 unchanged = RemapSolution(full, prediction, match);
+  EXPECT_NEAR(unchanged.x, match.x, 1e-12);
+  EXPECT_NEAR(unchanged.theta, match.theta, 1e-12);
+}
+
+// Eq. 19 with matrices, as corrected, against the sum over eigenvectors.
+TEST(DegeneracyTest, EquationNineteenWithMatrices) {
+  DegeneracyOptions options = Options();
+  options.mode = DegeneracyMode::kPaperLiteral;
+  const DegeneracyResult result =
+      AnalyzeDegeneracy(options, Wall(0.7, 1e4), 10);
+  const Eigen::Matrix2d c_f = result.eigenvectors.transpose();
+  Eigen::Matrix2d c_d = Eigen::Matrix2d::Zero(), c_n = Eigen::Matrix2d::Zero();
+  c_d.row(0) = c_f.row(0);
+  c_n.row(1) = c_f.row(1);
+  const Eigen::Vector2d x_0(0.3, -0.4), x_s(1.1, 0.6);
+  const Eigen::Vector2d expected =
+      c_f.transpose() * c_d * x_0 + c_f.transpose() * c_n * x_s;
+  const Pose2 remapped = RemapSolution(result, Pose2(x_0.x(), x_0.y(), 0.),
+                                       Pose2(x_s.x(), x_s.y(), 0.));
+  EXPECT_NEAR(remapped.x, expected.x(), 1e-12);
+  EXPECT_NEAR(remapped.y, expected.y(), 1e-12);
+}
+
+TEST(DegeneracyTest, AngleIsRemappedTheShortWay) {
+  DegeneracyResult result;
+  result.rotation_weight = 0.5;
+  const Pose2 remapped = RemapSolution(result, Pose2(0., 0., M_PI - 0.1),
+                                       Pose2(0., 0., -M_PI + 0.1));
+  EXPECT_NEAR(std::abs(remapped.theta), M_PI, 1e-9);
+}
+
+TEST(DegeneracyTest, NothingSeenMeansPrediction) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Matrix3d bad = Eigen::Matrix3d::Identity();
+  bad(0, 1) = nan;
+  for (const Eigen::Matrix3d& h :
+       {Eigen::Matrix3d(Eigen::Matrix3d::Zero()), bad}) {
+    const DegeneracyResult result = AnalyzeDegeneracy(Options(), h, 10);
+    EXPECT_EQ(result.state, DegeneracyState::kEverything);
+    EXPECT_TRUE(result.eigenvectors.allFinite());
+    const Pose2 remapped =
+        RemapSolution(result, Pose2(1., 2., 0.5), Pose2(9., 9., 1.));
+    EXPECT_NEAR(remapped.x, 1., 1e-12);
+    EXPECT_NEAR(remapped.theta, 0.5, 1e-12);
+  }
+  // No points at all.
+  EXPECT_EQ(AnalyzeDegeneracy(Options(), Eigen::Matrix3d::Zero(), 0).state,
+            DegeneracyState::kEverything);
+}
+
+TEST(DegeneracyTest, CircularRoomLosesOnlyTheHeading) {
+  const Eigen::Vector3d diagonal(1e4, 1e4, 1.);
+  EXPECT_EQ(AnalyzeDegeneracy(Options(), diagonal.asDiagonal(), 10).state,
+            DegeneracyState::kRotation);
+}
+
+}  // namespace
+}  // namespace scan_matching
+}  // namespace cartographer_ext
