@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/simulation/obstacle_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cartographer_ext/simulation/seeds.h"
+
+namespace cartographer_ext {
+namespace simulation {
+
+ObstacleMotion::ObstacleMotion(const std::vector<MovingObstacle>& obstacles,
+                               const uint64_t seed) {
+  Random random = MakeRandom(seed, RandomStream::kObstacles);
+  for (const MovingObstacle& obstacle : obstacles) {
+    Loop loop;
+    loop.radius = obstacle.radius;
+    loop.speed = obstacle.speed;
+    loop.path = obstacle.path;
+    loop.path.push_back(obstacle.path.front());
+    loop.way.push_back(0.);
+    for (size_t i = 1; i != loop.path.size(); ++i) {
+      loop.way.push_back(loop.way.back() +
+                         (loop.path[i] - loop.path[i - 1]).norm());
+    }
+    // Drawn for everyone: one obstacle's setting does not move the others.
+    const double drawn = random.Uniform();
+    loop.start =
+        (obstacle.random_phase ? drawn : obstacle.phase) * loop.way.back();
+    loops_.push_back(loop);
+  }
+}
+
+Eigen::Vector2d ObstacleMotion::Position(const size_t obstacle,
+                                         const double time) const {
+  const Loop& loop = loops_[obstacle];
+  const double length = loop.way.back();
+  if (length == 0.) return loop.path.front();
+  double way = std::fmod(loop.start + loop.speed * time, length);
+  if (way < 0.) way += length;
+  const auto next =
+      std::upper_bound(loop.way.begin() + 1, loop.way.end() - 1, way);
+  const size_t i = next - loop.way.begin();
+  const double stretch = loop.way[i] - loop.way[i - 1];
+  const double ratio = stretch > 0. ? (way - loop.way[i - 1]) / stretch : 0.;
+  return loop.path[i - 1] + ratio * (loop.path[i] - loop.path[i - 1]);
+}
+
+std::vector<Disc> ObstacleMotion::At(const double time) const {
+  std::vector<Disc> discs(loops_.size());
+  for (size_t i = 0; i != loops_.size(); ++i) {
+    discs[i].center = Position(i, time);
+    discs[i].radius = loops_[i].radius;
+  }
+  return discs;
+}
+
+}  // namespace simulation
+}  // namespace cartographer_ext

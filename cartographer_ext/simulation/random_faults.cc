@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_ext/simulation/odometry_model.h"
+#include "cartographer_ext/simulation/seeds.h"
+
+namespace cartographer_ext {
+namespace simulation {
+namespace {
+
+using Kind = OdometryFault::Kind;
+
+constexpr double kApart = 10.;      // seconds between two random faults
+constexpr double kMinSpeed = 0.15;  // a stale burst shows only while driving
+constexpr int kMaxAttempts = 1000;
+constexpr int kMaxCount = 1000;
+
+// A time at which the robot drives, away from the times already taken; negative
+// when the drive has no room left.
+double FreeTime(const Drive& drive, const std::vector<double>& taken,
+                Random* random) {
+  for (int attempt = 0; attempt != kMaxAttempts; ++attempt) {
+    const double time = random->Uniform(kApart, drive.duration() - kApart);
+    if (time < kApart || std::abs(drive.At(time).speed) < kMinSpeed ||
+        std::abs(drive.At(time + 1.).speed) < kMinSpeed) {
+      continue;
+    }
+    bool is_free = true;
+    for (const double other : taken) {
+      is_free = is_free && std::abs(other - time) >= kApart;
+    }
+    if (is_free) return time;
+  }
+  return -1.;
+}
+
+void Randomise(OdometryFault* fault, Random* random) {
+  switch (fault->kind) {
+    case Kind::kStale:
+      fault->duration = random->Uniform(0.3, 1.);
+      break;
+    case Kind::kJump:
+      fault->distance = random->Uniform(0.5, 1.);
+      if (random->Uniform() < 0.5) fault->distance = -fault->distance;
+      fault->angle = random->Uniform(-20., 20.) * kPi / 180.;
+      break;
+    case Kind::kSlip:
+      fault->duration = random->Uniform(1., 3.);
+      fault->gain_left = random->Uniform(0.3, 1.);
+      fault->gain_right = random->Uniform(0.3, 1.);
+      break;
+    case Kind::kReverse:
+    case Kind::kOffset:
+      break;
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
+    const std::string& description, const Drive& drive, const uint64_t seed) {
+  std::vector<OdometryFault> faults;
+  std::vector<double> taken;
+  Random random = MakeRandom(seed, RandomStream::kFaults);
+  for (const absl::string_view item :
+       absl::StrSplit(description, ',', absl::SkipEmpty())) {
+    const std::vector<std::string> parts = absl::StrSplit(item, ':');
+    OdometryFault fault;
+    bool known = false;
+    for (const Kind kind : {Kind::kSlip, Kind::kStale, Kind::kJump,
+                            Kind::kReverse, Kind::kOffset}) {
+      if (parts[0] != FaultName(kind)) continue;
+      fault.kind = kind;
+      known = true;
+    }
+    double value = 1.;
+    const bool numeric =
+        parts.size() == 1 ||
+        (parts.size() == 2 && absl::SimpleAtod(parts[1], &value) &&
+         std::isfinite(value));
+    if (!known || !numeric) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "odometry fault '", item,
+          "': expected slip:N, stale:N, jump:N, reverse or offset:SECONDS"));
+    }
+    if (fault.kind == Kind::kReverse || fault.kind == Kind::kOffset) {
+      fault.seconds = value;
+      if (std::abs(value) > 10.) {
+        return absl::InvalidArgumentError(absl::StrCat(
+            "odometry fault '", item, "': seconds outside [-10, 10]"));
+      }
+      faults.push_back(fault);
+      continue;
+    }
+    if (value < 0. || value > kMaxCount || value != std::floor(value)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("odometry fault '", item,
+                       "': the count must be whole, in [0, ", kMaxCount, "]"));
+    }
+    for (int i = 0; i < value; ++i) {
+      fault.start = FreeTime(drive, taken, &random);
+      if (fault.start < 0.) {
+        return absl::InvalidArgumentError(
+            absl::StrCat("odometry fault '", item, "': a drive of ",
+                         drive.duration(), " s has no room for so many"));
+      }
+      taken.push_back(fault.start);
+      Randomise(&fault, &random);
+      faults.push_back(fault);
+    }
+  }
+  return faults;
+}
+
+}  // namespace simulation
+}  // namespace cartographer_ext
