@@ -70,21 +70,30 @@ class LuaParameterDictionary {
  private:
   class State;  // the interpreter, shared by a dictionary and its parts
 
-  // The table on top of the interpreter's stack, which is popped.
+  // Runs the code and leaves the table it returns on the stack.
+  static std::shared_ptr<State> Run(const std::string& code,
+                                    std::unique_ptr<FileResolver> resolver);
+
+  // Takes the table from the top of the stack.
   LuaParameterDictionary(std::shared_ptr<State> state, std::string path,
                          bool reference_counted);
+
   void PushTable() const;
-  void PushValueOrDie(const std::string& key) const;
-  void PushCountedValueOrDie(const std::string& key);
+  // Counts the read.
+  void PushValueOrDie(const std::string& key);
   void CheckType(bool matches, const std::string& key,
                  const char* expected) const;
   std::string KeyPath(const std::string& key) const;
-  std::unique_ptr<LuaParameterDictionary> PopDictionary(const std::string& key);
-  std::string TableToString(const std::string& indent) const;
-  // Calls `visit` with the index of each array value, the value being on top of
-  // the stack.
-  template <typename Visitor>
-  void ForEachArrayValue(const Visitor& visit) const;
+
+  // Take the value from the top of the stack; `key` is for messages.
+  double PopDouble(const std::string& key) const;
+  std::string PopString(const std::string& key) const;
+  std::unique_ptr<LuaParameterDictionary> PopDictionary(
+      const std::string& key) const;
+  std::string PopAsText(const std::string& indent) const;
+  // Pushes the array values in turn; `pop_value` gets the index as text.
+  template <typename PopValue>
+  void ForEachArrayValue(const PopValue& pop_value) const;
 
   const std::shared_ptr<State> state_;
   const std::string path_;  // "" for the root

@@ -32,16 +32,8 @@ inline int64 RoundToInt64(double x) { return std::llround(x); }
 // Appends one gzip member (fastest level, no name, no time) to `compressed`.
 void FastGzipString(const std::string& uncompressed, std::string* compressed);
 
-// Appends the content of a gzip file to `decompressed`. Broken data is fatal;
-// tools that face arbitrary files use GunzipWithLimit.
+// Appends the content of a gzip file to `decompressed`. Broken data is fatal.
 void FastGunzipString(const std::string& compressed, std::string* decompressed);
-
-// Replaces `decompressed` by the content of exactly one complete gzip member.
-// False, with a reason in `error`, when the data is broken, followed by other
-// bytes, or expands to more than `max_size` bytes; never holds more than that.
-bool GunzipWithLimit(const char* compressed, size_t compressed_size,
-                     size_t max_size, std::string* decompressed,
-                     std::string* error);
 
 }  // namespace common
 

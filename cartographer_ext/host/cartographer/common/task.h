@@ -33,7 +33,7 @@ class Task {
   Task() = default;
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
-  // Warns when the task was neither never scheduled nor completed.
+  // Warns when the task was scheduled but has not completed.
   ~Task();
 
   State GetState() ABSL_LOCKS_EXCLUDED(mutex_);

@@ -6,20 +6,14 @@
 #include <fstream>
 #include <string>
 
-#include "cartographer/common/port.h"
 #include "cartographer/io/proto_stream_interface.h"
 
 namespace cartographer {
 namespace io {
 
-// Layout of a stream: kProtoStreamMagic, then per message the size of its
-// compressed form and one gzip member. Numbers are 8 bytes, little-endian.
-constexpr uint64 kProtoStreamMagic = 0x7b1d1f7b5bf501dbull;
-
-// No message that a 2D state needs comes near this size once decompressed; the
-// reader refuses larger ones, which bounds its memory.
-constexpr size_t kMaxProtoStreamMessageSize = size_t{1} << 30;
-
+// Layout of a stream: the magic number 0x7b1d1f7b5bf501db, then per message the
+// size of its compressed form and one gzip member. Numbers are 8 bytes,
+// little-endian.
 class ProtoStreamWriter : public ProtoStreamWriterInterface {
  public:
   // A file that cannot be created is fatal.

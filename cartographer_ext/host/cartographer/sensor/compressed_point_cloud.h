@@ -26,11 +26,8 @@ class CompressedPointCloud {
 
   CompressedPointCloud() = default;
   explicit CompressedPointCloud(const PointCloud& point_cloud);
-  // Data that does not decode to `num_points` points is fatal; see IsValid.
+  // Data that does not decode to `num_points` points is fatal.
   explicit CompressedPointCloud(const proto::CompressedPointCloud& proto);
-
-  // Whether `proto` decodes.
-  static bool IsValid(const proto::CompressedPointCloud& proto);
 
   PointCloud Decompress() const;
 

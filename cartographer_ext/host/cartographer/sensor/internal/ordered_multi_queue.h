@@ -28,10 +28,9 @@ struct QueueKey {
 
 // Merges queues that are each in order of time. The oldest reading is
 // dispatched as soon as every unfinished queue has one. Of equal times the
-// queue with the smaller key comes first. The readings of a trajectory start
-// when all of its sensors have begun: of those that are older than that, each
-// queue passes on its last one only. (A queue whose next reading is not known
-// yet passes it on late rather than never.)
+// queue with the smaller key comes first. A trajectory begins when all of its
+// sensors have begun: of the readings before that, each queue passes on its
+// last one only.
 class OrderedMultiQueue {
  public:
   using Callback = std::function<void(std::unique_ptr<Data>)>;

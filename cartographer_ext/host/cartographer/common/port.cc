@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer/common/port.h"
+
+#include <zlib.h>
+
+#include <cstring>
+
+#include "glog/logging.h"
+
+namespace cartographer {
+namespace common {
+
+namespace {
+
+constexpr size_t kChunkSize = 1 << 16;
+constexpr int kGzipWindowBits = 15 + 16;  // 16: gzip header and trailer
+
+}  // namespace
+
+void FastGzipString(const std::string& uncompressed, std::string* compressed) {
+  z_stream stream;
+  std::memset(&stream, 0, sizeof(stream));
+  CHECK_EQ(deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kGzipWindowBits, 8,
+                        Z_DEFAULT_STRATEGY),
+           Z_OK);
+  // Sizes of zlib are 32 bits wide; deflateBound is safe for what fits.
+  CHECK_LT(uncompressed.size(), size_t{1} << 31) << "message too large";
+  const size_t old_size = compressed->size();
+  compressed->resize(old_size + deflateBound(&stream, uncompressed.size()));
+  stream.next_in =
+      reinterpret_cast<Bytef*>(const_cast<char*>(uncompressed.data()));
+  stream.avail_in = uncompressed.size();
+  stream.next_out = reinterpret_cast<Bytef*>(&(*compressed)[old_size]);
+  stream.avail_out = compressed->size() - old_size;
+  CHECK_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  compressed->resize(old_size + stream.total_out);
+  deflateEnd(&stream);
+}
+
+void FastGunzipString(const std::string& compressed,
+                      std::string* decompressed) {
+  z_stream stream;
+  std::memset(&stream, 0, sizeof(stream));
+  CHECK_EQ(inflateInit2(&stream, kGzipWindowBits), Z_OK);
+  stream.next_in =
+      reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
+  stream.avail_in = compressed.size();
+  int result = Z_OK;
+  while (result == Z_OK) {
+    const size_t old_size = decompressed->size();
+    decompressed->resize(old_size + kChunkSize);
+    stream.next_out = reinterpret_cast<Bytef*>(&(*decompressed)[old_size]);
+    stream.avail_out = kChunkSize;
+    result = inflate(&stream, Z_NO_FLUSH);
+    decompressed->resize(old_size + kChunkSize - stream.avail_out);
+    // Another member may follow.
+    if (result == Z_STREAM_END && stream.avail_in > 0) {
+      result = inflateReset(&stream);
+    }
+  }
+  inflateEnd(&stream);
+  CHECK_EQ(result, Z_STREAM_END) << "broken gzip data";
+}
+
+}  // namespace common
+}  // namespace cartographer
