@@ -8,6 +8,7 @@
 
 #include "absl/strings/charconv.h"
 #include "absl/strings/numbers.h"
+#include "absl/strings/str_format.h"
 
 namespace cartographer_ext {
 namespace io {
@@ -131,6 +132,23 @@ bool ParseTime(absl::string_view token, TimeNs* time) {
   }
   *time = FromSeconds(seconds);
   return true;
+}
+
+std::string FormatTime(TimeNs time) {
+  const bool negative = time < 0;
+  const uint64_t magnitude =
+      negative ? 0 - static_cast<uint64_t>(time) : static_cast<uint64_t>(time);
+  return absl::StrFormat("%s%d.%09d", negative ? "-" : "",
+                         magnitude / 1000000000, magnitude % 1000000000);
+}
+
+std::string FormatDouble(double value) {
+  for (const int digits : {15, 16}) {
+    const std::string text = absl::StrFormat("%.*g", digits, value);
+    double again;
+    if (ParseDouble(text, &again) && again == value) return text;
+  }
+  return absl::StrFormat("%.17g", value);
 }
 
 }  // namespace io

@@ -7,6 +7,7 @@
 #define CARTOGRAPHER_EXT_IO_TOKENS_H_
 
 #include <cstdint>
+#include <string>
 
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/io/sensor_source.h"
@@ -38,6 +39,12 @@ bool ParseInt(absl::string_view token, int64_t* value);
 // Seconds as decimal text, to the nanosecond (a double keeps only about 100 ns
 // of seconds since 1970). Between 0 and 9e9 seconds (the year 2255).
 bool ParseTime(absl::string_view token, TimeNs* time);
+
+// Seconds with nine decimals; exact.
+std::string FormatTime(TimeNs time);
+
+// The fewest of 15 to 17 significant digits that give the same double again.
+std::string FormatDouble(double value);
 
 }  // namespace io
 }  // namespace cartographer_ext

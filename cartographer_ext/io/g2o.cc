@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/g2o.h"
+
+#include <utility>
+
+#include "Eigen/Cholesky"
+#include "absl/strings/str_cat.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/io/line_reader.h"
+#include "cartographer_ext/io/tokens.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+constexpr size_t kMaxElements = 50000000;
+
+// Collects the elements; references are checked at the end, as the order of the
+// lines is free.
+class G2oParser {
+ public:
+  // Elements of a graph, empty lines and comments; the error lacks the place.
+  absl::Status Parse(absl::string_view text, int64_t line_number);
+  absl::Status CheckReferences() const;
+
+  G2oGraph graph;
+
+ private:
+  struct Fix {
+    int64_t id;
+    int64_t line;
+  };
+
+  absl::Status ParseVertex(Tokens* tokens);
+  absl::Status ParseEdge(Tokens* tokens, int64_t line_number);
+  absl::Status ParseFix(Tokens* tokens, int64_t line_number);
+
+  std::vector<Fix> fixes_;
+};
+
+absl::Status Malformed(absl::string_view what) {
+  return absl::InvalidArgumentError(what);
+}
+
+absl::Status At(const std::string& filename, int64_t line,
+                absl::string_view what) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(filename, ":", line, ": ", what));
+}
+
+bool ParsePose(Tokens* tokens, Pose2* pose) {
+  if (!ParseFinite(tokens->Next(), &pose->x) ||
+      !ParseFinite(tokens->Next(), &pose->y) ||
+      !ParseFinite(tokens->Next(), &pose->theta)) {
+    return false;
+  }
+  pose->theta = NormalizeAngle(pose->theta);
+  return true;
+}
+
+absl::Status G2oParser::ParseVertex(Tokens* tokens) {
+  int64_t id;
+  Pose2 pose;
+  if (!ParseInt(tokens->Next(), &id)) {
+    return Malformed("the id of the vertex is no integer");
+  }
+  if (!ParsePose(tokens, &pose)) {
+    return Malformed("a vertex needs three finite numbers x y theta");
+  }
+  if (!graph.vertices.emplace(id, pose).second) {
+    return Malformed(absl::StrCat("vertex ", id, " was defined before"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status G2oParser::ParseEdge(Tokens* tokens, int64_t line_number) {
+  G2oEdge edge;
+  edge.line = line_number;
+  if (!ParseInt(tokens->Next(), &edge.from) ||
+      !ParseInt(tokens->Next(), &edge.to)) {
+    return Malformed("the ids of the edge are no integers");
+  }
+  if (!ParsePose(tokens, &edge.measurement)) {
+    return Malformed("an edge needs three finite numbers dx dy dtheta");
+  }
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) {
+      double value;
+      if (!ParseFinite(tokens->Next(), &value)) {
+        return Malformed(
+            "an edge needs six finite numbers I11 I12 I13 I22 I23 I33");
+      }
+      edge.information(row, column) = edge.information(column, row) = value;
+    }
+  }
+  if (edge.from == edge.to) {
+    return Malformed(
+        absl::StrCat("edge from vertex ", edge.from, " to itself"));
+  }
+  const Eigen::LLT<Eigen::Matrix3d> cholesky(edge.information);
+  if (cholesky.info() != Eigen::Success) {
+    return Malformed("the information matrix is not positive definite");
+  }
+  graph.edges.push_back(edge);
+  return absl::OkStatus();
+}
+
+absl::Status G2oParser::ParseFix(Tokens* tokens, int64_t line_number) {
+  do {
+    int64_t id;
+    if (!ParseInt(tokens->Next(), &id)) {
+      return Malformed("FIX needs integer ids");
+    }
+    graph.fixed.insert(id);
+    fixes_.push_back(Fix{id, line_number});
+  } while (tokens->More());
+  return absl::OkStatus();
+}
+
+absl::Status G2oParser::Parse(absl::string_view text, int64_t line_number) {
+  Tokens tokens(text);
+  const absl::string_view tag = tokens.Next();
+  if (tag.empty() || tag[0] == '#') return absl::OkStatus();
+  if (graph.vertices.size() + graph.edges.size() + fixes_.size() >=
+      kMaxElements) {
+    return Malformed(absl::StrCat("more than ", kMaxElements, " elements"));
+  }
+  absl::Status status;
+  if (tag == "VERTEX_SE2" || tag == "VERTEX2") {
+    status = ParseVertex(&tokens);
+  } else if (tag == "EDGE_SE2" || tag == "EDGE2") {
+    status = ParseEdge(&tokens, line_number);
+  } else if (tag == "FIX") {
+    status = ParseFix(&tokens, line_number);
+  } else {
+    return Malformed(
+        absl::StrCat("unknown element \"", tag.substr(0, 40),
+                     "\"; planar VERTEX_SE2, EDGE_SE2 and FIX are read"));
+  }
+  if (status.ok() && tokens.More()) return Malformed("too many words");
+  return status;
+}
+
+absl::Status G2oParser::CheckReferences() const {
+  const auto check = [this](int64_t id, int64_t line) {
+    if (graph.vertices.count(id) > 0) return absl::OkStatus();
+    return Malformed(absl::StrCat(line, ": vertex ", id, " is not defined"));
+  };
+  for (const G2oEdge& edge : graph.edges) {
+    for (const int64_t id : {edge.from, edge.to}) {
+      const absl::Status status = check(id, edge.line);
+      if (!status.ok()) return status;
+    }
+  }
+  for (const Fix& fix : fixes_) {
+    const absl::Status status = check(fix.id, fix.line);
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+// Poses chained from the origin along the edges between consecutive ids.
+absl::StatusOr<std::map<int64_t, Pose2>> ChainConsecutive(
+    const G2oGraph& graph, const std::string& filename) {
+  std::map<int64_t, Pose2> steps;  // (i <- i + 1), the first edge of each pair
+  std::set<int64_t> ids;
+  for (const G2oEdge& edge : graph.edges) {
+    ids.insert(edge.from);
+    ids.insert(edge.to);
+    if (edge.to - 1 == edge.from) {
+      steps.emplace(edge.from, edge.measurement);
+    } else if (edge.from - 1 == edge.to) {
+      steps.emplace(edge.to, edge.measurement.Inverse());
+    }
+  }
+  std::map<int64_t, Pose2> poses;
+  Pose2 pose;
+  int64_t last = 0;
+  for (const int64_t id : ids) {
+    if (!poses.empty()) {
+      const auto step = steps.find(last);
+      if (id - 1 != last || step == steps.end()) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(filename, ": no vertices, and no edge leads from ",
+                         last, " to ", id, " to chain their poses"));
+      }
+      pose = pose * step->second;
+    }
+    poses[id] = pose;
+    last = id;
+  }
+  return poses;
+}
+
+}  // namespace
+
+absl::StatusOr<G2oGraph> ReadG2o(const std::string& filename) {
+  auto reader = LineReader::Open(filename);
+  if (!reader.ok()) return reader.status();
+  G2oParser parser;
+  absl::string_view text;
+  while (true) {
+    const auto more = (*reader)->Next(&text);
+    if (!more.ok()) return more.status();
+    if (!*more) break;
+    const absl::Status status = parser.Parse(text, (*reader)->line_number());
+    if (!status.ok()) {
+      return At(filename, (*reader)->line_number(), status.message());
+    }
+  }
+  if (parser.graph.vertices.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(filename, ": no VERTEX_SE2 found"));
+  }
+  const absl::Status status = parser.CheckReferences();
+  if (!status.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(filename, ":", status.message()));
+  }
+  return std::move(parser.graph);
+}
+
+absl::Status WriteG2o(const G2oGraph& graph, const std::string& filename) {
+  AtomicFile file(filename);
+  if (!file.status().ok()) return file.status();
+  std::ostream& out = file.stream();
+  for (const auto& vertex : graph.vertices) {
+    out << "VERTEX_SE2 " << vertex.first << ' ' << FormatDouble(vertex.second.x)
+        << ' ' << FormatDouble(vertex.second.y) << ' '
+        << FormatDouble(vertex.second.theta) << '\n';
+  }
+  for (const int64_t id : graph.fixed) out << "FIX " << id << '\n';
+  for (const G2oEdge& edge : graph.edges) {
+    out << "EDGE_SE2 " << edge.from << ' ' << edge.to << ' '
+        << FormatDouble(edge.measurement.x) << ' '
+        << FormatDouble(edge.measurement.y) << ' '
+        << FormatDouble(edge.measurement.theta);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = row; column < 3; ++column) {
+        out << ' ' << FormatDouble(edge.information(row, column));
+      }
+    }
+    out << '\n';
+  }
+  return file.Commit();
+}
+
+absl::StatusOr<std::map<int64_t, Pose2>> ReadPosesById(
+    const std::string& filename) {
+  auto reader = LineReader::Open(filename);
+  if (!reader.ok()) return reader.status();
+  G2oParser parser;
+  std::map<int64_t, Pose2> numbered;
+  absl::string_view text;
+  while (true) {
+    const auto more = (*reader)->Next(&text);
+    if (!more.ok()) return more.status();
+    if (!*more) break;
+    const int64_t line = (*reader)->line_number();
+    Tokens first(text);
+    double unused;
+    if (ParseDouble(first.Next(), &unused)) {
+      Tokens tokens(text);
+      Pose2 pose;
+      if (!ParsePose(&tokens, &pose) || tokens.More()) {
+        return At(filename, line, "expected three finite numbers x y theta");
+      }
+      if (numbered.size() >= kMaxElements) {
+        return At(filename, line, "too many poses");
+      }
+      numbered[numbered.size()] = pose;
+      continue;
+    }
+    const absl::Status status = parser.Parse(text, line);
+    if (!status.ok()) return At(filename, line, status.message());
+  }
+  if (!numbered.empty()) {
+    if (!parser.graph.vertices.empty() || !parser.graph.edges.empty()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          filename, ": both graph elements and plain poses in one file"));
+    }
+    return numbered;
+  }
+  if (!parser.graph.vertices.empty()) return std::move(parser.graph.vertices);
+  if (!parser.graph.edges.empty()) {
+    return ChainConsecutive(parser.graph, filename);
+  }
+  return absl::InvalidArgumentError(absl::StrCat(filename, ": no pose found"));
+}
+
+}  // namespace io
+}  // namespace cartographer_ext

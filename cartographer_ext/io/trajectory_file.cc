@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/trajectory_file.h"
+
+#include <array>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/io/line_reader.h"
+#include "cartographer_ext/io/tokens.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+// Files keep few digits; anything farther off is not a rotation.
+constexpr double kMaxNormError = 0.01;
+
+absl::Status ParseLine(Tokens* tokens, StampedPose* stamped) {
+  if (!ParseTime(tokens->Next(), &stamped->time)) {
+    return absl::InvalidArgumentError("invalid stamp");
+  }
+  std::array<double, 7> values;
+  for (double& value : values) {
+    if (!ParseFinite(tokens->Next(), &value)) {
+      return absl::InvalidArgumentError(
+          "expected finite numbers: timestamp tx ty tz qx qy qz qw");
+    }
+  }
+  if (tokens->More()) return absl::InvalidArgumentError("too many words");
+  const Eigen::Quaterniond rotation(values[6], values[3], values[4], values[5]);
+  if (!(std::abs(rotation.norm() - 1.) <= kMaxNormError)) {
+    return absl::InvalidArgumentError("the quaternion is not of unit length");
+  }
+  stamped->pose = Eigen::Isometry3d::Identity();
+  stamped->pose.linear() = rotation.normalized().toRotationMatrix();
+  stamped->pose.translation() << values[0], values[1], values[2];
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+StampedPose MakeStampedPose(TimeNs time, const Pose2& pose) {
+  StampedPose stamped;
+  stamped.time = time;
+  stamped.pose.translation() << pose.x, pose.y, 0.;
+  stamped.pose.linear() =
+      Eigen::AngleAxisd(pose.theta, Eigen::Vector3d::UnitZ())
+          .toRotationMatrix();
+  return stamped;
+}
+
+absl::StatusOr<std::vector<StampedPose>> ReadTumTrajectory(
+    const std::string& filename) {
+  auto reader = LineReader::Open(filename);
+  if (!reader.ok()) return reader.status();
+  std::vector<StampedPose> trajectory;
+  absl::string_view text;
+  while (true) {
+    const auto more = (*reader)->Next(&text);
+    if (!more.ok()) return more.status();
+    if (!*more) break;
+    Tokens tokens(text);
+    if (!tokens.More() || tokens.rest()[0] == '#') continue;
+    StampedPose stamped;
+    absl::Status status = ParseLine(&tokens, &stamped);
+    if (status.ok() && !trajectory.empty() &&
+        stamped.time < trajectory.back().time) {
+      status = absl::InvalidArgumentError("the stamp goes backwards");
+    }
+    if (!status.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat((*reader)->Location(), ": ", status.message()));
+    }
+    trajectory.push_back(stamped);
+  }
+  if (trajectory.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(filename, ": no pose"));
+  }
+  return trajectory;
+}
+
+absl::Status WriteTumTrajectory(const std::vector<StampedPose>& trajectory,
+                                const std::string& filename) {
+  std::string content = "# timestamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& stamped : trajectory) {
+    const Eigen::Vector3d& translation = stamped.pose.translation();
+    Eigen::Quaterniond rotation(stamped.pose.linear());
+    // One of the two quaternions of a rotation, always the same.
+    if (rotation.w() < 0.) rotation.coeffs() = -rotation.coeffs();
+    absl::StrAppendFormat(&content, "%s %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n",
+                          FormatTime(stamped.time), translation.x(),
+                          translation.y(), translation.z(), rotation.x(),
+                          rotation.y(), rotation.z(), rotation.w());
+  }
+  return WriteFileAtomically(filename, content);
+}
+
+}  // namespace io
+}  // namespace cartographer_ext
