@@ -271,7 +271,7 @@ LoopStatistics ComputeLoopStatistics(const MapGraph& graph,
   std::vector<TrueRelation> sorted;
   std::vector<io::TimeNs> revisit_times;
   for (const Relation& relation : relations) {
-    const Pose2 expected = ToPose2(relation.expected);
+    const Pose2 expected = ToPose2(relation.relative);
     sorted.push_back({relation.time1, relation.time2, expected});
     sorted.push_back({relation.time2, relation.time1, expected.Inverse()});
     if (std::llabs(relation.time2 - relation.time1) > options.loop_time_gap) {

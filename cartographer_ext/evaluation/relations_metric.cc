@@ -57,7 +57,7 @@ absl::StatusOr<RelationsMetric> ComputeRelationsMetric(
       continue;
     }
     const Eigen::Isometry3d error =
-        (pose1->inverse() * *pose2) * relation.expected.inverse();
+        (pose1->inverse() * *pose2) * relation.relative.inverse();
     RelationError entry;
     entry.time1 = relation.time1;
     entry.time2 = relation.time2;

@@ -22,20 +22,15 @@
 
 #include <vector>
 
-#include "Eigen/Geometry"
 #include "absl/status/statusor.h"
 #include "cartographer_ext/evaluation/statistics.h"
 #include "cartographer_ext/evaluation/trajectory.h"
+#include "cartographer_ext/io/relations_file.h"
 
 namespace cartographer_ext {
 namespace evaluation {
 
-// A reference relation: the pose at `time2` seen from the pose at `time1`.
-struct Relation {
-  io::TimeNs time1 = 0;
-  io::TimeNs time2 = 0;
-  Eigen::Isometry3d expected = Eigen::Isometry3d::Identity();
-};
+using Relation = io::StampedRelation;
 
 struct RelationError {
   io::TimeNs time1 = 0;

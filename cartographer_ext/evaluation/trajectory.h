@@ -12,15 +12,12 @@
 #include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/io/sensor_source.h"
+#include "cartographer_ext/io/trajectory_file.h"
 
 namespace cartographer_ext {
 namespace evaluation {
 
-// (map <- robot) at `time`.
-struct StampedPose {
-  io::TimeNs time = 0;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-};
+using io::StampedPose;  // (map <- robot) at a time
 
 // Planar pose as a spatial one, z = roll = pitch = 0.
 Eigen::Isometry3d ToIsometry(const Pose2& pose);

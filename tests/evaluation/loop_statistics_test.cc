@@ -115,7 +115,7 @@ Relation MakeRelation(double seconds1, double seconds2, const Pose2& pose) {
   Relation relation;
   relation.time1 = io::FromSeconds(seconds1);
   relation.time2 = io::FromSeconds(seconds2);
-  relation.expected = ToIsometry(pose);
+  relation.relative = ToIsometry(pose);
   return relation;
 }
 

@@ -25,7 +25,7 @@ Relation MakeRelation(io::TimeNs time1, io::TimeNs time2, const Pose2& pose) {
   Relation relation;
   relation.time1 = time1;
   relation.time2 = time2;
-  relation.expected = ToIsometry(pose);
+  relation.relative = ToIsometry(pose);
   return relation;
 }
 

@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/evaluation/slam_runner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "cartographer/mapping/map_builder.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/evaluation/host_types.h"
+#include "cartographer_ext/evaluation/metrics_collector.h"
+#include "cartographer_ext/evaluation/resource_usage.h"
+#include "cartographer_ext/evaluation/scan_conversion.h"
+#include "cartographer_ext/evaluation/scan_trajectory.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using cartographer::mapping::MapBuilderInterface;
+using cartographer::mapping::PoseGraphInterface;
+using cartographer::mapping::TrajectoryBuilderInterface;
+using SensorId = TrajectoryBuilderInterface::SensorId;
+
+constexpr char kScanId[] = "scan";
+constexpr char kOdometryId[] = "odom";
+constexpr char kImuId[] = "imu";
+
+constexpr char kQueueMetric[] = "mapping_2d_pose_graph_work_queue_size";
+constexpr char kConstraintsMetric[] =
+    "mapping_constraints_constraint_builder_2d_constraints";
+constexpr char kSearchCpuMetric[] =
+    "mapping_constraints_constraint_builder_2d_search_cpu_seconds";
+
+double SecondsSince(const std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+cartographer::transform::Rigid3d ToHostPose(const Pose2& pose) {
+  return cartographer::transform::Rigid3d(
+      Eigen::Vector3d(pose.x, pose.y, 0.),
+      Eigen::Quaterniond(
+          Eigen::AngleAxisd(pose.theta, Eigen::Vector3d::UnitZ())));
+}
+
+// Gives one trajectory builder the events of a source.
+class Feeder {
+ public:
+  Feeder(const SensorSettings& settings, const bool use_odometry,
+         const bool use_imu, TrajectoryBuilderInterface* const builder,
+         SlamRun* const run)
+      : settings_(settings),
+        use_odometry_(use_odometry),
+        use_imu_(use_imu),
+        builder_(builder),
+        run_(run) {}
+
+  void operator()(const io::LaserScan& scan) {
+    const auto data =
+        ToTimedPointCloudData(scan, settings_.min_range, settings_.max_range);
+    if (data.ranges.empty() || !Later(scan.time, &last_scan_)) {
+      ++run_->scans_left_out;
+      return;
+    }
+    if (run_->scans == 0) first_scan_ = scan.time;
+    ++run_->scans;
+    run_->sensor_seconds = io::ToSeconds(scan.time - first_scan_);
+    builder_->AddSensorData(kScanId, data);
+  }
+
+  void operator()(const io::OdometryReading& reading) {
+    if (!use_odometry_) return;
+    if (!Later(reading.time, &last_odometry_)) {
+      ++run_->other_readings_left_out;
+      return;
+    }
+    ++run_->odometry_readings;
+    builder_->AddSensorData(
+        kOdometryId, cartographer::sensor::OdometryData{
+                         ToHostTime(reading.time), ToHostPose(reading.pose)});
+  }
+
+  void operator()(const io::ImuReading& reading) {
+    if (!use_imu_) return;
+    if (!Later(reading.time, &last_imu_)) {
+      ++run_->other_readings_left_out;
+      return;
+    }
+    ++run_->imu_readings;
+    builder_->AddSensorData(
+        kImuId, cartographer::sensor::ImuData{ToHostTime(reading.time),
+                                              reading.linear_acceleration,
+                                              reading.angular_velocity});
+  }
+
+ private:
+  // By the host's clock, which has coarser ticks than the source.
+  static bool Later(const io::TimeNs time, cartographer::common::Time* last) {
+    const cartographer::common::Time host_time = ToHostTime(time);
+    if (host_time <= *last) return false;
+    *last = host_time;
+    return true;
+  }
+
+  const SensorSettings settings_;
+  const bool use_odometry_;
+  const bool use_imu_;
+  TrajectoryBuilderInterface* const builder_;
+  SlamRun* const run_;
+  io::TimeNs first_scan_ = 0;
+  cartographer::common::Time last_scan_ = cartographer::common::Time::min();
+  cartographer::common::Time last_odometry_ = cartographer::common::Time::min();
+  cartographer::common::Time last_imu_ = cartographer::common::Time::min();
+};
+
+// Waits until the queue is short again. Gives up when nothing moves for long:
+// then the number is not what it is taken for.
+void WaitForBackEnd(const MetricsCollector& metrics, const int max_length) {
+  constexpr auto kPause = std::chrono::milliseconds(2);
+  constexpr auto kPatience = std::chrono::minutes(5);
+  double length = metrics.Sum(kQueueMetric);
+  auto last_change = std::chrono::steady_clock::now();
+  while (length > max_length) {
+    std::this_thread::sleep_for(kPause);
+    const double now = metrics.Sum(kQueueMetric);
+    if (now != length) {
+      length = now;
+      last_change = std::chrono::steady_clock::now();
+    } else if (std::chrono::steady_clock::now() - last_change > kPatience) {
+      return;
+    }
+  }
+}
+
+std::vector<NodePoses> CollectNodePoses(const PoseGraphInterface& pose_graph,
+                                        const int trajectory_id) {
+  std::vector<NodePoses> result;
+  const auto nodes = pose_graph.GetTrajectoryNodes();
+  for (const auto& entry : nodes.trajectory(trajectory_id)) {
+    if (entry.data.constant_data == nullptr) continue;
+    NodePoses poses;
+    poses.time = FromHostTime(entry.data.time());
+    poses.local_pose = FromHostPose(entry.data.constant_data->local_pose);
+    poses.global_pose = FromHostPose(entry.data.global_pose);
+    result.push_back(poses);
+  }
+  std::sort(
+      result.begin(), result.end(),
+      [](const NodePoses& a, const NodePoses& b) { return a.time < b.time; });
+  return result;
+}
+
+void CountResults(const PoseGraphInterface& pose_graph, SlamRun* const run) {
+  run->nodes = pose_graph.GetTrajectoryNodes().size();
+  run->submaps = pose_graph.GetAllSubmapPoses().size();
+  for (const auto& constraint : pose_graph.constraints()) {
+    if (constraint.tag == PoseGraphInterface::Constraint::INTER_SUBMAP) {
+      ++run->inter_constraints;
+    } else {
+      ++run->intra_constraints;
+    }
+  }
+}
+
+std::map<std::string, double> Difference(
+    std::map<std::string, double> after,
+    const std::map<std::string, double>& before) {
+  for (const auto& entry : before) after[entry.first] -= entry.second;
+  return after;
+}
+
+}  // namespace
+
+absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
+                                io::SensorSource* const source,
+                                const SlamRunOptions& options) {
+  const io::SensorSourceInfo& info = source->info();
+  SlamRun run;
+  if (info.num_scans == 0) {
+    return absl::InvalidArgumentError("the recording has no laser scans");
+  }
+  const bool use_imu =
+      configuration.trajectory_builder_options.trajectory_builder_2d_options()
+          .use_imu_data();
+  if (use_imu && info.num_imu == 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "configuration ", configuration.name,
+        ": TRAJECTORY_BUILDER_2D.use_imu_data is true but the recording has "
+        "no IMU readings; set it to false"));
+  }
+  const bool use_odometry =
+      configuration.sensors.use_odometry && info.num_odometry > 0;
+
+  MetricsCollector* const metrics = MetricsCollector::Global();
+  const auto metrics_before = metrics->Values();
+  const double searched_before =
+      metrics->Sum(kConstraintsMetric, {{"matcher", "searched"}});
+  const double found_before =
+      metrics->Sum(kConstraintsMetric, {{"matcher", "found"}});
+  const double search_cpu_before = metrics->Sum(kSearchCpuMetric);
+  const auto wall_start = std::chrono::steady_clock::now();
+  const double cpu_start = ProcessCpuSeconds();
+  const double thread_cpu_start = ThreadCpuSeconds();
+
+  auto map_builder_options = configuration.map_builder_options;
+  if (options.num_background_threads > 0) {
+    map_builder_options.set_num_background_threads(
+        options.num_background_threads);
+  }
+  run.map_builder =
+      cartographer::mapping::CreateMapBuilder(map_builder_options);
+  std::set<SensorId> sensor_ids = {{SensorId::SensorType::RANGE, kScanId}};
+  if (use_odometry) {
+    sensor_ids.insert({SensorId::SensorType::ODOMETRY, kOdometryId});
+  }
+  if (use_imu) sensor_ids.insert({SensorId::SensorType::IMU, kImuId});
+  // Called from within AddSensorData, that is in this thread.
+  auto* const local_scan_poses = &run.local_scan_poses;
+  run.trajectory_id = run.map_builder->AddTrajectoryBuilder(
+      sensor_ids, configuration.trajectory_builder_options,
+      [local_scan_poses](
+          int /*trajectory_id*/, const cartographer::common::Time time,
+          const cartographer::transform::Rigid3d& local_pose,
+          const cartographer::sensor::RangeData& /*range_data_in_local*/,
+          std::unique_ptr<
+              const TrajectoryBuilderInterface::InsertionResult> /*inserted*/) {
+        local_scan_poses->push_back(
+            {FromHostTime(time), FromHostPose(local_pose)});
+      });
+  Feeder feeder(configuration.sensors, use_odometry, use_imu,
+                run.map_builder->GetTrajectoryBuilder(run.trajectory_id), &run);
+
+  SlamProgress progress;
+  progress.total_scans = info.num_scans;
+  io::SensorEvent event;
+  while (true) {
+    const absl::StatusOr<bool> more = source->Next(&event);
+    if (!more.ok()) return more.status();
+    if (!*more) break;
+    absl::visit(feeder, event);
+    if (!absl::holds_alternative<io::LaserScan>(event)) continue;
+    WaitForBackEnd(*metrics, options.max_queue_length);
+    if (options.on_progress) {
+      progress.scans = run.scans + run.scans_left_out;
+      progress.queue_length = static_cast<int64_t>(metrics->Sum(kQueueMetric));
+      options.on_progress(progress);
+    }
+  }
+  if (run.scans == 0) {
+    return absl::InvalidArgumentError(
+        "no scan of the recording has a range within the limits");
+  }
+  run.map_builder->FinishTrajectory(run.trajectory_id);
+  progress.stage = SlamProgress::Stage::kOptimizing;
+  if (options.on_progress) options.on_progress(progress);
+  run.front_end_cpu_seconds = ThreadCpuSeconds() - thread_cpu_start;
+  const auto optimization_start = std::chrono::steady_clock::now();
+  run.map_builder->pose_graph()->RunFinalOptimization();
+  run.final_optimization_wall_seconds = SecondsSince(optimization_start);
+
+  CountResults(*run.map_builder->pose_graph(), &run);
+  run.global_scan_poses = GlobalScanPoses(
+      run.local_scan_poses,
+      CollectNodePoses(*run.map_builder->pose_graph(), run.trajectory_id));
+
+  run.wall_seconds = SecondsSince(wall_start);
+  run.cpu_seconds = ProcessCpuSeconds() - cpu_start;
+  run.peak_memory_bytes = PeakMemoryBytes();
+  run.metrics = Difference(metrics->Values(), metrics_before);
+  run.loop_searches = static_cast<int64_t>(
+      metrics->Sum(kConstraintsMetric, {{"matcher", "searched"}}) -
+      searched_before);
+  run.loops_found = static_cast<int64_t>(
+      metrics->Sum(kConstraintsMetric, {{"matcher", "found"}}) - found_before);
+  run.loop_search_cpu_is_measured = metrics->Has(kSearchCpuMetric);
+  run.loop_search_cpu_seconds =
+      run.loop_search_cpu_is_measured
+          ? metrics->Sum(kSearchCpuMetric) - search_cpu_before
+          : run.cpu_seconds - (ThreadCpuSeconds() - thread_cpu_start);
+  if (run.scans_left_out > 0) {
+    run.warnings.push_back(absl::StrCat(
+        run.scans_left_out,
+        " scans left out: without a valid range or not later than the one "
+        "before"));
+  }
+  if (run.other_readings_left_out > 0) {
+    run.warnings.push_back(absl::StrCat(
+        run.other_readings_left_out,
+        " odometry and IMU readings left out: not later than the one before"));
+  }
+  return run;
+}
+
+absl::Status WritePbstream(MapBuilderInterface* const map_builder,
+                           const std::string& filename) {
+  AtomicFile file(filename);
+  if (!file.status().ok()) return file.status();
+  if (!map_builder->SerializeStateToFile(true, file.temporary_path())) {
+    return absl::InternalError(absl::StrCat("cannot write ", filename));
+  }
+  return file.Commit();
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext

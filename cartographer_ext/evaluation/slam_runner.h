@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Drives a recording through the host from the first reading to the finished
+// map. The same for every command that maps: the map, the numbers beside it,
+// and the trajectory at every scan.
+//
+// What reaches the host, in order of time:
+// * every scan as points in the tracking frame (scan_conversion.h). A scan that
+//   is not later than the one before, or has no point, is left out and counted.
+// * odometry at its own stamps, where the recording has any and the
+//   configuration wants it. Readings that are not later than the one before are
+//   left out and counted.
+// * IMU readings where trajectory_builder_2d.use_imu_data is set.
+//
+// Feeding pauses while the back end has much left to do, which bounds memory on
+// slow machines and changes no result.
+#ifndef CARTOGRAPHER_EXT_EVALUATION_SLAM_RUNNER_H_
+#define CARTOGRAPHER_EXT_EVALUATION_SLAM_RUNNER_H_
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cartographer/mapping/map_builder_interface.h"
+#include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/evaluation/trajectory.h"
+#include "cartographer_ext/io/sensor_source.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// How far a run is.
+struct SlamProgress {
+  enum class Stage { kFeeding, kOptimizing };
+  Stage stage = Stage::kFeeding;
+  int64_t scans = 0;
+  int64_t total_scans = 0;
+  int64_t queue_length = 0;  // work left in the back end
+};
+
+struct SlamRunOptions {
+  // Overrides the configuration when positive.
+  int num_background_threads = 0;
+  // Feeding waits while the back end's queue is longer.
+  int max_queue_length = 1000;
+  // Called now and then from the calling thread.
+  std::function<void(const SlamProgress&)> on_progress;
+};
+
+struct SlamRun {
+  // Finished and optimised; holds the map.
+  std::unique_ptr<cartographer::mapping::MapBuilderInterface> map_builder;
+  int trajectory_id = 0;
+
+  // What was fed.
+  int64_t scans = 0;
+  int64_t odometry_readings = 0;
+  int64_t imu_readings = 0;
+  int64_t scans_left_out = 0;
+  int64_t other_readings_left_out = 0;
+  double sensor_seconds = 0.;  // first to last scan
+
+  // What came out.
+  int64_t nodes = 0;
+  int64_t submaps = 0;
+  int64_t inter_constraints = 0;
+  int64_t intra_constraints = 0;
+  // (local <- tracking) and (map <- tracking) at every scan that local SLAM
+  // matched.
+  std::vector<StampedPose> local_scan_poses;
+  std::vector<StampedPose> global_scan_poses;
+
+  // What it took. CPU seconds count all threads.
+  double wall_seconds = 0.;
+  double cpu_seconds = 0.;
+  double front_end_cpu_seconds = 0.;  // of the feeding thread: local SLAM
+  double final_optimization_wall_seconds = 0.;
+  int64_t peak_memory_bytes = 0;  // of the process so far
+  int64_t loop_searches = 0;
+  int64_t loops_found = 0;
+  // CPU seconds of the loop search where the host's metrics tell, else of all
+  // threads but the feeding one.
+  double loop_search_cpu_seconds = 0.;
+  bool loop_search_cpu_is_measured = false;
+  // The host's metrics at the end, less those at the start.
+  std::map<std::string, double> metrics;
+
+  std::vector<std::string> warnings;
+};
+
+// Errors: the source's own, a recording without scans, IMU wanted but absent.
+absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
+                                io::SensorSource* source,
+                                const SlamRunOptions& options);
+
+// Writes the map of a run atomically.
+absl::Status WritePbstream(
+    cartographer::mapping::MapBuilderInterface* map_builder,
+    const std::string& filename);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_EVALUATION_SLAM_RUNNER_H_
