@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/options/dropin/lua_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "cartographer_ext/options/option_description.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace options {
+namespace {
+
+namespace pb = google::protobuf;
+using cartographer::common::LuaParameterDictionary;
+using pb::FieldDescriptor;
+
+std::vector<std::string> KnownKeys(const pb::Descriptor& descriptor) {
+  std::vector<std::string> keys;
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    if (descriptor.field(i)->name() != "schema") {
+      keys.push_back(descriptor.field(i)->name());
+    }
+  }
+  return keys;
+}
+
+void ReadTable(const std::string& path, LuaParameterDictionary* table,
+               pb::Message* options);
+
+void ReadField(const std::string& path, const FieldDescriptor& field,
+               LuaParameterDictionary* const table,
+               pb::Message* const options) {
+  const std::string& key = field.name();
+  const pb::Reflection* const reflection = options->GetReflection();
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_MESSAGE: {
+      const std::unique_ptr<LuaParameterDictionary> sub_table =
+          table->GetDictionary(key);
+      ReadTable(path, sub_table.get(),
+                reflection->MutableMessage(options, &field));
+      return;
+    }
+    case FieldDescriptor::CPPTYPE_DOUBLE: {
+      const double value = table->GetDouble(key);
+      const std::string error = CheckNumber(field, value);
+      CHECK(error.empty()) << path << ": " << error;
+      reflection->SetDouble(options, &field, value);
+      return;
+    }
+    case FieldDescriptor::CPPTYPE_INT32: {
+      // Read as a number: GetInt turns 2.5 silently into something else.
+      const double value = table->GetDouble(key);
+      CHECK(value == std::floor(value) && std::abs(value) < 2e9)
+          << path << ": " << value << " is not an integer";
+      const std::string error = CheckNumber(field, value);
+      CHECK(error.empty()) << path << ": " << error;
+      reflection->SetInt32(options, &field, static_cast<int>(value));
+      return;
+    }
+    case FieldDescriptor::CPPTYPE_BOOL:
+      reflection->SetBool(options, &field, table->GetBool(key));
+      return;
+    case FieldDescriptor::CPPTYPE_ENUM: {
+      const std::string name = table->GetString(key);
+      const pb::EnumValueDescriptor* const choice = FindChoice(field, name);
+      CHECK(choice != nullptr) << path << ": \"" << name
+                               << "\" is not allowed, " << RangeText(field);
+      reflection->SetEnum(options, &field, choice);
+      return;
+    }
+    default:
+      LOG(FATAL) << field.full_name() << " has a type that options do not have";
+  }
+}
+
+void ReadTable(const std::string& path, LuaParameterDictionary* const table,
+               pb::Message* const options) {
+  const pb::Descriptor& descriptor = *options->GetDescriptor();
+  const std::vector<std::string> known = KnownKeys(descriptor);
+  for (const std::string& key : table->GetKeys()) {
+    CHECK(std::find(known.begin(), known.end(), key) != known.end())
+        << path << "." << key
+        << ": unknown key, allowed: " << absl::StrJoin(known, ", ");
+    ReadField(absl::StrCat(path, ".", key), *descriptor.FindFieldByName(key),
+              table, options);
+  }
+}
+
+}  // namespace
+
+bool ReadExtension(const std::string& stock_path,
+                   LuaParameterDictionary* const stock,
+                   pb::Message* const options) {
+  if (!stock->HasKey(kExtensionKey)) return false;
+  SetDefaults(options);
+  const std::unique_ptr<LuaParameterDictionary> table =
+      stock->GetDictionary(kExtensionKey);
+  ReadTable(absl::StrCat(stock_path, ".", kExtensionKey), table.get(), options);
+  return true;
+}
+
+}  // namespace options
+}  // namespace cartographer_ext
