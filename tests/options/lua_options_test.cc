@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/options/dropin/lua_options.h"
+
+#include <memory>
+#include <string>
+
+#include "absl/memory/memory.h"
+#include "cartographer/common/configuration_file_resolver.h"
+#include "gtest/gtest.h"
+#include "sample_options.pb.h"
+
+namespace cartographer_ext {
+namespace options {
+namespace {
+
+using cartographer::common::ConfigurationFileResolver;
+using cartographer::common::LuaParameterDictionary;
+
+bool Read(const std::string& code, test::SampleOptions* const sample) {
+  LuaParameterDictionary dictionary(
+      code,
+      absl::make_unique<ConfigurationFileResolver>(std::vector<std::string>{}));
+  return ReadExtension("POSE_GRAPH.sample", &dictionary, sample);
+}
+
+TEST(LuaOptionsTest, AbsentBlockReadsNothing) {
+  test::SampleOptions sample;
+  EXPECT_FALSE(Read("return {}", &sample));
+}
+
+TEST(LuaOptionsTest, EmptyBlockGivesDefaults) {
+  test::SampleOptions sample;
+  EXPECT_TRUE(Read("return { cartographer_ext = {} }", &sample));
+  EXPECT_EQ(sample.window().length(), 10);
+}
+
+TEST(LuaOptionsTest, ReadsEveryKind) {
+  test::SampleOptions sample;
+  EXPECT_TRUE(
+      Read("return { cartographer_ext = { enabled = false, mode = 'as_printed',"
+           " window = { length = 4, gamma = 0.5 } } }",
+           &sample));
+  EXPECT_FALSE(sample.enabled());
+  EXPECT_EQ(sample.mode(), test::SampleOptions::AS_PRINTED);
+  EXPECT_EQ(sample.window().length(), 4);
+  EXPECT_EQ(sample.window().gamma(), 0.5);
+}
+
+TEST(LuaOptionsDeathTest, ErrorsNameKeyValueAndRange) {
+  test::SampleOptions sample;
+  EXPECT_DEATH(Read("return { cartographer_ext = { windw = {} } }", &sample),
+               "POSE_GRAPH.sample.cartographer_ext.windw: unknown key, "
+               "allowed: enabled, "
+               "mode, window");
+  EXPECT_DEATH(
+      Read("return { cartographer_ext = { window = { length = 0 } } }",
+           &sample),
+      "POSE_GRAPH.sample.cartographer_ext.window.length: 0 is out of range");
+  EXPECT_DEATH(
+      Read("return { cartographer_ext = { window = { length = 2.5 } } }",
+           &sample),
+      "window.length: 2.5 is not an integer");
+  EXPECT_DEATH(
+      Read("return { cartographer_ext = { mode = 'exact' } }", &sample),
+      "mode: \"exact\" is not allowed, one of: as_printed, proper");
+  EXPECT_DEATH(
+      Read("return { cartographer_ext = { enabled = 'yes' } }", &sample),
+      "enabled");
+}
+
+}  // namespace
+}  // namespace options
+}  // namespace cartographer_ext
