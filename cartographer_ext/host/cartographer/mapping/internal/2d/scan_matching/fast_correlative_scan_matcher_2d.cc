@@ -1,0 +1,450 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer/mapping/internal/2d/scan_matching/fast_correlative_scan_matcher_2d.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/memory/memory.h"
+#include "cartographer/mapping/internal/2d/scan_matching/rotated_cell_indices.h"
+#include "glog/logging.h"
+
+namespace cartographer {
+namespace mapping {
+namespace scan_matching {
+namespace {
+
+// target[i] = max(target[i], source[i])
+void RaiseTo(const uint8* __restrict const source, const int count,
+             uint8* __restrict const target) {
+  for (int i = 0; i < count; ++i) {
+    target[i] = source[i] > target[i] ? source[i] : target[i];
+  }
+}
+
+// sums[i] += values[i] for eight i, as one vector operation.
+inline void AddEight(const uint8* __restrict const values,
+                     uint16* __restrict const sums) {
+  for (int i = 0; i != 8; ++i)
+    sums[i] = static_cast<uint16>(sums[i] + values[i]);
+}
+
+}  // namespace
+
+proto::FastCorrelativeScanMatcherOptions2D
+CreateFastCorrelativeScanMatcherOptions2D(
+    common::LuaParameterDictionary* const parameter_dictionary) {
+  proto::FastCorrelativeScanMatcherOptions2D options;
+  options.set_linear_search_window(
+      parameter_dictionary->GetDouble("linear_search_window"));
+  options.set_angular_search_window(
+      parameter_dictionary->GetDouble("angular_search_window"));
+  options.set_branch_and_bound_depth(
+      parameter_dictionary->GetInt("branch_and_bound_depth"));
+  return options;
+}
+
+PrecomputationGrid2D::PrecomputationGrid2D(const Grid2D& grid,
+                                           const CellLimits& limits,
+                                           const int width, std::vector<float>*)
+    : num_x_cells_(limits.num_x_cells),
+      num_y_cells_(limits.num_y_cells),
+      min_score_(1.f - grid.GetMaxCorrespondenceCost()),
+      max_score_(1.f - grid.GetMinCorrespondenceCost()) {
+  CHECK_GE(width, 1);
+  CHECK_GE(limits.num_x_cells, 1);
+  CHECK_GE(limits.num_y_cells, 1);
+  const float steps_per_score = 255.f / (max_score_ - min_score_);
+  cells_.reserve(static_cast<size_t>(num_x_cells_) * num_y_cells_);
+  for (const Eigen::Array2i& xy_index : XYIndexRangeIterator(limits)) {
+    const float score = 1.f - std::abs(grid.GetCorrespondenceCost(xy_index));
+    const int value =
+        common::RoundToInt((score - min_score_) * steps_per_score);
+    cells_.push_back(static_cast<uint8>(common::Clamp(value, 0, 255)));
+  }
+  // Rounding keeps the order of scores, so maxima may be taken of the rounded.
+  while (2 * width_ <= width) *this = Widened(width_);
+  if (width_ != width) *this = Widened(width - width_);
+}
+
+PrecomputationGrid2D PrecomputationGrid2D::Widened(const int more) const {
+  CHECK_LE(more, width_);
+  PrecomputationGrid2D wide;
+  wide.width_ = width_ + more;
+  wide.num_x_cells_ = num_x_cells_ + more;
+  wide.num_y_cells_ = num_y_cells_ + more;
+  wide.min_score_ = min_score_;
+  wide.max_score_ = max_score_;
+  wide.cells_.resize(static_cast<size_t>(wide.num_x_cells_) *
+                     wide.num_y_cells_);
+  // A wide square is two overlapping or touching narrow ones side by side. In
+  // memory the one that begins earlier is `more` cells behind, as the wide grid
+  // begins that much farther out.
+  for (int y = 0; y != num_y_cells_; ++y) {
+    const uint8* const narrow_row = cells_.data() + y * num_x_cells_;
+    uint8* const wide_row = wide.cells_.data() + y * wide.num_x_cells_;
+    std::copy_n(narrow_row, num_x_cells_, wide_row);
+    RaiseTo(narrow_row, num_x_cells_, wide_row + more);
+  }
+  // The same for rows, from the last on, so that each still holds its old
+  // content when it is needed.
+  for (int y = wide.num_y_cells_ - 1; y >= more; --y) {
+    uint8* const row = wide.cells_.data() + y * wide.num_x_cells_;
+    RaiseTo(row - more * wide.num_x_cells_, wide.num_x_cells_, row);
+  }
+  return wide;
+}
+
+PrecomputationGridStack2D::PrecomputationGridStack2D(
+    const Grid2D& grid,
+    const proto::FastCorrelativeScanMatcherOptions2D& options) {
+  const int depth = options.branch_and_bound_depth();
+  CHECK_GE(depth, 1);
+  CHECK_LE(depth, 16);
+  precomputation_grids_.reserve(depth);
+  precomputation_grids_.emplace_back(grid, grid.limits().cell_limits(), 1,
+                                     nullptr);
+  while (static_cast<int>(precomputation_grids_.size()) != depth) {
+    const PrecomputationGrid2D& last = precomputation_grids_.back();
+    precomputation_grids_.push_back(last.Widened(last.width()));
+  }
+}
+
+// The coarsest grid in another order. Its candidates are `width` cells apart,
+// and here cells that far apart are neighbours: a point's values for a row of
+// candidates are contiguous.
+class FastCorrelativeScanMatcher2D::CoarseGrid {
+ public:
+  explicit CoarseGrid(const PrecomputationGrid2D& grid)
+      : width_(grid.width()),
+        num_x_blocks_((grid.num_x_cells() + width_ - 1) / width_),
+        num_y_blocks_((grid.num_y_cells() + width_ - 1) / width_),
+        // AddEight may read seven values too many.
+        cells_(static_cast<size_t>(width_) * width_ * num_x_blocks_ *
+                       num_y_blocks_ +
+                   7,
+               0) {
+    for (int y = 0; y != grid.num_y_cells(); ++y) {
+      for (int x = 0; x != grid.num_x_cells(); ++x) {
+        cells_[Index(x % width_, y % width_, x / width_, y / width_)] =
+            grid.cells()[y * grid.num_x_cells() + x];
+      }
+    }
+  }
+
+  int width() const { return width_; }
+
+  // Adds one point's values to the sums of num_x times num_y candidates, whose
+  // rows are `stride` >= num_x + 7 apart. The first candidate has the point in
+  // cell (x, y).
+  void AddPoint(const int x, const int y, const int num_x, const int num_y,
+                const int stride, uint16* const sums) const {
+    // Counted from the grid's first cell, as block and place within it.
+    const auto x_parts = Split(x + width_ - 1);
+    const auto y_parts = Split(y + width_ - 1);
+    const int x_begin = std::max(0, -x_parts.first);
+    const int x_end = std::min(num_x, num_x_blocks_ - x_parts.first);
+    const int y_begin = std::max(0, -y_parts.first);
+    const int y_end = std::min(num_y, num_y_blocks_ - y_parts.first);
+    if (x_begin >= x_end || y_begin >= y_end) return;
+    const uint8* values =
+        cells_.data() + Index(x_parts.second, y_parts.second,
+                              x_parts.first + x_begin, y_parts.first + y_begin);
+    uint16* row = sums + y_begin * stride;
+    for (int j = y_begin; j != y_end; ++j) {
+      int i = x_begin;
+      for (; i + 8 <= x_end; i += 8) AddEight(values + i - x_begin, row + i);
+      if (i != x_end && x_end == num_x) {
+        // What is added too much lands between the rows.
+        AddEight(values + i - x_begin, row + i);
+      } else {
+        for (; i != x_end; ++i) {
+          row[i] = static_cast<uint16>(row[i] + values[i - x_begin]);
+        }
+      }
+      values += num_x_blocks_;
+      row += stride;
+    }
+  }
+
+ private:
+  // Quotient, rounded down, and remainder.
+  std::pair<int, int> Split(const int cell) const {
+    const int remainder = cell & (width_ - 1);
+    return {(cell - remainder) / width_, remainder};
+  }
+  size_t Index(const int x, const int y, const int x_block,
+               const int y_block) const {
+    return (static_cast<size_t>(y * width_ + x) * num_y_blocks_ + y_block) *
+               num_x_blocks_ +
+           x_block;
+  }
+
+  const int width_;  // a power of two
+  const int num_x_blocks_;
+  const int num_y_blocks_;
+  std::vector<uint8> cells_;
+};
+
+// One search: its rotated scans and what branch and bound needs.
+class FastCorrelativeScanMatcher2D::Search {
+ public:
+  // On level k: the candidates at offsets x to x + 2^k - 1, likewise y.
+  struct Node {
+    int scan;
+    int x;
+    int y;
+    float score;  // a bound, exact on level 0
+  };
+
+  Search(const PrecomputationGridStack2D& grids, const CoarseGrid& coarse_grid,
+         const CellLimits& cell_limits, const RotatedCellIndices& indices,
+         const SearchParameters& parameters)
+      : grids_(grids),
+        coarse_grid_(coarse_grid),
+        num_points_(indices.num_points()),
+        x_(static_cast<size_t>(num_points_) * indices.num_rotations()),
+        y_(x_.size()) {
+    scans_.reserve(indices.num_rotations());
+    for (int i = 0; i != indices.num_rotations(); ++i) {
+      int* const x = x_.data() + static_cast<size_t>(i) * num_points_;
+      int* const y = y_.data() + static_cast<size_t>(i) * num_points_;
+      indices.ForRotation(i, x, y);
+      const auto x_range = std::minmax_element(x, x + num_points_);
+      const auto y_range = std::minmax_element(y, y + num_points_);
+      Scan scan{x,
+                y,
+                *x_range.first,
+                *x_range.second,
+                *y_range.first,
+                *y_range.second,
+                parameters.linear_bounds[i]};
+      SearchParameters::LinearBounds& bounds = scan.bounds;
+      bounds.min_x = std::max(bounds.min_x, std::min(0, -scan.max_x));
+      bounds.min_y = std::max(bounds.min_y, std::min(0, -scan.max_y));
+      bounds.max_x = std::min(
+          bounds.max_x, std::max(0, cell_limits.num_x_cells - 1 - scan.min_x));
+      bounds.max_y = std::min(
+          bounds.max_y, std::max(0, cell_limits.num_y_cells - 1 - scan.min_y));
+      scans_.push_back(scan);
+    }
+  }
+
+  // The best candidate, or one with score `min_score` when none is better.
+  Node Run(const float min_score) {
+    const std::vector<Node> nodes = CoarsestNodes(min_score);
+    best_ = Node{0, 0, 0, min_score};
+    for (const Node& node : nodes) {
+      if (node.score <= best_.score) break;
+      Branch(node, grids_.max_depth());
+    }
+    return best_;
+  }
+
+ private:
+  struct Scan {
+    const int* x;
+    const int* y;
+    int min_x;
+    int max_x;
+    int min_y;
+    int max_y;
+    SearchParameters::LinearBounds bounds;
+  };
+
+  float ToScore(const int sum) const {
+    return grids_.Get(0).ToScore(sum / static_cast<float>(num_points_));
+  }
+
+  // Those above `min_score`, best first.
+  std::vector<Node> CoarsestNodes(const float min_score) const {
+    std::vector<Node> nodes;
+    std::vector<uint16> sums;
+    std::vector<int> totals;
+    const int step = coarse_grid_.width();
+    for (size_t i = 0; i != scans_.size(); ++i) {
+      const Scan& scan = scans_[i];
+      const SearchParameters::LinearBounds& bounds = scan.bounds;
+      const int num_x = (bounds.max_x - bounds.min_x) / step + 1;
+      const int num_y = (bounds.max_y - bounds.min_y) / step + 1;
+      const int stride = num_x + 7;
+      totals.assign(static_cast<size_t>(stride) * num_y, 0);
+      for (int begin = 0; begin < num_points_; begin += kPointsPerSum) {
+        const int end = std::min(begin + kPointsPerSum, num_points_);
+        sums.assign(totals.size(), 0);
+        for (int point = begin; point != end; ++point) {
+          coarse_grid_.AddPoint(scan.x[point] + bounds.min_x,
+                                scan.y[point] + bounds.min_y, num_x, num_y,
+                                stride, sums.data());
+        }
+        for (size_t k = 0; k != totals.size(); ++k) totals[k] += sums[k];
+      }
+      for (int x = 0; x != num_x; ++x) {
+        for (int y = 0; y != num_y; ++y) {
+          const float score = ToScore(totals[y * stride + x]);
+          if (score <= min_score) continue;
+          nodes.push_back(Node{static_cast<int>(i), bounds.min_x + step * x,
+                               bounds.min_y + step * y, score});
+        }
+      }
+    }
+    std::stable_sort(nodes.begin(), nodes.end(), BetterThan);
+    return nodes;
+  }
+
+  void Branch(const Node& node, const int level) {
+    if (level == 0) {
+      best_ = node;
+      return;
+    }
+    const Scan& scan = scans_[node.scan];
+    const int half = 1 << (level - 1);
+    int sums[4] = {0, 0, 0, 0};
+    SumChildren(grids_.Get(level - 1), scan, node, half, sums);
+    Node children[4];
+    int num_children = 0;
+    for (int i = 0; i != 4; ++i) {
+      const Node child{node.scan, node.x + (i >> 1) * half,
+                       node.y + (i & 1) * half, ToScore(sums[i])};
+      if (child.x > scan.bounds.max_x || child.y > scan.bounds.max_y ||
+          child.score <= best_.score) {
+        continue;
+      }
+      // Equal ones stay in order.
+      int place = num_children++;
+      for (; place != 0 && BetterThan(child, children[place - 1]); --place) {
+        children[place] = children[place - 1];
+      }
+      children[place] = child;
+    }
+    for (int i = 0; i != num_children; ++i) {
+      if (children[i].score <= best_.score) break;
+      Branch(children[i], level - 1);
+    }
+  }
+
+  // Offsets (0, 0), (0, half), (half, 0), (half, half) from the node's.
+  void SumChildren(const PrecomputationGrid2D& grid, const Scan& scan,
+                   const Node& node, const int half, int (&sums)[4]) const {
+    const int x_shift = node.x + grid.width() - 1;
+    const int y_shift = node.y + grid.width() - 1;
+    const int num_x = grid.num_x_cells();
+    const int num_y = grid.num_y_cells();
+    const bool all_inside =
+        scan.min_x + x_shift >= 0 && scan.max_x + x_shift + half < num_x &&
+        scan.min_y + y_shift >= 0 && scan.max_y + y_shift + half < num_y;
+    const uint8* const cells = grid.cells();
+    const int shift = y_shift * num_x + x_shift;
+    const int down = half * num_x;
+    int low_low = 0, low_high = 0, high_low = 0, high_high = 0;
+    for (int i = 0; i != num_points_; ++i) {
+      const int cell = scan.y[i] * num_x + scan.x[i] + shift;
+      if (all_inside) {
+        low_low += cells[cell];
+        low_high += cells[cell + down];
+        high_low += cells[cell + half];
+        high_high += cells[cell + down + half];
+        continue;
+      }
+      const unsigned x = scan.x[i] + x_shift;
+      const unsigned y = scan.y[i] + y_shift;
+      const bool x_low = x < static_cast<unsigned>(num_x);
+      const bool x_high = x + half < static_cast<unsigned>(num_x);
+      const bool y_low = y < static_cast<unsigned>(num_y);
+      const bool y_high = y + half < static_cast<unsigned>(num_y);
+      if (x_low && y_low) low_low += cells[cell];
+      if (x_low && y_high) low_high += cells[cell + down];
+      if (x_high && y_low) high_low += cells[cell + half];
+      if (x_high && y_high) high_high += cells[cell + down + half];
+    }
+    sums[0] = low_low;
+    sums[1] = low_high;
+    sums[2] = high_low;
+    sums[3] = high_high;
+  }
+
+  static bool BetterThan(const Node& a, const Node& b) {
+    return a.score > b.score;
+  }
+
+  // So many values of 255 fit 16 bits.
+  static constexpr int kPointsPerSum = 257;
+
+  const PrecomputationGridStack2D& grids_;
+  const CoarseGrid& coarse_grid_;
+  const int num_points_;
+  std::vector<int> x_;
+  std::vector<int> y_;
+  std::vector<Scan> scans_;
+  Node best_;
+};
+
+FastCorrelativeScanMatcher2D::FastCorrelativeScanMatcher2D(
+    const Grid2D& grid,
+    const proto::FastCorrelativeScanMatcherOptions2D& options)
+    : options_(options),
+      limits_(grid.limits()),
+      grids_(absl::make_unique<PrecomputationGridStack2D>(grid, options)),
+      coarse_grid_(
+          absl::make_unique<CoarseGrid>(grids_->Get(grids_->max_depth()))) {}
+
+FastCorrelativeScanMatcher2D::~FastCorrelativeScanMatcher2D() = default;
+
+bool FastCorrelativeScanMatcher2D::Match(
+    const transform::Rigid2d& initial_pose_estimate,
+    const sensor::PointCloud& point_cloud, const float min_score,
+    float* const score, transform::Rigid2d* const pose_estimate) const {
+  const SearchParameters parameters(options_.linear_search_window(),
+                                    options_.angular_search_window(),
+                                    point_cloud, limits_.resolution());
+  return MatchWithSearchParameters(parameters, initial_pose_estimate,
+                                   point_cloud, min_score, score,
+                                   pose_estimate);
+}
+
+bool FastCorrelativeScanMatcher2D::MatchFullSubmap(
+    const sensor::PointCloud& point_cloud, const float min_score,
+    float* const score, transform::Rigid2d* const pose_estimate) const {
+  // More than any grid has; the search cuts it down to where points can be.
+  constexpr double kCellsPerDirection = 1e6;
+  const double resolution = limits_.resolution();
+  const SearchParameters parameters(kCellsPerDirection * resolution, M_PI,
+                                    point_cloud, resolution);
+  const CellLimits& size = limits_.cell_limits();
+  const Eigen::Vector2d middle =
+      limits_.max() -
+      0.5 * resolution * Eigen::Vector2d(size.num_y_cells, size.num_x_cells);
+  return MatchWithSearchParameters(
+      parameters, transform::Rigid2d::Translation(middle), point_cloud,
+      min_score, score, pose_estimate);
+}
+
+bool FastCorrelativeScanMatcher2D::MatchWithSearchParameters(
+    const SearchParameters search_parameters,
+    const transform::Rigid2d& initial_pose_estimate,
+    const sensor::PointCloud& point_cloud, const float min_score,
+    float* const score, transform::Rigid2d* const pose_estimate) const {
+  CHECK(score != nullptr);
+  CHECK(pose_estimate != nullptr);
+  if (point_cloud.empty()) return false;
+  const RotatedCellIndices indices(
+      RotateCloud(point_cloud, initial_pose_estimate), search_parameters,
+      limits_, initial_pose_estimate.translation());
+  Search search(*grids_, *coarse_grid_, limits_.cell_limits(), indices,
+                search_parameters);
+  const Search::Node best = search.Run(min_score);
+  if (best.score <= min_score) return false;
+  const Candidate2D candidate(best.scan, best.x, best.y, search_parameters);
+  *score = best.score;
+  *pose_estimate =
+      transform::Rigid2d(initial_pose_estimate.translation() +
+                             Eigen::Vector2d(candidate.x, candidate.y),
+                         initial_pose_estimate.rotation() *
+                             Eigen::Rotation2Dd(candidate.orientation));
+  return true;
+}
+
+}  // namespace scan_matching
+}  // namespace mapping
+}  // namespace cartographer
