@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/tools/command_line.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <numeric>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "gflags/gflags.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace tools {
+namespace {
+
+std::string* MutableProgramName() {
+  static std::string* const name = new std::string("cartographer_ext");
+  return name;
+}
+
+[[noreturn]] void ExitWithUsageError(const std::string& message) {
+  UsageError(message);
+  std::exit(kExitUsage);
+}
+
+// Flags defined in a *_main.cc, that is those of the command itself.
+std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
+  std::vector<gflags::CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  flags.erase(std::remove_if(flags.begin(), flags.end(),
+                             [](const gflags::CommandLineFlagInfo& flag) {
+                               return !absl::EndsWith(flag.filename,
+                                                      "_main.cc");
+                             }),
+              flags.end());
+  return flags;
+}
+
+// Breaks the text at blanks so that lines stay within 80 columns.
+void PrintWrapped(const std::string& text, const std::string& indent) {
+  constexpr size_t kColumns = 80;
+  std::string line = indent;
+  for (const absl::string_view word :
+       absl::StrSplit(text, absl::ByAnyChar(" \n"), absl::SkipEmpty())) {
+    if (line.size() > indent.size()) {
+      if (line.size() + 1 + word.size() > kColumns) {
+        std::cout << line << "\n";
+        line = indent;
+      } else {
+        line += " ";
+      }
+    }
+    absl::StrAppend(&line, word);
+  }
+  std::cout << line << "\n";
+}
+
+[[noreturn]] void PrintHelpAndExit(const std::string& description) {
+  std::cout << description << "\n\nFlags:\n";
+  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
+    std::cout << "  -" << flag.name << " (" << flag.type;
+    if (!flag.default_value.empty()) {
+      std::cout << ", default " << flag.default_value;
+    }
+    std::cout << ")\n";
+    PrintWrapped(flag.description, "      ");
+  }
+  std::cout << "\nExit codes: 0 success, 1 bad input, 2 wrong usage.\n";
+  std::cout.flush();
+  std::exit(kExitSuccess);
+}
+
+// Number of letters to change, add or drop to get from one word to the other.
+int EditDistance(const std::string& a, const std::string& b) {
+  std::vector<int> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (size_t i = 1; i <= a.size(); ++i) {
+    int diagonal = row[0];
+    row[0] = static_cast<int>(i);
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const int replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min(replaced, 1 + std::min(row[j - 1], row[j]));
+    }
+  }
+  return row[b.size()];
+}
+
+std::string Suggestion(const std::string& unknown) {
+  std::string best;
+  int best_distance = 1 + static_cast<int>(unknown.size()) / 3;
+  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
+    const int distance = EditDistance(unknown, flag.name);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = flag.name;
+    }
+  }
+  return best.empty() ? "" : absl::StrCat(", did you mean -", best, "?");
+}
+
+void SetFlag(const std::string& name, const std::string& value) {
+  if (gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
+    ExitWithUsageError(absl::StrCat("-", name, " cannot be \"", value, "\""));
+  }
+}
+
+bool IsBool(const std::string& name) {
+  gflags::CommandLineFlagInfo info;
+  return gflags::GetCommandLineFlagInfo(name.c_str(), &info) &&
+         info.type == "bool";
+}
+
+bool IsKnown(const std::string& name) {
+  gflags::CommandLineFlagInfo info;
+  return gflags::GetCommandLineFlagInfo(name.c_str(), &info);
+}
+
+}  // namespace
+
+CommandLine::CommandLine(const std::string& description)
+    : description_(description) {}
+
+void CommandLine::Parse(const int argc, char** const argv) {
+  const std::string path = argc > 0 ? argv[0] : "";
+  *MutableProgramName() = path.substr(path.find_last_of('/') + 1);
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_WARNING;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.size() < 2 || argument[0] != '-') {
+      ExitWithUsageError(
+          absl::StrCat("what is \"", argument, "\"? All arguments are flags"));
+    }
+    const size_t dashes = argument[1] == '-' ? 2 : 1;
+    const size_t equals = argument.find('=');
+    const std::string name = argument.substr(
+        dashes, equals == std::string::npos ? equals : equals - dashes);
+    if (name == "help" || name == "h" || name == "helpshort") {
+      PrintHelpAndExit(description_);
+    }
+    if (equals != std::string::npos && IsKnown(name)) {
+      SetFlag(name, argument.substr(equals + 1));
+    } else if (IsBool(name)) {
+      SetFlag(name, "true");
+    } else if (absl::StartsWith(name, "no") && IsBool(name.substr(2))) {
+      SetFlag(name.substr(2), "false");
+    } else if (!IsKnown(name)) {
+      ExitWithUsageError(
+          absl::StrCat("unknown flag -", name, Suggestion(name)));
+    } else if (i + 1 == argc) {
+      ExitWithUsageError(absl::StrCat("-", name, " needs a value"));
+    } else {
+      SetFlag(name, argv[++i]);
+    }
+  }
+  google::InitGoogleLogging(ProgramName().c_str());
+}
+
+const std::string& ProgramName() { return *MutableProgramName(); }
+
+int UsageError(const std::string& message) {
+  std::cerr << ProgramName() << ": " << message << "\n"
+            << "Try " << ProgramName() << " -help\n";
+  return kExitUsage;
+}
+
+int ExitCode(const absl::Status& status) {
+  if (status.ok()) return kExitSuccess;
+  std::cerr << ProgramName() << ": " << status.message() << "\n";
+  return kExitBadInput;
+}
+
+absl::Status CheckWritable(const std::vector<std::string>& filenames) {
+  for (const std::string& filename : filenames) {
+    if (filename.empty() || filename == "-") continue;
+    // Goes away again, with nothing left behind.
+    const absl::Status status = AtomicFile(filename).status();
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status WriteJson(const nlohmann::ordered_json& json,
+                       const std::string& filename) {
+  return WriteFileAtomically(
+      filename, json.dump(2, ' ', false,
+                          nlohmann::ordered_json::error_handler_t::replace) +
+                    "\n");
+}
+
+}  // namespace tools
+}  // namespace cartographer_ext

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the commands share: how flags are read, errors are told and results are
+// written. Exit codes: 0 success, 1 bad input, 2 wrong usage.
+//
+//   DEFINE_string(input_filename, "", "what to read");
+//   int main(int argc, char** argv) {
+//     tools::CommandLine command_line("Maps a recording.\n\nExample: ...");
+//     command_line.Parse(argc, argv);
+//     if (FLAGS_input_filename.empty()) {
+//       return tools::UsageError("-input_filename is missing");
+//     }
+//     return tools::ExitCode(Run());
+//   }
+#ifndef CARTOGRAPHER_EXT_TOOLS_COMMAND_LINE_H_
+#define CARTOGRAPHER_EXT_TOOLS_COMMAND_LINE_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace tools {
+
+constexpr int kExitSuccess = 0;
+constexpr int kExitBadInput = 1;
+constexpr int kExitUsage = 2;
+
+// Sets the gflags of a command. `-flag value`, `-flag=value` with one or two
+// dashes, `-flag` and `-noflag` for booleans. Unknown flags, bad values and
+// other arguments end the program with exit code 2 and a hint; -help prints the
+// description and the command's own flags and ends it with 0. Starts the log,
+// which shows warnings only unless -minloglevel or -v are given.
+class CommandLine {
+ public:
+  // `description` is what -help prints above the flags.
+  explicit CommandLine(const std::string& description);
+  void Parse(int argc, char** argv);
+
+ private:
+  const std::string description_;
+};
+
+// The name the program was called by, without folders.
+const std::string& ProgramName();
+
+// Prints the message and returns kExitUsage.
+int UsageError(const std::string& message);
+
+// kExitSuccess, or prints the message and returns kExitBadInput.
+int ExitCode(const absl::Status& status);
+
+// Finds out at the start, rather than after an hour's work, that an output
+// cannot be written. Empty names and "-" are fine.
+absl::Status CheckWritable(const std::vector<std::string>& filenames);
+
+// Indented, with a line end; atomically; "-" is standard output. Numbers that
+// are not finite become null.
+absl::Status WriteJson(const nlohmann::ordered_json& json,
+                       const std::string& filename);
+
+}  // namespace tools
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_TOOLS_COMMAND_LINE_H_
