@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer/mapping/pose_extrapolator.h"
+
+#include <algorithm>
+
+#include "absl/memory/memory.h"
+#include "cartographer/transform/transform.h"
+#include "glog/logging.h"
+
+namespace cartographer {
+namespace mapping {
+namespace {
+
+// Drops readings that are no longer needed: all but the last at or before
+// `time`, as long as `keep` remain.
+template <typename Reading>
+void DropOlderThan(const common::Time time, const size_t keep,
+                   std::deque<Reading>* const readings) {
+  while (readings->size() > keep && (*readings)[1].time <= time) {
+    readings->pop_front();
+  }
+}
+
+}  // namespace
+
+PoseExtrapolator::PoseExtrapolator(const common::Duration pose_queue_duration,
+                                   const double imu_gravity_time_constant)
+    : pose_queue_duration_(pose_queue_duration),
+      gravity_time_constant_(imu_gravity_time_constant) {}
+
+std::unique_ptr<PoseExtrapolator> PoseExtrapolator::InitializeWithImu(
+    const common::Duration pose_queue_duration,
+    const double imu_gravity_time_constant, const sensor::ImuData& imu_data) {
+  auto extrapolator = absl::make_unique<PoseExtrapolator>(
+      pose_queue_duration, imu_gravity_time_constant);
+  extrapolator->AddImuData(imu_data);
+  auto tracker =
+      absl::make_unique<ImuTracker>(imu_gravity_time_constant, imu_data.time);
+  tracker->AddImuLinearAccelerationObservation(imu_data.linear_acceleration);
+  tracker->AddImuAngularVelocityObservation(imu_data.angular_velocity);
+  const auto upright = transform::Rigid3d::Rotation(tracker->orientation());
+  extrapolator->pose_tracker_ = std::move(tracker);
+  extrapolator->AddPose(imu_data.time, upright);
+  return extrapolator;
+}
+
+common::Time PoseExtrapolator::GetLastPoseTime() const {
+  return HasPose() ? timed_poses_.back().time : common::Time::min();
+}
+
+common::Time PoseExtrapolator::GetLastExtrapolatedTime() const {
+  return extrapolation_tracker_ != nullptr ? extrapolation_tracker_->time()
+                                           : common::Time::min();
+}
+
+void PoseExtrapolator::AddPose(const common::Time time,
+                               const transform::Rigid3d& pose) {
+  if (pose_tracker_ == nullptr) {
+    const common::Time start =
+        imu_data_.empty() ? time : std::min(time, imu_data_.front().time);
+    pose_tracker_ =
+        absl::make_unique<ImuTracker>(gravity_time_constant_, start);
+  }
+  timed_poses_.push_back(TimedPose{time, pose});
+  // Two poses always stay, so that there is a velocity.
+  DropOlderThan(time - pose_queue_duration_, 2, &timed_poses_);
+  UpdateVelocityFromPoses();
+  AdvanceTracker(time, pose_tracker_.get());
+  DropSupersededReadings();
+  odometry_tracker_ = absl::make_unique<ImuTracker>(*pose_tracker_);
+  extrapolation_tracker_ = absl::make_unique<ImuTracker>(*pose_tracker_);
+}
+
+void PoseExtrapolator::AddImuData(const sensor::ImuData& imu_data) {
+  const bool late =
+      imu_data.time < GetLastPoseTime() ||
+      (!imu_data_.empty() && imu_data.time < imu_data_.back().time);
+  if (late) {
+    LOG_EVERY_N(WARNING, 100) << "dropped a late IMU reading";
+    return;
+  }
+  imu_data_.push_back(imu_data);
+  DropSupersededReadings();
+}
+
+void PoseExtrapolator::AddOdometryData(
+    const sensor::OdometryData& odometry_data) {
+  const bool late = odometry_data.time < GetLastPoseTime() ||
+                    (!odometry_data_.empty() &&
+                     odometry_data.time <= odometry_data_.back().time);
+  if (late) {
+    LOG_EVERY_N(WARNING, 100) << "dropped a late odometry reading";
+    return;
+  }
+  odometry_data_.push_back(odometry_data);
+  DropSupersededReadings();
+  if (odometry_data_.size() < 2) {
+    return;
+  }
+  // Seen from the newest reading, back to the oldest: time runs backwards, and
+  // so does the motion.
+  const sensor::OdometryData& oldest = odometry_data_.front();
+  const sensor::OdometryData& newest = odometry_data_.back();
+  const double seconds = common::ToSeconds(oldest.time - newest.time);
+  const transform::Rigid3d motion = newest.pose.inverse() * oldest.pose;
+  velocity_from_odometry_.angular =
+      transform::RotationQuaternionToAngleAxisVector(motion.rotation()) /
+      seconds;
+  if (!HasPose()) {
+    return;
+  }
+  const Eigen::Vector3d linear_in_tracking = motion.translation() / seconds;
+  const Eigen::Quaterniond local_from_tracking =
+      timed_poses_.back().pose.rotation() *
+      TurnUntil(newest.time, odometry_tracker_.get());
+  velocity_from_odometry_.linear = local_from_tracking * linear_in_tracking;
+}
+
+transform::Rigid3d PoseExtrapolator::ExtrapolatePose(const common::Time time) {
+  if (last_extrapolated_.has_value() && last_extrapolated_->time == time) {
+    return last_extrapolated_->pose;
+  }
+  CHECK(HasPose());
+  const TimedPose& newest = timed_poses_.back();
+  CHECK_GE(time, newest.time);
+  const double seconds = common::ToSeconds(time - newest.time);
+  const Eigen::Vector3d translation =
+      seconds * BestVelocity().linear + newest.pose.translation();
+  const Eigen::Quaterniond rotation =
+      newest.pose.rotation() * TurnUntil(time, extrapolation_tracker_.get());
+  last_extrapolated_ =
+      TimedPose{time, transform::Rigid3d(translation, rotation)};
+  return last_extrapolated_->pose;
+}
+
+PoseExtrapolator::ExtrapolationResult
+PoseExtrapolator::ExtrapolatePosesWithGravity(
+    const std::vector<common::Time>& times) {
+  CHECK(!times.empty());
+  ExtrapolationResult result;
+  result.previous_poses.reserve(times.size() - 1);
+  for (size_t i = 0; i + 1 < times.size(); ++i) {
+    result.previous_poses.push_back(ExtrapolatePose(times[i]).cast<float>());
+  }
+  result.current_pose = ExtrapolatePose(times.back());
+  result.current_velocity = BestVelocity().linear;
+  result.gravity_from_tracking = EstimateGravityOrientation(times.back());
+  return result;
+}
+
+Eigen::Quaterniond PoseExtrapolator::EstimateGravityOrientation(
+    const common::Time time) {
+  CHECK(pose_tracker_ != nullptr);
+  ImuTracker tracker = *pose_tracker_;
+  AdvanceTracker(time, &tracker);
+  return tracker.orientation();
+}
+
+const PoseExtrapolator::Velocity& PoseExtrapolator::BestVelocity() const {
+  return odometry_data_.size() < 2 ? velocity_from_poses_
+                                   : velocity_from_odometry_;
+}
+
+void PoseExtrapolator::UpdateVelocityFromPoses() {
+  if (timed_poses_.size() < 2) {
+    return;
+  }
+  const TimedPose& oldest = timed_poses_.front();
+  const TimedPose& newest = timed_poses_.back();
+  const double seconds = common::ToSeconds(newest.time - oldest.time);
+  if (seconds <= 0. || seconds < common::ToSeconds(pose_queue_duration_)) {
+    LOG_EVERY_N(WARNING, 100)
+        << "poses span only " << seconds << " s, too short for a velocity";
+    return;
+  }
+  velocity_from_poses_.linear =
+      (newest.pose.translation() - oldest.pose.translation()) / seconds;
+  velocity_from_poses_.angular =
+      transform::RotationQuaternionToAngleAxisVector(
+          oldest.pose.rotation().inverse() * newest.pose.rotation()) /
+      seconds;
+}
+
+void PoseExtrapolator::DropSupersededReadings() {
+  if (!HasPose()) {
+    return;
+  }
+  const common::Time time = timed_poses_.back().time;
+  DropOlderThan(time, 1, &imu_data_);
+  DropOlderThan(time, 2, &odometry_data_);
+}
+
+void PoseExtrapolator::AdvanceTracker(const common::Time time,
+                                      ImuTracker* const tracker) const {
+  CHECK_GE(time, tracker->time());
+  if (imu_data_.empty() || time < imu_data_.front().time) {
+    tracker->Advance(time);
+    tracker->AddImuLinearAccelerationObservation(Eigen::Vector3d::UnitZ());
+    tracker->AddImuAngularVelocityObservation(BestVelocity().angular);
+    return;
+  }
+  if (tracker->time() < imu_data_.front().time) {
+    tracker->Advance(imu_data_.front().time);
+  }
+  for (const sensor::ImuData& reading : imu_data_) {
+    if (reading.time >= time) {
+      break;
+    }
+    if (reading.time < tracker->time()) {
+      continue;
+    }
+    tracker->Advance(reading.time);
+    tracker->AddImuLinearAccelerationObservation(reading.linear_acceleration);
+    tracker->AddImuAngularVelocityObservation(reading.angular_velocity);
+  }
+  tracker->Advance(time);
+}
+
+Eigen::Quaterniond PoseExtrapolator::TurnUntil(
+    const common::Time time, ImuTracker* const tracker) const {
+  AdvanceTracker(time, tracker);
+  return pose_tracker_->orientation().inverse() * tracker->orientation();
+}
+
+}  // namespace mapping
+}  // namespace cartographer
