@@ -1,0 +1,378 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/evaluation/golden_search.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "absl/memory/memory.h"
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
+#include "cartographer/mapping/internal/2d/scan_matching/fast_correlative_scan_matcher_2d.h"
+#include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/io/line_reader.h"
+#include "cartographer_ext/io/tokens.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using cartographer::mapping::Grid2D;
+using cartographer::mapping::SubmapId;
+using cartographer::mapping::scan_matching::CeresScanMatcher2D;
+using cartographer::mapping::scan_matching::FastCorrelativeScanMatcher2D;
+using cartographer::sensor::PointCloud;
+using cartographer::transform::Rigid2d;
+
+const char* const kColumns[] = {"kind",
+                                "submap_trajectory",
+                                "submap_index",
+                                "node_trajectory",
+                                "node_index",
+                                "points",
+                                "initial_x",
+                                "initial_y",
+                                "initial_theta",
+                                "min_score",
+                                "found",
+                                "score",
+                                "x",
+                                "y",
+                                "theta",
+                                "search_us",
+                                "refined_x",
+                                "refined_y",
+                                "refined_theta",
+                                "final_cost",
+                                "refine_us",
+                                "build_us"};
+
+// One line of the file, by column name.
+class Line {
+ public:
+  Line(const std::map<std::string, int>* columns,
+       const absl::string_view content)
+      : columns_(columns), cells_(absl::StrSplit(content, ',')) {}
+
+  absl::string_view Text(const std::string& column) const {
+    return cells_[columns_->at(column)];
+  }
+  double Number(const std::string& column) {
+    double value = 0.;
+    if (!io::ParseFinite(Text(column), &value)) Complain(column);
+    return value;
+  }
+  int Integer(const std::string& column) {
+    int64_t value = 0;
+    if (!io::ParseInt(Text(column), &value) || std::abs(value) > 1 << 30) {
+      Complain(column);
+    }
+    return static_cast<int>(value);
+  }
+  Pose2 Pose(const std::string& prefix) {
+    return Pose2(Number(prefix + "x"), Number(prefix + "y"),
+                 Number(prefix + "theta"));
+  }
+  void Complain(const std::string& column) {
+    if (complaint_.empty()) {
+      complaint_ = absl::StrCat("bad ", column, " '", Text(column), "'");
+    }
+  }
+  size_t size() const { return cells_.size(); }
+  const std::string& complaint() const { return complaint_; }
+
+ private:
+  const std::map<std::string, int>* columns_;
+  const std::vector<absl::string_view> cells_;
+  std::string complaint_;
+};
+
+GoldenPair PairFromLine(Line* const line) {
+  GoldenPair pair;
+  pair.full_submap = line->Text("kind") == "full";
+  if (!pair.full_submap && line->Text("kind") != "local")
+    line->Complain("kind");
+  pair.submap_id.trajectory_id = line->Integer("submap_trajectory");
+  pair.submap_id.submap_index = line->Integer("submap_index");
+  pair.node_id.trajectory_id = line->Integer("node_trajectory");
+  pair.node_id.node_index = line->Integer("node_index");
+  pair.num_points = line->Integer("points");
+  pair.initial_pose = line->Pose("initial_");
+  pair.min_score = line->Number("min_score");
+  pair.found = line->Integer("found") != 0;
+  pair.score = line->Number("score");
+  pair.pose = line->Pose("");
+  pair.search_microseconds = line->Number("search_us");
+  pair.refined_pose = line->Pose("refined_");
+  pair.final_cost = line->Number("final_cost");
+  pair.refine_microseconds = line->Number("refine_us");
+  pair.build_microseconds = line->Number("build_us");
+  return pair;
+}
+
+absl::StatusOr<std::map<std::string, int>> ReadHeader(
+    io::LineReader* const reader) {
+  absl::string_view header;
+  const absl::StatusOr<bool> has_header = reader->Next(&header);
+  if (!has_header.ok()) return has_header.status();
+  std::map<std::string, int> columns;
+  int index = 0;
+  for (const absl::string_view name : absl::StrSplit(header, ',')) {
+    columns.emplace(std::string(name), index++);
+  }
+  for (const char* const name : kColumns) {
+    if (columns.count(name) == 0) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(reader->filename(), ": the first line has no column '",
+                       name, "'; this is not a golden file"));
+    }
+  }
+  return columns;
+}
+
+double ThreadCpuMicroseconds() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) +
+         1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+Rigid2d ToRigid(const Pose2& pose) {
+  return Rigid2d({pose.x, pose.y}, pose.theta);
+}
+
+Pose2 FromRigid(const Rigid2d& pose) {
+  return Pose2(pose.translation().x(), pose.translation().y(),
+               pose.rotation().angle());
+}
+
+double Distance(const Pose2& a, const Pose2& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+double AngleBetween(const Pose2& a, const Pose2& b) {
+  return std::abs(NormalizeAngle(a.theta - b.theta));
+}
+
+cartographer::mapping::scan_matching::proto::CeresScanMatcherOptions2D
+RefinementOptions() {
+  cartographer::mapping::scan_matching::proto::CeresScanMatcherOptions2D
+      options;
+  options.set_occupied_space_weight(20.);
+  options.set_translation_weight(10.);
+  options.set_rotation_weight(1.);
+  options.mutable_ceres_solver_options()->set_use_nonmonotonic_steps(true);
+  options.mutable_ceres_solver_options()->set_max_num_iterations(10);
+  options.mutable_ceres_solver_options()->set_num_threads(1);
+  return options;
+}
+
+cartographer::mapping::scan_matching::proto::FastCorrelativeScanMatcherOptions2D
+SearchOptions() {
+  cartographer::mapping::scan_matching::proto::
+      FastCorrelativeScanMatcherOptions2D options;
+  options.set_linear_search_window(7.);
+  options.set_angular_search_window(DegToRad(30.));
+  options.set_branch_and_bound_depth(7);
+  return options;
+}
+
+GoldenPair RunPair(const GoldenPair& golden,
+                   const FastCorrelativeScanMatcher2D& searcher,
+                   const CeresScanMatcher2D& refiner, const Grid2D& grid,
+                   const PointCloud& cloud) {
+  GoldenPair ours;
+  float score = 0.f;
+  Rigid2d pose;
+  const float min_score = static_cast<float>(golden.min_score);
+  double start = ThreadCpuMicroseconds();
+  ours.found = golden.full_submap
+                   ? searcher.MatchFullSubmap(cloud, min_score, &score, &pose)
+                   : searcher.Match(ToRigid(golden.initial_pose), cloud,
+                                    min_score, &score, &pose);
+  ours.search_microseconds = ThreadCpuMicroseconds() - start;
+  if (ours.found) {
+    ours.score = score;
+    ours.pose = FromRigid(pose);
+  }
+  if (golden.found) {
+    const Rigid2d initial = ToRigid(golden.pose);
+    Rigid2d refined;
+    ceres::Solver::Summary summary;
+    start = ThreadCpuMicroseconds();
+    refiner.Match(initial.translation(), initial, cloud, grid, &refined,
+                  &summary);
+    ours.refine_microseconds = ThreadCpuMicroseconds() - start;
+    ours.refined_pose = FromRigid(refined);
+    ours.final_cost = summary.final_cost;
+  }
+  return ours;
+}
+
+void Compare(const GoldenTolerance& tolerance, GoldenOutcome* const outcome) {
+  const GoldenPair& golden = outcome->golden;
+  const GoldenPair& ours = outcome->ours;
+  if (ours.found != golden.found) {
+    outcome->mismatch = golden.found ? "not found" : "found";
+    return;
+  }
+  if (!golden.found) return;
+  std::vector<std::string> complaints;
+  if (std::abs(ours.score - golden.score) > tolerance.score) {
+    complaints.push_back(
+        absl::StrFormat("score %.7f, not %.7f", ours.score, golden.score));
+  }
+  const double translation = Distance(ours.pose, golden.pose);
+  const double rotation = AngleBetween(ours.pose, golden.pose);
+  // Another pose with the same score is as good.
+  outcome->tie =
+      complaints.empty() && (translation > tolerance.search_translation ||
+                             rotation > tolerance.search_rotation);
+  if (!outcome->tie) outcome->translation_deviation = translation;
+
+  outcome->refined_translation_deviation =
+      Distance(ours.refined_pose, golden.refined_pose);
+  outcome->refined_rotation_deviation =
+      AngleBetween(ours.refined_pose, golden.refined_pose);
+  outcome->relative_cost_deviation =
+      std::abs(ours.final_cost - golden.final_cost) /
+      std::max(golden.final_cost, 1e-9);
+  if (outcome->refined_translation_deviation > tolerance.refined_translation ||
+      outcome->refined_rotation_deviation > tolerance.refined_rotation) {
+    complaints.push_back(absl::StrFormat("refined pose off by %.5f m, %.5f rad",
+                                         outcome->refined_translation_deviation,
+                                         outcome->refined_rotation_deviation));
+  }
+  if (outcome->relative_cost_deviation > tolerance.relative_cost) {
+    complaints.push_back(absl::StrFormat("final cost %.6g, not %.6g",
+                                         ours.final_cost, golden.final_cost));
+  }
+  outcome->mismatch = absl::StrJoin(complaints, "; ");
+}
+
+void AddToReport(const GoldenOutcome& outcome, GoldenReport* const report) {
+  const auto raise = [](const double value, double* const maximum) {
+    *maximum = std::max(*maximum, value);
+  };
+  if (!outcome.mismatch.empty()) ++report->num_mismatches;
+  if (outcome.golden.found && outcome.ours.found) {
+    ++report->num_found;
+    if (outcome.tie) ++report->num_ties;
+    raise(std::abs(outcome.ours.score - outcome.golden.score),
+          &report->max_score_deviation);
+    raise(outcome.translation_deviation, &report->max_translation_deviation);
+    raise(outcome.refined_translation_deviation,
+          &report->max_refined_translation_deviation);
+    raise(outcome.refined_rotation_deviation,
+          &report->max_refined_rotation_deviation);
+    raise(outcome.relative_cost_deviation,
+          &report->max_relative_cost_deviation);
+  }
+  report->outcomes.push_back(outcome);
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<GoldenPair>> ReadGoldenPairs(
+    const std::string& filename) {
+  auto reader = io::LineReader::Open(filename);
+  if (!reader.ok()) return reader.status();
+  const auto columns = ReadHeader(reader->get());
+  if (!columns.ok()) return columns.status();
+  std::vector<GoldenPair> pairs;
+  absl::string_view content;
+  while (true) {
+    const absl::StatusOr<bool> more = (*reader)->Next(&content);
+    if (!more.ok()) return more.status();
+    if (!*more) break;
+    if (content.empty()) continue;
+    Line line(&*columns, content);
+    if (line.size() != columns->size()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat((*reader)->Location(), ": ", line.size(),
+                       " values, not ", columns->size()));
+    }
+    pairs.push_back(PairFromLine(&line));
+    pairs.back().line = (*reader)->line_number();
+    if (!line.complaint().empty()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat((*reader)->Location(), ": ", line.complaint()));
+    }
+  }
+  return pairs;
+}
+
+GoldenTimes MeanTimes(const GoldenReport& report, const bool ours) {
+  GoldenTimes sum;
+  int num_refined = 0;
+  for (const GoldenOutcome& outcome : report.outcomes) {
+    const GoldenPair& times = ours ? outcome.ours : outcome.golden;
+    sum.search_microseconds += times.search_microseconds;
+    sum.build_microseconds += times.build_microseconds;
+    if (outcome.golden.found) {
+      sum.refine_microseconds += times.refine_microseconds;
+      ++num_refined;
+    }
+  }
+  const double num_pairs = std::max<size_t>(1, report.outcomes.size());
+  sum.search_microseconds /= num_pairs;
+  sum.build_microseconds /= num_pairs;
+  sum.refine_microseconds /= std::max(1, num_refined);
+  return sum;
+}
+
+absl::StatusOr<GoldenReport> CheckGoldenPairs(
+    const std::vector<GoldenPair>& pairs, const FindGrid& find_grid,
+    const FindCloud& find_cloud, const GoldenTolerance& tolerance,
+    const std::function<void(int)>& progress) {
+  const CeresScanMatcher2D refiner(RefinementOptions());
+  std::unique_ptr<FastCorrelativeScanMatcher2D> searcher;
+  const Grid2D* grid = nullptr;
+  SubmapId searcher_submap{-1, -1};
+  double build_microseconds = 0.;
+  GoldenReport report;
+  for (const GoldenPair& golden : pairs) {
+    if (searcher == nullptr || golden.submap_id != searcher_submap) {
+      grid = find_grid(golden.submap_id);
+      if (grid == nullptr) {
+        return absl::NotFoundError(
+            absl::StrCat("line ", golden.line, ": the map has no submap ",
+                         golden.submap_id.trajectory_id, ":",
+                         golden.submap_id.submap_index, " with a grid"));
+      }
+      searcher.reset();
+      const double start = ThreadCpuMicroseconds();
+      searcher = absl::make_unique<FastCorrelativeScanMatcher2D>(
+          *grid, SearchOptions());
+      build_microseconds = ThreadCpuMicroseconds() - start;
+      searcher_submap = golden.submap_id;
+    }
+    const PointCloud* const cloud = find_cloud(golden.node_id);
+    if (cloud == nullptr ||
+        static_cast<int>(cloud->size()) != golden.num_points) {
+      return absl::NotFoundError(absl::StrCat(
+          "line ", golden.line, ": the map has no node ",
+          golden.node_id.trajectory_id, ":", golden.node_id.node_index,
+          " with ", golden.num_points, " points"));
+    }
+    GoldenOutcome outcome;
+    outcome.golden = golden;
+    outcome.ours = RunPair(golden, *searcher, refiner, *grid, *cloud);
+    outcome.ours.build_microseconds = build_microseconds;
+    Compare(tolerance, &outcome);
+    AddToReport(outcome, &report);
+    if (progress) progress(static_cast<int>(report.outcomes.size()));
+  }
+  return report;
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Compares the host's scan matchers with what the real Cartographer found.
+//
+// A golden file is a CSV with one line per pair of a submap and a node of a
+// pbstream: the initial pose, what the branch-and-bound search found from it
+// (7 m, 30 degrees, depth 7; or in the full submap), and where the Ceres
+// matcher (weights 20, 10 and 1; non-monotonic; 10 iterations) went from there.
+// Columns are found by their names in the first line.
+//
+// The search is exact, so found, score and pose must agree. Where the optimum
+// is not unique either pose is right. Refinement starts from the golden pose
+// in any case, so that ties do not hide it.
+#ifndef CARTOGRAPHER_EXT_EVALUATION_GOLDEN_SEARCH_H_
+#define CARTOGRAPHER_EXT_EVALUATION_GOLDEN_SEARCH_H_
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer/mapping/2d/grid_2d.h"
+#include "cartographer/mapping/id.h"
+#include "cartographer/sensor/point_cloud.h"
+#include "cartographer_ext/common/pose2.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+struct GoldenPair {
+  int64_t line = 0;  // of the file, from 1
+  bool full_submap = false;
+  cartographer::mapping::SubmapId submap_id{0, 0};
+  cartographer::mapping::NodeId node_id{0, 0};
+  int num_points = 0;
+  Pose2 initial_pose;  // (local frame of the submap <- node), as all poses here
+  double min_score = 0.;
+  bool found = false;
+  double score = 0.;
+  Pose2 pose;
+  double search_microseconds = 0.;
+  // The rest only where found.
+  Pose2 refined_pose;
+  double final_cost = 0.;
+  double refine_microseconds = 0.;
+  double build_microseconds = 0.;  // of the submap's search grids
+};
+
+// An unreadable file, a missing column or a bad number is an error with the
+// file and line.
+absl::StatusOr<std::vector<GoldenPair>> ReadGoldenPairs(
+    const std::string& filename);
+
+struct GoldenTolerance {
+  double score = 2e-6;
+  double search_translation = 1e-5;   // metres
+  double search_rotation = 1e-6;      // radians
+  double refined_translation = 1e-3;  // metres
+  double refined_rotation = 1e-3;     // radians
+  double relative_cost = 0.01;
+};
+
+struct GoldenOutcome {
+  GoldenPair golden;
+  GoldenPair ours;  // results and times only
+  bool tie = false;
+  double translation_deviation = 0.;  // of the search, metres; ties excluded
+  double refined_translation_deviation = 0.;
+  double refined_rotation_deviation = 0.;
+  double relative_cost_deviation = 0.;
+  std::string mismatch;  // empty when within the tolerance
+};
+
+struct GoldenReport {
+  std::vector<GoldenOutcome> outcomes;  // in the order of the pairs
+  int num_found = 0;
+  int num_ties = 0;
+  int num_mismatches = 0;
+  double max_score_deviation = 0.;
+  double max_translation_deviation = 0.;
+  double max_refined_translation_deviation = 0.;
+  double max_refined_rotation_deviation = 0.;
+  double max_relative_cost_deviation = 0.;
+};
+
+// Mean of a time over all pairs, or over those with a result.
+struct GoldenTimes {
+  double search_microseconds = 0.;
+  double refine_microseconds = 0.;
+  double build_microseconds = 0.;
+};
+GoldenTimes MeanTimes(const GoldenReport& report, bool ours);
+
+// Null when there is no such submap, or no such node.
+using FindGrid = std::function<const cartographer::mapping::Grid2D*(
+    const cartographer::mapping::SubmapId&)>;
+using FindCloud = std::function<const cartographer::sensor::PointCloud*(
+    const cartographer::mapping::NodeId&)>;
+
+// Search grids are built once per run of pairs with the same submap. Times are
+// CPU time of this thread. A pair that names an unknown submap or node, or a
+// cloud of another size, is an error. `progress`, if any, gets the number of
+// pairs done.
+absl::StatusOr<GoldenReport> CheckGoldenPairs(
+    const std::vector<GoldenPair>& pairs, const FindGrid& find_grid,
+    const FindCloud& find_cloud, const GoldenTolerance& tolerance,
+    const std::function<void(int)>& progress);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_EVALUATION_GOLDEN_SEARCH_H_
