@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+// LINK: simulation io
+//
+// cartographer_ext_simulate: drives a robot through a world file and writes
+// what its sensors say, beside the truth.
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdint>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/simulation/simulation_output.h"
+#include "cartographer_ext/simulation/world_parser.h"
+#include "cartographer_ext/simulation/world_picture.h"
+#include "gflags/gflags.h"
+#include "glog/logging.h"
+#include "nlohmann/json.hpp"
+
+DEFINE_string(world_filename, "",
+              "World file: floor plan, robot, sensors, drive. Its format is "
+              "described in docs/world_format.md; examples are in "
+              "configuration_files/worlds.");
+DEFINE_uint64(seed, 0,
+              "Chooses noise, biases, obstacle phases and random faults. The "
+              "same world and seed always give the same files.");
+DEFINE_string(output_filestem, "",
+              "Writes <stem>.clf (log), .tum (true pose of every scan), "
+              ".relations (true relative poses), .loops.csv, .places.csv, "
+              ".distances.csv, .faults.csv and .truth.pgm/.yaml.");
+DEFINE_bool(carmen, true, "Write the CARMEN log <stem>.clf.");
+DEFINE_bool(bag, false,
+            "Also write the ROS 1 bag <stem>.bag, which has the IMU.");
+DEFINE_bool(truth_map, true, "Write the map a perfect mapper would draw.");
+DEFINE_double(resolution, 0.05, "Metres a cell of that map.");
+DEFINE_string(picture_filename, "",
+              "PNG of the plan, the path, the obstacles and the marks.");
+DEFINE_int32(picture_pixels, 1600, "Longer side of the picture.");
+DEFINE_string(odometry_faults, "",
+              "Faults at random times on top of the world's own, comma "
+              "separated: stale:N, jump:N, slip:N, reverse, offset:SECONDS.");
+DEFINE_bool(perfect, false,
+            "Sensors without any noise, bias, dropout or fault.");
+DEFINE_string(json, "", "Writes what was done as JSON; - is standard output.");
+
+namespace cartographer_ext {
+namespace {
+
+constexpr char kUsage[] =
+    R"(Simulates a robot with a laser, wheel odometry and an IMU, and knows the truth.
+
+  cartographer_ext_simulate -world_filename=W [-seed=N] -output_filestem=S
+  cartographer_ext_simulate -world_filename=W -picture_filename=P.png
+
+Look at a world before using it:
+  cartographer_ext_simulate \
+      -world_filename=configuration_files/worlds/ri_corridor.world \
+      -picture_filename=/tmp/ri.png
+Make a log with its truth, then map and judge it:
+  cartographer_ext_simulate \
+      -world_filename=configuration_files/worlds/ri_corridor.world \
+      -seed=3 -output_filestem=/tmp/ri
+  cartographer_ext_slam -input_filename=/tmp/ri.clf ...
+  cartographer_ext_evaluate -relations_filename=/tmp/ri.relations \
+      -reference_trajectory_filename=/tmp/ri.tum ...
+(cartographer_ext_slam also opens a world file itself, with its IMU.)
+Give the odometry something to fail at:
+  ... -odometry_faults=stale:3,jump:2,slip:2,offset:0.12
+
+Exit codes: 0 done, 1 bad input (the message names file and line), 2 wrong usage.)";
+
+int UsageError(const std::string& message) {
+  std::cerr << message << "\nTry -help.\n";
+  return 2;
+}
+
+int InputError(const absl::Status& status) {
+  std::cerr << "cartographer_ext_simulate: " << status.message() << "\n";
+  return 1;
+}
+
+nlohmann::json Report(const simulation::Simulation& simulation,
+                      const simulation::SimulationSummary& summary,
+                      const double cpu_seconds) {
+  nlohmann::json json;
+  json["world"] = simulation.world().name;
+  json["seed"] = simulation.options().seed;
+  json["sensor_seconds"] = simulation.drive().duration();
+  json["driven_metres"] = simulation.drive().length();
+  json["scans"] = summary.scans;
+  json["odometry_readings"] = summary.odometry_readings;
+  json["imu_readings"] = summary.imu_readings;
+  json["relations"]["sequential"] = summary.sequential_relations;
+  json["relations"]["loop"] = summary.loop_relations;
+  json["place_visits"] = summary.place_visits;
+  json["odometry_faults"] = simulation.odometry().labels.size();
+  json["odometry"]["scale_left"] = simulation.odometry().scale_left;
+  json["odometry"]["scale_right"] = simulation.odometry().scale_right;
+  json["odometry"]["believed_wheel_base"] =
+      simulation.odometry().believed_wheel_base;
+  json["cpu_seconds"] = cpu_seconds;
+  json["files"] = summary.files;
+  return json;
+}
+
+int Run() {
+  if (FLAGS_world_filename.empty()) {
+    return UsageError("-world_filename is missing.");
+  }
+  if (FLAGS_output_filestem.empty() && FLAGS_picture_filename.empty() &&
+      FLAGS_json.empty()) {
+    return UsageError(
+        "Nothing to write: give -output_filestem, -picture_filename or -json.");
+  }
+  const std::clock_t begin = std::clock();
+  absl::StatusOr<simulation::World> world =
+      simulation::LoadWorld(FLAGS_world_filename);
+  if (!world.ok()) return InputError(world.status());
+  simulation::SimulationOptions options;
+  options.seed = FLAGS_seed;
+  options.odometry_faults = FLAGS_odometry_faults;
+  options.perfect = FLAGS_perfect;
+  absl::StatusOr<std::unique_ptr<const simulation::Simulation>> created =
+      simulation::Simulation::Create(*std::move(world), options);
+  if (!created.ok()) return InputError(created.status());
+  const std::shared_ptr<const simulation::Simulation> simulation =
+      *std::move(created);
+
+  simulation::SimulationSummary summary;
+  if (!FLAGS_output_filestem.empty()) {
+    Progress progress("simulating scans", simulation->num_scans());
+    simulation::SimulationOutputOptions output;
+    output.filestem = FLAGS_output_filestem;
+    output.carmen = FLAGS_carmen;
+    output.bag = FLAGS_bag;
+    output.truth_map = FLAGS_truth_map;
+    output.map_resolution = FLAGS_resolution;
+    output.progress = [&progress](const int64_t scans) {
+      progress.Update(scans);
+    };
+    const absl::Status status =
+        simulation::WriteSimulation(simulation, output, &summary);
+    progress.Finish();
+    if (!status.ok()) return InputError(status);
+  }
+  if (!FLAGS_picture_filename.empty()) {
+    const absl::Status status = simulation::WriteWorldPicture(
+        *simulation, FLAGS_picture_pixels, FLAGS_picture_filename);
+    if (!status.ok()) return InputError(status);
+    summary.files.push_back(FLAGS_picture_filename);
+  }
+  const double cpu_seconds =
+      static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  const nlohmann::json report = Report(*simulation, summary, cpu_seconds);
+  if (!FLAGS_json.empty()) {
+    const absl::Status status =
+        WriteFileAtomically(FLAGS_json, report.dump(2) + "\n");
+    if (!status.ok()) return InputError(status);
+  }
+  if (FLAGS_json != "-") {
+    std::cout << absl::StrFormat(
+        "%s, seed %d: %.0f m in %.0f s", simulation->world().name, FLAGS_seed,
+        simulation->drive().length(), simulation->drive().duration());
+    if (summary.scans > 0) {
+      std::cout << absl::StrFormat(
+          "; %d scans, %d odometry and %d IMU readings; %d sequential and %d "
+          "loop relations; %.1f CPU s",
+          summary.scans, summary.odometry_readings, summary.imu_readings,
+          summary.sequential_relations, summary.loop_relations, cpu_seconds);
+    }
+    std::cout << "\n";
+    for (const std::string& file : summary.files) {
+      std::cout << "  " << file << "\n";
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace cartographer_ext
+
+int main(int argc, char** argv) {
+  google::InitGoogleLogging(argv[0]);
+  FLAGS_logtostderr = true;
+  gflags::SetUsageMessage(cartographer_ext::kUsage);
+  gflags::ParseCommandLineFlags(&argc, &argv, true);
+  if (argc > 1) {
+    return cartographer_ext::UsageError(
+        absl::StrCat("Unexpected argument '", argv[1], "'."));
+  }
+  return cartographer_ext::Run();
+}
