@@ -6,6 +6,7 @@
 #include <set>
 
 #include "Eigen/Cholesky"
+#include "Eigen/LU"
 #include "absl/strings/str_cat.h"
 
 namespace cartographer_ext {
@@ -201,14 +202,10 @@ Eigen::Vector3d Linearize(const WhitenedEdge& edge, const Pose2& from,
   return edge.whitening * error;
 }
 
-double UnweightedSquaredError(const PoseGraphEdge& edge, const Pose2& from,
-                              const Pose2& to) {
-  // The rotation into the measured end's frame keeps the length.
-  const Pose2 relative = Between(from, to);
-  const double dx = relative.x - edge.measurement.x;
-  const double dy = relative.y - edge.measurement.y;
-  const double dtheta = NormalizeAngle(relative.theta - edge.measurement.theta);
-  return dx * dx + dy * dy + dtheta * dtheta;
+double UnwhitenedSquaredNorm(const WhitenedEdge& edge,
+                             const Eigen::Vector3d& residual) {
+  // The rotation inside `whitening` keeps the length.
+  return edge.whitening.partialPivLu().solve(residual).squaredNorm();
 }
 
 std::vector<double> Chi2OfEdges(const std::vector<WhitenedEdge>& edges,

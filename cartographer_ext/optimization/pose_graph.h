@@ -87,8 +87,9 @@ inline double Chi2(const WhitenedEdge& edge, const Pose2& from,
 
 // The same error without the metric, chi' of the ACS paper (before eq. 9):
 // squared Euclidean length of e, which adds square metres and square radians.
-double UnweightedSquaredError(const PoseGraphEdge& edge, const Pose2& from,
-                              const Pose2& to);
+// `residual` is the edge's whitened residual.
+double UnwhitenedSquaredNorm(const WhitenedEdge& edge,
+                             const Eigen::Vector3d& residual);
 
 // chi2 of every edge at `poses`.
 std::vector<double> Chi2OfEdges(const std::vector<WhitenedEdge>& edges,

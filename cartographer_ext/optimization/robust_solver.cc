@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "Eigen/LU"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -309,6 +308,54 @@ SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
   if (weights != nullptr) *weights = inner.edge_weights;
   total.cpu_seconds = ThreadCpuSeconds() - start;
   return total;
+}
+
+SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
+                              const double gate,
+                              std::vector<Pose2>* const poses,
+                              std::vector<double>* const weights) {
+  constexpr int kMaxRounds = 30;
+  const double start = ThreadCpuSeconds();
+  SolverSummary total;
+  SolverOptions options;
+  options.initial_lambda = 1e-8;
+  options.max_iterations = 20;
+  for (int round = 0; round != kMaxRounds; ++round) {
+    std::vector<double> decisions = Chi2OfEdges(edges, *poses);
+    for (size_t i = 0; i != edges.size(); ++i) {
+      decisions[i] = !edges[i].is_loop || decisions[i] < gate ? 1. : 0.;
+    }
+    if (decisions == options.edge_weights) {
+      total.converged = true;
+      break;
+    }
+    options.edge_weights = decisions;
+    const SolverSummary summary = SolveRobust(edges, options, poses);
+    total.iterations += summary.iterations;
+    total.analyses += summary.analyses;
+    total.factor_blocks = summary.factor_blocks;
+  }
+  if (weights != nullptr) *weights = options.edge_weights;
+  total.final_cost = TruncatedCost(edges, *poses);
+  total.cpu_seconds = ThreadCpuSeconds() - start;
+  return total;
+}
+
+double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
+                    const std::vector<Pose2>& poses) {
+  constexpr double kMedian = 2.365973884375338;  // of chi2, 3 dof
+  constexpr double kSafety = 9.;
+  std::vector<double> inside;
+  for (const WhitenedEdge& edge : edges) {
+    if (!edge.is_loop) continue;
+    const double chi2 = Chi2(edge, poses[edge.from], poses[edge.to]);
+    if (chi2 < kChi2Gate) inside.push_back(chi2);
+  }
+  // Too few loops say nothing about their scale.
+  if (inside.size() < 20) return kChi2Gate;
+  const auto middle = inside.begin() + inside.size() / 2;
+  std::nth_element(inside.begin(), middle, inside.end());
+  return kChi2Gate * std::min(1., kSafety * *middle / kMedian);
 }
 
 double TruncatedCost(const std::vector<WhitenedEdge>& edges,

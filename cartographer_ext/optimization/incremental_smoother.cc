@@ -1,0 +1,324 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/incremental_smoother.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "Eigen/Eigenvalues"
+#include "absl/strings/str_cat.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+double MinimizeSwitch(const Eigen::Vector3d& squared_innovation,
+                      const Eigen::Vector3d& predicted_variance,
+                      const double penalty) {
+  const auto cost = [&](const double s) {
+    double sum = penalty * (1. - s) * (1. - s);
+    for (int i = 0; i != 3; ++i) {
+      sum += squared_innovation[i] * s * s /
+             (1. + s * s * std::max(0., predicted_variance[i]));
+    }
+    return sum;
+  };
+  // Up to two minima: a grid finds the better one, finer near 0 where both
+  // terms of an uncertain loop are decided; then golden section.
+  constexpr int kGrid = 24;
+  const auto at = [](const int k) {
+    const double t = static_cast<double>(k) / kGrid;
+    return t * t;
+  };
+  int best = 0;
+  double best_cost = cost(0.);
+  for (int k = 1; k <= kGrid; ++k) {
+    const double value = cost(at(k));
+    if (value < best_cost) {
+      best_cost = value;
+      best = k;
+    }
+  }
+  double low = at(std::max(0, best - 1)), high = at(std::min(kGrid, best + 1));
+  const double golden = 0.6180339887498949;
+  for (int k = 0; k != 30; ++k) {
+    const double left = high - golden * (high - low);
+    const double right = low + golden * (high - low);
+    if (cost(left) < cost(right)) {
+      high = right;
+    } else {
+      low = left;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+IncrementalSmoother::IncrementalSmoother(const SmootherOptions& options,
+                                         const Pose2& origin)
+    : options_(options), poses_({origin}), linearization_poses_({origin}) {
+  factor_.Reset(BlockLdlt(), Eigen::VectorXd(0));
+}
+
+Eigen::Vector3d IncrementalSmoother::Offset(const int pose) const {
+  return Eigen::Vector3d(
+      poses_[pose].x - linearization_poses_[pose].x,
+      poses_[pose].y - linearization_poses_[pose].y,
+      NormalizeAngle(poses_[pose].theta - linearization_poses_[pose].theta));
+}
+
+LinearFactor IncrementalSmoother::LinearizeEdge(
+    const WhitenedEdge& edge) const {
+  // At the current estimate, expressed as an offset from the point where the
+  // pose was linearised first: J x = J offset - r.
+  LinearFactor result;
+  result.a = edge.from - 1;
+  result.b = edge.to - 1;
+  const Eigen::Vector3d residual =
+      Linearize(edge, poses_[edge.from], poses_[edge.to], &result.jacobian_a,
+                &result.jacobian_b);
+  result.target = result.jacobian_a * Offset(edge.from) +
+                  result.jacobian_b * Offset(edge.to) - residual;
+  return result;
+}
+
+absl::Status IncrementalSmoother::AddPose(
+    const std::vector<PoseGraphEdge>& edges, StepReport* const report) {
+  const double start = ThreadCpuSeconds();
+  const int number = num_poses();
+  const PoseGraphEdge* odometry = nullptr;
+  for (const PoseGraphEdge& edge : edges) {
+    const int other = edge.from == number ? edge.to : edge.from;
+    if (std::max(edge.from, edge.to) != number || other < 0 ||
+        other >= number) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("edge ", edge.from, " -> ", edge.to,
+                       " does not join new pose ", number, " to an old one"));
+    }
+    if (odometry == nullptr && !edge.is_loop) odometry = &edge;
+  }
+  if (odometry == nullptr) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("pose ", number, " comes without odometry"));
+  }
+  const Pose2 pose =
+      odometry->to == number
+          ? poses_[odometry->from] * odometry->measurement
+          : poses_[odometry->to] * odometry->measurement.Inverse();
+  poses_.push_back(pose);
+  linearization_poses_.push_back(pose);
+  factor_.Append();
+  ++poses_in_epoch_;
+  for (const PoseGraphEdge& edge : edges) {
+    const int index = edges_.size();
+    edges_.push_back(Whiten(edge));
+    accepted_.push_back(!edge.is_loop);
+    decided_.push_back(!edge.is_loop);
+    if (edge.is_loop) {
+      waiting_.push_back(index);
+    } else {
+      CHECK(factor_.Update(LinearizeEdge(edges_.back()), 1.));
+      if (&edge != odometry) estimate_outdated_ = true;
+    }
+  }
+  StepReport result;
+  while (!waiting_.empty() &&
+         result.loops_tested < options_.max_loops_per_step) {
+    result.loops_entered += TestLoop(waiting_.front());
+    ++result.loops_tested;
+    waiting_.pop_front();
+  }
+  if (poses_in_epoch_ >= options_.epoch_poses) {
+    EndEpoch();
+    result.epoch = true;
+  } else if (estimate_outdated_) {
+    UpdateEstimate();
+  }
+  result.cpu_seconds = ThreadCpuSeconds() - start;
+  if (report != nullptr) *report = result;
+  return absl::OkStatus();
+}
+
+double IncrementalSmoother::EstimateSwitch(
+    const LinearFactor& factor, const Eigen::Vector3d& residual) const {
+  const double w = options_.switch_penalty;
+  if (options_.switch_estimate == SwitchEstimate::kPointwise) {
+    return w / (w + residual.squaredNorm());
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+  eigen.computeDirect(factor_.PredictedCovariance(factor));
+  const Eigen::Vector3d u = eigen.eigenvectors().transpose() * residual;
+  return MinimizeSwitch(u.cwiseAbs2(), eigen.eigenvalues(), w);
+}
+
+bool IncrementalSmoother::TestLoop(const int edge_index) {
+  const WhitenedEdge& edge = edges_[edge_index];
+  if (estimate_outdated_) {
+    for (const int pose : {edge.from, edge.to}) {
+      const Eigen::Vector3d offset = factor_.SolveFor(pose - 1);
+      const Pose2& origin = linearization_poses_[pose];
+      poses_[pose] = Pose2(origin.x + offset.x(), origin.y + offset.y(),
+                           NormalizeAngle(origin.theta + offset.z()));
+    }
+  }
+  const LinearFactor factor = LinearizeEdge(edge);
+  const Eigen::Vector3d residual =
+      Residual(edge, poses_[edge.from], poses_[edge.to]);
+  const double s = EstimateSwitch(factor, residual);
+  if (s * s < options_.skip_weight) return false;
+  CHECK(factor_.Update(factor, s * s));
+  accepted_[edge_index] = true;
+  estimate_outdated_ = true;
+  return true;
+}
+
+void IncrementalSmoother::UpdateEstimate() {
+  Eigen::VectorXd offsets;
+  factor_.Solve(&offsets);
+  for (size_t i = 1; i != poses_.size(); ++i) {
+    const Pose2& origin = linearization_poses_[i];
+    poses_[i] =
+        Pose2(origin.x + offsets[3 * i - 3], origin.y + offsets[3 * i - 2],
+              NormalizeAngle(origin.theta + offsets[3 * i - 1]));
+  }
+  estimate_outdated_ = false;
+}
+
+void IncrementalSmoother::EndEpoch() {
+  poses_in_epoch_ = 0;
+  if (num_poses() < 2) return;
+  waiting_.clear();  // the batch below weighs them with all others
+  if (estimate_outdated_) UpdateEstimate();
+  SolverOptions solver;
+  solver.kernel = options_.epoch_kernel;
+  solver.max_iterations = options_.max_epoch_iterations;
+  solver.cost_tolerance = options_.epoch_cost_tolerance;
+  solver.initial_lambda = 1e-8;
+  if (!options_.late_rejection || !options_.readmission) {
+    // As in the paper: what an earlier epoch decided stays.
+    solver.edge_weights.assign(edges_.size(), 1.);
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (decided_[i] && !accepted_[i] && !options_.readmission) {
+        solver.edge_weights[i] = 0.;
+      }
+    }
+  }
+  SolveRobust(edges_, solver, &poses_);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    const WhitenedEdge& edge = edges_[i];
+    if (!edge.is_loop) continue;
+    const bool accept =
+        Chi2(edge, poses_[edge.from], poses_[edge.to]) < options_.gate;
+    if (!decided_[i]) {
+      accepted_[i] = accept;
+      decided_[i] = true;
+    } else if (accepted_[i] && !accept && options_.late_rejection) {
+      accepted_[i] = false;
+      ++num_late_rejections_;
+    } else if (!accepted_[i] && accept && options_.readmission) {
+      accepted_[i] = true;
+      ++num_readmissions_;
+    }
+  }
+  RebuildFactor();
+  UpdateEstimate();
+}
+
+void IncrementalSmoother::Finish() {
+  EndEpoch();
+  if (num_poses() < 2 || !(options_.late_rejection && options_.readmission)) {
+    return;
+  }
+  std::vector<double> weights;
+  PolishTruncated(edges_, options_.gate, &poses_, &weights);
+  if (options_.adaptive_gate) {
+    PolishTruncated(edges_, AdaptiveGate(edges_, poses_), &poses_, &weights);
+  }
+  for (size_t i = 0; i != edges_.size(); ++i) accepted_[i] = weights[i] > 0.5;
+  RebuildFactor();
+  estimate_outdated_ = false;
+}
+
+void IncrementalSmoother::RebuildFactor() {
+  linearization_poses_ = poses_;
+  const int size = num_poses() - 1;
+  std::vector<std::pair<int, int>> pairs;
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (accepted_[i] && edges_[i].from > 0 && edges_[i].to > 0) {
+      pairs.push_back({edges_[i].from - 1, edges_[i].to - 1});
+    }
+  }
+  // The newest pose goes last: the next one attaches there.
+  std::vector<int> groups(size, 0);
+  if (size > 1) groups.back() = 1;
+  BlockLdlt batch;
+  batch.Analyze(size, pairs, groups);
+  batch.SetZero();
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * size);
+  int pair = 0;
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (!accepted_[i]) continue;
+    const LinearFactor factor = LinearizeEdge(edges_[i]);
+    if (factor.a >= 0) {
+      batch.AddDiagonal(factor.a,
+                        factor.jacobian_a.transpose() * factor.jacobian_a);
+      rhs.segment<3>(3 * factor.a) +=
+          factor.jacobian_a.transpose() * factor.target;
+    }
+    if (factor.b >= 0) {
+      batch.AddDiagonal(factor.b,
+                        factor.jacobian_b.transpose() * factor.jacobian_b);
+      rhs.segment<3>(3 * factor.b) +=
+          factor.jacobian_b.transpose() * factor.target;
+    }
+    if (factor.a >= 0 && factor.b >= 0) {
+      batch.AddOffDiagonal(pair++,
+                           factor.jacobian_a.transpose() * factor.jacobian_b);
+    }
+  }
+  CHECK(batch.Factorize(0.));
+  factor_.Reset(batch, rhs);
+}
+
+absl::Status Replay(const PoseGraph& graph, const SmootherOptions& options,
+                    ReplayResult* const result) {
+  const double start = ThreadCpuSeconds();
+  std::vector<std::vector<int>> edges_of_pose(graph.poses.size());
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    edges_of_pose[std::max(graph.edges[i].from, graph.edges[i].to)].push_back(
+        i);
+  }
+  IncrementalSmoother smoother(options, graph.poses[0]);
+  std::vector<int> arrived;
+  result->step_seconds.clear();
+  for (size_t k = 1; k != graph.poses.size(); ++k) {
+    std::vector<PoseGraphEdge> edges;
+    for (const int e : edges_of_pose[k]) {
+      edges.push_back(graph.edges[e]);
+      arrived.push_back(e);
+    }
+    StepReport report;
+    const absl::Status status = smoother.AddPose(edges, &report);
+    if (!status.ok()) return status;
+    result->step_seconds.push_back(report.cpu_seconds);
+  }
+  smoother.Finish();
+  result->poses = smoother.poses();
+  result->accepted.assign(graph.edges.size(), false);
+  for (size_t i = 0; i != arrived.size(); ++i) {
+    result->accepted[arrived[i]] = smoother.accepted()[i];
+  }
+  result->cpu_seconds = ThreadCpuSeconds() - start;
+  return absl::OkStatus();
+}
+
+double Quantile(std::vector<double> values, const double fraction) {
+  if (values.empty()) return 0.;
+  const size_t rank = std::min(
+      values.size() - 1, static_cast<size_t>(std::max(
+                             0., std::ceil(fraction * values.size()) - 1.)));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[rank];
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

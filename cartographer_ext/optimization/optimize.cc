@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/optimize.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "cartographer_ext/optimization/robust_solver.h"
+#include "cartographer_ext/optimization/switchable_constraints.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+void AddSummary(const SolverSummary& summary, OptimizeResult* const result) {
+  result->iterations += summary.iterations;
+  result->converged = summary.converged;
+}
+
+KernelOptions MakeKernel(const KernelType type,
+                         const OptimizeOptions& options) {
+  KernelOptions kernel = DefaultKernel(type);
+  if (options.parameter > 0.) kernel.parameter = options.parameter;
+  kernel.norm = options.norm;
+  return kernel;
+}
+
+// Weights of the kernel at the final poses.
+void WeighByKernel(const std::vector<WhitenedEdge>& edges,
+                   const KernelOptions& kernel, OptimizeResult* const result) {
+  result->weights.assign(edges.size(), 1.);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    const WhitenedEdge& edge = edges[i];
+    if (!edge.is_loop) continue;
+    const Eigen::Vector3d residual =
+        Residual(edge, result->poses[edge.from], result->poses[edge.to]);
+    const double chi2 = residual.squaredNorm();
+    double shape = AcsShape(kernel);
+    if (kernel.type == KernelType::kAcsPaper) {
+      shape = AcsPaperShape(
+          chi2, UnwhitenedSquaredNorm(edge, residual),
+          NormOfCovariance(edge.whitening.transpose() * edge.whitening,
+                           kernel.norm));
+    }
+    result->weights[i] = EvaluateKernel(kernel, chi2, shape).weight;
+  }
+}
+
+void RunKernel(const std::vector<WhitenedEdge>& edges, const KernelType type,
+               const OptimizeOptions& options, OptimizeResult* const result) {
+  SolverOptions solver;
+  solver.kernel = MakeKernel(type, options);
+  solver.max_iterations = options.max_iterations;
+  solver.prune = options.prune;
+  AddSummary(SolveRobust(edges, solver, &result->poses), result);
+  WeighByKernel(edges, solver.kernel, result);
+}
+
+void RunSwitchable(const std::vector<WhitenedEdge>& edges,
+                   const OptimizeOptions& options,
+                   OptimizeResult* const result) {
+  SwitchableOptions switchable;
+  if (options.parameter > 0.) switchable.penalty = options.parameter;
+  switchable.max_iterations = options.max_iterations;
+  AddSummary(
+      SolveSwitchable(edges, switchable, &result->poses, &result->weights),
+      result);
+  for (double& weight : result->weights) weight *= weight;
+}
+
+void RunGnc(const std::vector<WhitenedEdge>& edges,
+            const OptimizeOptions& options, OptimizeResult* const result) {
+  GncOptions gnc;
+  if (options.parameter > 0.) gnc.truncation = options.parameter;
+  AddSummary(SolveGnc(edges, gnc, &result->poses, &result->weights), result);
+}
+
+absl::Status RunReplay(const PoseGraph& graph, const OptimizeOptions& options,
+                       OptimizeResult* const result) {
+  ReplayResult replay;
+  const absl::Status status = Replay(graph, options.smoother, &replay);
+  if (!status.ok()) return status;
+  result->poses = replay.poses;
+  result->step_seconds = replay.step_seconds;
+  result->accepted = replay.accepted;
+  result->weights.assign(replay.accepted.begin(), replay.accepted.end());
+  result->converged = true;
+  return absl::OkStatus();
+}
+
+struct Member {
+  std::string name;
+  std::vector<Pose2> poses;
+  double truncated_cost = 0.;
+};
+
+void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
+             const OptimizeOptions& options, OptimizeResult* const result) {
+  std::vector<Member> members;
+  const auto add = [&](const std::string& name, std::vector<Pose2> poses) {
+    Member member;
+    member.name = name;
+    member.poses = std::move(poses);
+    AddSummary(PolishTruncated(edges, kChi2Gate, &member.poses, nullptr),
+               result);
+    member.truncated_cost = TruncatedCost(edges, member.poses);
+    members.push_back(std::move(member));
+  };
+  const auto add_kernel = [&](const std::string& name, const KernelType type,
+                              const std::vector<Pose2>& start) {
+    SolverOptions solver;
+    solver.kernel = DefaultKernel(type);
+    solver.max_iterations = options.max_iterations;
+    std::vector<Pose2> poses = start;
+    AddSummary(SolveRobust(edges, solver, &poses), result);
+    add(name, std::move(poses));
+  };
+  ReplayResult replay;
+  if (Replay(graph, options.smoother, &replay).ok()) {
+    add("r_isam", replay.poses);
+    add_kernel("r_isam, dcs", KernelType::kDcs, replay.poses);
+  }
+  add_kernel("dcs", KernelType::kDcs, graph.poses);
+  add_kernel("gm", KernelType::kGemanMcClure, graph.poses);
+  add_kernel("acs", KernelType::kAcs, graph.poses);
+  const auto best = std::min_element(
+      members.begin(), members.end(), [](const Member& a, const Member& b) {
+        return a.truncated_cost < b.truncated_cost;
+      });
+  result->poses = best->poses;
+  result->member = best->name;
+  result->member_truncated_chi2 = best->truncated_cost;
+  AddSummary(PolishTruncated(edges, AdaptiveGate(edges, result->poses),
+                             &result->poses, &result->weights),
+             result);
+  result->accepted.assign(edges.size(), true);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    result->accepted[i] = result->weights[i] > 0.5;
+  }
+}
+
+void Summarize(const std::vector<WhitenedEdge>& edges,
+               OptimizeResult* const result) {
+  result->chi2 = Chi2OfEdges(edges, result->poses);
+  if (result->accepted.empty()) {
+    result->accepted.assign(edges.size(), true);
+    for (size_t i = 0; i != edges.size(); ++i) {
+      result->accepted[i] = !edges[i].is_loop || result->chi2[i] < kChi2Gate;
+    }
+  }
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop) {
+      result->odometry_chi2 += result->chi2[i];
+    } else if (result->accepted[i]) {
+      result->accepted_loops_chi2 += result->chi2[i];
+    }
+  }
+  result->truncated_chi2 = TruncatedCost(edges, result->poses);
+}
+
+}  // namespace
+
+const std::vector<std::string>& MethodNames() {
+  static const auto* const kNames = new std::vector<std::string>{
+      "none", "huber",     "sc",      "gm",   "dcs",
+      "acs",  "acs_paper", "gnc_tls", "auto", "r_isam"};
+  return *kNames;
+}
+
+absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
+                                        const OptimizeOptions& options) {
+  const absl::Status valid = ValidatePoseGraph(graph);
+  if (!valid.ok()) return valid;
+  const std::vector<std::string>& names = MethodNames();
+  if (std::find(names.begin(), names.end(), options.method) == names.end()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("unknown kernel '", options.method, "', expected one of ",
+                     absl::StrJoin(names, " ")));
+  }
+  const double start = ThreadCpuSeconds();
+  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  OptimizeResult result;
+  result.poses = graph.poses;
+  if (options.method == "auto") {
+    RunAuto(graph, edges, options, &result);
+  } else if (options.method == "r_isam") {
+    const absl::Status status = RunReplay(graph, options, &result);
+    if (!status.ok()) return status;
+  } else if (options.method == "sc") {
+    RunSwitchable(edges, options, &result);
+  } else if (options.method == "gnc_tls") {
+    RunGnc(edges, options, &result);
+  } else {
+    RunKernel(edges, *KernelTypeFromName(options.method), options, &result);
+  }
+  result.cpu_seconds = ThreadCpuSeconds() - start;
+  Summarize(edges, &result);
+  return result;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext
