@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#ifndef CARTOGRAPHER_EXT_EVALUATION_DECISION_TABLE_H_
+#define CARTOGRAPHER_EXT_EVALUATION_DECISION_TABLE_H_
+
+#include <string>
+
+#include "cartographer_ext/evaluation/loop_statistics.h"
+#include "cartographer_ext/evaluation/map_graph.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// The constraints of a graph as CSV with a head line, one a line in their
+// order: ids, kind (intra, inter), stamp of the node in seconds, relative pose,
+// weights, residual against the optimised poses in metres and radians. With
+// `loops` also the verdict of truth and the errors against it.
+std::string ConstraintTable(const MapGraph& graph, const LoopStatistics* loops);
+
+// The loop constraints alone, as accepted decisions.
+std::string DecisionTable(const MapGraph& graph);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_EVALUATION_DECISION_TABLE_H_

@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+// LINK: evaluation
+//
+// cartographer_ext_slam: a recording in, a map and numbers out.
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/evaluation/decision_table.h"
+#include "cartographer_ext/evaluation/host_map.h"
+#include "cartographer_ext/evaluation/map_picture.h"
+#include "cartographer_ext/evaluation/open_recording.h"
+#include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/evaluation/slam_runner.h"
+#include "cartographer_ext/io/occupancy_map.h"
+#include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/tools/command_line.h"
+#include "gflags/gflags.h"
+#include "nlohmann/json.hpp"
+
+DEFINE_string(input_filename, "",
+              "Recording: CARMEN log (.clf .log, also .gz .xz .bz2), ROS 1 bag "
+              "(.bag) or world file (.world).");
+DEFINE_string(configuration_directory, "configuration_files",
+              "Where Lua files are searched, comma separated; the first that "
+              "has a file wins.");
+DEFINE_string(configuration_basename, "stock.lua",
+              "Lua file that returns map_builder and trajectory_builder.");
+DEFINE_string(pbstream_filename, "", "Output: the map with everything in it.");
+DEFINE_string(map_filestem, "",
+              "Output: occupancy map <stem>.pgm and <stem>.yaml.");
+DEFINE_double(resolution, 0.05, "Metres a cell of the occupancy map.");
+DEFINE_string(picture_filename, "",
+              "Output: PNG of the map with path and loops.");
+DEFINE_string(trajectory_filename, "",
+              "Output: optimised pose at every scan (TUM: timestamp x y z qx "
+              "qy qz qw).");
+DEFINE_string(local_trajectory_filename, "",
+              "Output: pose at every scan as local SLAM found it, without loop "
+              "closure (TUM).");
+DEFINE_string(decisions_filename, "",
+              "Output: CSV of the loop closures that were accepted.");
+DEFINE_int32(num_background_threads, 0,
+             "Threads of the back end; 0 takes the number from the "
+             "configuration. The result is the same for any number.");
+DEFINE_string(scan_topic, "", "Bags: topic of the laser scans.");
+DEFINE_string(odometry_topic, "", "Bags: topic of the odometry.");
+DEFINE_string(imu_topic, "", "Bags: topic of the IMU.");
+DEFINE_string(odometry_source, "",
+              "CARMEN logs: take odometry from the ODOM lines (odom), from "
+              "inside the scan lines (scan), from both, or from ODOM lines "
+              "where there are any (auto). Empty: as the configuration says.");
+DEFINE_double(min_range, 0.,
+              "Drop readings closer than this (metres) before local SLAM sees "
+              "them; 0: as the configuration says.");
+DEFINE_double(max_range, 0.,
+              "Drop readings farther than this (metres) before local SLAM sees "
+              "them; 0: as the configuration says.");
+DEFINE_uint64(seed, 0, "Worlds: chooses noise and faults.");
+DEFINE_string(json, "",
+              "Output: what was done and what it took, as JSON; - is standard "
+              "output.");
+
+namespace cartographer_ext {
+namespace {
+
+constexpr char kDescription[] =
+    R"(Makes a 2D map from a recording: local SLAM, loop closure, optimisation.
+
+  cartographer_ext_slam -input_filename=run.clf -pbstream_filename=run.pbstream
+      -map_filestem=run -picture_filename=run.png -trajectory_filename=run.tum
+
+The configuration is Cartographer's Lua (-configuration_directory,
+-configuration_basename); stock.lua holds Cartographer's own values. Judge the
+result with cartographer_ext_evaluate.)";
+
+absl::Status ApplyFlags(evaluation::SensorSettings* const sensors) {
+  if (!FLAGS_odometry_source.empty()) {
+    sensors->odometry_source = FLAGS_odometry_source;
+  }
+  if (FLAGS_min_range > 0.) sensors->min_range = FLAGS_min_range;
+  if (FLAGS_max_range > 0.) sensors->max_range = FLAGS_max_range;
+  if (sensors->max_range <= sensors->min_range) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("the ranges kept, %g m to %g m, leave nothing",
+                        sensors->min_range, sensors->max_range));
+  }
+  return absl::OkStatus();
+}
+
+void PrintRecording(const io::SensorSourceInfo& info, std::ostream& out) {
+  out << absl::StrFormat(
+      "Recording  %s, %d scans, %d odometry and %d IMU readings, %.1f s\n",
+      info.format, info.num_scans, info.num_odometry, info.num_imu,
+      io::ToSeconds(info.end - info.begin));
+}
+
+std::string ToText(const evaluation::SlamRun& run) {
+  std::string text;
+  absl::StrAppendFormat(
+      &text, "Map        %d nodes, %d submaps, %d loops from %d searches\n",
+      run.nodes, run.submaps, run.inter_constraints, run.loop_searches);
+  absl::StrAppendFormat(
+      &text,
+      "Took       %.1f s for %.1f s of sensor data; CPU %.1f s, of it %.1f s "
+      "local SLAM; %.0f MB\n",
+      run.wall_seconds, run.sensor_seconds, run.cpu_seconds,
+      run.front_end_cpu_seconds, 1e-6 * run.peak_memory_bytes);
+  return text;
+}
+
+nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
+  nlohmann::ordered_json json;
+  json["input"] = FLAGS_input_filename;
+  json["configuration"] = FLAGS_configuration_basename;
+  json["scans"] = run.scans;
+  json["matched_scans"] = run.local_scan_poses.size();
+  json["scans_left_out"] = run.scans_left_out;
+  json["odometry_readings"] = run.odometry_readings;
+  json["imu_readings"] = run.imu_readings;
+  json["sensor_seconds"] = run.sensor_seconds;
+  json["nodes"] = run.nodes;
+  json["submaps"] = run.submaps;
+  json["constraints"] = {{"inter", run.inter_constraints},
+                         {"intra", run.intra_constraints}};
+  json["wall_seconds"] = run.wall_seconds;
+  json["cpu_seconds"] = run.cpu_seconds;
+  json["front_end_cpu_seconds"] = run.front_end_cpu_seconds;
+  json["final_optimization_wall_seconds"] = run.final_optimization_wall_seconds;
+  json["peak_memory_bytes"] = run.peak_memory_bytes;
+  json["loop_search"] = {
+      {"count", run.loop_searches},
+      {"found", run.loops_found},
+      {"cpu_seconds", run.loop_search_cpu_seconds},
+      // Otherwise all threads of the back end are counted.
+      {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured}};
+  json["metrics"] = run.metrics;
+  json["warnings"] = run.warnings;
+  return json;
+}
+
+absl::Status WriteResults(const evaluation::SlamRun& run) {
+  auto* const map_builder = run.map_builder.get();
+  const auto& pose_graph = *map_builder->pose_graph();
+  if (!FLAGS_pbstream_filename.empty()) {
+    const absl::Status status =
+        evaluation::WritePbstream(map_builder, FLAGS_pbstream_filename);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_trajectory_filename.empty()) {
+    const absl::Status status = io::WriteTumTrajectory(
+        run.global_scan_poses, FLAGS_trajectory_filename);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_local_trajectory_filename.empty()) {
+    const absl::Status status = io::WriteTumTrajectory(
+        run.local_scan_poses, FLAGS_local_trajectory_filename);
+    if (!status.ok()) return status;
+  }
+  const bool wants_map =
+      !FLAGS_map_filestem.empty() || !FLAGS_picture_filename.empty();
+  if (FLAGS_decisions_filename.empty() && !wants_map) return absl::OkStatus();
+  const evaluation::MapGraph graph = evaluation::MakeMapGraph(pose_graph);
+  if (!FLAGS_decisions_filename.empty()) {
+    const absl::Status status = WriteFileAtomically(
+        FLAGS_decisions_filename, evaluation::DecisionTable(graph));
+    if (!status.ok()) return status;
+  }
+  if (!wants_map) return absl::OkStatus();
+  const auto map = evaluation::PaintHostMap(pose_graph, FLAGS_resolution);
+  if (!map.ok()) return map.status();
+  if (!FLAGS_map_filestem.empty()) {
+    const absl::Status status = io::WriteOccupancyMap(*map, FLAGS_map_filestem);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_picture_filename.empty()) {
+    return evaluation::WriteMapPicture(*map, graph, FLAGS_input_filename,
+                                       FLAGS_picture_filename);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Run() {
+  std::vector<std::string> outputs = {
+      FLAGS_pbstream_filename,   FLAGS_picture_filename,
+      FLAGS_trajectory_filename, FLAGS_local_trajectory_filename,
+      FLAGS_decisions_filename,  FLAGS_json};
+  if (!FLAGS_map_filestem.empty()) {
+    outputs.push_back(FLAGS_map_filestem + ".pgm");
+    outputs.push_back(FLAGS_map_filestem + ".yaml");
+  }
+  const absl::Status writable = tools::CheckWritable(outputs);
+  if (!writable.ok()) return writable;
+
+  const std::vector<std::string> directories =
+      absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+  auto configuration = evaluation::LoadSlamConfiguration(
+      directories, FLAGS_configuration_basename);
+  if (!configuration.ok()) return configuration.status();
+  const absl::Status applied = ApplyFlags(&configuration->sensors);
+  if (!applied.ok()) return applied;
+
+  io::SensorSourceOptions source_options =
+      evaluation::ToSourceOptions(configuration->sensors);
+  source_options.scan_topic = FLAGS_scan_topic;
+  source_options.odometry_topic = FLAGS_odometry_topic;
+  source_options.imu_topic = FLAGS_imu_topic;
+  const auto source = evaluation::OpenRecording(FLAGS_input_filename,
+                                                source_options, FLAGS_seed);
+  if (!source.ok()) return source.status();
+  // With the JSON on standard output nothing else may go there.
+  std::ostream& out = FLAGS_json == "-" ? std::cerr : std::cout;
+  PrintRecording((*source)->info(), out);
+  for (const std::string& warning : (*source)->info().warnings) {
+    std::cerr << "note: " << warning << "\n";
+  }
+
+  auto progress =
+      std::make_unique<Progress>("mapping", (*source)->info().num_scans);
+  evaluation::SlamRunOptions run_options;
+  run_options.num_background_threads = FLAGS_num_background_threads;
+  run_options.on_progress = [&](const evaluation::SlamProgress& now) {
+    if (now.stage == evaluation::SlamProgress::Stage::kOptimizing) {
+      progress->Update(now.total_scans, "closing loops, last optimisation");
+    } else {
+      progress->Update(now.scans, now.queue_length > 10
+                                      ? absl::StrCat("queue ", now.queue_length)
+                                      : "");
+    }
+  };
+  const auto run =
+      evaluation::RunSlam(*configuration, source->get(), run_options);
+  progress.reset();
+  if (!run.ok()) {
+    return absl::Status(
+        run.status().code(),
+        absl::StrCat(FLAGS_input_filename, ": ", run.status().message()));
+  }
+  for (const std::string& warning : run->warnings) {
+    std::cerr << "note: " << warning << "\n";
+  }
+  const absl::Status written = WriteResults(*run);
+  if (!written.ok()) return written;
+  out << ToText(*run);
+  if (FLAGS_json.empty()) return absl::OkStatus();
+  return tools::WriteJson(ToJson(*run), FLAGS_json);
+}
+
+}  // namespace
+}  // namespace cartographer_ext
+
+int main(int argc, char** argv) {
+  using namespace cartographer_ext;  // NOLINT
+  tools::CommandLine(kDescription).Parse(argc, argv);
+  if (FLAGS_input_filename.empty()) {
+    return tools::UsageError("-input_filename is missing");
+  }
+  if (FLAGS_num_background_threads < 0) {
+    return tools::UsageError("-num_background_threads must not be negative");
+  }
+  return tools::ExitCode(Run());
+}
