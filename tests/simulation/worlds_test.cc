@@ -24,7 +24,7 @@ std::string Path(const std::string& name) {
 }
 
 std::unique_ptr<const Simulation> RunWorld(const std::string& name,
-                                      const uint64_t seed) {
+                                           const uint64_t seed) {
   auto world = LoadWorld(Path(name));
   EXPECT_TRUE(world.ok()) << world.status();
   if (!world.ok()) return nullptr;
