@@ -21,7 +21,7 @@ namespace io {
 
 struct EventKey {
   TimeNs time = 0;
-  int rank = 0;         // of events with equal stamps: 0 before 1
+  int rank = 0;         // of events with equal stamps: small before large
   int64_t ordinal = 0;  // place in the file; keeps the sort stable
 
   bool operator<(const EventKey& other) const {

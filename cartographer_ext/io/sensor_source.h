@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What every recording looks like to the rest of the library, whatever its file
-// format: a stream of scans, odometry and IMU readings in order of their stamps.
-// A new format is one more SensorSource.
+// format: a stream of scans, odometry and IMU readings in order of their
+// stamps. A new format is one more SensorSource.
 #ifndef CARTOGRAPHER_EXT_IO_SENSOR_SOURCE_H_
 #define CARTOGRAPHER_EXT_IO_SENSOR_SOURCE_H_
 
@@ -25,7 +25,9 @@ namespace io {
 // are relative).
 using TimeNs = int64_t;
 
-inline double ToSeconds(TimeNs time) { return 1e-9 * static_cast<double>(time); }
+inline double ToSeconds(TimeNs time) {
+  return 1e-9 * static_cast<double>(time);
+}
 inline TimeNs FromSeconds(double seconds) {
   return static_cast<TimeNs>(std::llround(seconds * 1e9));
 }
@@ -50,7 +52,7 @@ struct LaserScan {
 
 struct OdometryReading {
   TimeNs time = 0;
-  Pose2 pose;  // (odometry <- robot)
+  Pose2 pose;                // (odometry <- robot)
   bool inside_scan = false;  // taken from a scan line, not a message of its own
 };
 
@@ -74,7 +76,7 @@ struct SensorSourceInfo {
   int64_t num_imu = 0;
   TimeNs begin = 0;
   TimeNs end = 0;
-  int64_t num_out_of_order = 0;      // stamps that went backwards, sorted away
+  int64_t num_out_of_order = 0;       // stamps that went backwards, sorted away
   std::vector<std::string> warnings;  // lines skipped, topics guessed, ...
 };
 
