@@ -123,7 +123,7 @@ class Feeder {
 // then the number is not what it is taken for.
 void WaitForBackEnd(const MetricsCollector& metrics, const int max_length) {
   constexpr auto kPause = std::chrono::milliseconds(2);
-  constexpr auto kPatience = std::chrono::minutes(5);
+  constexpr auto kPatience = std::chrono::seconds(30);
   double length = metrics.Sum(kQueueMetric);
   auto last_change = std::chrono::steady_clock::now();
   while (length > max_length) {
