@@ -211,15 +211,13 @@ class FastCorrelativeScanMatcher2D::Search {
       int* const x = x_.data() + static_cast<size_t>(i) * num_points_;
       int* const y = y_.data() + static_cast<size_t>(i) * num_points_;
       indices.ForRotation(i, x, y);
-      const auto x_range = std::minmax_element(x, x + num_points_);
-      const auto y_range = std::minmax_element(y, y + num_points_);
-      Scan scan{x,
-                y,
-                *x_range.first,
-                *x_range.second,
-                *y_range.first,
-                *y_range.second,
-                parameters.linear_bounds[i]};
+      Scan scan{x, y, x[0], x[0], y[0], y[0], parameters.linear_bounds[i]};
+      for (int k = 1; k < num_points_; ++k) {
+        scan.min_x = std::min(scan.min_x, x[k]);
+        scan.max_x = std::max(scan.max_x, x[k]);
+        scan.min_y = std::min(scan.min_y, y[k]);
+        scan.max_y = std::max(scan.max_y, y[k]);
+      }
       SearchParameters::LinearBounds& bounds = scan.bounds;
       bounds.min_x = std::max(bounds.min_x, std::min(0, -scan.max_x));
       bounds.min_y = std::max(bounds.min_y, std::min(0, -scan.max_y));
