@@ -19,17 +19,19 @@ namespace io {
 // The first 8 bytes of every file.
 absl::string_view PbstreamMagic();
 
-// Expands exactly one gzip member. DataLoss for broken, incomplete or surplus
-// data; ResourceExhausted when it is larger than `max_size`, of which it never
-// holds more in memory. A larger limit for some contents: when `limit_for` is
-// given it is asked once, with the first bytes of the content, and replaces
-// `max_size`.
+// How large a record may become.
 class ContentLimit {
  public:
   virtual ~ContentLimit() = default;
+  // Bytes, for a record with this compressed size and these first bytes of its
+  // content (up to 64 KiB).
   virtual int64_t For(absl::string_view beginning,
                       int64_t compressed_size) const = 0;
 };
+
+// Expands exactly one gzip member. DataLoss for broken, incomplete or surplus
+// data; ResourceExhausted when it is larger than `limit` allows, of which it
+// never holds more than 64 KiB too much.
 absl::StatusOr<std::string> ExpandGzipMember(absl::string_view compressed,
                                              const ContentLimit& limit);
 

@@ -47,6 +47,21 @@ TEST(CompressedPointCloudTest, FormatByHand) {
   EXPECT_EQ(cloud.ToProto().num_points(), 3);
 }
 
+TEST(CompressedPointCloudTest, NeighbouringCubesStayTogether) {
+  // In cubes along x and y: those of one block of 8 x 8 before the next, y
+  // before x.
+  const float kCube = 1.024f;
+  const CompressedPointCloud cloud(
+      PointCloud({P(9.5f * kCube, 0.f, 0.f), P(0.f, 7.5f * kCube, 0.f),
+                  P(0.f, -1.f, 0.f), P(-1.f, 0.f, 0.f), P(1.5f, 0.f, 0.f)}));
+  std::vector<int32> cubes;
+  const std::vector<int32> data = DataOf(cloud);
+  for (size_t i = 0; i < data.size(); i += 5) {
+    cubes.push_back(10 * data[i + 1] + data[i + 2]);
+  }
+  EXPECT_EQ(cubes, (std::vector<int32>{-1, -10, 10, 7, 90}));
+}
+
 TEST(CompressedPointCloudTest, RoundsToMillimetres) {
   std::vector<RangefinderPoint> points;
   for (int i = -500; i != 500; ++i) {

@@ -19,6 +19,23 @@ constexpr int32 kMask = (1 << kBits) - 1;
 constexpr int32 kMaxCoordinate = 1 << 23;
 constexpr size_t kHeaderSize = 4;  // count and cube
 
+using Cube = std::array<int32, 3>;
+
+// The order in which cubes are stored: those of 64, then of 8 neighbouring ones
+// a side stay together, and at each level z counts most.
+struct StorageOrder {
+  bool operator()(const Cube& a, const Cube& b) const {
+    for (const int shift : {6, 3, 0}) {
+      for (int i = 2; i >= 0; --i) {
+        const int32 a_part = a[i] >> shift;
+        const int32 b_part = b[i] >> shift;
+        if (a_part != b_part) return a_part < b_part;
+      }
+    }
+    return false;
+  }
+};
+
 // Whether the data is a sequence of whole blocks with `num_points` in all.
 bool IsWellFormed(const std::vector<int32>& data, const size_t num_points) {
   size_t position = 0;
@@ -46,9 +63,9 @@ bool IsWellFormed(const std::vector<int32>& data, const size_t num_points) {
 CompressedPointCloud::CompressedPointCloud(const PointCloud& point_cloud)
     : num_points_(point_cloud.size()) {
   // Packed points by cube, in the order of the cloud.
-  std::map<std::array<int32, 3>, std::vector<int32>> cubes;
+  std::map<Cube, std::vector<int32>, StorageOrder> cubes;
   for (const RangefinderPoint& point : point_cloud) {
-    std::array<int32, 3> cube;
+    Cube cube;
     int32 packed = 0;
     for (int i = 2; i >= 0; --i) {
       const float scaled = point.position[i] / kResolution;
