@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
 
 #include "absl/memory/memory.h"
 #include "absl/status/status.h"
@@ -17,6 +15,7 @@
 #include "absl/strings/str_split.h"
 #include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/internal/2d/scan_matching/fast_correlative_scan_matcher_2d.h"
+#include "cartographer/sensor/compressed_point_cloud.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/tokens.h"
@@ -26,9 +25,12 @@ namespace evaluation {
 namespace {
 
 using cartographer::mapping::Grid2D;
+using cartographer::mapping::NodeId;
+using cartographer::mapping::Submap2D;
 using cartographer::mapping::SubmapId;
 using cartographer::mapping::scan_matching::CeresScanMatcher2D;
 using cartographer::mapping::scan_matching::FastCorrelativeScanMatcher2D;
+using cartographer::sensor::CompressedPointCloud;
 using cartographer::sensor::PointCloud;
 using cartographer::transform::Rigid2d;
 
@@ -329,43 +331,75 @@ GoldenTimes MeanTimes(const GoldenReport& report, const bool ours) {
   return sum;
 }
 
-absl::StatusOr<GoldenReport> CheckGoldenPairs(
-    const std::vector<GoldenPair>& pairs, const FindGrid& find_grid,
-    const FindCloud& find_cloud, const GoldenTolerance& tolerance,
-    const std::function<void(int)>& progress) {
+absl::StatusOr<GoldenMap> GoldenMap::Create(
+    const io::Pbstream& pbstream, const std::vector<GoldenPair>& pairs) {
+  std::map<SubmapId, const cartographer::mapping::proto::Submap*> submaps;
+  for (const auto& submap : pbstream.submaps) {
+    submaps[SubmapId{submap.submap_id().trajectory_id(),
+                     submap.submap_id().submap_index()}] = &submap;
+  }
+  std::map<NodeId, const cartographer::mapping::proto::Node*> nodes;
+  for (const auto& node : pbstream.nodes) {
+    nodes[NodeId{node.node_id().trajectory_id(), node.node_id().node_index()}] =
+        &node;
+  }
+  GoldenMap map;
+  map.tables_ =
+      absl::make_unique<cartographer::mapping::ValueConversionTables>();
+  for (const GoldenPair& pair : pairs) {
+    const auto submap = submaps.find(pair.submap_id);
+    if (submap == submaps.end() || !submap->second->submap_2d().has_grid()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("golden line ", pair.line, ": the state has no submap ",
+                       pair.submap_id.trajectory_id, ":",
+                       pair.submap_id.submap_index, " with a grid"));
+    }
+    auto& grid = map.submaps_[pair.submap_id];
+    if (grid == nullptr) {
+      grid = absl::make_unique<const Submap2D>(submap->second->submap_2d(),
+                                               map.tables_.get());
+    }
+    const auto node = nodes.find(pair.node_id);
+    PointCloud& cloud = map.clouds_[pair.node_id];
+    if (node != nodes.end() && cloud.empty()) {
+      cloud =
+          CompressedPointCloud(
+              node->second->node_data().filtered_gravity_aligned_point_cloud())
+              .Decompress();
+    }
+    if (static_cast<int>(cloud.size()) != pair.num_points) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("golden line ", pair.line, ": the state has no node ",
+                       pair.node_id.trajectory_id, ":", pair.node_id.node_index,
+                       " with ", pair.num_points, " points"));
+    }
+  }
+  return map;
+}
+
+GoldenReport CheckGoldenPairs(const std::vector<GoldenPair>& pairs,
+                              const GoldenMap& map,
+                              const GoldenTolerance& tolerance,
+                              const std::function<void(int)>& progress) {
   const CeresScanMatcher2D refiner(RefinementOptions());
   std::unique_ptr<FastCorrelativeScanMatcher2D> searcher;
-  const Grid2D* grid = nullptr;
   SubmapId searcher_submap{-1, -1};
   double build_microseconds = 0.;
   GoldenReport report;
   for (const GoldenPair& golden : pairs) {
+    const Grid2D& grid = map.grid(golden.submap_id);
     if (searcher == nullptr || golden.submap_id != searcher_submap) {
-      grid = find_grid(golden.submap_id);
-      if (grid == nullptr) {
-        return absl::NotFoundError(
-            absl::StrCat("line ", golden.line, ": the map has no submap ",
-                         golden.submap_id.trajectory_id, ":",
-                         golden.submap_id.submap_index, " with a grid"));
-      }
       searcher.reset();
       const double start = ThreadCpuMicroseconds();
       searcher = absl::make_unique<FastCorrelativeScanMatcher2D>(
-          *grid, SearchOptions());
+          grid, SearchOptions());
       build_microseconds = ThreadCpuMicroseconds() - start;
       searcher_submap = golden.submap_id;
     }
-    const PointCloud* const cloud = find_cloud(golden.node_id);
-    if (cloud == nullptr ||
-        static_cast<int>(cloud->size()) != golden.num_points) {
-      return absl::NotFoundError(absl::StrCat(
-          "line ", golden.line, ": the map has no node ",
-          golden.node_id.trajectory_id, ":", golden.node_id.node_index,
-          " with ", golden.num_points, " points"));
-    }
     GoldenOutcome outcome;
     outcome.golden = golden;
-    outcome.ours = RunPair(golden, *searcher, refiner, *grid, *cloud);
+    outcome.ours =
+        RunPair(golden, *searcher, refiner, grid, map.cloud(golden.node_id));
     outcome.ours.build_microseconds = build_microseconds;
     Compare(tolerance, &outcome);
     AddToReport(outcome, &report);

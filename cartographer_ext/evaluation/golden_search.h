@@ -15,15 +15,21 @@
 #ifndef CARTOGRAPHER_EXT_EVALUATION_GOLDEN_SEARCH_H_
 #define CARTOGRAPHER_EXT_EVALUATION_GOLDEN_SEARCH_H_
 
+#include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "cartographer/mapping/2d/grid_2d.h"
+#include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/mapping/id.h"
+#include "cartographer/mapping/value_conversion_tables.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/io/pbstream_reader.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -92,20 +98,41 @@ struct GoldenTimes {
 };
 GoldenTimes MeanTimes(const GoldenReport& report, bool ours);
 
-// Null when there is no such submap, or no such node.
-using FindGrid = std::function<const cartographer::mapping::Grid2D*(
-    const cartographer::mapping::SubmapId&)>;
-using FindCloud = std::function<const cartographer::sensor::PointCloud*(
-    const cartographer::mapping::NodeId&)>;
+// The submaps and clouds of a state that some pairs need.
+class GoldenMap {
+ public:
+  // A pair that names a submap without a grid, or a node that is not there or
+  // has another number of points, is an error.
+  static absl::StatusOr<GoldenMap> Create(const io::Pbstream& pbstream,
+                                          const std::vector<GoldenPair>& pairs);
+
+  const cartographer::mapping::Grid2D& grid(
+      const cartographer::mapping::SubmapId& id) const {
+    return *submaps_.at(id)->grid();
+  }
+  const cartographer::sensor::PointCloud& cloud(
+      const cartographer::mapping::NodeId& id) const {
+    return clouds_.at(id);
+  }
+
+ private:
+  GoldenMap() = default;
+
+  // On the heap: the grids point to it.
+  std::unique_ptr<cartographer::mapping::ValueConversionTables> tables_;
+  std::map<cartographer::mapping::SubmapId,
+           std::unique_ptr<const cartographer::mapping::Submap2D>>
+      submaps_;
+  std::map<cartographer::mapping::NodeId, cartographer::sensor::PointCloud>
+      clouds_;
+};
 
 // Search grids are built once per run of pairs with the same submap. Times are
-// CPU time of this thread. A pair that names an unknown submap or node, or a
-// cloud of another size, is an error. `progress`, if any, gets the number of
-// pairs done.
-absl::StatusOr<GoldenReport> CheckGoldenPairs(
-    const std::vector<GoldenPair>& pairs, const FindGrid& find_grid,
-    const FindCloud& find_cloud, const GoldenTolerance& tolerance,
-    const std::function<void(int)>& progress);
+// CPU time of this thread. `progress`, if any, gets the number of pairs done.
+GoldenReport CheckGoldenPairs(const std::vector<GoldenPair>& pairs,
+                              const GoldenMap& map,
+                              const GoldenTolerance& tolerance,
+                              const std::function<void(int)>& progress);
 
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -128,8 +128,7 @@ CommandLine::CommandLine(const std::string& description)
     : description_(description) {}
 
 void CommandLine::Parse(const int argc, char** const argv) {
-  const std::string path = argc > 0 ? argv[0] : "";
-  *MutableProgramName() = path.substr(path.find_last_of('/') + 1);
+  *MutableProgramName() = BaseName(argc > 0 ? argv[0] : "");
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_WARNING;
   for (int i = 1; i < argc; ++i) {
@@ -161,6 +160,10 @@ void CommandLine::Parse(const int argc, char** const argv) {
     }
   }
   google::InitGoogleLogging(ProgramName().c_str());
+}
+
+std::string BaseName(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
 }
 
 const std::string& ProgramName() { return *MutableProgramName(); }

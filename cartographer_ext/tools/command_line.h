@@ -47,6 +47,9 @@ class CommandLine {
 // The name the program was called by, without folders.
 const std::string& ProgramName();
 
+// The part of a path behind the last slash.
+std::string BaseName(const std::string& path);
+
 // Prints the message and returns kExitUsage.
 int UsageError(const std::string& message);
 

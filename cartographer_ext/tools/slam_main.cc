@@ -183,7 +183,8 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
     if (!status.ok()) return status;
   }
   if (!FLAGS_picture_filename.empty()) {
-    return evaluation::WriteMapPicture(*map, graph, FLAGS_input_filename,
+    return evaluation::WriteMapPicture(*map, graph,
+                                       tools::BaseName(FLAGS_input_filename),
                                        FLAGS_picture_filename);
   }
   return absl::OkStatus();

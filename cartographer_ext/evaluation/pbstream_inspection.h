@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What is in a stored state, whether it makes sense, and how two of them
+// differ.
+#ifndef CARTOGRAPHER_EXT_EVALUATION_PBSTREAM_INSPECTION_H_
+#define CARTOGRAPHER_EXT_EVALUATION_PBSTREAM_INSPECTION_H_
+
+#include <string>
+#include <vector>
+
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// Numbers of everything, by trajectory: nodes, submaps, constraints, readings,
+// time span, length of the path, options.
+nlohmann::ordered_json Summarise(const io::Pbstream& pbstream);
+
+// The same for people.
+std::string SummaryToText(const nlohmann::ordered_json& summary);
+
+// What io::FindPbstreamProblems finds, and beyond: constraints of inserted
+// nodes that contradict the local poses by more than a millimetre or a
+// milliradian, loops that name a node inserted in the same submap, submaps
+// without nodes, nodes in no submap.
+std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
+                                      size_t max_problems = 100);
+
+struct PbstreamDifference {
+  bool identical = true;
+  // One sentence each.
+  std::vector<std::string> differences;
+  nlohmann::ordered_json numbers;
+};
+
+// `first` and `second` are compared by ids: what only one of them has, by how
+// much poses and constraints differ, whether grids, clouds and options are the
+// same.
+PbstreamDifference Compare(const io::Pbstream& first,
+                           const io::Pbstream& second);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_EVALUATION_PBSTREAM_INSPECTION_H_
