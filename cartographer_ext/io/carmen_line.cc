@@ -56,12 +56,16 @@ Tail ParseTail(Tokens* tokens) {
   return tail;
 }
 
-// Where the stamp stands if `num_values` values precede it in one of the
-// layouts "values stamp [host [logger_stamp]]". The host may look like a
-// number.
+// True if the words are `num_values` values and "stamp [host [logger_stamp]]".
+// The host may look like a number.
 bool StampFollows(const Tail& tail, size_t num_values) {
-  return tail.num_words >= num_values + 1 && tail.num_words <= num_values + 3 &&
-         tail.num_numbers > num_values;
+  if (tail.num_words < num_values + 1 || tail.num_words > num_values + 3 ||
+      tail.num_numbers <= num_values) {
+    return false;
+  }
+  double unused;
+  return tail.num_words < num_values + 3 ||
+         ParseDouble(tail.words[num_values + 2], &unused);
 }
 
 bool ParseCount(absl::string_view word, int64_t* count) {
@@ -182,8 +186,8 @@ void ParseOdometry(Tokens* tokens, CarmenLine* line) {
     return Fail("a malformed odometry pose", line);
   }
   const Tail tail = ParseTail(tokens);
-  // tv, rv and accel, or two or none of them.
-  for (const size_t num_values : {3, 2, 0}) {
+  // tv, rv and accel, or none of them.
+  for (const size_t num_values : {3, 0}) {
     if (!StampFollows(tail, num_values)) continue;
     if (!ParseTime(tail.words[num_values], &line->time)) {
       return Fail("an invalid stamp", line);

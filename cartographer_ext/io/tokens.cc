@@ -79,6 +79,8 @@ bool ParseDouble(absl::string_view token, double* value) {
     token.remove_prefix(1);
     if (!token.empty() && token[0] == '-') return false;
   }
+  // Hexadecimal numbers do not occur in our formats.
+  if (token.find_first_of("xX") != absl::string_view::npos) return false;
   const char* const end = token.data() + token.size();
   const auto result = absl::from_chars(token.data(), end, *value);
   if (result.ptr != end || token.empty()) return false;
