@@ -55,7 +55,8 @@ TEST_F(RangeDataInserterTest, HitsAndMissesOncePerInsertion) {
   EXPECT_NEAR(Probability(2.5f, 0.5f), 49. / 58., 4e-5);
   EXPECT_NEAR(Probability(1.5f, 0.5f), 4. / 13., 4e-5);
   // Nothing is left marked.
-  for (const int cell : grid_.ToProto().cells()) EXPECT_LT(cell, 32768);
+  const proto::Grid2D proto = grid_.ToProto();
+  for (const int cell : proto.cells()) EXPECT_LT(cell, 32768);
 }
 
 TEST_F(RangeDataInserterTest, KnownBoxIsTight) {
