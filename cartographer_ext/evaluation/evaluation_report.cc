@@ -133,7 +133,9 @@ Verdict Judge(const Evaluation& evaluation) {
         });
     const double fraction =
         static_cast<double>(num_large) / static_cast<double>(loops.size());
-    if (fraction > kBrokenFraction) raise(kDoubtful);
+    // Loops that the optimisation has overruled do no harm where truth finds
+    // none.
+    if (severity == kUnknown && fraction > kBrokenFraction) raise(kDoubtful);
     verdict.reasons.push_back(absl::StrFormat(
         "%d of the %d loops disagree with the map by more than half a metre",
         num_large, loops.size()));

@@ -38,9 +38,9 @@ struct Verdict {
 
 // A map counts as broken when more than 2 % of the loop relations are off by
 // more than half a metre, or when the trajectory is more than a metre from the
-// reference (root mean square); as doubtful at a tenth and a half of that, or
-// when more than 2 % of the loops disagree with the optimised graph by more
-// than half a metre.
+// reference (root mean square); as doubtful at a tenth and a half of that.
+// Without any truth it is doubtful when more than 2 % of the loops disagree
+// with the optimised graph by more than half a metre.
 Verdict Judge(const Evaluation& evaluation);
 
 nlohmann::ordered_json ToJson(const Statistics& statistics);

@@ -3,6 +3,7 @@
 #include "cartographer_ext/evaluation/host_map.h"
 
 #include <deque>
+#include <map>
 #include <vector>
 
 #include "cartographer/mapping/proto/serialization.pb.h"
@@ -12,21 +13,22 @@
 namespace cartographer_ext {
 namespace evaluation {
 
+using cartographer::mapping::NodeId;
 using cartographer::mapping::PoseGraphInterface;
 using cartographer::transform::Rigid3d;
 
 MapGraph MakeMapGraph(const PoseGraphInterface& pose_graph) {
   MapGraph graph;
+  std::map<NodeId, Rigid3d> node_from_tracking;
   for (const auto& entry : pose_graph.GetTrajectoryNodes()) {
     if (entry.data.constant_data == nullptr) continue;
     const auto& data = *entry.data.constant_data;
-    const Rigid3d tracking_from_node =
-        Rigid3d::Rotation(data.gravity_alignment.inverse());
+    node_from_tracking.emplace(entry.id,
+                               Rigid3d::Rotation(data.gravity_alignment));
     GraphNode node;
     node.time = FromHostTime(data.time);
-    node.local_pose = ToPlanarPose(data.local_pose * tracking_from_node);
-    node.global_pose =
-        ToPlanarPose(entry.data.global_pose * tracking_from_node);
+    node.local_pose = ToPlanarPose(data.local_pose);
+    node.global_pose = ToPlanarPose(entry.data.global_pose);
     node.global_tracking_pose = FromHostPose(entry.data.global_pose);
     graph.nodes[{entry.id.trajectory_id, entry.id.node_index}] = node;
   }
@@ -45,7 +47,12 @@ MapGraph MakeMapGraph(const PoseGraphInterface& pose_graph) {
                             entry.submap_id.submap_index};
     constraint.node_id = {entry.node_id.trajectory_id,
                           entry.node_id.node_index};
-    constraint.relative_pose = ToPlanarPose(entry.pose.zbar_ij);
+    Rigid3d relative_pose = entry.pose.zbar_ij;
+    const auto rotation = node_from_tracking.find(entry.node_id);
+    if (rotation != node_from_tracking.end()) {
+      relative_pose = relative_pose * rotation->second;
+    }
+    constraint.relative_pose = ToPlanarPose(relative_pose);
     constraint.translation_weight = entry.pose.translation_weight;
     constraint.rotation_weight = entry.pose.rotation_weight;
     constraint.is_loop =

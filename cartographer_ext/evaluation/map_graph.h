@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The pose graph of a finished map in plain types: what the metrics, the
-// exporters and the loop statistics look at. All poses are planar and those of
-// nodes are the gravity-aligned ones, so that submap, node and constraint obey
+// exporters and the loop statistics look at. All poses are x, y and yaw, and a
+// node stands for the tracking frame at its stamp, so that poses of nodes can
+// be compared with each other and with truth. (Inside the host a node stands
+// for the gravity-aligned frame, whose yaw against the tracking frame differs
+// from node to node.) Submaps being level,
 //   relative_pose = submap_pose^-1 * node_pose
-// without tilt in between.
+// holds for the yaw, too, whatever the tilt.
 #ifndef CARTOGRAPHER_EXT_EVALUATION_MAP_GRAPH_H_
 #define CARTOGRAPHER_EXT_EVALUATION_MAP_GRAPH_H_
 
@@ -43,7 +46,7 @@ struct GraphNode {
   io::TimeNs time = 0;
   Pose2 local_pose;   // (local frame of the trajectory <- node)
   Pose2 global_pose;  // (map <- node), optimised
-  // (map <- tracking frame), with the tilt that the planar poses leave out.
+  // (map <- node) with the tilt that the planar poses leave out.
   Eigen::Isometry3d global_tracking_pose = Eigen::Isometry3d::Identity();
 };
 

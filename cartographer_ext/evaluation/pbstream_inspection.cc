@@ -365,11 +365,9 @@ std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
   const MapGraph graph = MakeMapGraph(pbstream);
   const auto inserted = graph.InsertedNodes();
   std::set<std::pair<GraphId, GraphId>> insertions;
-  std::set<GraphId> placed_nodes;
   for (const GraphConstraint& constraint : graph.constraints) {
     if (constraint.is_loop) continue;
     insertions.emplace(constraint.submap_id, constraint.node_id);
-    placed_nodes.insert(constraint.node_id);
     const auto submap = graph.submaps.find(constraint.submap_id);
     const auto node = graph.nodes.find(constraint.node_id);
     if (submap == graph.submaps.end() || node == graph.nodes.end()) continue;
@@ -395,11 +393,6 @@ std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
   for (const auto& entry : graph.submaps) {
     if (inserted.count(entry.first) == 0) {
       add(absl::StrCat("submap ", ToString(entry.first), " has no nodes"));
-    }
-  }
-  for (const auto& entry : graph.nodes) {
-    if (placed_nodes.count(entry.first) == 0) {
-      add(absl::StrCat("node ", ToString(entry.first), " is in no submap"));
     }
   }
   return problems;

@@ -25,7 +25,8 @@ std::string SummaryToText(const nlohmann::ordered_json& summary);
 // What io::FindPbstreamProblems finds, and beyond: constraints of inserted
 // nodes that contradict the local poses by more than a millimetre or a
 // milliradian, loops that name a node inserted in the same submap, submaps
-// without nodes, nodes in no submap.
+// without nodes. (Nodes in no submap are fine: files saved without unfinished
+// submaps have them at the end.)
 std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
                                       size_t max_problems = 100);
 

@@ -15,7 +15,6 @@ namespace {
 
 using cartographer::mapping::proto::PoseGraph;
 using cartographer::transform::Rigid3d;
-using cartographer::transform::ToEigen;
 using cartographer::transform::ToRigid3;
 
 template <typename IdProto>
@@ -55,19 +54,15 @@ GlobalPoses CollectGlobalPoses(const PoseGraph& pose_graph) {
 MapGraph MakeMapGraph(const io::Pbstream& pbstream) {
   const GlobalPoses poses = CollectGlobalPoses(pbstream.pose_graph);
   MapGraph graph;
-  std::map<GraphId, Rigid3d> tracking_from_node;
   for (const auto& record : pbstream.nodes) {
     const GraphId id = ToNodeId(record.node_id());
     const auto global = poses.nodes.find(id);
     if (global == poses.nodes.end()) continue;
     const auto& data = record.node_data();
-    const Rigid3d level =
-        Rigid3d::Rotation(ToEigen(data.gravity_alignment()).inverse());
-    tracking_from_node.emplace(id, level);
     GraphNode node;
     node.time = FromHostTicks(data.timestamp());
-    node.local_pose = ToPlanarPose(ToRigid3(data.local_pose()) * level);
-    node.global_pose = ToPlanarPose(global->second * level);
+    node.local_pose = ToPlanarPose(ToRigid3(data.local_pose()));
+    node.global_pose = ToPlanarPose(global->second);
     node.global_tracking_pose = FromHostPose(global->second);
     graph.nodes[id] = node;
   }
@@ -86,10 +81,8 @@ MapGraph MakeMapGraph(const io::Pbstream& pbstream) {
     GraphConstraint constraint;
     constraint.submap_id = ToSubmapId(record.submap_id());
     constraint.node_id = ToNodeId(record.node_id());
-    Rigid3d relative = ToRigid3(record.relative_pose());
-    const auto level = tracking_from_node.find(constraint.node_id);
-    if (level != tracking_from_node.end()) relative = relative * level->second;
-    constraint.relative_pose = ToPlanarPose(relative);
+    // Files have (submap <- tracking) already.
+    constraint.relative_pose = ToPlanarPose(ToRigid3(record.relative_pose()));
     constraint.translation_weight = record.translation_weight();
     constraint.rotation_weight = record.rotation_weight();
     constraint.is_loop = record.tag() == PoseGraph::Constraint::INTER_SUBMAP;

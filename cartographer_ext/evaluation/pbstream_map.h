@@ -13,9 +13,7 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// Nodes and submaps without a global pose are left out. A constraint in a file
-// leads to the tracking frame of its node; here it leads to the gravity-aligned
-// one, as in memory.
+// Nodes and submaps without a global pose are left out.
 MapGraph MakeMapGraph(const io::Pbstream& pbstream);
 
 // Of all submaps with a global pose, metres a cell.
