@@ -131,6 +131,10 @@ absl::Status WriteWorldPicture(const Simulation& simulation, const int pixels,
   for (const Eigen::Vector2d& point : DrivenPath(simulation.drive())) {
     bounds.Add(point);
   }
+  // Room for the title and the legend above the plan.
+  const double extent =
+      std::max(bounds.max_x - bounds.min_x, bounds.max_y - bounds.min_y);
+  bounds.Add(Eigen::Vector2d(bounds.min_x, bounds.max_y + 0.1 * extent));
   io::Picture picture(bounds, pixels);
   DrawPlan(simulation, &picture);
   DrawObstacles(simulation, &picture);

@@ -4,25 +4,22 @@
 //
 // cartographer_ext_simulate: drives a robot through a world file and writes
 // what its sensors say, beside the truth.
-#include <unistd.h>
-
-#include <chrono>
 #include <cstdint>
 #include <ctime>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/simulation/simulation_output.h"
 #include "cartographer_ext/simulation/world_parser.h"
 #include "cartographer_ext/simulation/world_picture.h"
+#include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
-#include "glog/logging.h"
 #include "nlohmann/json.hpp"
 
 DEFINE_string(world_filename, "",
@@ -54,43 +51,30 @@ DEFINE_string(json, "", "Writes what was done as JSON; - is standard output.");
 namespace cartographer_ext {
 namespace {
 
-constexpr char kUsage[] =
+constexpr char kDescription[] =
     R"(Simulates a robot with a laser, wheel odometry and an IMU, and knows the truth.
 
-  cartographer_ext_simulate -world_filename=W [-seed=N] -output_filestem=S
-  cartographer_ext_simulate -world_filename=W -picture_filename=P.png
-
 Look at a world before using it:
-  cartographer_ext_simulate \
-      -world_filename=configuration_files/worlds/ri_corridor.world \
+  cartographer_ext_simulate
+      -world_filename=configuration_files/worlds/ri_corridor.world
       -picture_filename=/tmp/ri.png
 Make a log with its truth, then map and judge it:
-  cartographer_ext_simulate \
-      -world_filename=configuration_files/worlds/ri_corridor.world \
+  cartographer_ext_simulate
+      -world_filename=configuration_files/worlds/ri_corridor.world
       -seed=3 -output_filestem=/tmp/ri
-  cartographer_ext_slam -input_filename=/tmp/ri.clf ...
-  cartographer_ext_evaluate -relations_filename=/tmp/ri.relations \
-      -reference_trajectory_filename=/tmp/ri.tum ...
-(cartographer_ext_slam also opens a world file itself, with its IMU.)
+  cartographer_ext_slam -input_filename=/tmp/ri.clf -pbstream_filename=/tmp/ri.pbstream ...
+  cartographer_ext_evaluate -pbstream_filename=/tmp/ri.pbstream
+      -relations_filename=/tmp/ri.relations
+      -reference_trajectory_filename=/tmp/ri.tum
 Give the odometry something to fail at:
   ... -odometry_faults=stale:3,jump:2,slip:2,offset:0.12
 
-Exit codes: 0 done, 1 bad input (the message names file and line), 2 wrong usage.)";
+The format of worlds and of the files written: docs/world_format.md.)";
 
-int UsageError(const std::string& message) {
-  std::cerr << message << "\nTry -help.\n";
-  return 2;
-}
-
-int InputError(const absl::Status& status) {
-  std::cerr << "cartographer_ext_simulate: " << status.message() << "\n";
-  return 1;
-}
-
-nlohmann::json Report(const simulation::Simulation& simulation,
-                      const simulation::SimulationSummary& summary,
-                      const double cpu_seconds) {
-  nlohmann::json json;
+nlohmann::ordered_json Report(const simulation::Simulation& simulation,
+                              const simulation::SimulationSummary& summary,
+                              const double cpu_seconds) {
+  nlohmann::ordered_json json;
   json["world"] = simulation.world().name;
   json["seed"] = simulation.options().seed;
   json["sensor_seconds"] = simulation.drive().duration();
@@ -111,26 +95,28 @@ nlohmann::json Report(const simulation::Simulation& simulation,
   return json;
 }
 
-int Run() {
-  if (FLAGS_world_filename.empty()) {
-    return UsageError("-world_filename is missing.");
-  }
-  if (FLAGS_output_filestem.empty() && FLAGS_picture_filename.empty() &&
-      FLAGS_json.empty()) {
-    return UsageError(
-        "Nothing to write: give -output_filestem, -picture_filename or -json.");
-  }
+absl::Status Run() {
   const std::clock_t begin = std::clock();
+  std::vector<std::string> outputs = {FLAGS_picture_filename, FLAGS_json};
+  if (!FLAGS_output_filestem.empty()) {
+    outputs.push_back(FLAGS_output_filestem + ".tum");
+  }
+  absl::Status status = tools::CheckWritable(outputs);
+  if (!status.ok()) return status;
   absl::StatusOr<simulation::World> world =
       simulation::LoadWorld(FLAGS_world_filename);
-  if (!world.ok()) return InputError(world.status());
+  if (!world.ok()) return world.status();
   simulation::SimulationOptions options;
   options.seed = FLAGS_seed;
   options.odometry_faults = FLAGS_odometry_faults;
   options.perfect = FLAGS_perfect;
   absl::StatusOr<std::unique_ptr<const simulation::Simulation>> created =
       simulation::Simulation::Create(*std::move(world), options);
-  if (!created.ok()) return InputError(created.status());
+  if (!created.ok()) {
+    return absl::Status(
+        created.status().code(),
+        absl::StrCat(FLAGS_world_filename, ": ", created.status().message()));
+  }
   const std::shared_ptr<const simulation::Simulation> simulation =
       *std::move(created);
 
@@ -146,24 +132,23 @@ int Run() {
     output.progress = [&progress](const int64_t scans) {
       progress.Update(scans);
     };
-    const absl::Status status =
-        simulation::WriteSimulation(simulation, output, &summary);
+    status = simulation::WriteSimulation(simulation, output, &summary);
     progress.Finish();
-    if (!status.ok()) return InputError(status);
+    if (!status.ok()) return status;
   }
   if (!FLAGS_picture_filename.empty()) {
-    const absl::Status status = simulation::WriteWorldPicture(
-        *simulation, FLAGS_picture_pixels, FLAGS_picture_filename);
-    if (!status.ok()) return InputError(status);
+    status = simulation::WriteWorldPicture(*simulation, FLAGS_picture_pixels,
+                                           FLAGS_picture_filename);
+    if (!status.ok()) return status;
     summary.files.push_back(FLAGS_picture_filename);
   }
   const double cpu_seconds =
       static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  const nlohmann::json report = Report(*simulation, summary, cpu_seconds);
+  const nlohmann::ordered_json report =
+      Report(*simulation, summary, cpu_seconds);
   if (!FLAGS_json.empty()) {
-    const absl::Status status =
-        WriteFileAtomically(FLAGS_json, report.dump(2) + "\n");
-    if (!status.ok()) return InputError(status);
+    status = tools::WriteJson(report, FLAGS_json);
+    if (!status.ok()) return status;
   }
   if (FLAGS_json != "-") {
     std::cout << absl::StrFormat(
@@ -181,20 +166,23 @@ int Run() {
       std::cout << "  " << file << "\n";
     }
   }
-  return 0;
+  return absl::OkStatus();
 }
 
 }  // namespace
 }  // namespace cartographer_ext
 
 int main(int argc, char** argv) {
-  google::InitGoogleLogging(argv[0]);
-  FLAGS_logtostderr = true;
-  gflags::SetUsageMessage(cartographer_ext::kUsage);
-  gflags::ParseCommandLineFlags(&argc, &argv, true);
-  if (argc > 1) {
-    return cartographer_ext::UsageError(
-        absl::StrCat("Unexpected argument '", argv[1], "'."));
+  namespace tools = cartographer_ext::tools;
+  tools::CommandLine command_line(cartographer_ext::kDescription);
+  command_line.Parse(argc, argv);
+  if (FLAGS_world_filename.empty()) {
+    return tools::UsageError("-world_filename is missing");
   }
-  return cartographer_ext::Run();
+  if (FLAGS_output_filestem.empty() && FLAGS_picture_filename.empty() &&
+      FLAGS_json.empty()) {
+    return tools::UsageError(
+        "nothing to write: give -output_filestem, -picture_filename or -json");
+  }
+  return tools::ExitCode(cartographer_ext::Run());
 }
