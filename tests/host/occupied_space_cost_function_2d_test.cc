@@ -16,13 +16,14 @@ namespace mapping {
 namespace scan_matching {
 namespace {
 
-// The grid as ceres::BiCubicInterpolator wants it.
+// The grid as ceres::BiCubicInterpolator wants it, with all indices shifted.
 class Samples {
  public:
   enum { DATA_DIMENSION = 1 };
+  enum { kShift = std::numeric_limits<int>::max() / 4 };
   explicit Samples(const Grid2D& grid) : grid_(grid) {}
   void GetValue(const int row, const int column, double* const value) const {
-    const Eigen::Array2i index(column, row);
+    const Eigen::Array2i index(column - kShift, row - kShift);
     *value = grid_.limits().Contains(index) ? grid_.GetCorrespondenceCost(index)
                                             : kMaxCorrespondenceCost;
   }
@@ -69,6 +70,8 @@ TEST_F(OccupiedSpaceCostFunctionTest, OutsideIsUnlikely) {
       Residual(origin, std::numeric_limits<double>::quiet_NaN(), 0., 0.), 0.9f);
 }
 
+// To the last bit: Jets through the homogeneous transform and the shifted,
+// interpolated grid are how Cartographer evaluates the same cost.
 TEST_F(OccupiedSpaceCostFunctionTest, AgreesWithCeresInterpolation) {
   const Samples samples(*grid_);
   const ceres::BiCubicInterpolator<Samples> interpolator(samples);
@@ -83,21 +86,45 @@ TEST_F(OccupiedSpaceCostFunctionTest, AgreesWithCeresInterpolation) {
   std::vector<double> jacobian(3 * cloud.size());
   double* jacobians[] = {jacobian.data()};
   ASSERT_TRUE(cost->Evaluate(parameters, residuals.data(), jacobians));
+
+  using Jet = ceres::Jet<double, 3>;
+  Eigen::Matrix<Jet, 3, 3> transform;
+  transform << Eigen::Rotation2D<Jet>(Jet(pose[2], 2)).toRotationMatrix(),
+      Eigen::Matrix<Jet, 2, 1>(Jet(pose[0], 0), Jet(pose[1], 1)), Jet(0.),
+      Jet(0.), Jet(1.);
   for (size_t i = 0; i != cloud.size(); ++i) {
-    using Jet = ceres::Jet<double, 3>;
-    const Jet theta(pose[2], 2);
-    const double px = cloud[i].position.x();
-    const double py = cloud[i].position.y();
-    const Jet x = Jet(pose[0], 0) + cos(theta) * px - sin(theta) * py;
-    const Jet y = Jet(pose[1], 1) + sin(theta) * px + cos(theta) * py;
+    const Eigen::Matrix<Jet, 3, 1> point(Jet(cloud[i].position.x()),
+                                         Jet(cloud[i].position.y()), Jet(1.));
+    const Eigen::Matrix<Jet, 3, 1> world = transform * point;
     Jet expected;
-    interpolator.Evaluate((limits.max().x() - x) / limits.resolution() - 0.5,
-                          (limits.max().y() - y) / limits.resolution() - 0.5,
+    interpolator.Evaluate((limits.max().x() - world[0]) / limits.resolution() -
+                              0.5 + static_cast<double>(Samples::kShift),
+                          (limits.max().y() - world[1]) / limits.resolution() -
+                              0.5 + static_cast<double>(Samples::kShift),
                           &expected);
-    ASSERT_NEAR(residuals[i], 2.5 * expected.a, 1e-9);
+    expected = 2.5 * expected;
+    ASSERT_EQ(residuals[i], expected.a) << i;
     for (int k = 0; k != 3; ++k) {
-      ASSERT_NEAR(jacobian[3 * i + k], 2.5 * expected.v[k], 1e-6);
+      ASSERT_EQ(jacobian[3 * i + k], expected.v[k]) << i;
     }
+  }
+
+  // The same without Jacobian, where Cartographer calculates in doubles.
+  ASSERT_TRUE(cost->Evaluate(parameters, residuals.data(), nullptr));
+  Eigen::Matrix3d transform_of_doubles;
+  transform_of_doubles << Eigen::Rotation2Dd(pose[2]).toRotationMatrix(),
+      Eigen::Vector2d(pose[0], pose[1]), 0., 0., 1.;
+  for (size_t i = 0; i != cloud.size(); ++i) {
+    const Eigen::Vector3d world =
+        transform_of_doubles *
+        Eigen::Vector3d(cloud[i].position.x(), cloud[i].position.y(), 1.);
+    double expected;
+    interpolator.Evaluate((limits.max().x() - world[0]) / limits.resolution() -
+                              0.5 + static_cast<double>(Samples::kShift),
+                          (limits.max().y() - world[1]) / limits.resolution() -
+                              0.5 + static_cast<double>(Samples::kShift),
+                          &expected);
+    ASSERT_EQ(residuals[i], 2.5 * expected) << i;
   }
 }
 
