@@ -11,11 +11,17 @@
 // Odometry, SensorSourceOptions::odometry_source. A laser line repeats the pose
 // of the odometry message before it under the later stamp of the scan: in ACES
 // and Intel that holds for every single scan. Such a pose is stale by up to one
-// message and would tell a robot in motion to have stood still, so "auto" takes
-// the ODOM lines, with their own stamps, wherever they cover the run: from
-// within two seconds (or 2 % of the run) of the first scan to the same before
-// the last one, and at least one for every five scans. Else (CSAIL has none)
-// the poses of the scan lines are all there is, and they are taken.
+// message, so "auto" takes the ODOM lines, with their own stamps, if they cover
+// the run (from within two seconds, or 2 % of the run, of the first scan to the
+// same before the last one, and at least one for every five scans) and if the
+// stamps can pair them with the scans. Stamps that often go backwards, in over
+// 1 % of the messages, cannot: they were made on arrival. There, and where ODOM
+// lines are missing, "auto" takes the poses of the scan lines, which the
+// robot's own program paired. That is ODOM lines for ACES, poses of the scan
+// lines for Intel (3 % of its stamps go backwards) and CSAIL (no ODOM lines).
+// Measured by the relations less than 5 s apart, raw odometry, mean errors:
+// ACES 0.034 m from ODOM lines interpolated at the scan against 0.039 m from
+// scan lines; Intel 0.035 m against 0.024 m.
 //
 // Laser pose (robot <- laser): from the two poses of the scan lines, if these
 // differ by the same transform in 99 % of the scans; else from the parameters

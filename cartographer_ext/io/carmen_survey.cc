@@ -28,6 +28,9 @@ constexpr int kNumRangeBins = 1 << 14;
 constexpr double kOffsetTolerance = 0.02;  // metres, radians
 constexpr double kMaxOffset = 5.;          // metres
 
+// Of all messages; clocks that step now and then stay below it.
+constexpr double kMaxBackwardShare = 0.01;
+
 struct LineKey {
   CarmenKind kind;
   TimeNs time;
@@ -118,7 +121,8 @@ class Survey {
   bool OdometryLinesCoverScans(CarmenKind scan_kind) const;
   Pose2 ChooseLaserPose(CarmenKind scan_kind,
                         std::vector<std::string>* warnings) const;
-  void CountOutOfOrder(const CarmenPlan& plan, SensorSourceInfo* info) const;
+  // Messages of a kind with an earlier stamp than the one before them.
+  int64_t CountBackwards(CarmenKind kind) const;
 
   const std::string filename_;
   std::map<CarmenKind, int64_t> counts_;
@@ -230,26 +234,15 @@ Pose2 Survey::ChooseLaserPose(CarmenKind scan_kind,
   return equal ? parameter_offset_ : offset;
 }
 
-void Survey::CountOutOfOrder(const CarmenPlan& plan,
-                             SensorSourceInfo* info) const {
-  int64_t scans = 0, odometry = 0;
-  TimeNs last_scan = 0, last_odometry = 0;
+int64_t Survey::CountBackwards(CarmenKind kind) const {
+  int64_t count = 0;
+  TimeNs last = 0;
   for (const LineKey& line : lines_) {
-    if (line.kind == plan.scan_kind) {
-      if (line.time < last_scan) ++scans;
-      last_scan = line.time;
-    } else if (line.kind == CarmenKind::kOdometry && plan.use_odometry_lines) {
-      if (line.time < last_odometry) ++odometry;
-      last_odometry = line.time;
-    }
+    if (line.kind != kind) continue;
+    if (line.time < last) ++count;
+    last = line.time;
   }
-  info->num_out_of_order = scans + odometry;
-  if (info->num_out_of_order > 0) {
-    info->warnings.push_back(
-        absl::StrFormat("%s: stamps of %d scans and %d odometry messages go "
-                        "backwards; sorted",
-                        filename_, scans, odometry));
-  }
+  return count;
 }
 
 absl::StatusOr<CarmenPlan> Survey::Plan(
@@ -284,6 +277,8 @@ absl::StatusOr<CarmenPlan> Survey::Plan(
         " scans of other lasers or in another format ignored (RLASER, ...)"));
   }
 
+  const int64_t backward_scans = CountBackwards(plan.scan_kind);
+  int64_t backward_odometry = CountBackwards(CarmenKind::kOdometry);
   const bool has_poses = plan.scan_kind != CarmenKind::kRawLaser;
   if (odometry_source == "both") {
     plan.use_odometry_lines = true;
@@ -293,10 +288,18 @@ absl::StatusOr<CarmenPlan> Survey::Plan(
   } else if (odometry_source == "scan") {
     plan.use_scan_poses = has_poses;
   } else {
-    plan.use_odometry_lines =
-        !has_poses || OdometryLinesCoverScans(plan.scan_kind);
+    const bool cover = OdometryLinesCoverScans(plan.scan_kind);
+    const bool stamps_usable =
+        backward_scans + backward_odometry <=
+        kMaxBackwardShare * static_cast<double>(lines_.size());
+    plan.use_odometry_lines = !has_poses || (cover && stamps_usable);
     plan.use_scan_poses = !plan.use_odometry_lines;
-    if (plan.use_scan_poses && Count(CarmenKind::kOdometry) > 0) {
+    if (plan.use_scan_poses && cover) {
+      info.warnings.push_back(absl::StrCat(
+          filename_,
+          ": stamps are too disordered to pair ODOM lines with scans; odometry "
+          "is taken from the scan lines"));
+    } else if (plan.use_scan_poses && Count(CarmenKind::kOdometry) > 0) {
       info.warnings.push_back(absl::StrCat(
           filename_, ": too few ODOM lines (", Count(CarmenKind::kOdometry),
           "); odometry is taken from the scan lines"));
@@ -304,7 +307,14 @@ absl::StatusOr<CarmenPlan> Survey::Plan(
   }
   plan.laser_pose = ChooseLaserPose(plan.scan_kind, &info.warnings);
   plan.range_max = ranges_.at(plan.scan_kind).RangeMax();
-  CountOutOfOrder(plan, &info);
+  if (!plan.use_odometry_lines) backward_odometry = 0;
+  info.num_out_of_order = backward_scans + backward_odometry;
+  if (info.num_out_of_order > 0) {
+    info.warnings.push_back(
+        absl::StrFormat("%s: stamps of %d scans and %d odometry messages go "
+                        "backwards; sorted",
+                        filename_, backward_scans, backward_odometry));
+  }
 
   std::vector<EventKey> keys;
   int64_t ordinal = 0;

@@ -96,8 +96,9 @@ struct SensorSourceOptions {
   std::string imu_topic;
   std::string tracking_frame = "base_link";
   // CARMEN only: emit the odometry inside FLASER/ROBOTLASER1 lines ("scan"),
-  // the ODOM lines ("odom"), both ("both"), or as recorded, that is ODOM lines
-  // where there are any, else those inside the scan lines ("auto").
+  // the ODOM lines ("odom"), both ("both"), or what suits the log ("auto"):
+  // ODOM lines where they cover the run and stamps are in order, else those
+  // inside the scan lines (see carmen_reader.h).
   std::string odometry_source = "auto";
 };
 

@@ -131,6 +131,22 @@ TEST(CarmenTest, TooFewOdometryLinesAreNotTaken) {
   EXPECT_THAT(log->info.warnings[0], HasSubstr("too few ODOM lines (1)"));
 }
 
+TEST(CarmenTest, DisorderedStampsCannotPairOdometryLines) {
+  std::string text;
+  for (int i = 0; i < 100; ++i) {
+    const int time = i % 10 == 9 ? i - 5 : i;
+    absl::StrAppend(&text, "ODOM ", i, " 0 0 0 0 0 ", time, " h 1\n");
+    absl::StrAppend(&text, "FLASER 2 1 2 ", i, " 0 0 ", i, " 0 0 ", time,
+                    " h 1\n");
+  }
+  const auto log = ReadText(text);
+  ASSERT_TRUE(log.ok());
+  EXPECT_TRUE(log->Odometry()[0].inside_scan);
+  EXPECT_EQ(log->info.num_odometry, 100);
+  ASSERT_EQ(log->info.warnings.size(), 2u);
+  EXPECT_THAT(log->info.warnings[0], HasSubstr("too disordered"));
+}
+
 TEST(CarmenTest, NewKind) {
   const auto log = Read(test::OwnData("robotlaser.clf"));
   ASSERT_TRUE(log.ok()) << log.status();
