@@ -51,8 +51,8 @@ TEST(ImuModelTest, IntegratesBackToTruth) {
     pose.y += moved.y();
     const MotionState truth = drive->At((i + 1) * step);
     ASSERT_NEAR(heading, truth.heading, 1e-9) << i;
-    worst = std::max(worst,
-                     (pose.translation() - truth.pose.translation()).norm());
+    worst =
+        std::max(worst, (pose.translation() - truth.pose.translation()).norm());
   }
   EXPECT_LT(worst, 1e-3);
 }
