@@ -163,6 +163,7 @@ class Comparison {
     ComparePoses("nodes", first_graph_.nodes, second_graph_.nodes);
     ComparePoses("submaps", first_graph_.submaps, second_graph_.submaps);
     CompareConstraints();
+    CompareMotion();
     CompareRecords("grids", first_.submaps, second_.submaps,
                    [](const cartographer::mapping::proto::Submap& submap) {
                      return std::make_pair(
@@ -238,6 +239,26 @@ class Comparison {
                              {"only_second", second.size() - common},
                              {"local_poses", local.ToJson()},
                              {"global_poses", global.ToJson()}};
+  }
+
+  void CompareMotion() {
+    const LocalAgreement agreement =
+        CompareLocalSlam(first_graph_, second_graph_);
+    result_.numbers["local_slam"] = {
+        {"common_stamps", agreement.common_stamps},
+        {"pairs", agreement.pairs},
+        {"fraction_alike", agreement.fraction_alike},
+        {"max_translation", agreement.max_translation},
+        {"max_rotation", agreement.max_rotation}};
+    if (agreement.max_translation > 0. || agreement.max_rotation > 0.) {
+      Differ(absl::StrFormat(
+          "local SLAM: %d stamps in common; from node to node %.2f %% of %d "
+          "motions are alike to 2 cm and 0.2 degrees, the worst is off by "
+          "%.4f m and %.4f degrees",
+          agreement.common_stamps, 100. * agreement.fraction_alike,
+          agreement.pairs, agreement.max_translation,
+          RadToDeg(agreement.max_rotation)));
+    }
   }
 
   void CompareConstraints() {
@@ -396,6 +417,50 @@ std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
     }
   }
   return problems;
+}
+
+LocalAgreement CompareLocalSlam(const MapGraph& first, const MapGraph& second) {
+  constexpr double kAlikeTranslation = 0.02;
+  const double alike_rotation = DegToRad(0.2);
+  std::map<std::pair<int, io::TimeNs>, Pose2> others;
+  for (const auto& entry : second.nodes) {
+    others[{entry.first.trajectory_id, entry.second.time}] =
+        entry.second.local_pose;
+  }
+  LocalAgreement result;
+  result.nodes_first = static_cast<int64_t>(first.nodes.size());
+  result.nodes_second = static_cast<int64_t>(second.nodes.size());
+  int64_t alike = 0;
+  const Pose2* previous = nullptr;
+  const Pose2* previous_other = nullptr;
+  int trajectory_id = -1;
+  for (const auto& entry : first.nodes) {
+    const auto it = others.find({entry.first.trajectory_id, entry.second.time});
+    const Pose2* const other = it == others.end() ? nullptr : &it->second;
+    if (other != nullptr) ++result.common_stamps;
+    if (entry.first.trajectory_id == trajectory_id && other != nullptr &&
+        previous_other != nullptr) {
+      const Pose2 difference =
+          Between(Between(*previous, entry.second.local_pose),
+                  Between(*previous_other, *other));
+      const double translation = difference.translation().norm();
+      const double rotation = std::abs(difference.theta);
+      ++result.pairs;
+      if (translation <= kAlikeTranslation && rotation <= alike_rotation) {
+        ++alike;
+      }
+      result.max_translation = std::max(result.max_translation, translation);
+      result.max_rotation = std::max(result.max_rotation, rotation);
+    }
+    trajectory_id = entry.first.trajectory_id;
+    previous = &entry.second.local_pose;
+    previous_other = other;
+  }
+  if (result.pairs > 0) {
+    result.fraction_alike =
+        static_cast<double>(alike) / static_cast<double>(result.pairs);
+  }
+  return result;
 }
 
 PbstreamDifference Compare(const io::Pbstream& first,

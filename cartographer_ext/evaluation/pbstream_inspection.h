@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cartographer_ext/evaluation/map_graph.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "nlohmann/json.hpp"
 
@@ -29,6 +30,20 @@ std::string SummaryToText(const nlohmann::ordered_json& summary);
 // submaps have them at the end.)
 std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
                                       size_t max_problems = 100);
+
+// How alike the local SLAM of two maps of the same recording is. Nodes are
+// matched by their stamps; compared is the motion from one node to the next.
+struct LocalAgreement {
+  int64_t nodes_first = 0;
+  int64_t nodes_second = 0;
+  int64_t common_stamps = 0;
+  int64_t pairs = 0;  // of successive nodes of the first, known to the second
+  double fraction_alike = 0.;   // of the pairs, to 2 cm and 0.2 degrees
+  double max_translation = 0.;  // metres
+  double max_rotation = 0.;     // radians
+};
+
+LocalAgreement CompareLocalSlam(const MapGraph& first, const MapGraph& second);
 
 struct PbstreamDifference {
   bool identical = true;

@@ -130,7 +130,7 @@ CommandLine::CommandLine(const std::string& description)
 void CommandLine::Parse(const int argc, char** const argv) {
   *MutableProgramName() = BaseName(argc > 0 ? argv[0] : "");
   FLAGS_logtostderr = true;
-  FLAGS_minloglevel = google::GLOG_WARNING;
+  FLAGS_minloglevel = google::GLOG_ERROR;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument.size() < 2 || argument[0] != '-') {
