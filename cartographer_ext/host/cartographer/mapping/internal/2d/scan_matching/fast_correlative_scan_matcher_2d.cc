@@ -187,7 +187,8 @@ class FastCorrelativeScanMatcher2D::CoarseGrid {
   std::vector<uint8> cells_;
 };
 
-// One search: its rotated scans and what branch and bound needs.
+// One search: its rotated scans and what branch and bound needs. Scores are
+// compared as sums over the points of values from 0 to 255.
 class FastCorrelativeScanMatcher2D::Search {
  public:
   // On level k: the candidates at offsets x to x + 2^k - 1, likewise y.
@@ -195,7 +196,7 @@ class FastCorrelativeScanMatcher2D::Search {
     int scan;
     int x;
     int y;
-    float score;  // a bound, exact on level 0
+    int sum;  // a bound, exact on level 0
   };
 
   Search(const PrecomputationGridStack2D& grids, const CoarseGrid& coarse_grid,
@@ -211,52 +212,62 @@ class FastCorrelativeScanMatcher2D::Search {
       int* const x = x_.data() + static_cast<size_t>(i) * num_points_;
       int* const y = y_.data() + static_cast<size_t>(i) * num_points_;
       indices.ForRotation(i, x, y);
-      Scan scan{x, y, x[0], x[0], y[0], y[0], parameters.linear_bounds[i]};
+      int min_x = x[0], max_x = x[0], min_y = y[0], max_y = y[0];
       for (int k = 1; k < num_points_; ++k) {
-        scan.min_x = std::min(scan.min_x, x[k]);
-        scan.max_x = std::max(scan.max_x, x[k]);
-        scan.min_y = std::min(scan.min_y, y[k]);
-        scan.max_y = std::max(scan.max_y, y[k]);
+        min_x = std::min(min_x, x[k]);
+        max_x = std::max(max_x, x[k]);
+        min_y = std::min(min_y, y[k]);
+        max_y = std::max(max_y, y[k]);
       }
-      SearchParameters::LinearBounds& bounds = scan.bounds;
-      bounds.min_x = std::max(bounds.min_x, std::min(0, -scan.max_x));
-      bounds.min_y = std::max(bounds.min_y, std::min(0, -scan.max_y));
-      bounds.max_x = std::min(
-          bounds.max_x, std::max(0, cell_limits.num_x_cells - 1 - scan.min_x));
-      bounds.max_y = std::min(
-          bounds.max_y, std::max(0, cell_limits.num_y_cells - 1 - scan.min_y));
-      scans_.push_back(scan);
+      // As SearchParameters::ShrinkToFit has it.
+      SearchParameters::LinearBounds bounds = parameters.linear_bounds[i];
+      bounds.min_x = std::max(bounds.min_x, std::min(0, -max_x));
+      bounds.min_y = std::max(bounds.min_y, std::min(0, -max_y));
+      bounds.max_x = std::min(bounds.max_x,
+                              std::max(0, cell_limits.num_x_cells - 1 - min_x));
+      bounds.max_y = std::min(bounds.max_y,
+                              std::max(0, cell_limits.num_y_cells - 1 - min_y));
+      scans_.push_back(Scan{x, y, bounds});
     }
   }
 
-  // The best candidate, or one with score `min_score` when none is better.
-  Node Run(const float min_score) {
-    const std::vector<Node> nodes = CoarsestNodes(min_score);
-    best_ = Node{0, 0, 0, min_score};
+  float ToScore(const int sum) const {
+    return grids_.Get(0).ToScore(sum / static_cast<float>(num_points_));
+  }
+
+  // True, with the best candidate, when its score is above `min_score`.
+  bool Run(const float min_score, Node* const best) {
+    const int threshold = LargestSumNotAbove(min_score);
+    const std::vector<Node> nodes = CoarsestNodes(threshold);
+    best_ = Node{0, 0, 0, threshold};
     for (const Node& node : nodes) {
-      if (node.score <= best_.score) break;
+      if (node.sum <= best_.sum) break;
       Branch(node, grids_.max_depth());
     }
-    return best_;
+    *best = best_;
+    return best_.sum > threshold;
   }
 
  private:
   struct Scan {
     const int* x;
     const int* y;
-    int min_x;
-    int max_x;
-    int min_y;
-    int max_y;
     SearchParameters::LinearBounds bounds;
   };
 
-  float ToScore(const int sum) const {
-    return grids_.Get(0).ToScore(sum / static_cast<float>(num_points_));
+  // -1 when every sum scores more. By bisection, as rounding decides.
+  int LargestSumNotAbove(const float score) const {
+    int low = -1;
+    int high = 255 * num_points_ + 1;
+    while (high - low > 1) {
+      const int middle = low + (high - low) / 2;
+      (ToScore(middle) <= score ? low : high) = middle;
+    }
+    return low;
   }
 
-  // Those above `min_score`, best first.
-  std::vector<Node> CoarsestNodes(const float min_score) const {
+  // Those above `threshold`, best first.
+  std::vector<Node> CoarsestNodes(const int threshold) const {
     std::vector<Node> nodes;
     std::vector<uint16> sums;
     std::vector<int> totals;
@@ -280,10 +291,10 @@ class FastCorrelativeScanMatcher2D::Search {
       }
       for (int x = 0; x != num_x; ++x) {
         for (int y = 0; y != num_y; ++y) {
-          const float score = ToScore(totals[y * stride + x]);
-          if (score <= min_score) continue;
+          const int sum = totals[y * stride + x];
+          if (sum <= threshold) continue;
           nodes.push_back(Node{static_cast<int>(i), bounds.min_x + step * x,
-                               bounds.min_y + step * y, score});
+                               bounds.min_y + step * y, sum});
         }
       }
     }
@@ -296,19 +307,16 @@ class FastCorrelativeScanMatcher2D::Search {
       best_ = node;
       return;
     }
-    const Scan& scan = scans_[node.scan];
+    const SearchParameters::LinearBounds& bounds = scans_[node.scan].bounds;
     const int half = 1 << (level - 1);
-    int sums[4] = {0, 0, 0, 0};
-    SumChildren(grids_.Get(level - 1), scan, node, half, sums);
+    int sums[4];
+    if (!SumChildren(node, grids_.Get(level - 1), sums)) return;
     Node children[4];
     int num_children = 0;
     for (int i = 0; i != 4; ++i) {
       const Node child{node.scan, node.x + (i >> 1) * half,
-                       node.y + (i & 1) * half, ToScore(sums[i])};
-      if (child.x > scan.bounds.max_x || child.y > scan.bounds.max_y ||
-          child.score <= best_.score) {
-        continue;
-      }
+                       node.y + (i & 1) * half, sums[i]};
+      if (child.x > bounds.max_x || child.y > bounds.max_y) continue;
       // Equal ones stay in order.
       int place = num_children++;
       for (; place != 0 && BetterThan(child, children[place - 1]); --place) {
@@ -317,57 +325,73 @@ class FastCorrelativeScanMatcher2D::Search {
       children[place] = child;
     }
     for (int i = 0; i != num_children; ++i) {
-      if (children[i].score <= best_.score) break;
+      if (children[i].sum <= best_.sum) break;
       Branch(children[i], level - 1);
     }
   }
 
-  // Offsets (0, 0), (0, half), (half, 0), (half, half) from the node's.
-  void SumChildren(const PrecomputationGrid2D& grid, const Scan& scan,
-                   const Node& node, const int half, int (&sums)[4]) const {
-    const int x_shift = node.x + grid.width() - 1;
-    const int y_shift = node.y + grid.width() - 1;
+  // For offsets (0, 0), (0, half), (half, 0) and (half, half) from the node's,
+  // half being the width of the children's `grid`. False as soon as it is clear
+  // that none exceeds the best so far: the node's sum consists of each point's
+  // largest value among the children, so what they fall short of it for the
+  // first points will be missing in the end.
+  bool SumChildren(const Node& node, const PrecomputationGrid2D& grid,
+                   int (&sums)[4]) const {
+    const Scan& scan = scans_[node.scan];
+    const uint8* const cells = grid.cells();
+    const int half = grid.width();
     const int num_x = grid.num_x_cells();
     const int num_y = grid.num_y_cells();
-    const bool all_inside =
-        scan.min_x + x_shift >= 0 && scan.max_x + x_shift + half < num_x &&
-        scan.min_y + y_shift >= 0 && scan.max_y + y_shift + half < num_y;
-    const uint8* const cells = grid.cells();
-    const int shift = y_shift * num_x + x_shift;
+    const int x_shift = node.x + half - 1;
+    const int y_shift = node.y + half - 1;
     const int down = half * num_x;
+    const unsigned inner_x = std::max(0, num_x - half);
+    const unsigned inner_y = std::max(0, num_y - half);
     int low_low = 0, low_high = 0, high_low = 0, high_high = 0;
-    for (int i = 0; i != num_points_; ++i) {
-      const int cell = scan.y[i] * num_x + scan.x[i] + shift;
-      if (all_inside) {
-        low_low += cells[cell];
-        low_high += cells[cell + down];
-        high_low += cells[cell + half];
-        high_high += cells[cell + down + half];
-        continue;
+    int missing = node.sum - best_.sum;  // what may still be
+    for (int begin = 0; begin < num_points_; begin += kPointsPerCheck) {
+      const int end = std::min(begin + kPointsPerCheck, num_points_);
+      for (int i = begin; i != end; ++i) {
+        const int x = scan.x[i] + x_shift;
+        const int y = scan.y[i] + y_shift;
+        const int cell = y * num_x + x;
+        int a = 0, b = 0, c = 0, d = 0;
+        if (static_cast<unsigned>(x) < inner_x &&
+            static_cast<unsigned>(y) < inner_y) {
+          a = cells[cell];
+          b = cells[cell + down];
+          c = cells[cell + half];
+          d = cells[cell + down + half];
+        } else if (x >= -half && x < num_x && y >= -half && y < num_y) {
+          if (x >= 0 && y >= 0) a = cells[cell];
+          if (x >= 0 && y + half < num_y) b = cells[cell + down];
+          if (x + half < num_x && y >= 0) c = cells[cell + half];
+          if (x + half < num_x && y + half < num_y) {
+            d = cells[cell + down + half];
+          }
+        }
+        low_low += a;
+        low_high += b;
+        high_low += c;
+        high_high += d;
+        missing -= std::max(std::max(a, b), std::max(c, d));
       }
-      const unsigned x = scan.x[i] + x_shift;
-      const unsigned y = scan.y[i] + y_shift;
-      const bool x_low = x < static_cast<unsigned>(num_x);
-      const bool x_high = x + half < static_cast<unsigned>(num_x);
-      const bool y_low = y < static_cast<unsigned>(num_y);
-      const bool y_high = y + half < static_cast<unsigned>(num_y);
-      if (x_low && y_low) low_low += cells[cell];
-      if (x_low && y_high) low_high += cells[cell + down];
-      if (x_high && y_low) high_low += cells[cell + half];
-      if (x_high && y_high) high_high += cells[cell + down + half];
+      const int largest =
+          std::max(std::max(low_low, low_high), std::max(high_low, high_high));
+      if (largest + missing <= 0) return false;
     }
     sums[0] = low_low;
     sums[1] = low_high;
     sums[2] = high_low;
     sums[3] = high_high;
+    return true;
   }
 
-  static bool BetterThan(const Node& a, const Node& b) {
-    return a.score > b.score;
-  }
+  static bool BetterThan(const Node& a, const Node& b) { return a.sum > b.sum; }
 
   // So many values of 255 fit 16 bits.
   static constexpr int kPointsPerSum = 257;
+  static constexpr int kPointsPerCheck = 16;
 
   const PrecomputationGridStack2D& grids_;
   const CoarseGrid& coarse_grid_;
@@ -431,10 +455,10 @@ bool FastCorrelativeScanMatcher2D::MatchWithSearchParameters(
       limits_, initial_pose_estimate.translation());
   Search search(*grids_, *coarse_grid_, limits_.cell_limits(), indices,
                 search_parameters);
-  const Search::Node best = search.Run(min_score);
-  if (best.score <= min_score) return false;
+  Search::Node best;
+  if (!search.Run(min_score, &best)) return false;
   const Candidate2D candidate(best.scan, best.x, best.y, search_parameters);
-  *score = best.score;
+  *score = search.ToScore(best.sum);
   *pose_estimate =
       transform::Rigid2d(initial_pose_estimate.translation() +
                              Eigen::Vector2d(candidate.x, candidate.y),
