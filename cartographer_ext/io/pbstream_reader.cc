@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -242,13 +241,23 @@ absl::StatusOr<Pbstream> ReadPbstream(const std::string& filename,
   if (!file) {
     return absl::NotFoundError(absl::StrCat(filename, ": cannot be opened"));
   }
-  std::ostringstream content;
-  content << file.rdbuf();
-  if (file.bad() || (content.fail() && file.peek() != EOF)) {
+  std::string content;
+  std::vector<char> piece(1 << 20);
+  do {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    content.append(piece.data(), static_cast<size_t>(file.gcount()));
+    // Devices never end.
+    if (static_cast<int64_t>(content.size()) > options.limits.max_file_size) {
+      return absl::ResourceExhaustedError(
+          absl::StrFormat("%s: is larger than the %d bytes that are allowed",
+                          filename, options.limits.max_file_size));
+    }
+  } while (file);
+  if (file.bad()) {
     return absl::InvalidArgumentError(
         absl::StrCat(filename, ": cannot be read"));
   }
-  return ParsePbstream(content.str(), filename, options);
+  return ParsePbstream(content, filename, options);
 }
 
 absl::StatusOr<Pbstream> ParsePbstream(const std::string& content,

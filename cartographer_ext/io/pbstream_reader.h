@@ -40,6 +40,7 @@ struct Pbstream {
 // its size, or to the given floor where that is more: grids of unknown cells
 // compress very well, nothing else does.
 struct PbstreamLimits {
+  int64_t max_file_size = int64_t{1} << 32;    // bytes
   int64_t max_record_size = int64_t{1} << 30;  // bytes, expanded
   int64_t max_expansion = 64;
   int64_t record_floor = int64_t{1} << 20;         // bytes

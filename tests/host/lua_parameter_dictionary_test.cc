@@ -61,8 +61,8 @@ TEST(LuaParameterDictionaryTest, IntegersReadAsDoubles) {
   EXPECT_EQ(Load("return { x = 3 }")->GetDouble("x"), 3.);
 }
 
-TEST(LuaParameterDictionaryTest, FractionsReadAsZeroIntegers) {
-  EXPECT_EQ(Load("return { x = 2.5 }")->GetInt("x"), 0);
+TEST(LuaParameterDictionaryTest, WholeDoublesReadAsIntegers) {
+  EXPECT_EQ(Load("return { x = 3. }")->GetInt("x"), 3);
 }
 
 TEST(LuaParameterDictionaryTest, LookingIsNotReading) {
@@ -165,6 +165,13 @@ TEST(LuaParameterDictionaryDeathTest, WrongTypes) {
   EXPECT_DEATH(Load("return { a = true }")->GetDouble("a"), "not a number");
   EXPECT_DEATH(Load("return { a = {} }")->GetString("a"), "not a string");
   EXPECT_DEATH(Load("return { a = 1 }")->GetDictionary("a"), "not a table");
+}
+
+TEST(LuaParameterDictionaryDeathTest, NoIntegers) {
+  EXPECT_DEATH(Load("return { a = 2.5 }")->GetInt("a"),
+               "Key 'a' is 2.5, not an integer");
+  EXPECT_DEATH(Load("return { a = 3000000000 }")->GetInt("a"),
+               "Key 'a' is 3e.09, not an integer");
 }
 
 TEST(LuaParameterDictionaryDeathTest, BrokenCode) {

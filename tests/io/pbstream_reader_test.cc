@@ -88,6 +88,10 @@ TEST(PbstreamReaderTest, FilesOnDisk) {
   const auto loaded = ReadPbstream(path);
   ASSERT_TRUE(loaded.ok()) << loaded.status();
   EXPECT_EQ(SerializePbstream(*loaded), SerializePbstream(ExamplePbstream()));
+  PbstreamReaderOptions options;
+  options.limits.max_file_size = 100;
+  EXPECT_EQ(ReadPbstream(path, options).status().code(),
+            absl::StatusCode::kResourceExhausted);
   std::remove(path.c_str());
 
   const auto missing = ReadPbstream("/nonexistent/file.pbstream");

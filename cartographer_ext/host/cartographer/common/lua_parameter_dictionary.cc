@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -197,9 +198,15 @@ int LuaParameterDictionary::GetInt(const std::string& key) {
   PushValueOrDie(key);
   lua_State* const lua = state_->lua();
   CheckType(lua_isnumber(lua, -1), key, "a number");
-  const int value = static_cast<int>(lua_tointeger(lua, -1));
+  // Plain lua_tointeger makes 0 of a fraction.
+  int is_integer = 0;
+  const lua_Integer value = lua_tointegerx(lua, -1, &is_integer);
+  CHECK(is_integer != 0 && value >= std::numeric_limits<int>::min() &&
+        value <= std::numeric_limits<int>::max())
+      << "Key '" << KeyPath(key) << "' is " << lua_tonumber(lua, -1)
+      << ", not an integer of 32 bits.";
   lua_pop(lua, 1);
-  return value;
+  return static_cast<int>(value);
 }
 
 bool LuaParameterDictionary::GetBool(const std::string& key) {

@@ -51,7 +51,7 @@ class LuaParameterDictionary {
 
   std::string GetString(const std::string& key);
   double GetDouble(const std::string& key);
-  // A number with a fraction reads as 0, as Lua 5.3 has it.
+  // A number with a fraction is fatal.
   int GetInt(const std::string& key);
   bool GetBool(const std::string& key);
   std::unique_ptr<LuaParameterDictionary> GetDictionary(const std::string& key);
