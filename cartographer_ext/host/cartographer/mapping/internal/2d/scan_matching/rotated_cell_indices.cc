@@ -17,7 +17,8 @@ inline int RoundIndex(const double value) {
   constexpr double kFarAway = 1e8;
   // The largest number below 0.5, so that 0.49999999999999994 rounds to 0.
   constexpr double kAlmostHalf = 0.49999999999999994;
-  const double bounded = std::min(std::max(value, -kFarAway), kFarAway);
+  // In this order NaN becomes the lower bound.
+  const double bounded = std::min(kFarAway, std::max(-kFarAway, value));
   return static_cast<int>(bounded + std::copysign(kAlmostHalf, bounded));
 }
 
