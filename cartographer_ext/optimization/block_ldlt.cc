@@ -74,6 +74,15 @@ std::vector<int> FillReducingOrder(
     const std::vector<int>& groups) {
   std::vector<int> order(size);
   if (size == 0) return order;
+  if (pairs.empty()) {
+    for (int i = 0; i != size; ++i) order[i] = i;
+    if (!groups.empty()) {
+      std::stable_sort(
+          order.begin(), order.end(),
+          [&](const int a, const int b) { return groups[a] < groups[b]; });
+    }
+    return order;
+  }
   const Adjacency pattern = FullAdjacency(size, pairs);
   std::vector<double> control(CAMD_CONTROL);
   camd_defaults(control.data());

@@ -195,6 +195,27 @@ void IncrementalFactor::Solve(Eigen::VectorXd* const solution) const {
   }
 }
 
+void IncrementalFactor::SolveSystem(Eigen::VectorXd* const rhs) const {
+  const int n = columns_.size();
+  std::vector<Eigen::Vector3d> x(n);
+  for (int j = 0; j != n; ++j) x[j] = rhs->segment<3>(3 * variable_[j]);
+  for (int j = 0; j != n; ++j) {
+    const Column& column = columns_[j];
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      x[column.rows[k]].noalias() -= column.blocks[k] * x[j];
+    }
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    const Column& column = columns_[j];
+    Eigen::Vector3d value = column.pivot_inverse * x[j];
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      value.noalias() -= column.blocks[k].transpose() * x[column.rows[k]];
+    }
+    x[j] = value;
+    rhs->segment<3>(3 * variable_[j]) = value;
+  }
+}
+
 size_t IncrementalFactor::num_blocks() const {
   size_t result = 0;
   for (const Column& column : columns_) result += column.rows.size();

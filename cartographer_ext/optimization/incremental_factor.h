@@ -56,6 +56,10 @@ class IncrementalFactor {
   // For all, 3 values per variable.
   void Solve(Eigen::VectorXd* solution) const;
 
+  // Replaces a right hand side of its own, 3 values per variable, by the
+  // solution.
+  void SolveSystem(Eigen::VectorXd* rhs) const;
+
   int size() const { return columns_.size(); }
   size_t num_blocks() const;
   // Longest path an update may walk is size(); this is the last one's length,

@@ -17,6 +17,13 @@
 //   whole graph with a robust kernel, then decide each loop by the gate
 //   chi2 < 11.345: accepted loops count in full, others not at all.
 //
+// A loop which closes after a long drift has a huge chi2 and would stay out for
+// ever. So at the end of an epoch the rejected loops that are compatible with
+// the uncertainty of the poses (innovation chi2 inside the gate) are tried: the
+// most supported ones, at most `max_hypotheses`, are each forced in, the graph
+// is solved and the loop released again. The truncated cost decides, and must
+// fall by more than one loop's worth.
+//
 // The paper decides each loop once and for ever. Here every epoch weighs all
 // loops again, so that a wrong loop accepted early is put out late (late
 // rejection) and a true one comes back (re-admission); both can be switched
@@ -64,6 +71,9 @@ struct SmootherOptions {
   // At the end, narrow the gate where the data call for it (AdaptiveGate).
   bool adaptive_gate = true;
   int max_loops_per_step = 50;
+  // Rounds of deciding and solving (PolishTruncated) after the kernel.
+  int polish_rounds = 3;
+  int max_hypotheses = 3;  // at the end of an epoch; 0: as in the paper
 };
 
 struct StepReport {
@@ -104,6 +114,14 @@ class IncrementalSmoother {
   const IncrementalFactor& factor() const { return factor_; }
 
  private:
+  // A rejected loop that the uncertainty of the poses would allow.
+  struct Candidate {
+    int edge = 0;
+    LinearFactor factor;
+    Eigen::Vector3d gain;    // (I + Q)^-1 r
+    double innovation = 0.;  // r' (I + Q)^-1 r
+  };
+
   LinearFactor LinearizeEdge(const WhitenedEdge& edge) const;
   Eigen::Vector3d Offset(int pose) const;
   // Estimates the switch of a loop and adds it. True when it entered.
@@ -111,7 +129,16 @@ class IncrementalSmoother {
   double EstimateSwitch(const LinearFactor& factor,
                         const Eigen::Vector3d& residual) const;
   void UpdateEstimate();
+  SolverOptions EpochSolverOptions() const;
+  void DecideLoops();
   void RebuildFactor();
+  std::vector<Candidate> FindCandidates(int first_edge) const;
+  std::vector<int> ChooseSeeds(std::vector<Candidate> candidates) const;
+  // At the end: where the information is honest, true loops have chi2 around 3
+  // and the epochs' narrow kernel leaves some behind.
+  void TryWiderKernels();
+  // True when a hypothesis was taken over into the poses.
+  bool TryHypotheses(int first_edge);
 
   const SmootherOptions options_;
   std::vector<WhitenedEdge> edges_;
@@ -123,6 +150,7 @@ class IncrementalSmoother {
   IncrementalFactor factor_;
   bool estimate_outdated_ = false;
   int poses_in_epoch_ = 0;
+  int first_edge_of_epoch_ = 0;
   int num_late_rejections_ = 0;
   int num_readmissions_ = 0;
 };

@@ -14,6 +14,8 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
+constexpr int kPolishRounds = 30;
+
 void AddSummary(const SolverSummary& summary, OptimizeResult* const result) {
   result->iterations += summary.iterations;
   result->converged = summary.converged;
@@ -103,7 +105,8 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     Member member;
     member.name = name;
     member.poses = std::move(poses);
-    AddSummary(PolishTruncated(edges, kChi2Gate, &member.poses, nullptr),
+    AddSummary(PolishTruncated(edges, kChi2Gate, kPolishRounds, &member.poses,
+                               nullptr),
                result);
     member.truncated_cost = TruncatedCost(edges, member.poses);
     members.push_back(std::move(member));
@@ -122,6 +125,10 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     add("r_isam", replay.poses);
     add_kernel("r_isam, dcs", KernelType::kDcs, replay.poses);
   }
+  // The failures of a softer and of a harder epoch kernel differ.
+  SmootherOptions softer = options.smoother;
+  softer.epoch_kernel.parameter *= 4.;
+  if (Replay(graph, softer, &replay).ok()) add("r_isam, soft", replay.poses);
   add_kernel("dcs", KernelType::kDcs, graph.poses);
   add_kernel("gm", KernelType::kGemanMcClure, graph.poses);
   add_kernel("acs", KernelType::kAcs, graph.poses);
@@ -133,7 +140,7 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
   result->member = best->name;
   result->member_truncated_chi2 = best->truncated_cost;
   AddSummary(PolishTruncated(edges, AdaptiveGate(edges, result->poses),
-                             &result->poses, &result->weights),
+                             kPolishRounds, &result->poses, &result->weights),
              result);
   result->accepted.assign(edges.size(), true);
   for (size_t i = 0; i != edges.size(); ++i) {

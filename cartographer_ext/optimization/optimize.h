@@ -5,7 +5,8 @@
 // method in, poses and a verdict on each loop out.
 //
 // `auto` guards against the local minima which every single kernel has:
-//   1. an incremental replay of the graph (R-iSAM), which starts from nothing;
+//   1. two incremental replays of the graph (R-iSAM), which start from nothing
+//      and differ in the width of their kernel;
 //   2. DCS, GM and ACS from the graph's own poses, and DCS again from the
 //   replay;
 //   3. each result polished by deciding and solving in turn (re-admission);

@@ -118,12 +118,10 @@ class Solver {
     if (options_.kernel.type == KernelType::kAcs) {
       *shape = AcsShape(options_.kernel);
     } else if (options_.kernel.type == KernelType::kAcsPaper) {
-      *shape =
-          held_shapes != nullptr
-              ? (*held_shapes)[i]
-              : AcsPaperShape(
-                    chi2, (edge.whitening.inverse() * residual).squaredNorm(),
-                    covariance_norms_[i]);
+      *shape = held_shapes != nullptr
+                   ? (*held_shapes)[i]
+                   : AcsPaperShape(chi2, UnwhitenedSquaredNorm(edge, residual),
+                                   covariance_norms_[i]);
     }
     return EvaluateKernel(options_.kernel, chi2, *shape);
   }
@@ -311,16 +309,15 @@ SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
 }
 
 SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
-                              const double gate,
+                              const double gate, const int max_rounds,
                               std::vector<Pose2>* const poses,
                               std::vector<double>* const weights) {
-  constexpr int kMaxRounds = 30;
   const double start = ThreadCpuSeconds();
   SolverSummary total;
   SolverOptions options;
   options.initial_lambda = 1e-8;
   options.max_iterations = 20;
-  for (int round = 0; round != kMaxRounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     std::vector<double> decisions = Chi2OfEdges(edges, *poses);
     for (size_t i = 0; i != edges.size(); ++i) {
       decisions[i] = !edges[i].is_loop || decisions[i] < gate ? 1. : 0.;

@@ -80,7 +80,8 @@ SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
 // the poses have moved their way. `weights`, if not null, receives one value
 // per edge.
 SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
-                              double gate, std::vector<Pose2>* poses,
+                              double gate, int max_rounds,
+                              std::vector<Pose2>* poses,
                               std::vector<double>* weights);
 
 // A gate made narrower where the information matrices are conservative: chi2 of

@@ -207,7 +207,10 @@ SolverSummary SolveSwitchable(const std::vector<WhitenedEdge>& edges,
                               std::vector<Pose2>* const poses,
                               std::vector<double>* const switches) {
   std::vector<std::array<double, 3>> values = ToArrays(*poses);
-  switches->assign(edges.size(), 1.);
+  if (switches->size() != edges.size()) switches->assign(edges.size(), 1.);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop) (*switches)[i] = 1.;
+  }
   SolverSummary summary;
   if (edges.empty()) return summary;
   ceres::Problem problem;

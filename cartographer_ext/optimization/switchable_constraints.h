@@ -30,7 +30,8 @@ struct SwitchableOptions {
   double function_tolerance = 1e-6;
 };
 
-// One switch per edge is returned (1 for odometry). The summary's final cost is
+// One switch per edge is returned (1 for odometry). Switches start at 1, or at
+// the values given when there are as many as edges. The summary's final cost is
 // the value of the objective above.
 SolverSummary SolveSwitchable(const std::vector<WhitenedEdge>& edges,
                               const SwitchableOptions& options,

@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/robust_solver.h"
+
+#include <cmath>
+
+#include "cartographer_ext/optimization/graph_metrics.h"
+#include "cartographer_ext/optimization/outlier_generator.h"
+#include "gtest/gtest.h"
+#include "tests/optimization/test_graphs.h"
+#include "tests/test_data.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+SolverOptions WithKernel(const KernelType type) {
+  SolverOptions options;
+  options.kernel = DefaultKernel(type);
+  return options;
+}
+
+// The grid world, its optimum, and the same world with random outliers.
+class RobustSolverTest : public ::testing::Test {
+ protected:
+  RobustSolverTest() : world_(test::MakeGridWorld(250, 8, 5)) {
+    clean_ = Whiten(world_.graph.edges);
+    optimum_ = world_.graph.poses;
+    summary_ = SolveRobust(clean_, SolverOptions(), &optimum_);
+    OutlierOptions outliers;
+    outliers.count = 80;
+    std::vector<PoseGraphEdge> edges = world_.graph.edges;
+    test::AppendOutliers(world_.graph, outliers, &edges);
+    dirty_ = Whiten(edges);
+  }
+  test::GridWorld world_;
+  std::vector<WhitenedEdge> clean_;
+  std::vector<WhitenedEdge> dirty_;
+  std::vector<Pose2> optimum_;
+  SolverSummary summary_;
+};
+
+TEST_F(RobustSolverTest, CleanGraphConvergesToTheTruth) {
+  EXPECT_TRUE(summary_.converged);
+  EXPECT_LT(summary_.final_cost, summary_.initial_cost);
+  EXPECT_LT(AbsoluteTrajectoryError(optimum_, world_.truth), 0.1);
+  // chi2 of a right fit: about 3 per edge minus 3 per pose.
+  const double dof = 3. * clean_.size() - 3. * (optimum_.size() - 1);
+  EXPECT_NEAR(summary_.final_cost, dof, 6. * std::sqrt(2. * dof));
+  // The first pose is held.
+  EXPECT_DOUBLE_EQ(optimum_[0].x, world_.graph.poses[0].x);
+  EXPECT_DOUBLE_EQ(optimum_[0].theta, world_.graph.poses[0].theta);
+}
+
+TEST_F(RobustSolverTest, GradientVanishesAtTheOptimum) {
+  // Independent of the solver: differences of the cost.
+  for (const int pose : {1, 100, 249}) {
+    for (const double step : {1e-3, -1e-3}) {
+      std::vector<Pose2> moved = optimum_;
+      moved[pose].x += step;
+      double cost = 0.;
+      for (const double chi2 : Chi2OfEdges(clean_, moved)) cost += chi2;
+      EXPECT_GT(cost, summary_.final_cost);
+    }
+  }
+}
+
+TEST_F(RobustSolverTest, LeastSquaresFailsWithOutliersAndKernelsDoNot) {
+  std::vector<Pose2> poses = world_.graph.poses;
+  SolveRobust(dirty_, SolverOptions(), &poses);
+  EXPECT_GT(AbsoluteTrajectoryError(poses, optimum_), 0.5);
+  // A kernel sees what its width reaches from the start; far starts are the
+  // business of `auto`.
+  std::vector<Pose2> start = optimum_;
+  for (size_t i = 1; i != start.size(); ++i) {
+    start[i].x += 0.03 * std::sin(0.1 * i);
+    start[i].y += 0.03 * std::cos(0.1 * i);
+  }
+  for (const KernelType type :
+       {KernelType::kDcs, KernelType::kGemanMcClure, KernelType::kAcs}) {
+    poses = start;
+    const SolverSummary summary = SolveRobust(dirty_, WithKernel(type), &poses);
+    EXPECT_TRUE(summary.converged);
+    EXPECT_LT(AbsoluteTrajectoryError(poses, optimum_), 0.05)
+        << KernelName(type);
+    const LoopScore score = ScoreLoops(dirty_, clean_.size(), poses, optimum_);
+    EXPECT_GT(score.recall, 0.9);
+    EXPECT_GT(score.precision, 0.95);
+  }
+}
+
+TEST_F(RobustSolverTest, PruningKeepsTheOptimum) {
+  for (const KernelType type :
+       {KernelType::kDcs, KernelType::kGemanMcClure, KernelType::kAcs}) {
+    SolverOptions options = WithKernel(type);
+    options.cost_tolerance = 1e-12;
+    options.max_iterations = 300;
+    std::vector<Pose2> pruned = world_.graph.poses, full = pruned;
+    const SolverSummary with = SolveRobust(dirty_, options, &pruned);
+    options.prune = false;
+    const SolverSummary without = SolveRobust(dirty_, options, &full);
+    EXPECT_NEAR(with.final_cost, without.final_cost, 1e-3) << KernelName(type);
+    EXPECT_LT(with.factor_blocks, without.factor_blocks);
+    EXPECT_EQ(without.analyses, 1);
+  }
+}
+
+TEST_F(RobustSolverTest, PrunedEdgesComeBack) {
+  // A true loop that starts far off: all loops are dead at first, and the pull
+  // of those that are not brings the others in.
+  std::vector<Pose2> poses = world_.graph.poses;
+  SolveRobust(dirty_, WithKernel(KernelType::kDcs), &poses);
+  int alive_before = 0, alive_after = 0;
+  for (size_t i = 0; i != clean_.size(); ++i) {
+    if (!clean_[i].is_loop) continue;
+    const WhitenedEdge& edge = clean_[i];
+    alive_before += Chi2(edge, world_.graph.poses[edge.from],
+                         world_.graph.poses[edge.to]) < kChi2Gate;
+    alive_after += Chi2(edge, poses[edge.from], poses[edge.to]) < kChi2Gate;
+  }
+  EXPECT_GT(alive_after, alive_before);
+}
+
+TEST_F(RobustSolverTest, EdgeWeightsScaleAndSwitchOff) {
+  SolverOptions options;
+  options.edge_weights.assign(dirty_.size(), 1.);
+  for (size_t i = clean_.size(); i != dirty_.size(); ++i) {
+    options.edge_weights[i] = 0.;
+  }
+  std::vector<Pose2> poses = world_.graph.poses;
+  const SolverSummary summary = SolveRobust(dirty_, options, &poses);
+  EXPECT_NEAR(summary.final_cost, summary_.final_cost,
+              1e-6 * summary_.final_cost);
+  EXPECT_LT(AbsoluteTrajectoryError(poses, optimum_), 1e-4);
+}
+
+TEST_F(RobustSolverTest, PolishLowersTheTruncatedCost) {
+  std::vector<Pose2> poses = world_.graph.poses;
+  SolveRobust(dirty_, WithKernel(KernelType::kGemanMcClure), &poses);
+  const double before = TruncatedCost(dirty_, poses);
+  std::vector<double> weights;
+  const SolverSummary summary =
+      PolishTruncated(dirty_, kChi2Gate, 30, &poses, &weights);
+  EXPECT_TRUE(summary.converged);
+  EXPECT_LE(TruncatedCost(dirty_, poses), before + 1e-9);
+  for (size_t i = 0; i != dirty_.size(); ++i) {
+    const WhitenedEdge& edge = dirty_[i];
+    EXPECT_EQ(weights[i] > 0.5,
+              !edge.is_loop ||
+                  Chi2(edge, poses[edge.from], poses[edge.to]) < kChi2Gate);
+  }
+}
+
+TEST_F(RobustSolverTest, AdaptiveGateFollowsTheScaleOfTheLoops) {
+  // Honest information: the gate stays.
+  EXPECT_DOUBLE_EQ(AdaptiveGate(clean_, optimum_), kChi2Gate);
+  // Information a hundred times too small: the gate shrinks about as much,
+  // times the safety factor of nine.
+  std::vector<PoseGraphEdge> shy = world_.graph.edges;
+  for (PoseGraphEdge& edge : shy) edge.information *= 0.01;
+  const double gate = AdaptiveGate(Whiten(shy), optimum_);
+  EXPECT_GT(gate, 0.03 * kChi2Gate);
+  EXPECT_LT(gate, 0.2 * kChi2Gate);
+}
+
+TEST_F(RobustSolverTest, GncFindsTheInliers) {
+  std::vector<Pose2> poses = world_.graph.poses;
+  std::vector<double> weights;
+  SolveGnc(dirty_, GncOptions(), &poses, &weights);
+  ASSERT_EQ(weights.size(), dirty_.size());
+  EXPECT_LT(AbsoluteTrajectoryError(poses, optimum_), 0.05);
+}
+
+TEST(RobustSolverEdgeCasesTest, TrivialGraphs) {
+  std::vector<Pose2> poses = {Pose2(1., 2., 3.)};
+  const SolverSummary summary = SolveRobust({}, SolverOptions(), &poses);
+  EXPECT_TRUE(summary.converged);
+  EXPECT_DOUBLE_EQ(poses[0].x, 1.);
+  PoseGraphEdge edge;
+  edge.to = 1;
+  edge.measurement = Pose2(1., 0., 0.5);
+  poses.push_back(Pose2());
+  SolveRobust(Whiten(std::vector<PoseGraphEdge>{edge}), SolverOptions(),
+              &poses);
+  const Pose2 expected = poses[0] * edge.measurement;
+  EXPECT_NEAR(poses[1].x, expected.x, 1e-6);
+  EXPECT_NEAR(poses[1].y, expected.y, 1e-6);
+  EXPECT_NEAR(NormalizeAngle(poses[1].theta - expected.theta), 0., 1e-6);
+}
+
+TEST(RobustSolverDataTest, KnownOptima) {
+  // Half of chi2 at the optimum without outliers.
+  const struct {
+    const char* name;
+    double half_chi2;
+  } kCases[] = {{"g2o/intel.g2o.xz", 273.2},
+                {"g2o/manhattan_g2o.g2o.xz", 73.04},
+                {"g2o/city10000.g2o.xz", 255.99}};
+  for (const auto& c : kCases) {
+    CARTOGRAPHER_EXT_SKIP_WITHOUT(cartographer_ext::test::SharedData(c.name));
+    const PoseGraph graph =
+        test::ReadGraph(cartographer_ext::test::SharedData(c.name));
+    ASSERT_TRUE(ValidatePoseGraph(graph).ok());
+    std::vector<Pose2> poses = graph.poses;
+    const SolverSummary summary =
+        SolveRobust(Whiten(graph.edges), SolverOptions(), &poses);
+    EXPECT_NEAR(0.5 * summary.final_cost, c.half_chi2, 0.05) << c.name;
+  }
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext
