@@ -3,6 +3,8 @@
 // LINK: evaluation
 //
 // cartographer_ext_slam: a recording in, a map and numbers out.
+#include <malloc.h>
+
 #include <iostream>
 #include <memory>
 #include <string>
@@ -261,6 +263,11 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
+#ifdef __GLIBC__
+  // One heap for all threads: what one thread has freed serves the next, which
+  // saves a fifth of the memory at no measurable cost.
+  mallopt(M_ARENA_MAX, 1);
+#endif
   tools::CommandLine(kDescription).Parse(argc, argv);
   if (FLAGS_input_filename.empty()) {
     return tools::UsageError("-input_filename is missing");

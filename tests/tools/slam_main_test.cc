@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/test_data.h"
+#include "tests/tools/run_command.h"
+
+namespace cartographer_ext {
+namespace test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+using testing::UnorderedElementsAre;
+
+TEST(SlamMainTest, WritesMapTrajectoriesAndNumbers) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 250);
+  const CommandResult result = RunCommand(
+      "slam", {"--input_filename=" + folder / "room.clf", "-pbstream_filename",
+               folder / "map.pbstream", "-map_filestem", folder / "map",
+               "-picture_filename", folder / "map.png", "-trajectory_filename",
+               folder / "global.tum", "-local_trajectory_filename",
+               folder / "local.tum", "-decisions_filename",
+               folder / "decisions.csv", "-json", folder / "slam.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("250 scans"));
+  EXPECT_THAT(result.error, IsEmpty());
+  EXPECT_THAT(folder.Names(),
+              UnorderedElementsAre("room.clf", "map.pbstream", "map.pgm",
+                                   "map.yaml", "map.png", "global.tum",
+                                   "local.tum", "decisions.csv", "slam.json"));
+  const auto json = ParseJson(ReadFile(folder / "slam.json"));
+  ASSERT_TRUE(json.is_object());
+  EXPECT_EQ(json["scans"], 250);
+  EXPECT_EQ(json["odometry_readings"], 250);
+  EXPECT_NEAR(json["sensor_seconds"].get<double>(), 24.9, 1e-6);
+  EXPECT_GT(json["nodes"], 50);
+  EXPECT_GE(json["submaps"], 1);
+  EXPECT_GT(json["constraints"]["intra"], 50);
+  EXPECT_GE(json["constraints"]["inter"], 0);
+  EXPECT_GT(json["wall_seconds"], 0.);
+  EXPECT_GT(json["cpu_seconds"], 0.);
+  EXPECT_GT(json["peak_memory_bytes"], 1000000);
+  EXPECT_GE(json["loop_search"]["count"], 0);
+  EXPECT_GE(json["loop_search"]["cpu_seconds"], 0.);
+  // A pose at every scan but those before the first one could be matched.
+  const std::string trajectory = ReadFile(folder / "global.tum");
+  EXPECT_GE(std::count(trajectory.begin(), trajectory.end(), '\n'), 249);
+}
+
+TEST(SlamMainTest, JsonOnStandardOutputStandsAlone) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 30);
+  const CommandResult result = RunCommand(
+      "slam", {"-input_filename", folder / "room.clf", "-json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto json = ParseJson(result.out);
+  ASSERT_TRUE(json.is_object()) << result.out;
+  EXPECT_EQ(json["scans"], 30);
+}
+
+TEST(SlamMainTest, TheNumberOfThreadsDoesNotMatter) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 250);
+  for (const std::string threads : {"1", "2", "3"}) {
+    const CommandResult result = RunCommand(
+        "slam",
+        {"-input_filename", folder / "room.clf", "-num_background_threads",
+         threads, "-pbstream_filename", folder / (threads + ".pbstream")});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+  }
+  const std::string one = ReadFile(folder / "1.pbstream");
+  EXPECT_GT(one.size(), 1000u);
+  EXPECT_TRUE(one == ReadFile(folder / "2.pbstream"));
+  EXPECT_TRUE(one == ReadFile(folder / "3.pbstream"));
+}
+
+TEST(SlamMainTest, WrongUsageIsExitCodeTwo) {
+  EXPECT_EQ(RunCommand("slam", {}).exit_code, 2);
+  const CommandResult unknown = RunCommand("slam", {"-input_filname", "x.clf"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.error, HasSubstr("did you mean -input_filename?"));
+  EXPECT_EQ(RunCommand("slam", {"x.clf"}).exit_code, 2);
+  const CommandResult bad_value =
+      RunCommand("slam", {"-input_filename=x.clf", "-resolution=wide"});
+  EXPECT_EQ(bad_value.exit_code, 2);
+  EXPECT_THAT(bad_value.error, HasSubstr("wide"));
+  EXPECT_EQ(RunCommand("slam", {"-input_filename"}).exit_code, 2);
+  EXPECT_EQ(RunCommand("slam",
+                       {"-input_filename=x.clf", "-num_background_threads=-1"})
+                .exit_code,
+            2);
+}
+
+TEST(SlamMainTest, HelpTeaches) {
+  const CommandResult result = RunCommand("slam", {"--help"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, HasSubstr("cartographer_ext_slam -input_filename"));
+  EXPECT_THAT(result.out, HasSubstr("-configuration_basename"));
+  EXPECT_THAT(result.out, HasSubstr("Exit codes"));
+}
+
+TEST(SlamMainTest, MissingInputNamesTheFile) {
+  const CommandResult result =
+      RunCommand("slam", {"-input_filename", "/nowhere/run.clf"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("/nowhere/run.clf"));
+  EXPECT_THAT(result.error, StartsWith("cartographer_ext_slam: "));
+}
+
+TEST(SlamMainTest, UnwritableOutputIsFoundBeforeTheWork) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 10);
+  for (const std::string flag :
+       {"-pbstream_filename", "-map_filestem", "-picture_filename",
+        "-trajectory_filename", "-json"}) {
+    const CommandResult result = RunCommand(
+        "slam",
+        {"-input_filename", folder / "room.clf", flag, "/nowhere/output"});
+    EXPECT_EQ(result.exit_code, 1) << flag;
+    EXPECT_THAT(result.error, HasSubstr("/nowhere/output")) << flag;
+    EXPECT_THAT(result.out, IsEmpty()) << flag;
+  }
+}
+
+TEST(SlamMainTest, AFailedRunLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "broken.clf", "FLASER 3 1.0 2.0\n");
+  const CommandResult result =
+      RunCommand("slam", {"-input_filename", folder / "broken.clf",
+                          "-pbstream_filename", folder / "map.pbstream"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(folder.Names(), UnorderedElementsAre("broken.clf"));
+}
+
+class LuaTest : public testing::Test {
+ protected:
+  CommandResult RunWith(const std::string& lua) {
+    WriteRoomLog(folder_ / "room.clf", 10);
+    WriteFile(folder_ / "test.lua", lua);
+    return RunCommand(
+        "slam",
+        {"-input_filename", folder_ / "room.clf", "-configuration_directory",
+         folder_.path() + ",configuration_files", "-configuration_basename",
+         "test.lua", "-pbstream_filename", folder_ / "map.pbstream"});
+  }
+
+  // Exit code 1 and a message with `hint`; no crash, no output.
+  void ExpectRefused(const std::string& lua, const std::string& hint) {
+    const CommandResult result = RunWith(lua);
+    EXPECT_EQ(result.exit_code, 1) << lua;
+    EXPECT_THAT(result.error, HasSubstr(hint)) << lua;
+    EXPECT_THAT(result.error, HasSubstr("test.lua")) << lua;
+    EXPECT_TRUE(ReadFile(folder_ / "map.pbstream").empty());
+  }
+
+  const std::string head_ = "include \"common_2d.lua\"\n";
+  const std::string tail_ =
+      "\nreturn { map_builder = MAP_BUILDER, trajectory_builder = "
+      "TRAJECTORY_BUILDER }\n";
+  const TemporaryFolder folder_;
+};
+
+TEST_F(LuaTest, GoodFilesWork) {
+  const CommandResult result = RunWith(head_ + tail_);
+  EXPECT_EQ(result.exit_code, 0) << result.error;
+}
+
+TEST_F(LuaTest, UnknownKey) {
+  ExpectRefused(head_ + "POSE_GRAPH.constraint_builder.min_skore = 0.5" + tail_,
+                "min_skore");
+}
+
+TEST_F(LuaTest, MissingKey) {
+  ExpectRefused(head_ + "POSE_GRAPH.constraint_builder.min_score = nil" + tail_,
+                "min_score");
+}
+
+TEST_F(LuaTest, WrongType) {
+  ExpectRefused(
+      head_ + "POSE_GRAPH.constraint_builder.min_score = \"high\"" + tail_,
+      "min_score");
+}
+
+TEST_F(LuaTest, SyntaxError) { ExpectRefused(head_ + "if x then" + tail_, ""); }
+
+TEST_F(LuaTest, MissingInclude) {
+  ExpectRefused("include \"nowhere.lua\"" + tail_, "nowhere.lua");
+}
+
+TEST_F(LuaTest, NotATable) { ExpectRefused("return 3\n", ""); }
+
+TEST_F(LuaTest, NeitherTwoNorThreeDimensions) {
+  ExpectRefused(head_ + "MAP_BUILDER.use_trajectory_builder_2d = false" + tail_,
+                "use_trajectory_builder");
+}
+
+TEST_F(LuaTest, ImuWantedButAbsent) {
+  ExpectRefused(head_ + "TRAJECTORY_BUILDER_2D.use_imu_data = true" + tail_,
+                "use_imu_data");
+}
+
+TEST_F(LuaTest, MissingFile) {
+  WriteRoomLog(folder_ / "room.clf", 10);
+  const CommandResult result =
+      RunCommand("slam", {"-input_filename", folder_ / "room.clf",
+                          "-configuration_basename", "nowhere.lua"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("nowhere.lua"));
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace cartographer_ext
