@@ -3,6 +3,8 @@
 #include "cartographer_ext/optimization/graph_metrics.h"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "cartographer_ext/optimization/kernels.h"
 #include "glog/logging.h"
@@ -44,6 +46,54 @@ double AbsoluteTrajectoryError(const std::vector<Pose2>& estimate,
                .squaredNorm();
   }
   return std::sqrt(sum / estimate.size());
+}
+
+std::vector<int> AssociateByPath(const std::vector<Pose2>& estimate,
+                                 const std::vector<Pose2>& reference) {
+  constexpr int kRounds = 4;
+  const int rows = estimate.size(), columns = reference.size();
+  std::vector<int> result(rows, 0);
+  if (rows == 0 || columns == 0) return result;
+  Pose2 alignment = reference[0] * estimate[0].Inverse();
+  // Best cost of reaching (i, j), and where from: 0 both, 1 estimate, 2
+  // reference.
+  std::vector<double> previous(columns), current(columns);
+  std::vector<uint8_t> from(static_cast<size_t>(rows) * columns);
+  for (int round = 0; round != kRounds; ++round) {
+    for (int i = 0; i != rows; ++i) {
+      const Eigen::Vector2d point = alignment * estimate[i].translation();
+      uint8_t* const from_row = &from[static_cast<size_t>(i) * columns];
+      for (int j = 0; j != columns; ++j) {
+        double best =
+            i == 0 && j == 0 ? 0. : std::numeric_limits<double>::infinity();
+        if (i > 0 && j > 0) {
+          best = previous[j - 1];
+          from_row[j] = 0;
+        }
+        if (i > 0 && previous[j] < best) {
+          best = previous[j];
+          from_row[j] = 1;
+        }
+        if (j > 0 && current[j - 1] < best) {
+          best = current[j - 1];
+          from_row[j] = 2;
+        }
+        current[j] = best + (point - reference[j].translation()).squaredNorm();
+      }
+      previous.swap(current);
+    }
+    for (int i = rows - 1, j = columns - 1; i > 0 || j > 0;) {
+      result[i] = j;
+      const uint8_t step = from[static_cast<size_t>(i) * columns + j];
+      if (step != 2) --i;
+      if (step != 1) --j;
+    }
+    result[0] = 0;
+    std::vector<Pose2> matched;
+    for (const int j : result) matched.push_back(reference[j]);
+    alignment = Align(estimate, matched);
+  }
+  return result;
 }
 
 double RelativePoseError(const std::vector<PoseGraphEdge>& edges,

@@ -23,6 +23,14 @@ Pose2 Align(const std::vector<Pose2>& estimate,
 double AbsoluteTrajectoryError(const std::vector<Pose2>& estimate,
                                const std::vector<Pose2>& reference);
 
+// For references that were sampled at other moments and without stamps (the GPS
+// truth of Bicocca): index of the reference pose belonging to each pose of the
+// estimate, from dynamic time warping of positions after alignment, repeated
+// until the alignment settles. First and last poses belong together. It
+// flatters all estimates a little, and alike.
+std::vector<int> AssociateByPath(const std::vector<Pose2>& estimate,
+                                 const std::vector<Pose2>& reference);
+
 // RPE of the papers (ACS eq. 15, R-iSAM eq. 20) in square metres: mean over
 // odometry edges of the squared difference of the relative displacement in the
 // frame of the edge's first pose. It cannot see a folded map, so never use it

@@ -66,6 +66,7 @@ void RunSwitchable(const std::vector<WhitenedEdge>& edges,
   SwitchableOptions switchable;
   if (options.parameter > 0.) switchable.penalty = options.parameter;
   switchable.max_iterations = options.max_iterations;
+  switchable.max_seconds = options.max_seconds;
   AddSummary(
       SolveSwitchable(edges, switchable, &result->poses, &result->weights),
       result);

@@ -35,6 +35,7 @@ struct OptimizeOptions {
   double parameter = 0.;
   CovarianceNorm norm = CovarianceNorm::kSpectral;  // acs_paper
   int max_iterations = 200;
+  double max_seconds = 1e9;  // sc
   bool prune = true;
   SmootherOptions smoother;
 };

@@ -179,12 +179,14 @@ void FromArrays(const std::vector<std::array<double, 3>>& values,
 
 SolverSummary SolveProblem(const int max_iterations,
                            const double function_tolerance,
+                           const double max_seconds,
                            ceres::Problem* const problem) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = max_iterations;
   options.function_tolerance = function_tolerance;
   options.num_threads = 1;
+  options.max_solver_time_in_seconds = max_seconds;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   const double start = ThreadCpuSeconds();
@@ -230,7 +232,7 @@ SolverSummary SolveSwitchable(const std::vector<WhitenedEdge>& edges,
     problem.SetParameterBlockConstant(values[0].data());
   }
   summary = SolveProblem(options.max_iterations, options.function_tolerance,
-                         &problem);
+                         options.max_seconds, &problem);
   FromArrays(values, poses);
   return summary;
 }
@@ -256,7 +258,7 @@ SolverSummary SolveWithCeres(const std::vector<WhitenedEdge>& edges,
     problem.SetParameterBlockConstant(values[0].data());
   }
   const SolverSummary summary =
-      SolveProblem(max_iterations, function_tolerance, &problem);
+      SolveProblem(max_iterations, function_tolerance, 1e9, &problem);
   FromArrays(values, poses);
   return summary;
 }

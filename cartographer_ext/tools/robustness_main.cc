@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+// LINK: optimization io
+//
+// cartographer_ext_robustness: how many wrong loops does a back end survive?
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_ext/tools/command_line.h"
+#include "cartographer_ext/tools/paper_tables.h"
+#include "cartographer_ext/tools/robustness_report.h"
+#include "cartographer_ext/tools/robustness_sweep.h"
+#include "gflags/gflags.h"
+
+DEFINE_string(preset, "",
+              "Sets the flags below that are not given: a_table_2 (ACS paper), "
+              "r_table_2 (R-iSAM paper), survival_random, survival_local, "
+              "quality.");
+DEFINE_string(data_directory, "../shared/data/g2o",
+              "Where data sets given by name are, as <name>.g2o[.xz|.gz].");
+DEFINE_string(datasets, "intel", "Names or g2o files, comma separated.");
+DEFINE_string(
+    kernels, "auto",
+    "Comma separated: none huber sc gm dcs acs acs_paper gnc_tls auto "
+    "r_isam.");
+DEFINE_string(
+    outlier_types, "R",
+    "Comma separated: R (random), L (local), RG, LG (grouped), none.");
+DEFINE_string(outlier_counts, "1000",
+              "Comma separated: edges, or with % the share of all loops.");
+DEFINE_int32(seeds, 1, "Seeds 1 to this.");
+DEFINE_int32(group_size, 10, "Edges of a group (RG, LG).");
+DEFINE_string(norm, "spectral",
+              "|Lambda| of acs_paper: spectral determinant root information.");
+DEFINE_double(
+    ate_limit, 0.05,
+    "Success is an ATE to the optimum without outliers of at most this "
+    "(metres).");
+DEFINE_double(ate_limit_local, 0.4, "The same for the types L and LG.");
+DEFINE_string(ate_limits, "intel=0.01",
+              "Limits of single data sets: name=metres, comma separated.");
+DEFINE_string(truths, "",
+              "Ground truth of data sets that have natural outliers: "
+              "name=file, comma separated. Their reference is the optimum that "
+              "`auto` finds.");
+DEFINE_double(max_seconds, 1e9, "Time limit of one solution by sc.");
+DEFINE_string(journal_filename, "",
+              "Every finished run is added here at once; a sweep started again "
+              "with the same journal leaves out what it holds.");
+DEFINE_string(picture_filename, "", "PNG: ATE over the number of outliers.");
+DEFINE_string(json, "", "Writes all runs as JSON; - is standard output.");
+
+namespace cartographer_ext {
+namespace {
+
+constexpr char kDescription[] =
+    R"(Adds wrong loops to pose graphs and counts what survives; medians over seeds.
+
+  cartographer_ext_robustness -datasets=intel,manhattan_g2o -kernels=auto,dcs,sc
+      -outlier_types=R,LG -outlier_counts=1000,4000,90% -seeds=5
+      -journal_filename=sweep.jsonl -json=sweep.json -picture_filename=sweep.png
+
+The tables of the papers, printed values beside ours:
+  cartographer_ext_robustness -preset=a_table_2 -journal_filename=a.jsonl
+  cartographer_ext_robustness -preset=r_table_2 -journal_filename=r.jsonl)";
+
+struct Preset {
+  const char* name;
+  const char* datasets;
+  const char* kernels;
+  const char* types;
+  const char* counts;
+  const char* seeds;
+};
+
+constexpr Preset kPresets[] = {
+    {"a_table_2", "manhattan_g2o,manhattan_olson,city10000,bicocca25b_0.800",
+     "sc,acs,acs_paper", "R,L,RG,LG", "1000,2000,3000,4000", "1"},
+    {"r_table_2", "intel,manhattan_olson,city10000", "sc,r_isam", "R,L,RG,LG",
+     "500,1000,1500,2000", "1"},
+    {"survival_random", "intel,manhattan_g2o,manhattan_olson",
+     "auto,r_isam,gm,dcs,acs,acs_paper", "R,RG", "90%", "10"},
+    {"survival_local", "intel,manhattan_g2o,manhattan_olson,city10000",
+     "auto,r_isam,gm,dcs,acs,acs_paper", "L,LG", "50%", "10"},
+    {"quality", "intel,manhattan_g2o,manhattan_olson,city10000",
+     "auto,r_isam,gm,dcs,acs,acs_paper", "R,RG,L,LG", "1000,2000,4000", "5"},
+};
+
+bool ApplyPreset() {
+  if (FLAGS_preset.empty()) return true;
+  for (const Preset& preset : kPresets) {
+    if (FLAGS_preset != preset.name) continue;
+    const auto set = [](const char* flag, const char* value) {
+      if (gflags::GetCommandLineFlagInfoOrDie(flag).is_default) {
+        gflags::SetCommandLineOption(flag, value);
+      }
+    };
+    set("datasets", preset.datasets);
+    set("kernels", preset.kernels);
+    set("outlier_types", preset.types);
+    set("outlier_counts", preset.counts);
+    set("seeds", preset.seeds);
+    return true;
+  }
+  return false;
+}
+
+std::vector<std::string> Words(const std::string& text) {
+  return absl::StrSplit(text, absl::ByAnyChar(", "), absl::SkipEmpty());
+}
+
+absl::Status Run() {
+  tools::SweepOptions options;
+  options.data_directory = FLAGS_data_directory;
+  options.datasets = Words(FLAGS_datasets);
+  options.kernels = Words(FLAGS_kernels);
+  options.types = Words(FLAGS_outlier_types);
+  options.counts = Words(FLAGS_outlier_counts);
+  options.seeds = FLAGS_seeds;
+  options.group_size = FLAGS_group_size;
+  options.ate_limit = FLAGS_ate_limit;
+  options.ate_limit_local = FLAGS_ate_limit_local;
+  options.journal_filename = FLAGS_journal_filename;
+  options.optimize.max_seconds = FLAGS_max_seconds;
+  const auto norm = optimization::CovarianceNormFromName(FLAGS_norm);
+  if (!norm.ok()) return norm.status();
+  options.optimize.norm = *norm;
+  for (const std::string& entry : Words(FLAGS_ate_limits)) {
+    const std::pair<std::string, std::string> parts =
+        absl::StrSplit(entry, absl::MaxSplits('=', 1));
+    double limit;
+    if (!absl::SimpleAtod(parts.second, &limit)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("-ate_limits: '", entry, "' is not name=metres"));
+    }
+    options.ate_limits[parts.first] = limit;
+  }
+  for (const std::string& entry : Words(FLAGS_truths)) {
+    const std::pair<std::string, std::string> parts =
+        absl::StrSplit(entry, absl::MaxSplits('=', 1));
+    if (parts.second.empty()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("-truths: '", entry, "' is not name=file"));
+    }
+    options.truths[parts.first] = parts.second;
+  }
+  const absl::Status writable =
+      tools::CheckWritable({FLAGS_picture_filename, FLAGS_json});
+  if (!writable.ok()) return writable;
+  const auto runs = tools::RunSweep(options);
+  if (!runs.ok()) return runs.status();
+  const std::vector<tools::SweepCell> cells = tools::Summarize(*runs);
+  if (FLAGS_json != "-") {
+    std::cout << tools::SweepTable(cells);
+    if (FLAGS_preset == "a_table_2") {
+      for (const char* kernel : {"acs", "acs_paper"}) {
+        std::cout << "\n"
+                  << tools::PrintedComparison(cells, tools::AcsTable2(),
+                                              kernel);
+      }
+    } else if (FLAGS_preset == "r_table_2") {
+      std::cout
+          << "\n(ratio ours: SC's one solution over all steps of R-iSAM)\n"
+          << tools::PrintedComparison(cells, tools::RIsamTable2(), "r_isam");
+    }
+  }
+  if (!FLAGS_picture_filename.empty()) {
+    const absl::Status status =
+        tools::WriteSweepPlot(cells, FLAGS_picture_filename);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_json.empty()) {
+    return tools::WriteJson(tools::SweepJson(*runs), FLAGS_json);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+}  // namespace cartographer_ext
+
+int main(int argc, char** argv) {
+  using namespace cartographer_ext;  // NOLINT
+  tools::CommandLine(kDescription).Parse(argc, argv);
+  if (!ApplyPreset()) {
+    return tools::UsageError("unknown -preset " + FLAGS_preset);
+  }
+  if (FLAGS_seeds < 1 || FLAGS_group_size < 1) {
+    return tools::UsageError("-seeds and -group_size must be at least 1");
+  }
+  if (Words(FLAGS_datasets).empty() || Words(FLAGS_kernels).empty() ||
+      Words(FLAGS_outlier_types).empty() ||
+      Words(FLAGS_outlier_counts).empty()) {
+    return tools::UsageError(
+        "-datasets, -kernels, -outlier_types and -outlier_counts must name "
+        "something");
+  }
+  return tools::ExitCode(Run());
+}
