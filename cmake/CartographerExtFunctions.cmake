@@ -73,6 +73,8 @@ function(cartographer_ext_tests)
     target_link_libraries(${target} PRIVATE ${ARG_LINK} cartographer_ext_test_main)
     cartographer_ext_warnings(${target})
     add_test(NAME ${prefix}/${stem} COMMAND ${target} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
-    set_tests_properties(${prefix}/${stem} PROPERTIES TIMEOUT 600)
+    # The suppressions are for commands that a test starts; tests have them built in.
+    set_tests_properties(${prefix}/${stem} PROPERTIES TIMEOUT 600
+      ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan_suppressions.txt")
   endforeach()
 endfunction()

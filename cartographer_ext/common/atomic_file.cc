@@ -27,7 +27,7 @@ absl::Status WriteError(const std::string& path, int error_number) {
 std::string ResolveLinks(const std::string& path) {
   char* const resolved = ::realpath(path.c_str(), nullptr);
   if (resolved == nullptr) return path;
-  const std::string result(resolved);
+  std::string result(resolved);
   std::free(resolved);
   return result;
 }

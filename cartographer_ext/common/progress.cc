@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -26,8 +27,7 @@ double Seconds(std::chrono::steady_clock::duration duration) {
 
 std::string FormatDuration(double seconds) {
   // A day-long estimate is noise; the bound also keeps the conversion defined.
-  const int64_t whole =
-      static_cast<int64_t>(std::min(std::max(seconds, 0.), 359999.) + 0.5);
+  const int64_t whole = std::llround(std::min(std::max(seconds, 0.), 359999.));
   if (whole < 3600) return absl::StrFormat("%d:%02d", whole / 60, whole % 60);
   return absl::StrFormat("%d:%02d:%02d", whole / 3600, whole / 60 % 60,
                          whole % 60);

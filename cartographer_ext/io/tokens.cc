@@ -146,7 +146,7 @@ std::string FormatTime(TimeNs time) {
 
 std::string FormatDouble(double value) {
   for (const int digits : {15, 16}) {
-    const std::string text = absl::StrFormat("%.*g", digits, value);
+    std::string text = absl::StrFormat("%.*g", digits, value);
     double again;
     if (ParseDouble(text, &again) && again == value) return text;
   }

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/carmen_reader.h"
+
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "cartographer_ext/io/carmen_line.h"
 #include "cartographer_ext/io/sensor_source.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -77,7 +78,7 @@ absl::StatusOr<Log> ReadText(const std::string& text,
   return Read(file.path(), odometry_source);
 }
 
-TEST(CarmenTest, OldKind) {
+TEST(CarmenReaderTest, OldKind) {
   const auto log = Read(test::OwnData("flaser.clf"));
   ASSERT_TRUE(log.ok()) << log.status();
   EXPECT_EQ(log->info.format, "carmen");
@@ -106,7 +107,7 @@ TEST(CarmenTest, OldKind) {
   EXPECT_FALSE(log->Odometry()[3].inside_scan);
 }
 
-TEST(CarmenTest, OdometrySources) {
+TEST(CarmenReaderTest, OdometrySources) {
   const std::string file = test::OwnData("flaser.clf");
   EXPECT_EQ(Read(file, "odom")->Order(), "o1 s1.05 o2 s2.05 o3 s3.05 o4");
   EXPECT_EQ(Read(file, "scan")->Order(), "o1.05 s1.05 o2.05 s2.05 o3.05 s3.05");
@@ -117,7 +118,7 @@ TEST(CarmenTest, OdometrySources) {
   EXPECT_THAT(std::string(wrong.status().message()), HasSubstr("\"wheels\""));
 }
 
-TEST(CarmenTest, TooFewOdometryLinesAreNotTaken) {
+TEST(CarmenReaderTest, TooFewOdometryLinesAreNotTaken) {
   std::string text = "ODOM 0 0 0 0 0 0 1 h 1\n";
   for (int i = 0; i < 10; ++i) {
     absl::StrAppend(&text, "FLASER 2 1 2 ", i, " 0 0 ", i, " 0 0 ", 1 + i,
@@ -131,7 +132,7 @@ TEST(CarmenTest, TooFewOdometryLinesAreNotTaken) {
   EXPECT_THAT(log->info.warnings[0], HasSubstr("too few ODOM lines (1)"));
 }
 
-TEST(CarmenTest, DisorderedStampsCannotPairOdometryLines) {
+TEST(CarmenReaderTest, DisorderedStampsCannotPairOdometryLines) {
   std::string text;
   for (int i = 0; i < 100; ++i) {
     const int time = i % 10 == 9 ? i - 5 : i;
@@ -147,7 +148,7 @@ TEST(CarmenTest, DisorderedStampsCannotPairOdometryLines) {
   EXPECT_THAT(log->info.warnings[0], HasSubstr("too disordered"));
 }
 
-TEST(CarmenTest, NewKind) {
+TEST(CarmenReaderTest, NewKind) {
   const auto log = Read(test::OwnData("robotlaser.clf"));
   ASSERT_TRUE(log.ok()) << log.status();
   const std::vector<LaserScan> scans = log->Scans();
@@ -170,7 +171,7 @@ TEST(CarmenTest, NewKind) {
   EXPECT_NEAR(odometry[1].pose.theta, 1.570796, 1e-9);
 }
 
-TEST(CarmenTest, CorrectedLogsKeepOdometry) {
+TEST(CarmenReaderTest, CorrectedLogsKeepOdometry) {
   std::string text;
   for (int i = 0; i < 10; ++i) {
     absl::StrAppend(&text, "FLASER 2 1 2 ", 1.3 * i, " ", 0.1 * i, " 0 ", i,
@@ -184,79 +185,7 @@ TEST(CarmenTest, CorrectedLogsKeepOdometry) {
   EXPECT_EQ(log->Odometry()[9].pose.x, 9.);
 }
 
-TEST(CarmenTest, FieldLayouts) {
-  CarmenLine line;
-  const auto kind = [&line](const std::string& text) {
-    ParseCarmenLine(text, &line);
-    return line.kind;
-  };
-  const std::string scan = "FLASER 2 1.5 2.5 ";
-  // Stamp, host, logger's stamp; without the last; without host.
-  for (const char* tail :
-       {"0.3 0 0 0.1 0 0 7.5 host 1.0", "0.3 0 0 0.1 0 0 7.5 host",
-        "0.3 0 0 0.1 0 0 7.5", "0.3 0 0 0.1 0 0 7.5 192 1.0"}) {
-    ASSERT_EQ(kind(scan + tail), CarmenKind::kFrontLaser) << tail;
-    EXPECT_EQ(line.time, 7500000000);
-    EXPECT_EQ(line.laser_pose.x, 0.3);
-    EXPECT_EQ(line.robot_pose.x, 0.1);
-  }
-  for (const char* tail : {"0.1 0 0 7.5 host 1.0", "0.1 0 0 7.5"}) {
-    ASSERT_EQ(kind(scan + tail), CarmenKind::kFrontLaser) << tail;
-    EXPECT_EQ(line.time, 7500000000);
-    EXPECT_EQ(line.robot_pose.x, 0.1);
-  }
-  for (const char* tail :
-       {"0.1 0 3 0.5 0.1 0 7.5 host 1.0", "0.1 0 3 0.5 0.1 0 7.5",
-        "0.1 0 3 7.5 host 1.0", "0.1 0 3 7.5"}) {
-    ASSERT_EQ(kind(std::string("ODOM ") + tail), CarmenKind::kOdometry) << tail;
-    EXPECT_EQ(line.time, 7500000000) << tail;
-  }
-  const std::string raw = "RAWLASER1 0 -1.57 3.14 0.01 80 0.01 0 2 1 2 ";
-  for (const char* tail :
-       {"0 7.5 host 1", "2 10 20 7.5 host 1", "7.5 host 1"}) {
-    ASSERT_EQ(kind(raw + tail), CarmenKind::kRawLaser) << tail;
-    EXPECT_EQ(line.time, 7500000000) << tail;
-  }
-  EXPECT_EQ(kind("# FLASER"), CarmenKind::kIgnored);
-  EXPECT_EQ(kind(""), CarmenKind::kIgnored);
-  EXPECT_EQ(kind("TRUEPOS 1 2 3"), CarmenKind::kIgnored);
-  EXPECT_EQ(kind("RLASER 1 1"), CarmenKind::kRearLaser);
-}
-
-TEST(CarmenTest, MalformedLines) {
-  CarmenLine line;
-  for (const char* text :
-       {"FLASER", "FLASER x 1 2", "FLASER -1 0 0 0 0 0 0 1 h 1",
-        "FLASER 0 0 0 0 0 0 0 1 h 1", "FLASER 99999 1 2 0 0 0 0 0 0 1 h 1",
-        "FLASER 18446744073709551617 1 2 0 0 0 0 0 0 1 h 1",
-        "FLASER 2 1 2 nan 0 0 0 0 0 1 h 1", "FLASER 2 1 2 0 0 0 0 0 0 -1 h 1",
-        "FLASER 2 1 2 0 0 1e30 0 0 0 1 h 1", "FLASER 2 1 x 0 0 0 0 0 0 1 h 1",
-        "FLASER 3 1 2 0 0 0 0 0 0 h", "ODOM 1 2", "ODOM 0 0 inf 0 0 0 1 h 1",
-        "ODOM 0 0 0 0 0 0 h 1", "ROBOTLASER1 0 0 0 0",
-        "ROBOTLASER1 0 -1 2 9 20 0 0 5 1 2 3 4 5 0 0 0 0 0 0 0 0 0 0 0 0 1 h",
-        "RAWLASER1 0 -1 2 0 20 0 0 2 1 2 99999 1 h 1"}) {
-    ParseCarmenLine(text, &line);
-    EXPECT_EQ(line.kind, CarmenKind::kMalformed) << text;
-    EXPECT_STRNE(line.error, "") << text;
-  }
-}
-
-TEST(CarmenTest, BeamAngles) {
-  const auto expect = [](int n, double first_degrees, double step_degrees) {
-    double angle_min, angle_increment;
-    FrontLaserAngles(n, &angle_min, &angle_increment);
-    EXPECT_NEAR(RadToDeg(angle_min), first_degrees, 1e-9) << n;
-    EXPECT_NEAR(RadToDeg(angle_increment), step_degrees, 1e-9) << n;
-  };
-  expect(180, -90., 1.);
-  expect(181, -90., 1.);
-  expect(360, -90., 0.5);
-  expect(361, -90., 0.5);
-  expect(401, -50., 0.25);
-  expect(1, -90., 180.);
-}
-
-TEST(CarmenTest, SortsStablyAndCounts) {
+TEST(CarmenReaderTest, SortsStablyAndCounts) {
   // Stamps 2 1 2 1; the order of equal ones is that of the file.
   std::string text;
   for (int i = 0; i < 4; ++i) {
@@ -275,7 +204,7 @@ TEST(CarmenTest, SortsStablyAndCounts) {
   EXPECT_THAT(log->info.warnings[0], HasSubstr("stamps of 2 scans"));
 }
 
-TEST(CarmenTest, NoReturnCodes) {
+TEST(CarmenReaderTest, NoReturnCodes) {
   const auto range_max = [](const std::string& reading, int count) {
     std::string text = "FLASER 1 7.0 0 0 0 0 0 0 1 h 1\n";
     for (int i = 0; i < count; ++i) {
@@ -292,7 +221,7 @@ TEST(CarmenTest, NoReturnCodes) {
   EXPECT_NEAR(range_max("32.767", 1), 32.758, 1e-9);
 }
 
-TEST(CarmenTest, OnlyRawLaser) {
+TEST(CarmenReaderTest, OnlyRawLaser) {
   const auto log = ReadText(
       "RAWLASER1 0 -1.57 3.14 3.14 80 0.01 0 2 1 2 0 7.5 h 1\n"
       "ODOM 1 0 0 0 0 0 7.4 h 1\n");
@@ -300,7 +229,7 @@ TEST(CarmenTest, OnlyRawLaser) {
   EXPECT_EQ(log->Order(), "o7.4 s7.5");
 }
 
-TEST(CarmenTest, Errors) {
+TEST(CarmenReaderTest, Errors) {
   EXPECT_EQ(Read("/nonexistent.clf").status().code(),
             absl::StatusCode::kNotFound);
   EXPECT_FALSE(Read("/tmp").ok());
@@ -314,7 +243,7 @@ TEST(CarmenTest, Errors) {
               HasSubstr(".clf:2: fewer readings"));
 }
 
-TEST(CarmenTest, SurvivesMutations) {
+TEST(CarmenReaderTest, SurvivesMutations) {
   for (const char* name : {"flaser.clf", "robotlaser.clf"}) {
     const std::string sample = test::ReadBytes(test::OwnData(name));
     test::TemporaryFile file(".clf");

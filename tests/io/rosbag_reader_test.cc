@@ -1,16 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/rosbag_reader.h"
+
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include "cartographer_ext/io/rosbag_reader.h"
 #include "cartographer_ext/io/rosbag_writer.h"
 #include "cartographer_ext/io/sensor_source.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/mutation.h"
 #include "tests/test_data.h"
+
+#ifdef CARTOGRAPHER_EXT_HAS_ROSBAG
+#include "rosbag/bag.h"
+#include "sensor_msgs/Imu.h"
+#include "sensor_msgs/LaserScan.h"
+#include "tf2_msgs/TFMessage.h"
+#endif
 
 namespace cartographer_ext {
 namespace io {
@@ -123,7 +131,7 @@ TEST_P(CompressionTest, RoundTrip) {
 INSTANTIATE_TEST_SUITE_P(All, CompressionTest,
                          ::testing::Values("none", "bz2", "lz4"));
 
-TEST(RosbagTest, SortsLateMessagesAndReadsEchoesAndSweeps) {
+TEST(RosbagReaderTest, SortsLateMessagesAndReadsEchoesAndSweeps) {
   test::TemporaryFile file(".bag");
   auto writer = RosbagWriter::Open(file.path(), {});
   ASSERT_TRUE(writer.ok()) << writer.status();
@@ -148,7 +156,7 @@ TEST(RosbagTest, SortsLateMessagesAndReadsEchoesAndSweeps) {
   EXPECT_NEAR(read.time_increment, 0.25, 1e-9);
 }
 
-TEST(RosbagTest, TopicErrorsListTheTopics) {
+TEST(RosbagReaderTest, TopicErrorsListTheTopics) {
   test::TemporaryFile file(".bag");
   WriteSample(file.path(), "bz2");
   SensorSourceOptions options;
@@ -178,7 +186,7 @@ TEST(RosbagTest, TopicErrorsListTheTopics) {
   EXPECT_NEAR(pose.theta, expected.theta, 1e-9);
 }
 
-TEST(RosbagTest, UnknownTrackingFrameFallsBackToOdometry) {
+TEST(RosbagReaderTest, UnknownTrackingFrameFallsBackToOdometry) {
   test::TemporaryFile file(".bag");
   WriteSample(file.path(), "none");
   SensorSourceOptions options;
@@ -192,7 +200,51 @@ TEST(RosbagTest, UnknownTrackingFrameFallsBackToOdometry) {
               0.25, 1e-12);
 }
 
-TEST(RosbagTest, WriterErrors) {
+TEST(RosbagReaderTest, UpsideDownLaserAndTurnedImuWithoutStamps) {
+  test::TemporaryFile file(".bag");
+  {
+    rosbag::Bag bag(file.path(), rosbag::bagmode::Write);
+    tf2_msgs::TFMessage transforms;
+    transforms.transforms.resize(2);
+    transforms.transforms[0].header.frame_id = "/base_link";
+    transforms.transforms[0].child_frame_id = "laser";
+    transforms.transforms[0].transform.translation.x = 0.5;
+    transforms.transforms[0].transform.rotation.x = 1.;  // half a turn of roll
+    transforms.transforms[1].header.frame_id = "base_link";
+    transforms.transforms[1].child_frame_id = "imu";
+    transforms.transforms[1].transform.rotation.z = std::sqrt(0.5);
+    transforms.transforms[1].transform.rotation.w = std::sqrt(0.5);
+    bag.write("/tf", ros::Time(5, 0), transforms);
+    sensor_msgs::LaserScan scan;
+    scan.header.frame_id = "laser";
+    scan.angle_min = -0.5f;
+    scan.angle_increment = 0.25f;
+    scan.range_max = 10.f;
+    scan.ranges = {1.f, 2.f, 3.f};
+    bag.write("/scan", ros::Time(6, 500), scan);
+    sensor_msgs::Imu imu;
+    imu.header.frame_id = "imu";
+    imu.linear_acceleration.x = 1.;
+    bag.write("/imu", ros::Time(6, 600), imu);
+    bag.close();
+  }
+  auto source = OpenSensorSource(file.path(), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_TRUE((*source)->info().warnings.empty());
+  const std::vector<SensorEvent> events = ReadAll(source->get());
+  ASSERT_EQ(events.size(), 2u);
+  const auto& scan = absl::get<LaserScan>(events[0]);
+  EXPECT_EQ(scan.time, 6000000500);  // when it was recorded
+  EXPECT_EQ(scan.angle_min, 0.5);
+  EXPECT_EQ(scan.angle_increment, -0.25);
+  EXPECT_NEAR(scan.laser_pose.x, 0.5, 1e-12);
+  EXPECT_NEAR(scan.laser_pose.theta, 0., 1e-12);
+  // x of the IMU is y of the robot.
+  EXPECT_TRUE(absl::get<ImuReading>(events[1]).linear_acceleration.isApprox(
+      Eigen::Vector3d(0., 1., 0.)));
+}
+
+TEST(RosbagReaderTest, WriterErrors) {
   EXPECT_FALSE(RosbagWriter::Open("/nonexistent/a.bag", {}).ok());
   test::TemporaryFile file(".bag");
   RosbagWriterOptions options;
@@ -219,7 +271,7 @@ TEST(RosbagTest, WriterErrors) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("/dev/full"));
 }
 
-TEST(RosbagTest, TruncatedAndForeignFilesAreErrors) {
+TEST(RosbagReaderTest, TruncatedAndForeignFilesAreErrors) {
   test::TemporaryFile file(".bag");
   WriteSample(file.path(), "bz2");
   const std::string bytes = test::ReadBytes(file.path());
@@ -234,7 +286,7 @@ TEST(RosbagTest, TruncatedAndForeignFilesAreErrors) {
   EXPECT_FALSE(OpenSensorSource(file.path(), {}).ok());
 }
 
-TEST(RosbagTest, SurvivesMutations) {
+TEST(RosbagReaderTest, SurvivesMutations) {
   for (const char* compression : {"none", "bz2", "lz4"}) {
     test::TemporaryFile file(".bag");
     WriteSample(file.path(), compression, 3);
@@ -260,7 +312,7 @@ TEST(RosbagTest, SurvivesMutations) {
   }
 }
 
-TEST(RosbagTest, SharedData) {
+TEST(RosbagReaderTest, SharedData) {
   const std::string bag = test::SharedData("bags/mit-csail.sort.bag");
   const std::string log = test::SharedData("carmen/mit-csail.clf.xz");
   CARTOGRAPHER_EXT_SKIP_WITHOUT(bag);
@@ -286,7 +338,7 @@ TEST(RosbagTest, SharedData) {
   }
 }
 
-TEST(RosbagTest, SharedAces) {
+TEST(RosbagReaderTest, SharedAces) {
   const std::string bag = test::SharedData("bags/aces.sort.bag");
   CARTOGRAPHER_EXT_SKIP_WITHOUT(bag);
   auto source = OpenSensorSource(bag, {});
@@ -304,7 +356,7 @@ TEST(RosbagTest, SharedAces) {
 
 #else
 
-TEST(RosbagTest, SaysWhatIsMissing) {
+TEST(RosbagReaderTest, SaysWhatIsMissing) {
   test::TemporaryFile file(".bag");
   test::WriteBytes(file.path(), "#ROSBAG V2.0\n");
   const auto source = OpenSensorSource(file.path(), {});
