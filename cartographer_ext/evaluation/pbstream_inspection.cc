@@ -23,6 +23,8 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kLocalTolerance = 1e-3;  // metres, radians
+// What comparing a pose with itself may give.
+constexpr double kRounding = 1e-9;  // metres, radians
 // Where our own options travel in the host's messages.
 constexpr int kExtensionField = 51966;
 
@@ -136,7 +138,9 @@ struct PoseDifferences {
     max_rotation = std::max(max_rotation, std::abs(difference.theta));
     sum_translation += translation;
   }
-  bool any() const { return max_translation > 0. || max_rotation > 0.; }
+  bool any() const {
+    return max_translation > kRounding || max_rotation > kRounding;
+  }
   ordered_json ToJson() const {
     return {{"count", count},
             {"max_translation", max_translation},
@@ -250,7 +254,8 @@ class Comparison {
         {"fraction_alike", agreement.fraction_alike},
         {"max_translation", agreement.max_translation},
         {"max_rotation", agreement.max_rotation}};
-    if (agreement.max_translation > 0. || agreement.max_rotation > 0.) {
+    if (agreement.max_translation > kRounding ||
+        agreement.max_rotation > kRounding) {
       Differ(absl::StrFormat(
           "local SLAM: %d stamps in common; from node to node %.2f %% of %d "
           "motions are alike to 2 cm and 0.2 degrees, the worst is off by "
