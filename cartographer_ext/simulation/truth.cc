@@ -45,6 +45,19 @@ std::vector<size_t> Sample(const std::vector<TruePose>& trajectory,
   return samples;
 }
 
+// Whether the laser looks where a point of the robot's frame lies.
+bool InView(const LaserSettings& laser, const Eigen::Vector2d& in_robot) {
+  const Eigen::Vector2d in_laser = laser.mounting.Inverse() * in_robot;
+  if (in_laser.norm() < laser.min_range || in_laser.norm() > laser.max_range) {
+    return false;
+  }
+  const double span = laser.angle_increment * (laser.beams - 1);
+  const double from_middle = std::remainder(
+      std::atan2(in_laser.y(), in_laser.x()) - laser.angle_min - 0.5 * span,
+      2. * kPi);
+  return std::abs(from_middle) <= 0.5 * span + laser.angle_increment;
+}
+
 // Samples in square cells of one loop distance, for finding neighbours.
 class Neighbours {
  public:
@@ -185,7 +198,10 @@ std::vector<KeyDistanceView> KeyDistanceViews(
       if (distance >= nearest || distance <= kWallMargin) continue;
       const Eigen::Vector2d before =
           mark - kWallMargin / distance * (mark - position);
-      if (!simulation.plan().Visible(position, before)) continue;
+      if (!InView(simulation.world().laser, here.pose.Inverse() * mark) ||
+          !simulation.plan().Visible(position, before)) {
+        continue;
+      }
       nearest = distance;
       *time = here.time;
       *in_robot = here.pose.Inverse() * mark;

@@ -135,6 +135,16 @@ TEST(TruthTest, KeyDistancesAreTransportedBack) {
   EXPECT_LT(view.a_in_robot.norm(), 2.2);
 }
 
+TEST(TruthTest, KeyDistanceNeedsTheFieldOfView) {
+  // Driving away from wall a with a laser that looks forward only.
+  const std::string text =
+      "rectangle 0 0 9 2\nkey_distance k 0 1 9 1\nlaser beams=181 fov=180\n";
+  const auto away = Create(text + "start 2 1 0\ngoto 7 1");
+  EXPECT_FALSE(KeyDistanceViews(*away, TrueTrajectory(*away))[0].seen);
+  const auto turned = Create(text + "start 2 1 180\nwait 1\ngoto 7 1");
+  EXPECT_TRUE(KeyDistanceViews(*turned, TrueTrajectory(*turned))[0].seen);
+}
+
 TEST(TruthTest, UnseenKeyDistanceSaysSo) {
   const auto simulation = Create(
       "rectangle 0 0 4 4\nrectangle 10 0 14 4\nstart 1 1 0\ngoto 3 1\n"
