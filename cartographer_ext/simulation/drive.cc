@@ -100,10 +100,12 @@ class Driver {
           std::abs(state_.turn_rate) <= robot_.turn_acceleration * kDriveStep) {
         break;
       }
-      const double rate = std::min(
-          robot_.turn_rate,
+      const double braking =
           kBrakeReserve *
-              std::sqrt(2. * robot_.turn_acceleration * std::abs(left)));
+          std::sqrt(2. * robot_.turn_acceleration * std::abs(left));
+      // The last term keeps strong motors from overshooting in one step.
+      const double rate = std::min(
+          {robot_.turn_rate, braking, 0.5 * std::abs(left) / kDriveStep});
       if (!Step(0., left > 0. ? rate : -rate)) return false;
     }
     return StandStill();

@@ -133,6 +133,25 @@ TEST(DriveTest, SeedMovesWaypointsOnlyWithJitter) {
   EXPECT_EQ(Plan(way, 1).PoseAt(7.).x, Plan(way, 2).PoseAt(7.).x);
 }
 
+TEST(DriveTest, ExtremeMotorsArriveToo) {
+  for (const std::string robot :
+       {"robot speed=10 acceleration=20 turn_rate=20 turn_acceleration=100",
+        "robot speed=0.05 acceleration=20 turn_rate=0.05 "
+        "turn_acceleration=0.05",
+        "robot speed=2 acceleration=0.1 turn_rate=0.5 turn_acceleration=0.5",
+        "robot lookahead=5", "robot lookahead=0.1 speed=3"}) {
+    const Drive drive =
+        Plan(robot +
+             "\nstart 0 0 0\nturn 179\nturn -60\ngoto 3 0\ngoto 3 2\n"
+             "goto 0 2\nreverse 1 2\nturn 90");
+    const Pose2 end = drive.PoseAt(1e9);
+    EXPECT_NEAR(end.x, 1., 0.3) << robot;
+    EXPECT_NEAR(end.y, 2., 1.) << robot;
+    EXPECT_NEAR(end.theta, kPi / 2., 0.01) << robot;
+    EXPECT_LT(drive.duration(), 1000.) << robot;
+  }
+}
+
 TEST(DriveTest, UnreachableInTimeIsAnError) {
   auto world =
       ParseWorld("robot speed=0.01\nstart 0 0 0\ngoto 9000 0", "far.world");

@@ -140,6 +140,27 @@ TEST(WorldSourceTest, PerfectHasNoErrors) {
   EXPECT_NEAR(end.x, (*simulation)->drive().PoseAt(1e3).x - 2., 1e-4);
 }
 
+// Whatever a damaged file asks for, planning and simulating it returns.
+TEST(WorldSourceTest, SurvivesDamage) {
+  test::ForEachMutation(
+      kWorld,
+      [](const std::string& damaged) {
+        auto world = ParseWorld(damaged, "damaged.world");
+        if (!world.ok()) return;
+        auto simulation =
+            Simulation::Create(*std::move(world), SimulationOptions());
+        if (!simulation.ok()) return;
+        WorldSource source(*std::move(simulation));
+        io::SensorEvent event;
+        for (int i = 0; i != 100; ++i) {
+          const auto more = source.Next(&event);
+          ASSERT_TRUE(more.ok());
+          if (!*more) break;
+        }
+      },
+      200);
+}
+
 TEST(WorldSourceTest, CollisionsAreErrors) {
   const auto wall =
       Create("polyline 3 -1 3 1\nstart 0 0 0\ngoto 5 0", SimulationOptions());
