@@ -19,7 +19,7 @@ TEST(PortTest, RoundingGoesAwayFromZero) {
 
 TEST(PortTest, GzipRoundTrip) {
   std::string text;
-  for (int i = 0; i != 100000; ++i) text += static_cast<char>(i * i >> 7);
+  for (int64 i = 0; i != 100000; ++i) text += static_cast<char>(i * i >> 7);
   std::string compressed = "before";
   FastGzipString(text, &compressed);
   EXPECT_EQ(compressed.substr(0, 6), "before");
