@@ -3,7 +3,6 @@
 #include "cartographer_ext/evaluation/host_map.h"
 
 #include <deque>
-#include <map>
 #include <vector>
 
 #include "cartographer/mapping/proto/serialization.pb.h"
@@ -13,18 +12,13 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-using cartographer::mapping::NodeId;
 using cartographer::mapping::PoseGraphInterface;
-using cartographer::transform::Rigid3d;
 
 MapGraph MakeMapGraph(const PoseGraphInterface& pose_graph) {
   MapGraph graph;
-  std::map<NodeId, Rigid3d> node_from_tracking;
   for (const auto& entry : pose_graph.GetTrajectoryNodes()) {
     if (entry.data.constant_data == nullptr) continue;
     const auto& data = *entry.data.constant_data;
-    node_from_tracking.emplace(entry.id,
-                               Rigid3d::Rotation(data.gravity_alignment));
     GraphNode node;
     node.time = FromHostTime(data.time);
     node.local_pose = ToPlanarPose(data.local_pose);
@@ -47,12 +41,8 @@ MapGraph MakeMapGraph(const PoseGraphInterface& pose_graph) {
                             entry.submap_id.submap_index};
     constraint.node_id = {entry.node_id.trajectory_id,
                           entry.node_id.node_index};
-    Rigid3d relative_pose = entry.pose.zbar_ij;
-    const auto rotation = node_from_tracking.find(entry.node_id);
-    if (rotation != node_from_tracking.end()) {
-      relative_pose = relative_pose * rotation->second;
-    }
-    constraint.relative_pose = ToPlanarPose(relative_pose);
+    // What the pose graph hands out is (submap <- tracking), as in files.
+    constraint.relative_pose = ToPlanarPose(entry.pose.zbar_ij);
     constraint.translation_weight = entry.pose.translation_weight;
     constraint.rotation_weight = entry.pose.rotation_weight;
     constraint.is_loop =

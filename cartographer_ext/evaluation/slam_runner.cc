@@ -241,7 +241,11 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   io::SensorEvent event;
   while (true) {
     const absl::StatusOr<bool> more = source->Next(&event);
-    if (!more.ok()) return more.status();
+    if (!more.ok()) {
+      // The host does not stand being destroyed while it waits for data.
+      run.map_builder->FinishTrajectory(run.trajectory_id);
+      return more.status();
+    }
     if (!*more) break;
     absl::visit(feeder, event);
     if (!absl::holds_alternative<io::LaserScan>(event)) continue;
@@ -252,11 +256,11 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
       options.on_progress(progress);
     }
   }
+  run.map_builder->FinishTrajectory(run.trajectory_id);
   if (run.scans == 0) {
     return absl::InvalidArgumentError(
         "no scan of the recording has a range within the limits");
   }
-  run.map_builder->FinishTrajectory(run.trajectory_id);
   progress.stage = SlamProgress::Stage::kOptimizing;
   if (options.on_progress) options.on_progress(progress);
   run.front_end_cpu_seconds = ThreadCpuSeconds() - thread_cpu_start;
