@@ -134,8 +134,11 @@ class IncrementalSmoother {
   void RebuildFactor();
   std::vector<Candidate> FindCandidates(int first_edge) const;
   std::vector<int> ChooseSeeds(std::vector<Candidate> candidates) const;
-  // At the end: where the information is honest, true loops have chi2 around 3
-  // and the epochs' narrow kernel leaves some behind.
+  // Where the information is honest, true loops have chi2 around 3: the epochs'
+  // kernel then weakens them and leaves some behind. True when most loops agree
+  // and count for less than half on average.
+  bool KernelIsNarrow() const;
+  // At the end, if so.
   void TryWiderKernels();
   // True when a hypothesis was taken over into the poses.
   bool TryHypotheses(int first_edge);

@@ -14,7 +14,7 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-constexpr size_t kMaxInnovationTests = 200;
+constexpr size_t kMaxInnovationTests = 60;
 constexpr size_t kMaxSeedTests = 20;
 constexpr int kMaxFinalRounds = 5;
 constexpr int kFinalPolishRounds = 30;
@@ -73,8 +73,7 @@ void IncrementalSmoother::EndEpoch() {
     }
   }
   SolveRobust(edges_, solver, &poses_);
-  if (options_.late_rejection && options_.readmission &&
-      LoopsAgree(edges_, poses_, options_.gate, 0.5)) {
+  if (options_.late_rejection && options_.readmission && KernelIsNarrow()) {
     PolishTruncated(edges_, options_.gate, options_.polish_rounds, &poses_,
                     nullptr);
   }
@@ -264,8 +263,24 @@ void IncrementalSmoother::Finish() {
   estimate_outdated_ = false;
 }
 
+bool IncrementalSmoother::KernelIsNarrow() const {
+  if (!LoopsAgree(edges_, poses_, options_.gate, 0.5)) return false;
+  double weights = 0.;
+  int agreeing = 0;
+  for (const WhitenedEdge& edge : edges_) {
+    if (!edge.is_loop) continue;
+    const double chi2 = Chi2(edge, poses_[edge.from], poses_[edge.to]);
+    if (chi2 >= options_.gate) continue;
+    ++agreeing;
+    weights += EvaluateKernel(options_.epoch_kernel, chi2,
+                              AcsShape(options_.epoch_kernel))
+                   .weight;
+  }
+  return weights < 0.5 * agreeing;
+}
+
 void IncrementalSmoother::TryWiderKernels() {
-  if (!LoopsAgree(edges_, poses_, options_.gate, 0.5)) return;
+  if (!KernelIsNarrow()) return;
   double lowest = TruncatedCost(edges_, poses_);
   const std::vector<Pose2> start = poses_;
   SolverOptions solver = EpochSolverOptions();

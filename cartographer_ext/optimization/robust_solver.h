@@ -39,7 +39,9 @@ struct SolverOptions {
   double cost_tolerance = 1e-7;
   // Ends when no pose moves more than this (metres or radians).
   double step_tolerance = 1e-7;
-  double initial_lambda = 1e-4;
+  // Larger values slow the long waves of a trajectory down: their curvature is
+  // far below the diagonal.
+  double initial_lambda = 3e-6;
   bool prune = true;
   double prune_weight = 1e-4;
   // Empty, or one factor for each edge on top of the kernel's weight.

@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// OptimizationProblem2D for options with our block: before each optimisation it
+// chooses the loop constraints that may act (SelectLoops); the stock problem
+// does all else, so that with right loops only the result is the stock one's.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_ROBUST_OPTIMIZATION_PROBLEM_2D_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_ROBUST_OPTIMIZATION_PROBLEM_2D_H_
+
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
+#include "cartographer_ext/optimization/loop_selection.h"
+#include "cartographer_ext/robust_optimization_options.pb.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+class RobustOptimizationProblem2D
+    : public cartographer::mapping::optimization::OptimizationProblemInterface<
+          cartographer::mapping::optimization::NodeSpec2D,
+          cartographer::mapping::optimization::SubmapSpec2D,
+          cartographer::transform::Rigid2d> {
+ public:
+  using NodeId = cartographer::mapping::NodeId;
+  using SubmapId = cartographer::mapping::SubmapId;
+  using NodeSpec2D = cartographer::mapping::optimization::NodeSpec2D;
+  using SubmapSpec2D = cartographer::mapping::optimization::SubmapSpec2D;
+  using PoseGraphInterface = cartographer::mapping::PoseGraphInterface;
+
+  RobustOptimizationProblem2D(
+      const cartographer::mapping::optimization::proto::
+          OptimizationProblemOptions& options,
+      const proto::RobustOptimizationOptions& extension);
+
+  void AddImuData(int trajectory_id,
+                  const cartographer::sensor::ImuData& imu_data) override {
+    stock_.AddImuData(trajectory_id, imu_data);
+  }
+  void AddOdometryData(
+      int trajectory_id,
+      const cartographer::sensor::OdometryData& odometry_data) override {
+    stock_.AddOdometryData(trajectory_id, odometry_data);
+  }
+  void AddTrajectoryNode(int trajectory_id,
+                         const NodeSpec2D& node_data) override {
+    stock_.AddTrajectoryNode(trajectory_id, node_data);
+  }
+  void InsertTrajectoryNode(const NodeId& node_id,
+                            const NodeSpec2D& node_data) override {
+    stock_.InsertTrajectoryNode(node_id, node_data);
+  }
+  void TrimTrajectoryNode(const NodeId& node_id) override {
+    stock_.TrimTrajectoryNode(node_id);
+  }
+  void AddSubmap(
+      int trajectory_id,
+      const cartographer::transform::Rigid2d& global_submap_pose) override {
+    stock_.AddSubmap(trajectory_id, global_submap_pose);
+  }
+  void InsertSubmap(
+      const SubmapId& submap_id,
+      const cartographer::transform::Rigid2d& global_submap_pose) override {
+    stock_.InsertSubmap(submap_id, global_submap_pose);
+  }
+  void TrimSubmap(const SubmapId& submap_id) override {
+    stock_.TrimSubmap(submap_id);
+  }
+  void SetMaxNumIterations(cartographer::int32 max_num_iterations) override {
+    stock_.SetMaxNumIterations(max_num_iterations);
+  }
+
+  void Solve(
+      const std::vector<Constraint>& constraints,
+      const std::map<int, PoseGraphInterface::TrajectoryState>&
+          trajectories_state,
+      const std::map<std::string, LandmarkNode>& landmark_nodes) override;
+
+  const cartographer::mapping::MapById<NodeId, NodeSpec2D>& node_data()
+      const override {
+    return stock_.node_data();
+  }
+  const cartographer::mapping::MapById<SubmapId, SubmapSpec2D>& submap_data()
+      const override {
+    return stock_.submap_data();
+  }
+  const std::map<std::string, cartographer::transform::Rigid3d>& landmark_data()
+      const override {
+    return stock_.landmark_data();
+  }
+  const cartographer::sensor::MapByTime<cartographer::sensor::ImuData>&
+  imu_data() const override {
+    return stock_.imu_data();
+  }
+  const cartographer::sensor::MapByTime<cartographer::sensor::OdometryData>&
+  odometry_data() const override {
+    return stock_.odometry_data();
+  }
+
+  void AddFixedFramePoseData(
+      int trajectory_id, const cartographer::sensor::FixedFramePoseData& data) {
+    stock_.AddFixedFramePoseData(trajectory_id, data);
+  }
+  void SetTrajectoryData(int trajectory_id,
+                         const PoseGraphInterface::TrajectoryData& data) {
+    stock_.SetTrajectoryData(trajectory_id, data);
+  }
+  const cartographer::sensor::MapByTime<
+      cartographer::sensor::FixedFramePoseData>&
+  fixed_frame_pose_data() const {
+    return stock_.fixed_frame_pose_data();
+  }
+  const std::map<int, PoseGraphInterface::TrajectoryData>& trajectory_data()
+      const {
+    return stock_.trajectory_data();
+  }
+
+ private:
+  // Submap and node of a loop.
+  using LoopKey = std::tuple<int, int, int, int>;
+
+  struct Problem {
+    PoseGraph graph;
+    std::vector<int> neighbours;
+    std::vector<int> constraint_of_edge;  // -1: no constraint
+  };
+  Problem MakeProblem(const std::vector<Constraint>& constraints,
+                      const std::map<int, PoseGraphInterface::TrajectoryState>&
+                          trajectories_state) const;
+
+  const proto::RobustOptimizationOptions extension_;
+  const double local_slam_translation_weight_;
+  const double local_slam_rotation_weight_;
+  cartographer::mapping::optimization::StockOptimizationProblem2D stock_;
+  std::set<LoopKey> seen_loops_;
+};
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_ROBUST_OPTIMIZATION_PROBLEM_2D_H_

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/loop_selection.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "cartographer_ext/optimization/incremental_smoother.h"
+#include "cartographer_ext/optimization/robust_solver.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+constexpr int kPolishRounds = 10;
+
+class Selector {
+ public:
+  Selector(const PoseGraph& graph, const std::vector<int>& neighbours,
+           const LoopSelectionOptions& options)
+      : graph_(graph),
+        neighbours_(neighbours),
+        options_(options),
+        edges_(Whiten(graph.edges)) {}
+
+  LoopSelection Run() {
+    LoopSelection selection;
+    selection.accepted.assign(edges_.size(), true);
+    selection.poses = graph_.poses;
+    SolveAccepted(selection.accepted, &selection.poses);
+    if (options_.robust_loops && !AllAgree(selection.poses)) {
+      ChooseByTruncatedCost(&selection);
+    }
+    if (options_.odometry_check) CheckOdometry(&selection);
+    selection.chi2 = Chi2OfEdges(edges_, selection.poses);
+    return selection;
+  }
+
+ private:
+  bool AllAgree(const std::vector<Pose2>& poses) const {
+    for (const WhitenedEdge& edge : edges_) {
+      if (edge.is_loop &&
+          Chi2(edge, poses[edge.from], poses[edge.to]) >= options_.gate) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Solves with these edges alone, those out of force at weight 0.
+  void SolveAccepted(const std::vector<bool>& accepted,
+                     std::vector<Pose2>* const poses) const {
+    SolverOptions solver;
+    solver.max_iterations = 20;
+    solver.cost_tolerance = 1e-5;
+    solver.edge_weights.assign(edges_.size(), 1.);
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (!accepted[i]) solver.edge_weights[i] = 0.;
+    }
+    SolveRobust(edges_, solver, poses);
+  }
+
+  void ChooseByTruncatedCost(LoopSelection* const selection) const {
+    std::vector<std::vector<Pose2>> starts = {graph_.poses, selection->poses};
+    if (options_.thorough) {
+      ReplayResult replay;
+      if (Replay(graph_, SmootherOptions(), &replay).ok()) {
+        starts.push_back(std::move(replay.poses));
+      }
+    }
+    double lowest = -1.;
+    for (const std::vector<Pose2>& start : starts) {
+      std::vector<Pose2> poses = start;
+      SolverOptions solver;
+      solver.kernel = DefaultKernel(KernelType::kDcs);
+      solver.kernel.parameter = 0.5 * options_.gate;
+      SolveRobust(edges_, solver, &poses);
+      std::vector<double> weights;
+      PolishTruncated(edges_, options_.gate, kPolishRounds, &poses, &weights);
+      const double cost = TruncatedCost(edges_, poses);
+      if (lowest >= 0. && cost >= lowest) continue;
+      lowest = cost;
+      selection->poses = std::move(poses);
+      for (size_t i = 0; i != edges_.size(); ++i) {
+        selection->accepted[i] = weights[i] > 0.5;
+      }
+    }
+  }
+
+  std::vector<int> Violations(const std::vector<Pose2>& poses) const {
+    std::vector<int> result;
+    for (const int i : neighbours_) {
+      const WhitenedEdge& edge = edges_[i];
+      if (Chi2(edge, poses[edge.from], poses[edge.to]) >
+          options_.odometry_gate) {
+        result.push_back(i);
+      }
+    }
+    return result;
+  }
+
+  // The accepted loop with the largest chi2 that spans the worst violation.
+  int Blame(const std::vector<int>& violations,
+            const std::vector<bool>& accepted,
+            const std::vector<Pose2>& poses) const {
+    int worst = violations.front();
+    double worst_chi2 = -1.;
+    for (const int i : violations) {
+      const double chi2 =
+          Chi2(edges_[i], poses[edges_[i].from], poses[edges_[i].to]);
+      if (chi2 > worst_chi2) {
+        worst_chi2 = chi2;
+        worst = i;
+      }
+    }
+    const int place = std::max(edges_[worst].from, edges_[worst].to);
+    int blamed = -1;
+    double largest = -1.;
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      const WhitenedEdge& edge = edges_[i];
+      if (!edge.is_loop || !accepted[i]) continue;
+      if (std::min(edge.from, edge.to) > place ||
+          std::max(edge.from, edge.to) < place) {
+        continue;
+      }
+      const double chi2 = Chi2(edge, poses[edge.from], poses[edge.to]);
+      if (chi2 > largest) {
+        largest = chi2;
+        blamed = i;
+      }
+    }
+    return blamed;
+  }
+
+  void CheckOdometry(LoopSelection* const selection) const {
+    std::vector<int> violations = Violations(selection->poses);
+    std::vector<bool> accepted = selection->accepted;
+    std::vector<Pose2> bent = selection->poses;
+    std::vector<int> blamed;
+    std::vector<int> remaining = violations;
+    for (int k = 0; k < options_.max_rollbacks && !remaining.empty(); ++k) {
+      const int loop = Blame(remaining, accepted, bent);
+      if (loop < 0) break;
+      accepted[loop] = false;
+      blamed.push_back(loop);
+      bent = graph_.poses;  // rolled back
+      SolveAccepted(accepted, &bent);
+      remaining = Violations(bent);
+      if (remaining.size() < violations.size()) {
+        violations = remaining;
+        selection->accepted = accepted;
+        selection->poses = bent;
+        selection->blamed = blamed;
+      }
+    }
+    selection->violations = violations.size();
+  }
+
+  const PoseGraph& graph_;
+  const std::vector<int>& neighbours_;
+  const LoopSelectionOptions& options_;
+  const std::vector<WhitenedEdge> edges_;
+};
+
+}  // namespace
+
+LoopSelection SelectLoops(const PoseGraph& graph,
+                          const std::vector<int>& neighbours,
+                          const LoopSelectionOptions& options) {
+  return Selector(graph, neighbours, options).Run();
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

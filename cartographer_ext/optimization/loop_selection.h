@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which loops of a growing map may act in the next optimisation? Asked again
+// before every optimisation, from the poses of the last one and with all loops,
+// so that a loop judged wrong can come back when the evidence changes.
+//
+//   1. Least squares with all loops. When all agree in the end nothing else
+//      happens; this is the usual case, and how a true loop after a long drift
+//      gets in.
+//   2. Otherwise DCS from the poses as they are and from those of (1) and, when
+//      there are loops it has not seen before, `auto` without its own start;
+//      each polished by the gate. The lowest truncated cost wins.
+//   3. Odometry check with rollback (improved graph optimisation 2024, section
+//      3.4): where the winner bends the trajectory between neighbouring poses
+//      beyond the gate, the loop to blame is the one with the largest chi2
+//      among those which span the place. It is switched off, the graph is
+//      solved again from the poses before, and the result is kept only if it
+//      has fewer such places.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_LOOP_SELECTION_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_LOOP_SELECTION_H_
+
+#include <vector>
+
+#include "cartographer_ext/optimization/kernels.h"
+#include "cartographer_ext/optimization/pose_graph.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct LoopSelectionOptions {
+  bool robust_loops = true;
+  double gate = kChi2Gate;
+  bool odometry_check = true;
+  double odometry_gate = 30.;
+  int max_rollbacks = 10;
+  // Whether (2) may use a replay, which costs more than the rest.
+  bool thorough = true;
+};
+
+struct LoopSelection {
+  std::vector<bool> accepted;  // per edge; true for all that are no loops
+  std::vector<double> chi2;    // per edge at `poses`
+  std::vector<Pose2> poses;
+  std::vector<int> blamed;  // edges switched off by the odometry check
+  int violations = 0;       // places beyond the odometry gate that remain
+};
+
+// `neighbours` are the indices of the edges which the odometry check looks at
+// (the motion between neighbouring poses); their ends must stand in order of
+// time.
+LoopSelection SelectLoops(const PoseGraph& graph,
+                          const std::vector<int>& neighbours,
+                          const LoopSelectionOptions& options);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_LOOP_SELECTION_H_

@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+// LINK: evaluation optimization
+//
+// cartographer_ext_optimize: solves a pose graph whose loops may be wrong.
+#include <iostream>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/types/optional.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/evaluation/pbstream_map.h"
+#include "cartographer_ext/evaluation/pbstream_optimization.h"
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream_writer.h"
+#include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/optimization/graph_metrics.h"
+#include "cartographer_ext/optimization/optimize.h"
+#include "cartographer_ext/tools/command_line.h"
+#include "cartographer_ext/tools/pose_graph_files.h"
+#include "gflags/gflags.h"
+
+DEFINE_string(input_filename, "", "Graph: .g2o (also .gz, .xz) or .pbstream.");
+DEFINE_string(kernel, "auto",
+              "none huber sc gm dcs acs acs_paper gnc_tls auto r_isam.");
+DEFINE_double(kernel_parameter, 0.,
+              "w, P, b or c of the kernel; 0 takes the customary value.");
+DEFINE_string(norm, "spectral",
+              "|Lambda| of acs_paper: spectral determinant root information.");
+DEFINE_int32(max_iterations, 200, "Of one solution.");
+DEFINE_bool(prune, true, "Leave dead loops out of the linear systems.");
+DEFINE_bool(dead_reckoning, false,
+            "Start from chained odometry instead of the file's poses.");
+DEFINE_string(output_filename, "",
+              "Optimised graph: .g2o, .tum (index as stamp, or the nodes of a "
+              "pbstream) or, for a pbstream, .pbstream.");
+DEFINE_bool(keep_rejected, true,
+            "Keep loops which were switched off in an output pbstream.");
+DEFINE_string(drop_loops, "",
+              "Undo loops of a pbstream before optimising: comma separated "
+              "submap_trajectory:submap:node_trajectory:node.");
+DEFINE_double(loop_sigma, 0.1,
+              "pbstream: standard deviation in metres that the loops' weights "
+              "stand for.");
+DEFINE_string(truth_filename, "",
+              "True poses: g2o, or lines x y theta; compared by id, or along "
+              "the path where ids do not agree.");
+DEFINE_string(verdicts_filename, "", "Output: CSV, one line per loop.");
+DEFINE_string(picture_filename, "", "Output: PNG, before beside after.");
+DEFINE_string(json, "", "Writes the result as JSON; - is standard output.");
+
+namespace cartographer_ext {
+namespace {
+
+constexpr char kDescription[] =
+    R"(Optimises a pose graph and tells right loops from wrong ones.
+
+  cartographer_ext_optimize -input_filename=graph.g2o -kernel=auto
+      -output_filename=optimised.g2o -verdicts_filename=loops.csv
+      -picture_filename=before_after.png -json=-
+A finished map; the loops found wrong are left out of the new one:
+  cartographer_ext_optimize -input_filename=map.pbstream -nokeep_rejected
+      -output_filename=better.pbstream
+Undo one loop (ids as in the CSV of cartographer_ext_export) and solve again:
+  cartographer_ext_optimize -input_filename=map.pbstream -kernel=huber
+      -drop_loops=0:12:0:1034 -output_filename=without.pbstream)";
+
+// What was read.
+struct Input {
+  optimization::PoseGraph graph;
+  absl::optional<io::Pbstream> pbstream;
+  evaluation::MapPoseGraph map;  // with pbstream
+};
+
+absl::StatusOr<Input> ReadInput() {
+  Input input;
+  if (!absl::EndsWith(FLAGS_input_filename, ".pbstream")) {
+    if (!FLAGS_drop_loops.empty()) {
+      return absl::InvalidArgumentError("-drop_loops needs a pbstream");
+    }
+    auto graph = tools::ReadPoseGraph(FLAGS_input_filename);
+    if (!graph.ok()) return graph.status();
+    input.graph = *std::move(graph);
+    return input;
+  }
+  auto pbstream = io::ReadPbstream(FLAGS_input_filename);
+  if (!pbstream.ok()) return pbstream.status();
+  input.pbstream = *std::move(pbstream);
+  const auto dropped = evaluation::FindLoops(
+      evaluation::MakeMapGraph(*input.pbstream), FLAGS_drop_loops);
+  if (!dropped.ok()) return dropped.status();
+  evaluation::DropConstraints(*dropped, &*input.pbstream);
+  evaluation::MapOptimizationOptions options;
+  options.loop_sigma = FLAGS_loop_sigma;
+  auto map = evaluation::MakeMapPoseGraph(
+      evaluation::MakeMapGraph(*input.pbstream), options);
+  if (!map.ok()) {
+    return absl::Status(
+        map.status().code(),
+        absl::StrCat(FLAGS_input_filename, ": ", map.status().message()));
+  }
+  input.map = *std::move(map);
+  input.graph = input.map.graph;
+  return input;
+}
+
+absl::Status WriteTum(const Input& input, const std::vector<Pose2>& poses) {
+  std::vector<io::StampedPose> trajectory;
+  if (!input.pbstream.has_value()) {
+    for (size_t i = 0; i != poses.size(); ++i) {
+      trajectory.push_back(io::MakeStampedPose(
+          static_cast<io::TimeNs>(i) * 1000000000, poses[i]));
+    }
+  } else {
+    io::Pbstream moved = *input.pbstream;
+    evaluation::StorePoses(input.map, poses, &moved);
+    trajectory = evaluation::MakeMapGraph(moved).GlobalTrajectory().poses();
+  }
+  return io::WriteTumTrajectory(trajectory, FLAGS_output_filename);
+}
+
+absl::Status WriteOutput(const Input& input,
+                         const optimization::OptimizeResult& result) {
+  if (FLAGS_output_filename.empty()) return absl::OkStatus();
+  if (absl::EndsWith(FLAGS_output_filename, ".tum")) {
+    return WriteTum(input, result.poses);
+  }
+  if (!absl::EndsWith(FLAGS_output_filename, ".pbstream")) {
+    return tools::WritePoseGraph(input.graph, result.poses,
+                                 FLAGS_output_filename);
+  }
+  if (!input.pbstream.has_value()) {
+    return absl::InvalidArgumentError(
+        "a pbstream can only be written when one was read");
+  }
+  io::Pbstream output = *input.pbstream;
+  evaluation::StorePoses(input.map, result.poses, &output);
+  if (!FLAGS_keep_rejected) {
+    std::vector<int> rejected;
+    for (size_t i = 0; i != input.graph.edges.size(); ++i) {
+      if (!result.accepted[i]) {
+        rejected.push_back(input.map.constraint_of_edge[i]);
+      }
+    }
+    evaluation::DropConstraints(rejected, &output);
+  }
+  return io::WritePbstream(output, FLAGS_output_filename);
+}
+
+nlohmann::ordered_json Report(const optimization::PoseGraph& graph,
+                              const optimization::OptimizeResult& result) {
+  int loops = 0, accepted = 0;
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    loops += graph.edges[i].is_loop;
+    accepted += graph.edges[i].is_loop && result.accepted[i];
+  }
+  nlohmann::ordered_json json;
+  json["kernel"] = FLAGS_kernel;
+  json["cpu_seconds"] = result.cpu_seconds;
+  json["iterations"] = result.iterations;
+  json["converged"] = result.converged;
+  json["poses"] = graph.poses.size();
+  json["loops"] = {
+      {"total", loops}, {"accepted", accepted}, {"rejected", loops - accepted}};
+  json["chi2"] = {{"odometry", result.odometry_chi2},
+                  {"accepted_loops", result.accepted_loops_chi2},
+                  {"truncated", result.truncated_chi2}};
+  if (!result.member.empty()) {
+    json["member"] = result.member;
+    json["chi2"]["truncated_of_member"] = result.member_truncated_chi2;
+  }
+  const std::vector<double>& steps = result.step_seconds;
+  if (!steps.empty()) {
+    json["step_milliseconds"] = {
+        {"mean",
+         1e3 * std::accumulate(steps.begin(), steps.end(), 0.) / steps.size()},
+        {"p99", 1e3 * optimization::Quantile(steps, 0.99)},
+        {"max", 1e3 * optimization::Quantile(steps, 1.)}};
+  }
+  return json;
+}
+
+absl::Status Run() {
+  const absl::Status writable =
+      tools::CheckWritable({FLAGS_output_filename, FLAGS_verdicts_filename,
+                            FLAGS_picture_filename, FLAGS_json});
+  if (!writable.ok()) return writable;
+  optimization::OptimizeOptions options;
+  options.method = FLAGS_kernel;
+  options.parameter = FLAGS_kernel_parameter;
+  options.max_iterations = FLAGS_max_iterations;
+  options.prune = FLAGS_prune;
+  const auto norm = optimization::CovarianceNormFromName(FLAGS_norm);
+  if (!norm.ok()) return norm.status();
+  options.norm = *norm;
+  auto input = ReadInput();
+  if (!input.ok()) return input.status();
+  if (FLAGS_dead_reckoning) {
+    input->graph.poses = optimization::DeadReckoning(input->graph);
+  }
+  const auto result = optimization::Optimize(input->graph, options);
+  if (!result.ok()) {
+    return absl::Status(
+        result.status().code(),
+        absl::StrCat(FLAGS_input_filename, ": ", result.status().message()));
+  }
+  nlohmann::ordered_json json = Report(input->graph, *result);
+  if (!FLAGS_truth_filename.empty()) {
+    const auto truth =
+        tools::ReadTruth(input->graph, result->poses, FLAGS_truth_filename);
+    if (!truth.ok()) return truth.status();
+    json["ate"] = {
+        {"rmse", optimization::AbsoluteTrajectoryError(result->poses, *truth)}};
+    json["rpe"] = {{"mean", optimization::RelativePoseError(
+                                input->graph.edges, result->poses, *truth)}};
+  }
+  absl::Status status = WriteOutput(*input, *result);
+  if (status.ok() && !FLAGS_verdicts_filename.empty()) {
+    status = WriteFileAtomically(FLAGS_verdicts_filename,
+                                 tools::VerdictTable(input->graph, *result));
+  }
+  if (status.ok() && !FLAGS_picture_filename.empty()) {
+    status = tools::WriteComparisonPicture(
+        input->graph, *result,
+        absl::StrCat(tools::BaseName(FLAGS_input_filename), ", ", FLAGS_kernel),
+        FLAGS_picture_filename);
+  }
+  if (!status.ok()) return status;
+  if (FLAGS_json != "-") {
+    std::cout << absl::StrFormat(
+        "%s: %d poses, %d of %d loops in force, truncated chi2 %.1f, %d "
+        "iterations, %.3f s\n",
+        FLAGS_kernel, json["poses"].get<int>(),
+        json["loops"]["accepted"].get<int>(), json["loops"]["total"].get<int>(),
+        result->truncated_chi2, result->iterations, result->cpu_seconds);
+    if (json.contains("ate")) {
+      std::cout << absl::StrFormat("ATE %.4f m\n",
+                                   json["ate"]["rmse"].get<double>());
+    }
+  }
+  return FLAGS_json.empty() ? absl::OkStatus()
+                            : tools::WriteJson(json, FLAGS_json);
+}
+
+}  // namespace
+}  // namespace cartographer_ext
+
+int main(int argc, char** argv) {
+  using namespace cartographer_ext;  // NOLINT
+  tools::CommandLine(kDescription).Parse(argc, argv);
+  if (FLAGS_input_filename.empty()) {
+    return tools::UsageError("-input_filename is missing");
+  }
+  const std::vector<std::string>& names = optimization::MethodNames();
+  if (std::find(names.begin(), names.end(), FLAGS_kernel) == names.end()) {
+    return tools::UsageError(absl::StrCat("unknown -kernel ", FLAGS_kernel,
+                                          ", expected one of ",
+                                          absl::StrJoin(names, " ")));
+  }
+  return tools::ExitCode(Run());
+}
