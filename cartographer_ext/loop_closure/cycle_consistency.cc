@@ -9,18 +9,13 @@
 
 namespace cartographer_ext {
 namespace loop_closure {
-namespace {
 
-// Adjoint of a pose: Exp(Ad e) T = T Exp(e) to first order, for errors in the
-// order x, y, theta.
 Eigen::Matrix3d Adjoint(const Pose2& pose) {
   const double c = std::cos(pose.theta), s = std::sin(pose.theta);
   Eigen::Matrix3d adjoint;
   adjoint << c, -s, pose.y, s, c, -pose.x, 0., 0., 1.;
   return adjoint;
 }
-
-}  // namespace
 
 UncertainPose Compose(const UncertainPose& lhs, const UncertainPose& rhs) {
   UncertainPose result;
@@ -47,6 +42,7 @@ CycleResult TestCycle(const CycleConsistencyOptions& options,
       Compose(Compose(Compose(loop_u, path_b), Invert(loop_v)), path_a);
   CycleResult result;
   result.error = cycle.pose;
+  result.covariance = cycle.covariance;
   const Eigen::Vector3d error(cycle.pose.x, cycle.pose.y,
                               NormalizeAngle(cycle.pose.theta));
   const Eigen::LLT<Eigen::Matrix3d> factor(cycle.covariance);

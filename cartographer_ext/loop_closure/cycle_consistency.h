@@ -37,6 +37,10 @@ struct UncertainPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
+// Adjoint of (a <- b): an error e in frame b is Adjoint * e in frame a, to
+// first order, for errors in the order x, y, theta.
+Eigen::Matrix3d Adjoint(const Pose2& pose);
+
 // (a <- c) = (a <- b)(b <- c) of independent poses.
 UncertainPose Compose(const UncertainPose& lhs, const UncertainPose& rhs);
 // (b <- a).
@@ -52,7 +56,8 @@ struct CycleConsistencyOptions {
 };
 
 struct CycleResult {
-  Pose2 error;             // E above, identity for a perfect cycle
+  Pose2 error;  // E above, identity for a perfect cycle
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of E, frame a_u
   double chi_square = 0.;  // squared Mahalanobis norm of E; infinity when the
                            // covariance is singular and E is not zero
   bool compatible = false;

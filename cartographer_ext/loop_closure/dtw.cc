@@ -75,5 +75,46 @@ absl::optional<DtwResult> DynamicTimeWarping(
   return result;
 }
 
+absl::optional<DtwResult> AsymmetricTimeWarping(
+    const int num_query, const int num_reference,
+    const std::vector<double>& local_cost, const double band,
+    const int max_advance) {
+  CHECK_GE(num_query, 0);
+  CHECK_GE(num_reference, 0);
+  CHECK_GE(max_advance, 0);
+  CHECK_EQ(local_cost.size(),
+           static_cast<size_t>(num_query) * static_cast<size_t>(num_reference));
+  if (num_query == 0 || num_reference == 0) return absl::nullopt;
+
+  const double slope =
+      num_query > 1 ? static_cast<double>(num_reference - 1) / (num_query - 1)
+                    : 0.;
+  const double infinity = std::numeric_limits<double>::infinity();
+  std::vector<double> previous(num_reference, 0.), current(num_reference);
+  for (int i = 0; i < num_query; ++i) {
+    // Seen from the end, where the band is anchored.
+    const double line = num_reference - 1 - slope * (num_query - 1 - i);
+    for (int j = 0; j < num_reference; ++j) {
+      current[j] = infinity;
+      const double cost =
+          local_cost[static_cast<size_t>(i) * num_reference + j];
+      if (std::isnan(cost) || (band >= 0. && std::abs(j - line) > band)) {
+        continue;
+      }
+      double best = i == 0 ? 0. : infinity;
+      for (int k = std::max(0, j - max_advance); i > 0 && k <= j; ++k) {
+        best = std::min(best, previous[k]);
+      }
+      current[j] = best + cost;
+    }
+    std::swap(previous, current);
+  }
+  if (!std::isfinite(previous.back())) return absl::nullopt;
+  DtwResult result;
+  result.cost = previous.back();
+  result.path_length = num_query;
+  return result;
+}
+
 }  // namespace loop_closure
 }  // namespace cartographer_ext

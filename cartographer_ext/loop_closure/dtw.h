@@ -52,6 +52,16 @@ absl::optional<DtwResult> DynamicTimeWarping(
     int num_query, int num_reference, const std::vector<double>& local_cost,
     double band);
 
+// The same with one step for each query element: the path holds exactly one
+// cell a query element, and the reference advances by 0 ... `max_advance` (>=
+// 0) elements from one to the next. A finely sampled reference then costs
+// nothing by being fine, a perfect repetition has score 1. The last query
+// element meets the last reference element (the candidate pose); the first may
+// meet any within the band. Empty as above.
+absl::optional<DtwResult> AsymmetricTimeWarping(
+    int num_query, int num_reference, const std::vector<double>& local_cost,
+    double band, int max_advance);
+
 }  // namespace loop_closure
 }  // namespace cartographer_ext
 

@@ -107,6 +107,30 @@ TEST(DtwTest, EqualsExhaustiveSearch) {
   }
 }
 
+TEST(DtwTest, AsymmetricWarpingSkipsReferenceElements) {
+  // Query 0, 1 against reference 0, 0.5, 1.
+  const std::vector<double> cost = {0., 0.5, 1., 1., 0.5, 0.};
+  const auto warped = AsymmetricTimeWarping(2, 3, cost, -1., 2);
+  ASSERT_TRUE(warped.has_value());
+  EXPECT_EQ(warped->cost, 0.);
+  EXPECT_EQ(warped->path_length, 2);
+  EXPECT_EQ(warped->score(), 1.);
+  // With advances of one only, the first element begins later.
+  EXPECT_EQ(AsymmetricTimeWarping(2, 3, cost, -1., 1)->cost, 0.5);
+  // The band counts from the end, where the candidate is.
+  EXPECT_EQ(AsymmetricTimeWarping(2, 3, cost, 0., 2)->cost, 0.);
+  EXPECT_FALSE(AsymmetricTimeWarping(2, 3, cost, 0., 1).has_value());
+}
+
+TEST(DtwTest, AsymmetricWarpingWithoutAWay) {
+  const double nan = std::nan("");
+  EXPECT_FALSE(AsymmetricTimeWarping(0, 2, {}, -1., 1).has_value());
+  EXPECT_FALSE(AsymmetricTimeWarping(1, 2, {0., nan}, -1., 1).has_value());
+  EXPECT_EQ(AsymmetricTimeWarping(1, 2, {nan, 0.25}, -1., 1)->cost, 0.25);
+  EXPECT_FALSE(
+      AsymmetricTimeWarping(2, 2, {nan, nan, 0., 0.}, -1., 1).has_value());
+}
+
 }  // namespace
 }  // namespace loop_closure
 }  // namespace cartographer_ext

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/path_uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+double Square(const double x) { return x * x; }
+
+// Covariance of one step, in the frame of its end.
+Eigen::Matrix3d StepCovariance(const PathNoiseOptions& options,
+                               const double metres, const double radians) {
+  const double translation = Square(options.translation_per_metre) * metres +
+                             Square(options.translation_per_radian) * radians;
+  const double rotation = Square(options.rotation_per_metre) * metres +
+                          Square(options.rotation_per_radian) * radians;
+  return Eigen::Vector3d(translation, translation, rotation).asDiagonal();
+}
+
+}  // namespace
+
+PathUncertainty::PathUncertainty(const PathNoiseOptions& options,
+                                 const int max_nodes)
+    : options_(options),
+      max_nodes_(static_cast<size_t>(std::max(max_nodes, 1))) {
+  CHECK_GT(max_nodes, 0);
+}
+
+void PathUncertainty::Add(const NodeKey& node, const Pose2& local_pose) {
+  Trajectory& trajectory = trajectories_[node.trajectory_id];
+  std::deque<Entry>& entries = trajectory.entries;
+  auto place = std::lower_bound(entries.begin(), entries.end(), node.node_index,
+                                [](const Entry& entry, const int index) {
+                                  return entry.node_index < index;
+                                });
+  if (place != entries.end() && place->node_index == node.node_index) return;
+  if (entries.size() == max_nodes_ && place == entries.begin()) return;
+  Entry entry;
+  entry.node_index = node.node_index;
+  entry.local_pose = local_pose;
+  const size_t offset = static_cast<size_t>(place - entries.begin());
+  entries.insert(place, entry);
+  trajectory.num_valid = std::min(trajectory.num_valid, offset);
+  if (entries.size() > max_nodes_) {
+    // Differences of sums do not need the oldest ones. Without any valid sum
+    // the first entry that is left starts from zero.
+    entries.pop_front();
+    if (trajectory.num_valid > 0) --trajectory.num_valid;
+  }
+}
+
+const PathUncertainty::Entry* PathUncertainty::Find(const NodeKey& node) const {
+  const auto it = trajectories_.find(node.trajectory_id);
+  if (it == trajectories_.end()) return nullptr;
+  Trajectory& trajectory = it->second;
+  std::deque<Entry>& entries = trajectory.entries;
+  for (; trajectory.num_valid < entries.size(); ++trajectory.num_valid) {
+    Entry& entry = entries[trajectory.num_valid];
+    entry.travelled = 0.;
+    entry.sum.setZero();
+    if (trajectory.num_valid == 0) continue;
+    const Entry& before = entries[trajectory.num_valid - 1];
+    const Pose2 step =
+        cartographer_ext::Between(before.local_pose, entry.local_pose);
+    const double metres = step.translation().norm();
+    const Eigen::Matrix3d transport = Adjoint(entry.local_pose);
+    entry.travelled = before.travelled + metres;
+    entry.sum = before.sum +
+                transport *
+                    StepCovariance(options_, metres, std::abs(step.theta)) *
+                    transport.transpose();
+  }
+  const auto place =
+      std::lower_bound(entries.begin(), entries.end(), node.node_index,
+                       [](const Entry& entry, const int index) {
+                         return entry.node_index < index;
+                       });
+  if (place == entries.end() || place->node_index != node.node_index) {
+    return nullptr;
+  }
+  return &*place;
+}
+
+absl::optional<UncertainPose> PathUncertainty::Between(const NodeKey& u,
+                                                       const NodeKey& v) const {
+  if (u.trajectory_id != v.trajectory_id) return absl::nullopt;
+  if (v.node_index < u.node_index) {
+    const absl::optional<UncertainPose> forward = Between(v, u);
+    if (!forward.has_value()) return absl::nullopt;
+    return Invert(*forward);
+  }
+  const Entry* const from = Find(u);
+  const Entry* const to = Find(v);
+  if (from == nullptr || to == nullptr) return absl::nullopt;
+  UncertainPose result;
+  result.pose = cartographer_ext::Between(from->local_pose, to->local_pose);
+  const Eigen::Matrix3d transport = Adjoint(to->local_pose.Inverse());
+  const Eigen::Matrix3d covariance =
+      transport * (to->sum - from->sum) * transport.transpose();
+  result.covariance = 0.5 * (covariance + covariance.transpose());
+  return result;
+}
+
+absl::optional<double> PathUncertainty::Travelled(const NodeKey& u,
+                                                  const NodeKey& v) const {
+  if (u.trajectory_id != v.trajectory_id) return absl::nullopt;
+  const Entry* const from = Find(u);
+  const Entry* const to = Find(v);
+  if (from == nullptr || to == nullptr) return absl::nullopt;
+  return std::abs(to->travelled - from->travelled);
+}
+
+absl::optional<Pose2> PathUncertainty::LocalPose(const NodeKey& node) const {
+  const Entry* const entry = Find(node);
+  if (entry == nullptr) return absl::nullopt;
+  return entry->local_pose;
+}
+
+absl::optional<NodeKey> PathUncertainty::Nearest(
+    const int trajectory_id, const Eigen::Vector2d& local_position) const {
+  const auto it = trajectories_.find(trajectory_id);
+  if (it == trajectories_.end()) return absl::nullopt;
+  absl::optional<NodeKey> nearest;
+  double nearest_distance = std::numeric_limits<double>::infinity();
+  for (const Entry& entry : it->second.entries) {
+    const double distance =
+        (entry.local_pose.translation() - local_position).squaredNorm();
+    if (distance < nearest_distance) {
+      nearest_distance = distance;
+      nearest = NodeKey{trajectory_id, entry.node_index};
+    }
+  }
+  return nearest;
+}
+
+void PathUncertainty::DeleteTrajectory(const int trajectory_id) {
+  trajectories_.erase(trajectory_id);
+}
+
+absl::optional<UncertainPose> MostCertainWay(const PathUncertainty& paths,
+                                             const std::vector<LoopEdge>& loops,
+                                             const NodeKey& a,
+                                             const NodeKey& b) {
+  absl::optional<UncertainPose> best = paths.Between(a, b);
+  const auto offer = [&](const NodeKey& from, const UncertainPose& loop,
+                         const NodeKey& to) {
+    const absl::optional<UncertainPose> before = paths.Between(a, from);
+    if (!before.has_value()) return;
+    const absl::optional<UncertainPose> after = paths.Between(to, b);
+    if (!after.has_value()) return;
+    const UncertainPose way = Compose(Compose(*before, loop), *after);
+    if (!best.has_value() ||
+        way.covariance.topLeftCorner<2, 2>().trace() <
+            best->covariance.topLeftCorner<2, 2>().trace()) {
+      best = way;
+    }
+  };
+  for (const LoopEdge& loop : loops) {
+    offer(loop.a, loop.pose, loop.b);
+    offer(loop.b, Invert(loop.pose), loop.a);
+  }
+  return best;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How uncertain local SLAM is about the way between two nodes. The local poses
+// give the relative pose; its error is a random walk whose variance grows with
+// the metres driven and the radians turned. With X_k the local pose of node k
+// and Q_k the covariance of the step to it, in its own frame,
+//
+//   cov(u <- v) = Ad(X_v^-1) (S_v - S_u) Ad(X_v^-1)^T,
+//   S_n = sum over k <= n of Ad(X_k) Q_k Ad(X_k)^T,
+//
+// so any pair of nodes costs the same, however far apart.
+//
+// Not thread-safe; nodes may be added in any order.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_PATH_UNCERTAINTY_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_PATH_UNCERTAINTY_H_
+
+#include <deque>
+#include <map>
+#include <vector>
+
+#include "Eigen/Core"
+#include "absl/types/optional.h"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/cycle_consistency.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+// Standard deviations after one metre driven or one radian turned; they grow
+// with the square root of the way.
+struct PathNoiseOptions {
+  double translation_per_metre = 0.05;   // metres, >= 0
+  double translation_per_radian = 0.02;  // metres, >= 0
+  double rotation_per_metre = 0.01;      // radians, >= 0
+  double rotation_per_radian = 0.03;     // radians, >= 0
+};
+
+struct NodeKey {
+  int trajectory_id = 0;
+  int node_index = 0;
+};
+inline bool operator==(const NodeKey& a, const NodeKey& b) {
+  return a.trajectory_id == b.trajectory_id && a.node_index == b.node_index;
+}
+
+class PathUncertainty {
+ public:
+  // Keeps the newest `max_nodes` (> 0) nodes of each trajectory.
+  PathUncertainty(const PathNoiseOptions& options, int max_nodes);
+
+  // (local frame of the trajectory <- node). A node known already, or older
+  // than all that are kept of a full trajectory, changes nothing.
+  void Add(const NodeKey& node, const Pose2& local_pose);
+
+  // (u <- v). Empty between trajectories and for nodes that are not kept.
+  absl::optional<UncertainPose> Between(const NodeKey& u,
+                                        const NodeKey& v) const;
+  // Metres driven between two nodes, empty as above.
+  absl::optional<double> Travelled(const NodeKey& u, const NodeKey& v) const;
+  // (local frame <- node).
+  absl::optional<Pose2> LocalPose(const NodeKey& node) const;
+
+  // The node whose local position is nearest, the oldest of equals. A submap
+  // lies where its first node was, so this ties a submap to a node. Empty when
+  // the trajectory has no nodes.
+  absl::optional<NodeKey> Nearest(int trajectory_id,
+                                  const Eigen::Vector2d& local_position) const;
+
+  void DeleteTrajectory(int trajectory_id);
+
+ private:
+  struct Entry {
+    int node_index;
+    Pose2 local_pose;
+    double travelled = 0.;                          // prefix sum, metres
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();  // S_n
+  };
+  struct Trajectory {
+    std::deque<Entry> entries;  // by node index
+    size_t num_valid = 0;       // entries with valid sums
+  };
+
+  const Entry* Find(const NodeKey& node) const;
+
+  const PathNoiseOptions options_;
+  const size_t max_nodes_;
+  // The sums are computed when they are asked for.
+  mutable std::map<int, Trajectory> trajectories_;
+};
+
+// A loop between two nodes: (a <- b).
+struct LoopEdge {
+  NodeKey a;
+  NodeKey b;
+  UncertainPose pose;
+};
+
+// The most certain of the ways (a <- b): along the trajectory, or over one of
+// `loops` in either direction. Ways over several loops would be more certain
+// still; leaving them out errs on the side of a larger uncertainty. Empty when
+// there is no way.
+absl::optional<UncertainPose> MostCertainWay(const PathUncertainty& paths,
+                                             const std::vector<LoopEdge>& loops,
+                                             const NodeKey& a,
+                                             const NodeKey& b);
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_PATH_UNCERTAINTY_H_

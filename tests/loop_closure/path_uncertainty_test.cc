@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/path_uncertainty.h"
+
+#include <cmath>
+
+#include "cartographer_ext/common/random.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+PathNoiseOptions Noise() {
+  PathNoiseOptions options;
+  options.translation_per_metre = 0.1;
+  options.translation_per_radian = 0.;
+  options.rotation_per_metre = 0.01;
+  options.rotation_per_radian = 0.1;
+  return options;
+}
+
+NodeKey Key(int index) { return NodeKey{0, index}; }
+
+TEST(PathUncertaintyTest, StraightWayByHand) {
+  PathUncertainty paths(Noise(), 100);
+  for (int i = 0; i <= 4; ++i) paths.Add(Key(i), Pose2(5. + i, 7., 0.));
+  const auto way = paths.Between(Key(1), Key(4));
+  ASSERT_TRUE(way.has_value());
+  EXPECT_NEAR(way->pose.x, 3., 1e-12);
+  // Three steps of 1 m, each with variances 0.01, 0.01 and 1e-4. A rotation
+  // error of a step moves the end by what is left to go: 2, 1 and 0 metres.
+  EXPECT_NEAR(way->covariance(0, 0), 0.03, 1e-12);
+  EXPECT_NEAR(way->covariance(1, 1), 0.03 + 1e-4 * (4. + 1.), 1e-12);
+  EXPECT_NEAR(way->covariance(2, 2), 3e-4, 1e-12);
+  EXPECT_NEAR(way->covariance(1, 2), 1e-4 * (2. + 1.), 1e-12);
+  EXPECT_NEAR(*paths.Travelled(Key(4), Key(1)), 3., 1e-12);
+}
+
+TEST(PathUncertaintyTest, EqualsComposingTheSteps) {
+  Random random(5);
+  PathUncertainty paths(Noise(), 1000);
+  std::vector<Pose2> poses = {Pose2(300., -200., 1.)};
+  paths.Add(Key(0), poses[0]);
+  for (int i = 1; i < 200; ++i) {
+    poses.push_back(poses.back() *
+                    Pose2(random.Uniform(), 0.1, random.Uniform() - 0.5));
+    paths.Add(Key(i), poses[i]);
+  }
+  UncertainPose composed;
+  for (int i = 51; i <= 150; ++i) {
+    PathUncertainty step(Noise(), 2);
+    step.Add(Key(0), poses[i - 1]);
+    step.Add(Key(1), poses[i]);
+    composed = Compose(composed, *step.Between(Key(0), Key(1)));
+  }
+  const auto way = paths.Between(Key(50), Key(150));
+  EXPECT_NEAR((way->covariance - composed.covariance).norm(), 0.,
+              1e-9 * composed.covariance.norm());
+  EXPECT_NEAR(way->pose.x, composed.pose.x, 1e-9);
+  EXPECT_NEAR(way->pose.theta, composed.pose.theta, 1e-9);
+  // Backwards is the inverse.
+  const auto back = paths.Between(Key(150), Key(50));
+  const UncertainPose inverse = Invert(composed);
+  EXPECT_NEAR((back->covariance - inverse.covariance).norm(), 0.,
+              1e-9 * inverse.covariance.norm());
+}
+
+TEST(PathUncertaintyTest, OrderOfAddingDoesNotMatter) {
+  PathUncertainty forward(Noise(), 100);
+  PathUncertainty shuffled(Noise(), 100);
+  const auto pose = [](int i) { return Pose2(i, 0.1 * i * i, 0.2 * i); };
+  for (int i = 0; i < 6; ++i) forward.Add(Key(i), pose(i));
+  for (const int i : {5, 1, 3}) shuffled.Add(Key(i), pose(i));
+  EXPECT_TRUE(shuffled.Between(Key(1), Key(5)).has_value());
+  EXPECT_FALSE(shuffled.Between(Key(0), Key(5)).has_value());
+  for (const int i : {0, 4, 2, 3}) shuffled.Add(Key(i), pose(i));
+  EXPECT_EQ(forward.Between(Key(0), Key(5))->covariance,
+            shuffled.Between(Key(0), Key(5))->covariance);
+}
+
+TEST(PathUncertaintyTest, IsBounded) {
+  PathUncertainty unbounded(Noise(), 100);
+  PathUncertainty paths(Noise(), 3);
+  for (int i = 0; i < 10; ++i) {
+    paths.Add(Key(i), Pose2(i, 0., 0.1 * i));
+    unbounded.Add(Key(i), Pose2(i, 0., 0.1 * i));
+    if (i == 5) {
+      EXPECT_TRUE(paths.Between(Key(3), Key(5)).has_value());
+    }
+  }
+  EXPECT_FALSE(paths.Between(Key(6), Key(9)).has_value());
+  paths.Add(Key(2), Pose2(2., 0., 0.));  // too old
+  EXPECT_FALSE(paths.LocalPose(Key(2)).has_value());
+  EXPECT_NEAR((paths.Between(Key(7), Key(9))->covariance -
+               unbounded.Between(Key(7), Key(9))->covariance)
+                  .norm(),
+              0., 1e-12);
+}
+
+TEST(PathUncertaintyTest, NearestNodeAndMissingTrajectories) {
+  PathUncertainty paths(Noise(), 100);
+  for (int i = 0; i < 5; ++i) paths.Add(Key(i), Pose2(i, 0., 0.));
+  EXPECT_EQ(paths.Nearest(0, Eigen::Vector2d(2.2, 1.))->node_index, 2);
+  EXPECT_EQ(paths.Nearest(0, Eigen::Vector2d(2.5, 0.))->node_index, 2);
+  EXPECT_FALSE(paths.Nearest(1, Eigen::Vector2d::Zero()).has_value());
+  EXPECT_FALSE(paths.Between(Key(1), NodeKey{1, 1}).has_value());
+  EXPECT_FALSE(paths.Travelled(Key(1), NodeKey{1, 1}).has_value());
+  EXPECT_NEAR(paths.LocalPose(Key(3))->x, 3., 0.);
+  paths.DeleteTrajectory(0);
+  EXPECT_FALSE(paths.LocalPose(Key(3)).has_value());
+}
+
+TEST(PathUncertaintyTest, ALoopMakesTheWayShort) {
+  PathUncertainty paths(Noise(), 200);
+  for (int i = 0; i <= 100; ++i) paths.Add(Key(i), Pose2(i, 0., 0.));
+  const UncertainPose direct = *MostCertainWay(paths, {}, Key(1), Key(99));
+  EXPECT_NEAR(direct.pose.x, 98., 1e-12);
+  LoopEdge loop;
+  loop.a = Key(100);
+  loop.b = Key(0);
+  loop.pose.pose = Pose2(0.5, 0., 0.);
+  loop.pose.covariance = 0.001 * Eigen::Matrix3d::Identity();
+  // 1 -> 0 along the way, 0 -> 100 over the loop, 100 -> 99 along the way.
+  const UncertainPose way = *MostCertainWay(paths, {loop}, Key(1), Key(99));
+  EXPECT_NEAR(way.pose.x, -1. - 0.5 - 1., 1e-12);
+  EXPECT_LT(way.covariance(0, 0), 0.03);
+  // Between trajectories a loop is the only way.
+  paths.Add(NodeKey{1, 0}, Pose2());
+  EXPECT_FALSE(
+      MostCertainWay(paths, {loop}, Key(1), NodeKey{1, 0}).has_value());
+  loop.b = NodeKey{1, 0};
+  EXPECT_TRUE(MostCertainWay(paths, {loop}, Key(1), NodeKey{1, 0}).has_value());
+}
+
+}  // namespace
+}  // namespace loop_closure
+}  // namespace cartographer_ext
