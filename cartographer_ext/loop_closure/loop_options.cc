@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/loop_options.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+using proto::LoopClosureOptions;
+
+VariableWindowOptions ToVariableWindowOptions(
+    const LoopClosureOptions& options) {
+  const auto& from = options.temporal_verification();
+  VariableWindowOptions to;
+  to.base = from.window_base();
+  to.span = from.window_span();
+  to.gamma = from.window_gamma();
+  return to;
+}
+
+TemporalVerificationOptions ToTemporalVerificationOptions(
+    const LoopClosureOptions& options) {
+  const auto& from = options.temporal_verification();
+  TemporalVerificationOptions to;
+  to.signature.num_sectors = from.num_sectors();
+  to.signature.rays_per_sector = from.rays_per_sector();
+  to.signature.max_range = from.max_range();
+  to.signature.max_unknown = from.max_unknown();
+  to.signature.clip = from.clip();
+  to.signature.minimum_overlap = from.minimum_overlap();
+  to.oversampling = from.oversampling();
+  to.step = from.step() == LoopClosureOptions::TemporalVerification::SYMMETRIC
+                ? WarpingStep::kSymmetric
+                : WarpingStep::kAsymmetric;
+  to.band = from.band();
+  to.minimum_length = from.minimum_length();
+  return to;
+}
+
+DynamicThresholdOptions ToDynamicThresholdOptions(
+    const LoopClosureOptions& options) {
+  const auto& from = options.dynamic_threshold();
+  DynamicThresholdOptions to;
+  to.direction =
+      from.direction() == LoopClosureOptions::DynamicThreshold::AS_PRINTED
+          ? ThresholdDirection::kAsPrinted
+          : ThresholdDirection::kStricterWhenUnstable;
+  to.low = from.low();
+  to.span = from.span();
+  to.sensitivity = from.sensitivity();
+  to.window = from.window();
+  to.base_threshold = from.base_threshold();
+  return to;
+}
+
+ScoreFusionOptions ToScoreFusionOptions(const LoopClosureOptions& options) {
+  const auto& from = options.fusion();
+  ScoreFusionOptions to;
+  to.mode = from.mode() == LoopClosureOptions::Fusion::PROPER_POSTERIOR
+                ? FusionMode::kProperPosterior
+                : FusionMode::kAsPrinted;
+  to.window = from.window();
+  to.sigma_floor = from.sigma_floor();
+  to.grid_weight = from.grid_weight();
+  return to;
+}
+
+LoopMixtureOptions ToLoopMixtureOptions(const LoopClosureOptions& options) {
+  LoopMixtureOptions to;
+  to.prior_strength = options.fusion().prior_strength();
+  to.capacity = options.fusion().capacity();
+  return to;
+}
+
+ConfidenceWeightOptions ToConfidenceWeightOptions(
+    const LoopClosureOptions& options) {
+  const auto& from = options.information();
+  ConfidenceWeightOptions to;
+  to.alpha = from.alpha();
+  to.beta = from.beta();
+  to.reference_score = from.reference_score();
+  to.minimum_score = from.minimum_score();
+  return to;
+}
+
+PathNoiseOptions ToPathNoiseOptions(const LoopClosureOptions& options) {
+  const auto& from = options.path_noise();
+  PathNoiseOptions to;
+  to.translation_per_metre = from.translation_per_metre();
+  to.translation_per_radian = from.translation_per_radian();
+  to.rotation_per_metre = from.rotation_per_metre();
+  to.rotation_per_radian = from.rotation_per_radian();
+  return to;
+}
+
+CompatibleSubsetOptions ToCompatibleSubsetOptions(
+    const LoopClosureOptions& options) {
+  const auto& from = options.compatible_subset();
+  CompatibleSubsetOptions to;
+  to.cycle.test =
+      from.test() == LoopClosureOptions::CompatibleSubset::FIXED_BOUND
+          ? CycleTest::kFixedBound
+          : CycleTest::kChiSquare;
+  to.cycle.chi_square_bound = from.chi_square_bound();
+  to.cycle.translation_bound = from.translation_bound();
+  to.cycle.rotation_bound = from.rotation_bound();
+  to.revisit_distance = from.revisit_distance();
+  to.informative_sigma = from.informative_sigma();
+  to.min_revisits = from.min_revisits();
+  to.tolerance = from.tolerance();
+  to.single_strong_enabled = from.single_strong();
+  to.single_strong_score = from.single_strong_score();
+  to.single_strong_loops = from.single_strong_loops();
+  to.max_clusters = from.max_clusters();
+  to.clique.max_steps = from.max_clique_steps();
+  return to;
+}
+
+InnovationOptions ToInnovationOptions(const LoopClosureOptions& options) {
+  InnovationOptions to;
+  to.chi_square_bound = options.innovation_veto().chi_square_bound();
+  return to;
+}
+
+Eigen::Matrix3d LoopCovariance(const LoopClosureOptions& options) {
+  const double translation = options.path_noise().loop_translation();
+  const double rotation = options.path_noise().loop_rotation();
+  return Eigen::Vector3d(translation * translation, translation * translation,
+                         rotation * rotation)
+      .asDiagonal();
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// From the option message of the loop closure to the options of its parts.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_OPTIONS_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_OPTIONS_H_
+
+#include "cartographer_ext/loop_closure/compatible_subset.h"
+#include "cartographer_ext/loop_closure/constraint_information.h"
+#include "cartographer_ext/loop_closure/dtw.h"
+#include "cartographer_ext/loop_closure/dynamic_threshold.h"
+#include "cartographer_ext/loop_closure/innovation_veto.h"
+#include "cartographer_ext/loop_closure/loop_mixture.h"
+#include "cartographer_ext/loop_closure/path_uncertainty.h"
+#include "cartographer_ext/loop_closure/score_fusion.h"
+#include "cartographer_ext/loop_closure/temporal_verification.h"
+#include "cartographer_ext/loop_closure_options.pb.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+VariableWindowOptions ToVariableWindowOptions(
+    const proto::LoopClosureOptions& options);
+TemporalVerificationOptions ToTemporalVerificationOptions(
+    const proto::LoopClosureOptions& options);
+DynamicThresholdOptions ToDynamicThresholdOptions(
+    const proto::LoopClosureOptions& options);
+// The likelihood ratio is not a blend; for it the mode is the paper's and not
+// used.
+ScoreFusionOptions ToScoreFusionOptions(
+    const proto::LoopClosureOptions& options);
+LoopMixtureOptions ToLoopMixtureOptions(
+    const proto::LoopClosureOptions& options);
+ConfidenceWeightOptions ToConfidenceWeightOptions(
+    const proto::LoopClosureOptions& options);
+PathNoiseOptions ToPathNoiseOptions(const proto::LoopClosureOptions& options);
+CompatibleSubsetOptions ToCompatibleSubsetOptions(
+    const proto::LoopClosureOptions& options);
+InnovationOptions ToInnovationOptions(const proto::LoopClosureOptions& options);
+
+// Of a loop itself; (metres, metres, radians) squared.
+Eigen::Matrix3d LoopCovariance(const proto::LoopClosureOptions& options);
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_OPTIONS_H_
