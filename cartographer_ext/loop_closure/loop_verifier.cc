@@ -1,0 +1,328 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/loop_verifier.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "cartographer_ext/loop_closure/dtw.h"
+#include "cartographer_ext/loop_closure/innovation_veto.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using proto::LoopDecision;
+using FusionOptions = proto::LoopClosureOptions::Fusion;
+
+// The mixture is fitted once in so many candidates; it moves slowly.
+constexpr int64_t kFitInterval = 10;
+// Nodes looked at to find one node of the query.
+constexpr int kScanPerNode = 50;
+// Probability of a candidate about which nothing is known.
+constexpr double kNeutralScore = 0.5;
+
+// Submaps share the paths with the nodes, under negative trajectory ids.
+NodeKey PathKey(const SubmapKey& submap) {
+  return NodeKey{-1 - submap.trajectory_id, submap.submap_index};
+}
+
+void ToProto(const MixtureComponent& from,
+             LoopDecision::MixtureComponent* const to) {
+  to->set_weight(from.weight);
+  to->set_mean_grid(from.mean.x());
+  to->set_mean_temporal(from.mean.y());
+  to->set_variance_grid(from.covariance(0, 0));
+  to->set_covariance(from.covariance(0, 1));
+  to->set_variance_temporal(from.covariance(1, 1));
+}
+
+LoopDecision::Temporal::Outcome ToProto(const TemporalOutcome outcome) {
+  switch (outcome) {
+    case TemporalOutcome::kScored:
+      return LoopDecision::Temporal::SCORED;
+    case TemporalOutcome::kShortHistory:
+      return LoopDecision::Temporal::SHORT_HISTORY;
+    case TemporalOutcome::kUnknownWay:
+      break;
+  }
+  return LoopDecision::Temporal::UNKNOWN_WAY;
+}
+
+LoopDecision::Reason ToProto(const SubsetReason reason) {
+  switch (reason) {
+    case SubsetReason::kSupported:
+      return LoopDecision::CONFIRMED_BY_SUBSET;
+    case SubsetReason::kSingleStrong:
+      return LoopDecision::SINGLE_STRONG;
+    case SubsetReason::kJoinsAccepted:
+      return LoopDecision::JOINED_ACCEPTED;
+    case SubsetReason::kContradicted:
+      return LoopDecision::CONTRADICTED;
+    case SubsetReason::kRival:
+      return LoopDecision::RIVAL;
+    case SubsetReason::kUnsupported:
+      break;
+  }
+  return LoopDecision::UNSUPPORTED;
+}
+
+bool Reject(const LoopDecision::Reason reason, LoopOutcome* const outcome) {
+  outcome->decision.set_verdict(LoopDecision::REJECTED);
+  outcome->decision.set_reason(reason);
+  return false;
+}
+
+}  // namespace
+
+LoopVerifier::LoopVerifier(const proto::LoopClosureOptions& options,
+                           const ConstraintWeights& stock_weights)
+    : options_(options),
+      stock_weights_(stock_weights),
+      temporal_options_(ToTemporalVerificationOptions(options)),
+      history_(options.temporal_verification().max_history_nodes()),
+      paths_(ToPathNoiseOptions(options),
+             options.temporal_verification().max_history_nodes()),
+      threshold_(ToDynamicThresholdOptions(options)),
+      fusion_(ToScoreFusionOptions(options)),
+      mixture_(ToLoopMixtureOptions(options)),
+      subset_(ToCompatibleSubsetOptions(options), &paths_) {}
+
+bool LoopVerifier::AddNode(const int trajectory_id, HistoryNode node) {
+  paths_.Add(NodeKey{trajectory_id, node.node_index}, node.local_pose);
+  return history_.Add(trajectory_id, std::move(node));
+}
+
+bool LoopVerifier::HasNode(const NodeKey& node) const {
+  return history_.Contains(node.trajectory_id, node.node_index);
+}
+
+bool LoopVerifier::VerifyScores(const LoopCandidate& candidate,
+                                LoopOutcome* const outcome) {
+  LoopDecision& decision = outcome->decision;
+  bool scored = false;
+  bool below_threshold = false;
+  double temporal_score = 0.;
+  if (options_.temporal_verification().enabled()) {
+    const int window =
+        VariableWindow(ToVariableWindowOptions(options_), candidate.submap_age);
+    const TemporalResult result = VerifySequence(
+        temporal_options_,
+        history_.Sequence(
+            candidate.node.trajectory_id, candidate.node.node_index, window,
+            options_.temporal_verification().spacing(), kScanPerNode * window),
+        candidate.refined, candidate.maps);
+    const double threshold =
+        options_.dynamic_threshold().enabled()
+            ? threshold_.Current()
+            : options_.dynamic_threshold().base_threshold();
+    LoopDecision::Temporal& record = *decision.mutable_temporal();
+    record.set_outcome(ToProto(result.outcome));
+    record.set_window(window);
+    record.set_num_query(result.num_query);
+    record.set_num_reference(result.num_reference);
+    record.set_travelled(result.travelled);
+    record.set_threshold(threshold);
+    record.set_score_variance(threshold_.Variance());
+    scored = result.outcome == TemporalOutcome::kScored;
+    if (scored) {
+      temporal_score = result.score;
+      record.set_score(temporal_score);
+      below_threshold = temporal_score < threshold;
+      threshold_.AddScore(temporal_score);
+    }
+  }
+
+  double final_score = candidate.grid_score;
+  if (options_.fusion().enabled()) {
+    LoopDecision::Fusion& record = *decision.mutable_fusion();
+    if (options_.fusion().mode() == FusionOptions::LIKELIHOOD_RATIO) {
+      ToProto(mixture_.components()[0], record.mutable_false_loops());
+      ToProto(mixture_.components()[1], record.mutable_true_loops());
+      final_score = kNeutralScore;
+      if (scored) {
+        final_score =
+            mixture_.ProbabilityTrue(candidate.grid_score, temporal_score);
+        mixture_.Add(candidate.grid_score, temporal_score);
+        if (++num_mixture_candidates_ % kFitInterval == 0) mixture_.Fit();
+      }
+    } else if (scored) {
+      const FusedScore fused =
+          fusion_.Fuse(candidate.grid_score, temporal_score);
+      fusion_.AddScores(candidate.grid_score, temporal_score);
+      record.set_lambda(fused.lambda);
+      final_score = fused.score;
+    } else {
+      final_score = std::min(candidate.grid_score, kNeutralScore);
+    }
+    record.set_final_score(final_score);
+  }
+  outcome->weights = stock_weights_;
+  if (options_.information().enabled()) {
+    outcome->weights = ConfidenceWeights(ToConfidenceWeightOptions(options_),
+                                         stock_weights_, final_score);
+  }
+  // All memory has been updated, now the verdicts.
+  if (below_threshold) return Reject(LoopDecision::LOW_TEMPORAL_SCORE, outcome);
+  // A candidate that could not be scored is left to the later stages.
+  const bool judged = scored || !options_.temporal_verification().enabled();
+  if (options_.fusion().enabled() && judged &&
+      final_score < options_.fusion().min_final_score()) {
+    return Reject(LoopDecision::LOW_FINAL_SCORE, outcome);
+  }
+  return true;
+}
+
+bool LoopVerifier::PassesVeto(const LoopCandidate& candidate,
+                              LoopOutcome* const outcome) const {
+  if (!options_.innovation_veto().enabled() ||
+      candidate.submap.trajectory_id != candidate.node.trajectory_id) {
+    return true;
+  }
+  const auto anchor = paths_.Nearest(candidate.submap.trajectory_id,
+                                     candidate.submap_local_pose.translation());
+  if (!anchor.has_value()) return true;
+  const auto prior = paths_.Between(*anchor, candidate.node);
+  if (!prior.has_value()) return true;
+  UncertainPose loop;
+  loop.pose = Between(*paths_.LocalPose(*anchor), candidate.submap_local_pose) *
+              candidate.refined;
+  loop.covariance = LoopCovariance(options_);
+  const InnovationResult result =
+      TestInnovation(ToInnovationOptions(options_), *prior, loop);
+  LoopDecision::Innovation& record = *outcome->decision.mutable_innovation();
+  record.mutable_pose()->set_x(result.innovation.x);
+  record.mutable_pose()->set_y(result.innovation.y);
+  record.mutable_pose()->set_theta(result.innovation.theta);
+  record.set_chi_square(result.chi_square);
+  record.set_bound(options_.innovation_veto().chi_square_bound());
+  return !result.vetoed || Reject(LoopDecision::INNOVATION_TOO_LARGE, outcome);
+}
+
+void LoopVerifier::Process(const LoopCandidate& candidate) {
+  const int64_t number = next_candidate_++;
+  paths_.Add(PathKey(candidate.submap), candidate.submap_local_pose);
+  LoopOutcome outcome;
+  outcome.submap = candidate.submap;
+  outcome.node = candidate.node;
+  outcome.pose = candidate.refined;
+  LoopDecision& decision = outcome.decision;
+  decision.set_candidate(number);
+  decision.set_submap_trajectory_id(candidate.submap.trajectory_id);
+  decision.set_submap_index(candidate.submap.submap_index);
+  decision.set_node_trajectory_id(candidate.node.trajectory_id);
+  decision.set_node_index(candidate.node.node_index);
+  decision.set_node_time(candidate.node_time);
+  *decision.mutable_search() = candidate.search;
+  decision.mutable_search()->set_grid_score(candidate.grid_score);
+
+  if (!VerifyScores(candidate, &outcome) || !PassesVeto(candidate, &outcome)) {
+    settled_.push_back(std::move(outcome));
+    return;
+  }
+  decision.mutable_information()->set_translation_weight(
+      outcome.weights.translation);
+  decision.mutable_information()->set_rotation_weight(outcome.weights.rotation);
+  if (!options_.compatible_subset().enabled()) {
+    decision.set_verdict(LoopDecision::ACCEPTED);
+    decision.set_reason(LoopDecision::ALL_STAGES_PASSED);
+    settled_.push_back(std::move(outcome));
+    return;
+  }
+  LoopEvidence evidence;
+  evidence.id = number;
+  evidence.edge.a = PathKey(candidate.submap);
+  evidence.edge.b = candidate.node;
+  evidence.edge.pose.pose = candidate.refined;
+  evidence.edge.pose.covariance = LoopCovariance(options_);
+  evidence.score = decision.has_fusion() ? decision.fusion().final_score()
+                                         : candidate.grid_score;
+  waiting_.emplace(number, std::move(outcome));
+  tests_waited_[number] = 0;
+  subset_.Add(evidence);
+}
+
+void LoopVerifier::Settle(const std::vector<SubsetDecision>& decisions) {
+  for (auto& waited : tests_waited_) ++waited.second;
+  for (const SubsetDecision& from : decisions) {
+    const auto it = waiting_.find(from.id);
+    CHECK(it != waiting_.end());
+    LoopDecision& decision = it->second.decision;
+    decision.set_verdict(from.accepted ? LoopDecision::ACCEPTED
+                                       : LoopDecision::REJECTED);
+    decision.set_reason(ToProto(from.reason));
+    LoopDecision::Subset& record = *decision.mutable_subset();
+    record.set_support(from.support);
+    record.set_contradictions(from.contradictions);
+    record.set_subset_size(from.subset_size);
+    record.set_num_tests(tests_waited_[from.id]);
+    record.set_exact(subset_.exact());
+    settled_.push_back(std::move(it->second));
+    waiting_.erase(it);
+    tests_waited_.erase(from.id);
+  }
+}
+
+std::vector<LoopOutcome> LoopVerifier::TakeSettled() {
+  std::vector<LoopOutcome> outcomes = std::move(settled_);
+  settled_.clear();
+  std::sort(outcomes.begin(), outcomes.end(),
+            [](const LoopOutcome& a, const LoopOutcome& b) {
+              return a.decision.candidate() < b.decision.candidate();
+            });
+  return outcomes;
+}
+
+std::vector<LoopOutcome> LoopVerifier::Decide() {
+  Settle(subset_.Decide());
+  return TakeSettled();
+}
+
+std::vector<LoopOutcome> LoopVerifier::Flush() {
+  Settle(subset_.Flush());
+  return TakeSettled();
+}
+
+void LoopVerifier::Withdraw(
+    const std::function<bool(const LoopOutcome&)>& condition,
+    const LoopDecision::Reason reason) {
+  // The subset may have decided some already, to stay within its bounds.
+  Settle(subset_.Decide());
+  for (LoopOutcome& outcome : settled_) {
+    if (outcome.accepted() && condition(outcome)) Reject(reason, &outcome);
+  }
+  for (const int64_t id : subset_.Withdraw([&](const LoopEvidence& evidence) {
+         const auto it = waiting_.find(evidence.id);
+         return it != waiting_.end() && condition(it->second);
+       })) {
+    const auto it = waiting_.find(id);
+    Reject(reason, &it->second);
+    settled_.push_back(std::move(it->second));
+    waiting_.erase(it);
+    tests_waited_.erase(id);
+  }
+}
+
+void LoopVerifier::DeleteSubmap(const SubmapKey& submap) {
+  Withdraw(
+      [&](const LoopOutcome& outcome) {
+        return outcome.submap.trajectory_id == submap.trajectory_id &&
+               outcome.submap.submap_index == submap.submap_index;
+      },
+      LoopDecision::SUBMAP_DELETED);
+}
+
+void LoopVerifier::DeleteNodes(const int trajectory_id,
+                               const int last_node_index) {
+  Withdraw(
+      [&](const LoopOutcome& outcome) {
+        return outcome.node.trajectory_id == trajectory_id &&
+               outcome.node.node_index <= last_node_index;
+      },
+      LoopDecision::NODE_DELETED);
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// From a candidate that the search found to a verdict: the serial part of the
+// loop closure, which has all the memory (score windows, mixture, buffered
+// candidates) and therefore sees candidates one by one in the order they were
+// offered.
+//
+//   temporal score and threshold -> fusion -> innovation veto
+//     -> compatible subset (may wait) -> weights
+//
+// Each stage can be off. A candidate without a temporal score (short history,
+// unknown way) is not rejected for it, but has no more than a neutral score and
+// needs the confirmation of others. Each candidate ends as one outcome with its
+// record, none is dropped.
+//
+// The veto asks only the odometry. A loop that contradicts loops accepted
+// before is a matter of the subset, where it can still win.
+//
+// Not thread-safe.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_VERIFIER_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_VERIFIER_H_
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/compatible_subset.h"
+#include "cartographer_ext/loop_closure/constraint_information.h"
+#include "cartographer_ext/loop_closure/dynamic_threshold.h"
+#include "cartographer_ext/loop_closure/loop_mixture.h"
+#include "cartographer_ext/loop_closure/node_history.h"
+#include "cartographer_ext/loop_closure/path_uncertainty.h"
+#include "cartographer_ext/loop_closure/score_fusion.h"
+#include "cartographer_ext/loop_closure/temporal_verification.h"
+#include "cartographer_ext/loop_closure_options.pb.h"
+#include "cartographer_ext/loop_decision.pb.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+struct SubmapKey {
+  int trajectory_id = 0;
+  int submap_index = 0;
+};
+
+// What the search found, after the refinement.
+struct LoopCandidate {
+  SubmapKey submap;
+  NodeKey node;
+  int64_t node_time = 0;    // host ticks
+  double submap_age = 0.;   // seconds or nodes, as `age_unit` says
+  Pose2 submap_local_pose;  // (local frame of its trajectory <- submap)
+  Pose2 refined;            // (submap <- node)
+  double grid_score = 0.;   // S_g
+  proto::LoopDecision::Search search;  // for the record
+  // The submap first, then its neighbours; needed during `Process` only.
+  std::vector<ReferenceMap> maps;
+};
+
+struct LoopOutcome {
+  SubmapKey submap;
+  NodeKey node;
+  Pose2 pose;                 // (submap <- node)
+  ConstraintWeights weights;  // for the constraint when accepted
+  proto::LoopDecision decision;
+  bool accepted() const {
+    return decision.verdict() == proto::LoopDecision::ACCEPTED;
+  }
+};
+
+class LoopVerifier {
+ public:
+  // `stock_weights`: of a loop with the reference score.
+  LoopVerifier(const proto::LoopClosureOptions& options,
+               const ConstraintWeights& stock_weights);
+
+  LoopVerifier(const LoopVerifier&) = delete;
+  LoopVerifier& operator=(const LoopVerifier&) = delete;
+
+  // For every node offered, before any sampler. True when it was new.
+  bool AddNode(int trajectory_id, HistoryNode node);
+  bool HasNode(const NodeKey& node) const;
+  // Options of the signatures that `AddNode` wants.
+  const RangeSignatureOptions& signature_options() const {
+    return temporal_options_.signature;
+  }
+
+  // Candidates in the order they were offered.
+  void Process(const LoopCandidate& candidate);
+
+  // Outcomes that became certain since the last call, in the order of their
+  // candidates. `Flush` leaves nothing undecided.
+  std::vector<LoopOutcome> Decide();
+  std::vector<LoopOutcome> Flush();
+
+  // Rejects what is undecided or not yet handed out for a submap.
+  void DeleteSubmap(const SubmapKey& submap);
+  // The same for nodes of a trajectory up to an index.
+  void DeleteNodes(int trajectory_id, int last_node_index);
+
+  int num_undecided() const { return subset_.num_undecided(); }
+
+ private:
+  // Fills the stages of the record. False: rejected, with the reason.
+  bool VerifyScores(const LoopCandidate& candidate, LoopOutcome* outcome);
+  bool PassesVeto(const LoopCandidate& candidate, LoopOutcome* outcome) const;
+  void Withdraw(const std::function<bool(const LoopOutcome&)>& condition,
+                proto::LoopDecision::Reason reason);
+  void Settle(const std::vector<SubsetDecision>& decisions);
+  std::vector<LoopOutcome> TakeSettled();
+
+  const proto::LoopClosureOptions options_;
+  const ConstraintWeights stock_weights_;
+  const TemporalVerificationOptions temporal_options_;
+  NodeHistory history_;
+  // Ways between nodes, and between submaps under trajectory ids of their own.
+  PathUncertainty paths_;
+  DynamicThreshold threshold_;
+  ScoreFusion fusion_;
+  LoopMixture mixture_;
+  CompatibleSubset subset_;
+  int64_t next_candidate_ = 0;
+  int64_t num_mixture_candidates_ = 0;
+  std::map<int64_t, LoopOutcome> waiting_;  // in the subset
+  std::map<int64_t, int> tests_waited_;
+  std::vector<LoopOutcome> settled_;
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_VERIFIER_H_
