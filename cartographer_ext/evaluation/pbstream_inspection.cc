@@ -252,17 +252,18 @@ class Comparison {
         {"common_stamps", agreement.common_stamps},
         {"pairs", agreement.pairs},
         {"fraction_alike", agreement.fraction_alike},
+        {"fraction_alike_translation", agreement.fraction_alike_translation},
         {"max_translation", agreement.max_translation},
         {"max_rotation", agreement.max_rotation}};
     if (agreement.max_translation > kRounding ||
         agreement.max_rotation > kRounding) {
       Differ(absl::StrFormat(
           "local SLAM: %d stamps in common; from node to node %.2f %% of %d "
-          "motions are alike to 2 cm and 0.2 degrees, the worst is off by "
-          "%.4f m and %.4f degrees",
+          "motions are alike to 2 cm and 0.2 degrees (%.2f %% to 2 cm), the "
+          "worst is off by %.4f m and %.4f degrees",
           agreement.common_stamps, 100. * agreement.fraction_alike,
-          agreement.pairs, agreement.max_translation,
-          RadToDeg(agreement.max_rotation)));
+          agreement.pairs, 100. * agreement.fraction_alike_translation,
+          agreement.max_translation, RadToDeg(agreement.max_rotation)));
     }
   }
 
@@ -427,6 +428,7 @@ std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
 LocalAgreement CompareLocalSlam(const MapGraph& first, const MapGraph& second) {
   constexpr double kAlikeTranslation = 0.02;
   const double alike_rotation = DegToRad(0.2);
+  constexpr io::TimeNs kSameStamp = 100000;
   std::map<std::pair<int, io::TimeNs>, Pose2> others;
   for (const auto& entry : second.nodes) {
     others[{entry.first.trajectory_id, entry.second.time}] =
@@ -435,13 +437,17 @@ LocalAgreement CompareLocalSlam(const MapGraph& first, const MapGraph& second) {
   LocalAgreement result;
   result.nodes_first = static_cast<int64_t>(first.nodes.size());
   result.nodes_second = static_cast<int64_t>(second.nodes.size());
-  int64_t alike = 0;
+  int64_t alike = 0, alike_translation = 0;
   const Pose2* previous = nullptr;
   const Pose2* previous_other = nullptr;
   int trajectory_id = -1;
   for (const auto& entry : first.nodes) {
-    const auto it = others.find({entry.first.trajectory_id, entry.second.time});
-    const Pose2* const other = it == others.end() ? nullptr : &it->second;
+    const auto it = others.lower_bound(
+        {entry.first.trajectory_id, entry.second.time - kSameStamp});
+    const bool found = it != others.end() &&
+                       it->first.first == entry.first.trajectory_id &&
+                       it->first.second <= entry.second.time + kSameStamp;
+    const Pose2* const other = found ? &it->second : nullptr;
     if (other != nullptr) ++result.common_stamps;
     if (entry.first.trajectory_id == trajectory_id && other != nullptr &&
         previous_other != nullptr) {
@@ -451,8 +457,9 @@ LocalAgreement CompareLocalSlam(const MapGraph& first, const MapGraph& second) {
       const double translation = difference.translation().norm();
       const double rotation = std::abs(difference.theta);
       ++result.pairs;
-      if (translation <= kAlikeTranslation && rotation <= alike_rotation) {
-        ++alike;
+      if (translation <= kAlikeTranslation) {
+        ++alike_translation;
+        if (rotation <= alike_rotation) ++alike;
       }
       result.max_translation = std::max(result.max_translation, translation);
       result.max_rotation = std::max(result.max_rotation, rotation);
@@ -462,8 +469,10 @@ LocalAgreement CompareLocalSlam(const MapGraph& first, const MapGraph& second) {
     previous_other = other;
   }
   if (result.pairs > 0) {
-    result.fraction_alike =
-        static_cast<double>(alike) / static_cast<double>(result.pairs);
+    const double pairs = static_cast<double>(result.pairs);
+    result.fraction_alike = static_cast<double>(alike) / pairs;
+    result.fraction_alike_translation =
+        static_cast<double>(alike_translation) / pairs;
   }
   return result;
 }

@@ -32,15 +32,18 @@ std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
                                       size_t max_problems = 100);
 
 // How alike the local SLAM of two maps of the same recording is. Nodes are
-// matched by their stamps; compared is the motion from one node to the next.
+// matched by their stamps, which may differ by a tenth of a millisecond
+// (readers round differently); compared is the motion from one node to the
+// next.
 struct LocalAgreement {
   int64_t nodes_first = 0;
   int64_t nodes_second = 0;
   int64_t common_stamps = 0;
   int64_t pairs = 0;  // of successive nodes of the first, known to the second
-  double fraction_alike = 0.;   // of the pairs, to 2 cm and 0.2 degrees
-  double max_translation = 0.;  // metres
-  double max_rotation = 0.;     // radians
+  double fraction_alike = 0.;  // of the pairs, to 2 cm and 0.2 degrees
+  double fraction_alike_translation = 0.;  // of the pairs, to 2 cm
+  double max_translation = 0.;             // metres
+  double max_rotation = 0.;                // radians
 };
 
 LocalAgreement CompareLocalSlam(const MapGraph& first, const MapGraph& second);

@@ -162,7 +162,13 @@ TEST(PbstreamInspectionTest, LocalAgreementComparesMotions) {
   EXPECT_EQ(agreement.common_stamps, 3);
   EXPECT_EQ(agreement.pairs, 2);
   EXPECT_DOUBLE_EQ(agreement.fraction_alike, 0.5);
+  EXPECT_DOUBLE_EQ(agreement.fraction_alike_translation, 0.5);
   EXPECT_NEAR(agreement.max_translation, 0.03, 1e-12);
+  // Stamps that were rounded otherwise are the same.
+  for (auto& node : other.nodes) {
+    node.mutable_node_data()->set_timestamp(node.node_data().timestamp() + 900);
+  }
+  EXPECT_EQ(CompareLocalSlam(first, MakeMapGraph(other)).pairs, 2);
   other.nodes.erase(other.nodes.begin() + 1);
   EXPECT_EQ(CompareLocalSlam(first, MakeMapGraph(other)).pairs, 0);
 }

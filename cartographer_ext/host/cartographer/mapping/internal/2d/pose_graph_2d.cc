@@ -145,6 +145,7 @@ WorkItem::Result PoseGraph2D::ProcessNode(
     const NodeId& node_id,
     const std::vector<std::shared_ptr<const Submap2D>>& insertion_submaps,
     const std::vector<SubmapId>& submap_ids, const bool newly_finished_submap) {
+  GetPoseGraph2DMetrics().work_queue_size->Set(work_queue_.size());
   std::vector<SubmapId> older_submap_ids;
   std::set<NodeId> nodes_in_new_submap;
   {

@@ -7,6 +7,7 @@
 
 #include "absl/memory/memory.h"
 #include "absl/strings/str_format.h"
+#include "cartographer/common/time.h"
 #include "cartographer/metrics/counter.h"
 #include "cartographer/metrics/gauge.h"
 #include "cartographer/metrics/histogram.h"
@@ -29,6 +30,23 @@ SearchMetrics local_metrics;
 SearchMetrics global_metrics;
 metrics::Gauge* queue_length_metric = metrics::Gauge::Null();
 metrics::Gauge* num_matchers_metric = metrics::Gauge::Null();
+metrics::Counter* search_cpu_metric = metrics::Counter::Null();
+metrics::Counter* build_cpu_metric = metrics::Counter::Null();
+
+// Counts the CPU seconds that the thread spends while this exists.
+class CpuMeter {
+ public:
+  explicit CpuMeter(metrics::Counter* const counter) : counter_(counter) {}
+  ~CpuMeter() {
+    counter_->Increment(common::GetThreadCpuTimeSeconds() - start_);
+  }
+  CpuMeter(const CpuMeter&) = delete;
+  CpuMeter& operator=(const CpuMeter&) = delete;
+
+ private:
+  metrics::Counter* const counter_;
+  const double start_ = common::GetThreadCpuTimeSeconds();
+};
 
 }  // namespace
 
@@ -150,6 +168,7 @@ void ConstraintBuilder2D::ScheduleMatcher(const Submap2D* const submap,
   num_matchers_metric->Set(++num_matchers_);
   auto task = absl::make_unique<common::Task>();
   task->SetWorkItem([this, submap, entry]() {
+    const CpuMeter meter(build_cpu_metric);
     entry->matcher =
         absl::make_unique<scan_matching::FastCorrelativeScanMatcher2D>(
             *submap->grid(), options_.fast_correlative_scan_matcher_options());
@@ -160,6 +179,7 @@ void ConstraintBuilder2D::ScheduleMatcher(const Submap2D* const submap,
 absl::optional<ConstraintBuilder2D::Constraint> ConstraintBuilder2D::Search(
     const Pair& pair,
     const scan_matching::FastCorrelativeScanMatcher2D& matcher) {
+  const CpuMeter meter(search_cpu_metric);
   const sensor::PointCloud& cloud =
       pair.node->filtered_gravity_aligned_point_cloud;
   const transform::Rigid2d submap_pose = ComputeSubmapPose(*pair.submap);
@@ -278,6 +298,11 @@ void ConstraintBuilder2D::RegisterMetrics(
               "matchers",
               "Submaps with a scan matcher")
           ->Add({});
+  auto* const cpu_seconds = family_factory->NewCounterFamily(
+      "mapping_constraints_constraint_builder_2d_search_cpu_seconds",
+      "CPU seconds spent on searching and on preparing submaps for it");
+  search_cpu_metric = cpu_seconds->Add({{"stage", "search"}});
+  build_cpu_metric = cpu_seconds->Add({{"stage", "build"}});
 }
 
 }  // namespace constraints

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/tools/command_line.h"
+
+#include <cmath>
+#include <vector>
+
+#include "gflags/gflags.h"
+#include "glog/logging.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/tools/run_command.h"
+
+DEFINE_string(test_name, "", "A word.");
+DEFINE_int32(test_number, 3, "A number.");
+DEFINE_bool(test_switch, true, "On or off.");
+
+namespace cartographer_ext {
+namespace tools {
+namespace {
+
+void Parse(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "/somewhere/command");
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(&argument[0]);
+  CommandLine("Tests.").Parse(static_cast<int>(argv.size()), argv.data());
+}
+
+// Starting the log is for once a process, so each case has its own.
+void ParseAndCheck(const std::vector<std::string>& arguments,
+                   const std::string& name, int number, bool on) {
+  EXPECT_EXIT(
+      {
+        google::ShutdownGoogleLogging();
+        Parse(arguments);
+        std::exit(FLAGS_test_name == name && FLAGS_test_number == number &&
+                          FLAGS_test_switch == on && ProgramName() == "command"
+                      ? 0
+                      : 9);
+      },
+      testing::ExitedWithCode(0), "");
+}
+
+void ParseAndFail(const std::vector<std::string>& arguments,
+                  const std::string& message) {
+  EXPECT_EXIT(
+      {
+        google::ShutdownGoogleLogging();
+        Parse(arguments);
+      },
+      testing::ExitedWithCode(2), message);
+}
+
+TEST(CommandLineTest, TakesFlagsInAllForms) {
+  ParseAndCheck({}, "", 3, true);
+  ParseAndCheck({"-test_name", "x", "--test_number", "4"}, "x", 4, true);
+  ParseAndCheck({"--test_name=a=b", "-test_number=-5"}, "a=b", -5, true);
+  ParseAndCheck({"-notest_switch"}, "", 3, false);
+  ParseAndCheck({"--test_switch=false"}, "", 3, false);
+  ParseAndCheck({"-test_switch", "-test_name", "-json"}, "-json", 3, true);
+}
+
+TEST(CommandLineTest, RefusesWhatItDoesNotKnow) {
+  ParseAndFail({"-nonsense_flag"}, "unknown flag -nonsense_flag");
+  ParseAndFail({"-nonsense_flag=3"}, "unknown flag -nonsense_flag");
+  ParseAndFail({"word"}, "what is \"word\"");
+  ParseAndFail({"-"}, "what is \"-\"");
+  ParseAndFail({"-test_number", "many"}, "-test_number cannot be \"many\"");
+  ParseAndFail({"-test_number"}, "-test_number needs a value");
+}
+
+TEST(CommandLineTest, StatusBecomesExitCode) {
+  EXPECT_EQ(ExitCode(absl::OkStatus()), 0);
+  EXPECT_EQ(ExitCode(absl::NotFoundError("x")), 1);
+  EXPECT_EQ(UsageError("x"), 2);
+}
+
+TEST(CommandLineTest, CheckWritableLeavesNothingBehind) {
+  const test::TemporaryFolder folder;
+  EXPECT_TRUE(CheckWritable({"", "-", folder / "new"}).ok());
+  EXPECT_TRUE(folder.Names().empty());
+  const absl::Status status =
+      CheckWritable({folder / "fine", folder / "missing/file"});
+  EXPECT_FALSE(status.ok());
+  EXPECT_THAT(std::string(status.message()),
+              testing::HasSubstr("missing/file"));
+  // What is there already stays as it is.
+  test::WriteFile(folder / "old", "content");
+  EXPECT_TRUE(CheckWritable({folder / "old"}).ok());
+  EXPECT_EQ(test::ReadFile(folder / "old"), "content");
+}
+
+TEST(CommandLineTest, JsonHasNoNan) {
+  const test::TemporaryFolder folder;
+  nlohmann::ordered_json json;
+  json["b"] = std::nan("");
+  json["a"] = 1;
+  json["text"] = "broken \xff byte";
+  ASSERT_TRUE(WriteJson(json, folder / "x.json").ok());
+  const std::string text = test::ReadFile(folder / "x.json");
+  EXPECT_EQ(text.back(), '\n');
+  const auto parsed = test::ParseJson(text);
+  EXPECT_TRUE(parsed["b"].is_null());
+  EXPECT_EQ(parsed["a"], 1);
+  EXPECT_LT(text.find("\"b\""), text.find("\"a\""));
+}
+
+TEST(CommandLineTest, BaseName) {
+  EXPECT_EQ(BaseName("/a/b.clf"), "b.clf");
+  EXPECT_EQ(BaseName("b.clf"), "b.clf");
+}
+
+}  // namespace
+}  // namespace tools
+}  // namespace cartographer_ext

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The command cartographer_ext_robustness.
+#include "gmock/gmock.h"
+#include "tests/test_data.h"
+#include "tests/tools/run_command.h"
+
+namespace cartographer_ext {
+namespace {
+
+using test::CommandResult;
+using test::RunCommand;
+using ::testing::HasSubstr;
+
+TEST(RobustnessMainTest, SweepIsResumed) {
+  const std::string file = test::SharedData("g2o/intel.g2o.xz");
+  CARTOGRAPHER_EXT_SKIP_WITHOUT(file);
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> arguments = {"-datasets",
+                                              file,
+                                              "-kernels",
+                                              "r_isam,dcs",
+                                              "-outlier_types",
+                                              "R,LG",
+                                              "-outlier_counts",
+                                              "200,50%",
+                                              "-journal_filename",
+                                              folder / "journal.jsonl",
+                                              "-picture_filename",
+                                              folder / "plot.png",
+                                              "-json",
+                                              "-"};
+  CommandResult result = RunCommand("robustness", arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const nlohmann::json json = test::ParseJson(result.out);
+  ASSERT_EQ(json["runs"].size(), 8u);
+  for (const nlohmann::json& run : json["runs"]) {
+    for (const char* key :
+         {"dataset", "kernel", "type", "count", "seed", "cpu_seconds", "ate",
+          "rpe", "precision", "recall", "success"}) {
+      EXPECT_TRUE(run.contains(key)) << key;
+    }
+    EXPECT_EQ(run["dataset"], "intel");
+    EXPECT_TRUE(run["success"]);
+    EXPECT_TRUE(run["count"] == 200 || run["count"] == 895);
+  }
+  EXPECT_THAT(test::ReadFile(folder / "plot.png"), HasSubstr("PNG"));
+  // Half of the last line is lost; the rest is not run again.
+  const std::string journal = test::ReadFile(folder / "journal.jsonl");
+  test::WriteFile(folder / "journal.jsonl",
+                  journal.substr(0, journal.size() - 40));
+  result = RunCommand("robustness", arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const nlohmann::json again = test::ParseJson(result.out);
+  ASSERT_EQ(again["runs"].size(), 8u);
+  EXPECT_EQ(again["runs"][0]["cpu_seconds"], json["runs"][0]["cpu_seconds"]);
+  EXPECT_EQ(RunCommand("robustness", arguments).exit_code, 0);
+}
+
+TEST(RobustnessMainTest, BadInputAndUsage) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(RunCommand("robustness", {"-preset", "nothing"}).exit_code, 2);
+  EXPECT_EQ(RunCommand("robustness", {"-seeds", "0"}).exit_code, 2);
+  CommandResult result =
+      RunCommand("robustness", {"-datasets", folder / "missing.g2o"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("missing.g2o"));
+  EXPECT_EQ(RunCommand("robustness", {"-kernels", "magic"}).exit_code, 1);
+  EXPECT_EQ(RunCommand("robustness", {"-outlier_types", "X"}).exit_code, 1);
+  test::WriteFile(folder / "journal", "something else\nand more\n");
+  result = RunCommand("robustness", {"-journal_filename", folder / "journal"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("journal:1"));
+}
+
+}  // namespace
+}  // namespace cartographer_ext
