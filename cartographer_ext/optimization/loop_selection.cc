@@ -132,6 +132,28 @@ class Selector {
     return blamed;
   }
 
+  // Takes back loops blamed before the culprit was found.
+  void Acquit(const size_t num_violations,
+              LoopSelection* const selection) const {
+    std::vector<int> guilty = selection->blamed;
+    for (const int loop : selection->blamed) {
+      if (guilty.size() < 2) break;
+      std::vector<bool> accepted = selection->accepted;
+      accepted[loop] = true;
+      std::vector<Pose2> poses = graph_.poses;
+      SolveAccepted(accepted, &poses);
+      const WhitenedEdge& edge = edges_[loop];
+      if (Violations(poses).size() > num_violations ||
+          Chi2(edge, poses[edge.from], poses[edge.to]) >= options_.gate) {
+        continue;
+      }
+      selection->accepted = accepted;
+      selection->poses = poses;
+      guilty.erase(std::find(guilty.begin(), guilty.end(), loop));
+    }
+    selection->blamed = guilty;
+  }
+
   void CheckOdometry(LoopSelection* const selection) const {
     std::vector<int> violations = Violations(selection->poses);
     std::vector<bool> accepted = selection->accepted;
@@ -153,6 +175,7 @@ class Selector {
         selection->blamed = blamed;
       }
     }
+    Acquit(violations.size(), selection);
     selection->violations = violations.size();
   }
 

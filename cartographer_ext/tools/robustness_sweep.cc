@@ -12,6 +12,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
+#include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/optimization/graph_metrics.h"
 #include "cartographer_ext/optimization/outlier_generator.h"
@@ -94,19 +95,24 @@ absl::StatusOr<std::map<std::string, SweepRun>> ReadJournal(
   std::map<std::string, SweepRun> result;
   if (filename.empty()) return result;
   std::ifstream stream(filename);
-  std::string line;
+  std::string line, whole_lines;
   int number = 0;
   while (std::getline(stream, line)) {
     ++number;
     SweepRun run;
     const auto json = nlohmann::json::parse(line, nullptr, false);
-    // An interrupted write leaves half a line at the end.
-    if (json.is_discarded() && stream.peek() == EOF) break;
+    if (json.is_discarded() && number > 1 && stream.peek() == EOF) {
+      // An interrupted write leaves half a line at the end.
+      const absl::Status status = WriteFileAtomically(filename, whole_lines);
+      if (!status.ok()) return status;
+      break;
+    }
     if (json.is_discarded() || !FromJson(json, &run)) {
       return absl::InvalidArgumentError(absl::StrCat(
           filename, ":", number, ": not a line of a robustness journal"));
     }
     result[Key(run)] = run;
+    absl::StrAppend(&whole_lines, line, "\n");
   }
   return result;
 }
