@@ -21,6 +21,15 @@ function(cartographer_ext_warnings target)
   endif()
 endfunction()
 
+# A real Cartographer tree, compiled as it compiles on its own.
+function(cartographer_ext_add_cartographer_tree tree)
+  unset(CMAKE_CXX_STANDARD)
+  set(CMAKE_CXX_STANDARD_REQUIRED OFF)
+  set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/cartographer/bin")
+  add_subdirectory("${tree}" "${CMAKE_BINARY_DIR}/cartographer" EXCLUDE_FROM_ALL)
+endfunction()
+
 # cartographer_ext_module(<name> [PATTERN glob...] [EXCLUDE regex] LINK libs...)
 # One static library `cartographer_ext_<name>` from the sources of the current folder.
 function(cartographer_ext_module name)

@@ -8,8 +8,11 @@
 # overlay header stands first on the include path under the stock header's path, and our source under the original name is
 # added to the target. Without our Lua block our class only forwards to the renamed stock one.
 #
-# Swaps (default: all of them):
-#   optimization_problem   OptimizationProblem2D and its options
+# Swaps (default: those in CARTOGRAPHER_EXT_ALL_SWAPS):
+#   constraint_builder        ConstraintBuilder2D and its options
+#   ceres_scan_matcher        CeresScanMatcher2D and its options
+#   optimization_problem      OptimizationProblem2D and its options
+#   local_trajectory_builder  LocalTrajectoryBuilder2D and its options
 #
 # Works on the bundled host and on a real tree, in two ways:
 #   superproject   add_subdirectory(<tree>), then this function (CMake 3.16 or newer)
@@ -19,6 +22,8 @@
 # signature is an error at compile time (static assertions in the drop-in sources).
 
 include_guard(GLOBAL)
+# Injected into a project that asks for the policies of CMake 3.2; functions keep those of the place that defines them.
+cmake_policy(VERSION 3.16)
 
 get_filename_component(CARTOGRAPHER_EXT_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 set(CARTOGRAPHER_EXT_ALL_SWAPS optimization_problem)
@@ -26,26 +31,33 @@ set(CARTOGRAPHER_EXT_ALL_SWAPS optimization_problem)
 # Modules whose sources need no host; they are compiled once as objects and become part of the target.
 set(CARTOGRAPHER_EXT_CORE_MODULES common options optimization loop_closure scan_matching front_end)
 
-# Renames of one swap, as "stock source|old name|declaring header".
+# The module whose dropin/ folder holds the class behind a swap.
+set(CARTOGRAPHER_EXT_MODULE_OF_constraint_builder loop_closure)
+set(CARTOGRAPHER_EXT_MODULE_OF_ceres_scan_matcher scan_matching)
+set(CARTOGRAPHER_EXT_MODULE_OF_optimization_problem optimization)
+set(CARTOGRAPHER_EXT_MODULE_OF_local_trajectory_builder front_end)
+
+# What a swap renames, as "stock source|name|declaring header", below cartographer/mapping/internal/.
 function(cartographer_ext_swap_renames swap result)
-  if(swap STREQUAL "optimization_problem")
+  if(swap STREQUAL "constraint_builder")
     set(renames
-        "mapping/internal/optimization/optimization_problem_2d.cc|OptimizationProblem2D|mapping/internal/optimization/optimization_problem_2d.h"
-        "mapping/internal/optimization/optimization_problem_options.cc|CreateOptimizationProblemOptions|mapping/internal/optimization/optimization_problem_options.h")
-  elseif(swap STREQUAL "constraint_builder")
-    set(renames
-        "mapping/internal/constraints/constraint_builder_2d.cc|ConstraintBuilder2D|mapping/internal/constraints/constraint_builder_2d.h"
-        "mapping/internal/constraints/constraint_builder.cc|CreateConstraintBuilderOptions|mapping/internal/constraints/constraint_builder.h")
+        "constraints/constraint_builder_2d.cc|ConstraintBuilder2D|constraints/constraint_builder_2d.h"
+        "constraints/constraint_builder.cc|CreateConstraintBuilderOptions|constraints/constraint_builder.h")
   elseif(swap STREQUAL "ceres_scan_matcher")
     set(renames
-        "mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.cc|CeresScanMatcher2D|mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
-        "mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.cc|CreateCeresScanMatcherOptions2D|mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h")
+        "2d/scan_matching/ceres_scan_matcher_2d.cc|CeresScanMatcher2D|2d/scan_matching/ceres_scan_matcher_2d.h"
+        "2d/scan_matching/ceres_scan_matcher_2d.cc|CreateCeresScanMatcherOptions2D|2d/scan_matching/ceres_scan_matcher_2d.h")
+  elseif(swap STREQUAL "optimization_problem")
+    set(renames
+        "optimization/optimization_problem_2d.cc|OptimizationProblem2D|optimization/optimization_problem_2d.h"
+        "optimization/optimization_problem_options.cc|CreateOptimizationProblemOptions|optimization/optimization_problem_options.h")
   elseif(swap STREQUAL "local_trajectory_builder")
     set(renames
-        "mapping/internal/2d/local_trajectory_builder_2d.cc|LocalTrajectoryBuilder2D|mapping/internal/2d/local_trajectory_builder_2d.h"
-        "mapping/internal/2d/local_trajectory_builder_options_2d.cc|CreateLocalTrajectoryBuilderOptions2D|mapping/internal/2d/local_trajectory_builder_options_2d.h")
-  else()
-    message(FATAL_ERROR "cartographer_ext: unknown swap '${swap}', there are: ${CARTOGRAPHER_EXT_ALL_SWAPS}")
+        "2d/local_trajectory_builder_2d.cc|LocalTrajectoryBuilder2D|2d/local_trajectory_builder_2d.h"
+        "2d/local_trajectory_builder_options_2d.cc|CreateLocalTrajectoryBuilderOptions2D|2d/local_trajectory_builder_options_2d.h")
+  endif()
+  if(NOT swap IN_LIST CARTOGRAPHER_EXT_ALL_SWAPS)
+    message(FATAL_ERROR "cartographer_ext: there is no swap '${swap}', there are: ${CARTOGRAPHER_EXT_ALL_SWAPS}")
   endif()
   set(${result} "${renames}" PARENT_SCOPE)
 endfunction()
@@ -56,6 +68,14 @@ function(cartographer_ext_add_proto_objects)
     return()
   endif()
   find_package(Protobuf REQUIRED)
+  set(protoc "${PROTOBUF_PROTOC_EXECUTABLE}")
+  if(TARGET protobuf::protoc)
+    set(protoc protobuf::protoc)
+  endif()
+  set(proto_path -I "${CARTOGRAPHER_EXT_ROOT}/proto")
+  if(PROTOBUF_INCLUDE_DIR)
+    list(APPEND proto_path -I "${PROTOBUF_INCLUDE_DIR}")
+  endif()
   set(generated "${CMAKE_BINARY_DIR}/cartographer_ext_proto")
   file(GLOB protos CONFIGURE_DEPENDS "${CARTOGRAPHER_EXT_ROOT}/proto/cartographer_ext/*.proto")
   file(MAKE_DIRECTORY "${generated}/cartographer_ext")
@@ -65,8 +85,7 @@ function(cartographer_ext_add_proto_objects)
     set(outputs "${generated}/cartographer_ext/${stem}.pb.cc" "${generated}/cartographer_ext/${stem}.pb.h")
     add_custom_command(
       OUTPUT ${outputs}
-      COMMAND ${PROTOBUF_PROTOC_EXECUTABLE} --cpp_out "${generated}" -I "${CARTOGRAPHER_EXT_ROOT}/proto"
-              -I "${PROTOBUF_INCLUDE_DIR}" "${proto}"
+      COMMAND ${protoc} --cpp_out "${generated}" ${proto_path} "${proto}"
       DEPENDS ${protos}
       COMMENT "Generating cartographer_ext/${stem}.pb.h"
       VERBATIM)
@@ -98,9 +117,14 @@ function(cartographer_ext_add_core_objects module)
     return()
   endif()
   cartographer_ext_add_proto_objects()
-  find_package(Eigen3 REQUIRED)
-  find_package(Ceres REQUIRED)
-  find_package(absl REQUIRED)
+  foreach(package_target Eigen3|Eigen3::Eigen Ceres|Ceres::ceres absl|absl::statusor)
+    string(REPLACE "|" ";" package_target "${package_target}")
+    list(GET package_target 0 package)
+    list(GET package_target 1 imported)
+    if(NOT TARGET ${imported})
+      find_package(${package} REQUIRED)
+    endif()
+  endforeach()
   add_library(cartographer_ext_${module}_objects OBJECT ${sources})
   set_target_properties(cartographer_ext_${module}_objects PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_include_directories(cartographer_ext_${module}_objects PUBLIC "${CARTOGRAPHER_EXT_ROOT}")
@@ -119,32 +143,88 @@ function(cartographer_ext_add_core_objects module)
   endif()
 endfunction()
 
-# Gives the one source of `target` that ends in cartographer/<suffix>.
-function(cartographer_ext_find_stock_source target suffix result)
+# Gives the one source of `target` that is cartographer/mapping/internal/<suffix>, with an absolute path, and the form in
+# which the target lists it.
+function(cartographer_ext_find_stock_source target suffix result listed_result)
   get_target_property(sources ${target} SOURCES)
   get_target_property(source_dir ${target} SOURCE_DIR)
   set(found)
+  set(listed)
   foreach(source IN LISTS sources)
-    if(source MATCHES "cartographer/([^|]*)$" AND source MATCHES "/cartographer/${suffix}$"
-       AND NOT source MATCHES "/cartographer_ext/overlay/")
-      if(NOT IS_ABSOLUTE "${source}")
-        set(source "${source_dir}/${source}")
-      endif()
-      list(APPEND found "${source}")
+    get_filename_component(absolute "${source}" ABSOLUTE BASE_DIR "${source_dir}")
+    string(FIND "${absolute}" "/cartographer/mapping/internal/${suffix}" position REVERSE)
+    if(position EQUAL -1)
+      continue()
+    endif()
+    string(SUBSTRING "${absolute}" ${position} -1 rest)
+    if(rest STREQUAL "/cartographer/mapping/internal/${suffix}")
+      list(APPEND found "${absolute}")
+      list(APPEND listed "${source}")
     endif()
   endforeach()
   list(LENGTH found count)
   if(NOT count EQUAL 1)
-    message(FATAL_ERROR "cartographer_ext: target ${target} should have exactly one source cartographer/${suffix}, "
-                        "found ${count}: ${found}. This is not a Cartographer tree that we know; leave the swap out "
-                        "with SWAPS, or report the version.")
+    message(FATAL_ERROR "cartographer_ext: target ${target} should have exactly one source "
+                        "cartographer/mapping/internal/${suffix}, found ${count}: ${found}. This is not a Cartographer "
+                        "tree that we know; leave the swap out with SWAPS, or report the version.")
   endif()
   set(${result} "${found}" PARENT_SCOPE)
+  set(${listed_result} "${listed}" PARENT_SCOPE)
+endfunction()
+
+# Fails unless the header beside the stock source declares what we front.
+function(cartographer_ext_check_declaration swap source suffix name header)
+  string(REGEX REPLACE "/cartographer/mapping/internal/${suffix}$" "" root "${source}")
+  set(path "${root}/cartographer/mapping/internal/${header}")
+  if(NOT EXISTS "${path}")
+    message(FATAL_ERROR "cartographer_ext: ${path} is missing; leave the swap '${swap}' out with SWAPS")
+  endif()
+  file(READ "${path}" text)
+  string(REGEX MATCHALL "(class ${name}[ \n]|[ :\n]${name}\\()" declarations "${text}")
+  if(NOT declarations)
+    message(FATAL_ERROR "cartographer_ext: ${path} does not declare ${name}; this version of Cartographer has another "
+                        "API, leave the swap '${swap}' out with SWAPS")
+  endif()
+endfunction()
+
+# Replaces the stock sources of one swap by generated ones that include them with their names out of the way, and adds ours.
+# (A generated source works from any directory and CMake version; source properties need 3.18 for that.)
+function(cartographer_ext_apply_swap target swap)
+  cartographer_ext_swap_renames(${swap} renames)
+  set(suffixes)
+  foreach(rename IN LISTS renames)
+    string(REPLACE "|" ";" parts "${rename}")
+    list(GET parts 0 suffix)
+    list(GET parts 1 name)
+    list(GET parts 2 header)
+    string(MAKE_C_IDENTIFIER "${suffix}" key)
+    if(NOT DEFINED source_${key})
+      cartographer_ext_find_stock_source(${target} "${suffix}" source_${key} listed_${key})
+      list(APPEND suffixes "${suffix}")
+    endif()
+    cartographer_ext_check_declaration(${swap} "${source_${key}}" "${suffix}" ${name} "${header}")
+    string(APPEND defines_${key} "#define ${name} Stock${name}\n")
+  endforeach()
+  get_target_property(sources ${target} SOURCES)
+  foreach(suffix IN LISTS suffixes)
+    string(MAKE_C_IDENTIFIER "${suffix}" key)
+    get_filename_component(file_name "${suffix}" NAME)
+    set(STOCK_DEFINES "${defines_${key}}")
+    set(STOCK_SOURCE "${source_${key}}")
+    set(generated "${CMAKE_BINARY_DIR}/cartographer_ext_stock/${target}/stock_${file_name}")
+    configure_file("${CARTOGRAPHER_EXT_ROOT}/cmake/stock_source.cc.in" "${generated}" @ONLY)
+    list(REMOVE_ITEM sources "${listed_${key}}")
+    list(APPEND sources "${generated}")
+  endforeach()
+  file(GLOB dropin CONFIGURE_DEPENDS
+       "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/overlay/dropin/${swap}/*.cc"
+       "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${CARTOGRAPHER_EXT_MODULE_OF_${swap}}/dropin/*.cc")
+  set_target_properties(${target} PROPERTIES SOURCES "${sources};${dropin}")
+  string(TOUPPER "CARTOGRAPHER_EXT_SWAP_${swap}" definition)
+  target_compile_definitions(${target} PUBLIC $<BUILD_INTERFACE:${definition}=1>)
 endfunction()
 
 function(cartographer_ext_swap_into target)
-  cmake_policy(PUSH)
-  cmake_policy(VERSION 3.16)
   cmake_parse_arguments(ARG "" "" "SWAPS" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "cartographer_ext_swap_into: unknown arguments: ${ARG_UNPARSED_ARGUMENTS}")
@@ -163,54 +243,25 @@ function(cartographer_ext_swap_into target)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     message(FATAL_ERROR "cartographer_ext: the overlay headers need #include_next (GCC or Clang)")
   endif()
-
-  set(definitions_of)
   foreach(swap IN LISTS ARG_SWAPS)
-    cartographer_ext_swap_renames(${swap} renames)
-    foreach(rename IN LISTS renames)
-      string(REPLACE "|" ";" parts "${rename}")
-      list(GET parts 0 suffix)
-      list(GET parts 1 name)
-      list(GET parts 2 header)
-      cartographer_ext_find_stock_source(${target} "${suffix}" source)
-      string(REGEX REPLACE "/cartographer/${suffix}$" "" root "${source}")
-      if(NOT EXISTS "${root}/cartographer/${header}")
-        message(FATAL_ERROR "cartographer_ext: ${root}/cartographer/${header} is missing")
-      endif()
-      file(READ "${root}/cartographer/${header}" text)
-      string(REGEX MATCHALL "(class ${name}[ \n]|[ :]${name}\\()" declarations "${text}")
-      if(NOT declarations)
-        message(FATAL_ERROR "cartographer_ext: ${root}/cartographer/${header} does not declare ${name}; this version of "
-                            "Cartographer has another API, leave the swap '${swap}' out with SWAPS")
-      endif()
-      string(MAKE_C_IDENTIFIER "${suffix}" key)
-      list(APPEND renamed_sources "${source}")
-      set(definitions_${key} ${definitions_${key}} "${name}=Stock${name}")
-      set_source_files_properties("${source}" TARGET_DIRECTORY ${target} PROPERTIES
-        COMPILE_DEFINITIONS "CARTOGRAPHER_EXT_COMPILING_STOCK;${definitions_${key}}")
-    endforeach()
-    file(GLOB dropin CONFIGURE_DEPENDS
-         "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/overlay/dropin/${swap}/*.cc")
-    target_sources(${target} PRIVATE ${dropin})
-    target_compile_definitions(${target} PUBLIC
-      $<BUILD_INTERFACE:CARTOGRAPHER_EXT_SWAP_$<UPPER_CASE:${swap}>=1>)
+    cartographer_ext_apply_swap(${target} ${swap})
   endforeach()
 
-  # Sources that talk to the host API, of the modules themselves.
+  # The modules as objects; a library of its own would have to be installed and exported with Cartographer's.
+  file(GLOB dropin CONFIGURE_DEPENDS "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/options/dropin/*.cc")
+  target_sources(${target} PRIVATE ${dropin})
   foreach(module IN LISTS CARTOGRAPHER_EXT_CORE_MODULES)
-    file(GLOB dropin CONFIGURE_DEPENDS "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${module}/dropin/*.cc")
-    target_sources(${target} PRIVATE ${dropin})
     cartographer_ext_add_core_objects(${module})
     if(TARGET cartographer_ext_${module}_objects)
       target_sources(${target} PRIVATE $<TARGET_OBJECTS:cartographer_ext_${module}_objects>)
       add_dependencies(${target} cartographer_ext_${module}_objects)
     endif()
   endforeach()
-  target_link_libraries(${target} PUBLIC
-    ${CARTOGRAPHER_EXT_CAMD_LIBRARY} ${CARTOGRAPHER_EXT_SUITESPARSECONFIG_LIBRARY})
   cartographer_ext_add_proto_objects()
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:cartographer_ext_proto_objects>)
   add_dependencies(${target} cartographer_ext_proto_objects)
+  target_link_libraries(${target} PUBLIC absl::optional absl::span absl::status absl::statusor absl::variant
+    ${CARTOGRAPHER_EXT_CAMD_LIBRARY} ${CARTOGRAPHER_EXT_SUITESPARSECONFIG_LIBRARY})
 
   # Ours first, and never as a system directory: those are searched after all others.
   target_include_directories(${target} BEFORE PUBLIC
@@ -219,5 +270,4 @@ function(cartographer_ext_swap_into target)
     $<BUILD_INTERFACE:${CARTOGRAPHER_EXT_ROOT}>
     $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/cartographer_ext_proto>)
   message(STATUS "cartographer_ext: swapped into ${target}: ${ARG_SWAPS}")
-  cmake_policy(POP)
 endfunction()

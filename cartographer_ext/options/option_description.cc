@@ -28,6 +28,9 @@ const proto::OptionAnnotation& Annotation(const FieldDescriptor& field) {
 
 // A number as short as it can be read back.
 std::string NumberText(const double value) {
+  if (value == std::floor(value) && std::abs(value) < 1e7) {
+    return absl::StrCat(static_cast<int>(value));
+  }
   for (int digits = 1; digits < 17; ++digits) {
     char buffer[40];
     snprintf(buffer, sizeof(buffer), "%.*g", digits, value);

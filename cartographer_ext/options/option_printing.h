@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Our blocks of a configuration as text, Markdown and Lua, all from the
+// annotations of the option messages.
+#ifndef CARTOGRAPHER_EXT_OPTIONS_OPTION_PRINTING_H_
+#define CARTOGRAPHER_EXT_OPTIONS_OPTION_PRINTING_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "google/protobuf/message.h"
+
+namespace cartographer_ext {
+namespace options {
+
+// One place where a block of ours may stand.
+struct OptionBlock {
+  // The stock table it extends: "POSE_GRAPH.constraint_builder".
+  std::string stock_path;
+  // Its name in configuration_files/cartographer_ext.lua.
+  std::string name;
+  // One sentence: what the block switches on.
+  std::string summary;
+  // Whether the configuration has the block.
+  bool present = false;
+  // Its values; the defaults where it is absent.
+  std::unique_ptr<google::protobuf::Message> options;
+};
+
+// For people: one paragraph for each block, one line for each option. A star
+// marks values that are not the default.
+std::string ToText(const std::vector<OptionBlock>& blocks);
+
+// One table for each block.
+std::string ToMarkdown(const std::vector<OptionBlock>& blocks);
+
+// Assignments for the blocks that are present, to be put behind the stock files
+// of a configuration.
+std::string ToLua(const std::vector<OptionBlock>& blocks);
+
+// The whole of configuration_files/cartographer_ext.lua: every option with its
+// documentation and default, as tables that a configuration may assign. Blocks
+// of the same name are written once.
+std::string ToLuaFile(const std::vector<OptionBlock>& blocks);
+
+}  // namespace options
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIONS_OPTION_PRINTING_H_

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+// LINK: evaluation options
+//
+// cartographer_ext_print_options: what do our blocks of a configuration mean,
+// and what else could they say?
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_ext/evaluation/option_blocks.h"
+#include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/options/option_printing.h"
+#include "cartographer_ext/tools/command_line.h"
+#include "gflags/gflags.h"
+
+DEFINE_string(configuration_directory, "configuration_files",
+              "Folders of the configuration file and of what it includes, "
+              "separated by commas.");
+DEFINE_string(configuration_basename, "",
+              "Configuration file; none: every option with its default.");
+DEFINE_string(format, "text", "text, markdown or lua.");
+
+namespace cartographer_ext {
+namespace {
+
+constexpr char kDescription[] =
+    R"(Prints the options of cartographer_ext: value, default, range, meaning.
+
+  cartographer_ext_print_options -configuration_basename=default.lua
+  cartographer_ext_print_options -format=lua
+      writes configuration_files/cartographer_ext.lua to standard output
+  cartographer_ext_print_options -configuration_basename=mine.lua -format=lua
+      writes the blocks of mine.lua in full, with everything it leaves out)";
+
+int Run() {
+  evaluation::SlamConfiguration configuration;
+  const bool has_configuration = !FLAGS_configuration_basename.empty();
+  if (has_configuration) {
+    const std::vector<std::string> directories =
+        absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+    absl::StatusOr<evaluation::SlamConfiguration> loaded =
+        evaluation::LoadSlamConfiguration(directories,
+                                          FLAGS_configuration_basename);
+    if (!loaded.ok()) return tools::ExitCode(loaded.status());
+    configuration = *loaded;
+  }
+  std::vector<options::OptionBlock> blocks =
+      evaluation::OptionBlocks(configuration);
+  if (!has_configuration) {
+    for (options::OptionBlock& block : blocks) block.present = true;
+  }
+  if (FLAGS_format == "text") {
+    std::cout << options::ToText(blocks);
+  } else if (FLAGS_format == "markdown") {
+    std::cout << options::ToMarkdown(blocks);
+  } else {
+    std::cout << (has_configuration ? options::ToLua(blocks)
+                                    : options::ToLuaFile(blocks));
+  }
+  return tools::kExitSuccess;
+}
+
+}  // namespace
+}  // namespace cartographer_ext
+
+int main(int argc, char** argv) {
+  using namespace cartographer_ext;  // NOLINT
+  tools::CommandLine(kDescription).Parse(argc, argv);
+  if (FLAGS_format != "text" && FLAGS_format != "markdown" &&
+      FLAGS_format != "lua") {
+    return tools::UsageError("-format must be text, markdown or lua");
+  }
+  return Run();
+}
