@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Decision records as bytes and as a table. The bytes are length-delimited
+// messages one after the other (a varint length, then the message), which any
+// protobuf library reads; the table is CSV with a head line, one candidate a
+// line, empty cells where a stage did not run.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_LOG_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_LOG_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "cartographer_ext/loop_decision.pb.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+// Appends one record.
+void AppendDecision(const proto::LoopDecision& decision, std::string* bytes);
+
+// All records; DataLoss with the byte offset where they end in the middle of a
+// record or do not decode.
+absl::StatusOr<std::vector<proto::LoopDecision>> ParseDecisions(
+    absl::string_view bytes);
+
+std::string DecisionCsv(const std::vector<proto::LoopDecision>& decisions);
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_LOG_H_
