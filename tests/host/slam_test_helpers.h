@@ -93,7 +93,7 @@ inline double CastRay(const Eigen::Vector2d& from, const double angle) {
 // What a scanner sees that looks all around from `pose`.
 inline sensor::TimedPointCloudData Scan(const transform::Rigid3d& pose,
                                         const common::Time time,
-                                        const int num_beams = 180) {
+                                        const int num_beams = 360) {
   const double yaw = transform::GetYaw(pose);
   sensor::TimedPointCloudData scan{time, Eigen::Vector3f::Zero(), {}, {}};
   for (int i = 0; i < num_beams; ++i) {
@@ -106,10 +106,10 @@ inline sensor::TimedPointCloudData Scan(const transform::Rigid3d& pose,
   return scan;
 }
 
-// A closed drive through the room, one round in a time of 1; starts at the
-// origin, heading along x.
+// A closed drive through the room, one round in a time of 1. It starts and ends
+// at rest at the origin, heading along x.
 inline transform::Rigid3d Drive(const double time) {
-  const double angle = 2. * M_PI * time;
+  const double angle = 2. * M_PI * time - std::sin(2. * M_PI * time);
   return Planar(1.8 * std::sin(angle), 1.2 * (1. - std::cos(angle)), angle);
 }
 
