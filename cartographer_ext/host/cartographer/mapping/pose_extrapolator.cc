@@ -170,7 +170,8 @@ void PoseExtrapolator::UpdateVelocityFromPoses() {
   const TimedPose& newest = timed_poses_.back();
   const double seconds = common::ToSeconds(newest.time - oldest.time);
   if (seconds <= 0. || seconds < common::ToSeconds(pose_queue_duration_)) {
-    LOG_EVERY_N(WARNING, 100)
+    // The first scan comes at the time of the first pose, which is no fault.
+    LOG_IF_EVERY_N(WARNING, seconds > 0., 100)
         << "poses span only " << seconds << " s, too short for a velocity";
     return;
   }
