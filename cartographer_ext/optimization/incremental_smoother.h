@@ -140,6 +140,8 @@ class IncrementalSmoother {
   bool KernelIsNarrow() const;
   // At the end, if so.
   void TryWiderKernels();
+  // Whether enough loops back `poses` as a hypothesis.
+  bool IsSupported(const std::vector<Pose2>& poses) const;
   // True when a hypothesis was taken over into the poses.
   bool TryHypotheses(int first_edge);
 

@@ -19,6 +19,8 @@ constexpr size_t kMaxSeedTests = 20;
 constexpr int kMaxFinalRounds = 5;
 constexpr int kFinalPolishRounds = 30;
 constexpr int kMinRevisits = 3;
+constexpr int kManyLoops = 20;
+constexpr double kNearlyAll = 0.9;
 constexpr double kHypothesisMajority = 0.7;
 
 bool Agrees(const WhitenedEdge& edge, const std::vector<Pose2>& poses,
@@ -211,6 +213,19 @@ std::vector<int> IncrementalSmoother::ChooseSeeds(
   return seeds;
 }
 
+bool IncrementalSmoother::IsSupported(const std::vector<Pose2>& poses) const {
+  if (!LoopsAgree(edges_, poses, options_.gate, kHypothesisMajority)) {
+    return false;
+  }
+  const int revisits = NewRevisits(edges_, poses_, poses, options_.gate);
+  if (revisits >= kMinRevisits) return true;
+  // A small map has few stretches; there nearly all of its loops must agree.
+  int loops = 0;
+  for (const WhitenedEdge& edge : edges_) loops += edge.is_loop;
+  return revisits >= 2 && loops >= kManyLoops &&
+         LoopsAgree(edges_, poses, options_.gate, kNearlyAll);
+}
+
 bool IncrementalSmoother::TryHypotheses(const int first_edge) {
   if (options_.max_hypotheses <= 0) return false;
   const std::vector<Candidate> candidates = FindCandidates(first_edge);
@@ -229,9 +244,7 @@ bool IncrementalSmoother::TryHypotheses(const int first_edge) {
     PolishTruncated(edges_, options_.gate, options_.polish_rounds, &poses,
                     nullptr);
     const double cost = TruncatedCost(edges_, poses);
-    if (cost < lowest &&
-        LoopsAgree(edges_, poses, options_.gate, kHypothesisMajority) &&
-        NewRevisits(edges_, poses_, poses, options_.gate) >= kMinRevisits) {
+    if (cost < lowest && IsSupported(poses)) {
       lowest = cost;
       best = poses;
       improved = true;
