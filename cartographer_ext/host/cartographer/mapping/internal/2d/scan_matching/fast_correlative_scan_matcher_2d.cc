@@ -409,7 +409,10 @@ FastCorrelativeScanMatcher2D::FastCorrelativeScanMatcher2D(
       limits_(grid.limits()),
       grids_(absl::make_unique<PrecomputationGridStack2D>(grid, options)),
       coarse_grid_(
-          absl::make_unique<CoarseGrid>(grids_->Get(grids_->max_depth()))) {}
+          absl::make_unique<CoarseGrid>(grids_->Get(grids_->max_depth()))) {
+  // One copy is enough: a map has hundreds of matchers.
+  grids_->ReleaseCoarsest();
+}
 
 FastCorrelativeScanMatcher2D::~FastCorrelativeScanMatcher2D() = default;
 

@@ -66,6 +66,9 @@ class PrecomputationGrid2D {
   int num_y_cells() const { return num_y_cells_; }
   // Row by row; the first is for index (1 - width, 1 - width).
   const uint8* cells() const { return cells_.data(); }
+  // Gives the cells' memory back; afterwards only ToScore and the sizes are of
+  // use.
+  void ReleaseCells() { std::vector<uint8>().swap(cells_); }
 
  private:
   PrecomputationGrid2D() = default;
@@ -91,6 +94,10 @@ class PrecomputationGridStack2D {
   int max_depth() const {
     return static_cast<int>(precomputation_grids_.size()) - 1;
   }
+
+  // Not part of Cartographer's interface: forgets the cells of the coarsest
+  // level, for a user who keeps them in another order.
+  void ReleaseCoarsest() { precomputation_grids_.back().ReleaseCells(); }
 
  private:
   std::vector<PrecomputationGrid2D> precomputation_grids_;
@@ -130,7 +137,7 @@ class FastCorrelativeScanMatcher2D {
 
   const proto::FastCorrelativeScanMatcherOptions2D options_;
   const MapLimits limits_;
-  const std::unique_ptr<const PrecomputationGridStack2D> grids_;
+  const std::unique_ptr<PrecomputationGridStack2D> grids_;
   const std::unique_ptr<const CoarseGrid> coarse_grid_;
 };
 
