@@ -82,7 +82,7 @@ function(cartographer_ext_tests)
     target_link_libraries(${target} PRIVATE ${ARG_LINK} cartographer_ext_test_main)
     cartographer_ext_warnings(${target})
     # GCC 12 guesses the target of virtual calls in Ceres and then warns about the guess.
-    target_compile_options(${target} PRIVATE -Wno-array-bounds)
+    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
     add_test(NAME ${prefix}/${stem} COMMAND ${target} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
     # The suppressions are for commands that a test starts; tests have them built in.
     set_tests_properties(${prefix}/${stem} PROPERTIES TIMEOUT 600
