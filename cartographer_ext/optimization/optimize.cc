@@ -99,6 +99,23 @@ struct Member {
   double truncated_cost = 0.;
 };
 
+bool HasFewLoops(const PoseGraph& graph) {
+  size_t loops = 0;
+  for (const PoseGraphEdge& edge : graph.edges) loops += edge.is_loop;
+  return 2 * loops <= graph.poses.size();
+}
+
+bool RejectsSome(const std::vector<WhitenedEdge>& edges,
+                 const std::vector<Pose2>& poses) {
+  for (const WhitenedEdge& edge : edges) {
+    if (edge.is_loop &&
+        Chi2(edge, poses[edge.from], poses[edge.to]) >= kChi2Gate) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
              const OptimizeOptions& options, OptimizeResult* const result) {
   std::vector<Member> members;
@@ -133,10 +150,20 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
   add_kernel("dcs", KernelType::kDcs, graph.poses);
   add_kernel("gm", KernelType::kGemanMcClure, graph.poses);
   add_kernel("acs", KernelType::kAcs, graph.poses);
-  const auto best = std::min_element(
-      members.begin(), members.end(), [](const Member& a, const Member& b) {
-        return a.truncated_cost < b.truncated_cost;
-      });
+  const auto lower = [](const Member& a, const Member& b) {
+    return a.truncated_cost < b.truncated_cost;
+  };
+  // Long drifts between few loops are the ground of graduated non-convexity;
+  // with many loops its first, nearly convex rounds fill the factor.
+  if (HasFewLoops(graph) &&
+      RejectsSome(
+          edges,
+          std::min_element(members.begin(), members.end(), lower)->poses)) {
+    std::vector<Pose2> poses = graph.poses;
+    AddSummary(SolveGnc(edges, GncOptions(), &poses, nullptr), result);
+    add("gnc_tls", std::move(poses));
+  }
+  const auto best = std::min_element(members.begin(), members.end(), lower);
   result->poses = best->poses;
   result->member = best->name;
   result->member_truncated_chi2 = best->truncated_cost;
