@@ -21,7 +21,7 @@ constexpr int kFinalPolishRounds = 30;
 constexpr int kMinRevisits = 3;
 constexpr int kManyLoops = 20;
 constexpr double kNearlyAll = 0.9;
-constexpr double kHypothesisMajority = 0.7;
+constexpr double kHypothesisMajority = 0.8;
 
 bool Agrees(const WhitenedEdge& edge, const std::vector<Pose2>& poses,
             const double gate) {
