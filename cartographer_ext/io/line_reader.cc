@@ -163,5 +163,24 @@ absl::StatusOr<std::string> ReadFile(const std::string& filename,
   }
 }
 
+absl::Status ForEachRecord(const std::string& filename,
+                           const std::function<absl::Status(Tokens*)>& parse) {
+  auto reader = LineReader::Open(filename);
+  if (!reader.ok()) return reader.status();
+  absl::string_view text;
+  while (true) {
+    const auto more = (*reader)->Next(&text);
+    if (!more.ok()) return more.status();
+    if (!*more) return absl::OkStatus();
+    Tokens tokens(text);
+    if (!tokens.More() || tokens.rest()[0] == '#') continue;
+    const absl::Status status = parse(&tokens);
+    if (!status.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat((*reader)->Location(), ": ", status.message()));
+    }
+  }
+}
+
 }  // namespace io
 }  // namespace cartographer_ext

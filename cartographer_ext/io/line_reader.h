@@ -7,6 +7,7 @@
 #define CARTOGRAPHER_EXT_IO_LINE_READER_H_
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <streambuf>
 #include <string>
@@ -15,6 +16,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "cartographer_ext/io/tokens.h"
 
 namespace cartographer_ext {
 namespace io {
@@ -63,6 +65,12 @@ class LineReader {
 // The whole decompressed content; an error above `max_size` bytes.
 absl::StatusOr<std::string> ReadFile(const std::string& filename,
                                      size_t max_size);
+
+// Calls `parse` with the words of every line of a text file, but for empty
+// lines and comments (#). Its error ends the reading and is returned behind
+// file and line.
+absl::Status ForEachRecord(const std::string& filename,
+                           const std::function<absl::Status(Tokens*)>& parse);
 
 }  // namespace io
 }  // namespace cartographer_ext

@@ -42,24 +42,15 @@ absl::Status ParseLine(Tokens* tokens, StampedRelation* relation) {
 
 absl::StatusOr<std::vector<StampedRelation>> ReadRelations(
     const std::string& filename) {
-  auto reader = LineReader::Open(filename);
-  if (!reader.ok()) return reader.status();
   std::vector<StampedRelation> relations;
-  absl::string_view text;
-  while (true) {
-    const auto more = (*reader)->Next(&text);
-    if (!more.ok()) return more.status();
-    if (!*more) break;
-    Tokens tokens(text);
-    if (!tokens.More() || tokens.rest()[0] == '#') continue;
-    StampedRelation relation;
-    const absl::Status status = ParseLine(&tokens, &relation);
-    if (!status.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat((*reader)->Location(), ": ", status.message()));
-    }
-    relations.push_back(relation);
-  }
+  const absl::Status status =
+      ForEachRecord(filename, [&relations](Tokens* const tokens) {
+        StampedRelation relation;
+        const absl::Status parsed = ParseLine(tokens, &relation);
+        if (parsed.ok()) relations.push_back(relation);
+        return parsed;
+      });
+  if (!status.ok()) return status;
   if (relations.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(filename, ": no relation"));
   }

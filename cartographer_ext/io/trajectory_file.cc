@@ -54,28 +54,19 @@ StampedPose MakeStampedPose(TimeNs time, const Pose2& pose) {
 
 absl::StatusOr<std::vector<StampedPose>> ReadTumTrajectory(
     const std::string& filename) {
-  auto reader = LineReader::Open(filename);
-  if (!reader.ok()) return reader.status();
   std::vector<StampedPose> trajectory;
-  absl::string_view text;
-  while (true) {
-    const auto more = (*reader)->Next(&text);
-    if (!more.ok()) return more.status();
-    if (!*more) break;
-    Tokens tokens(text);
-    if (!tokens.More() || tokens.rest()[0] == '#') continue;
-    StampedPose stamped;
-    absl::Status status = ParseLine(&tokens, &stamped);
-    if (status.ok() && !trajectory.empty() &&
-        stamped.time < trajectory.back().time) {
-      status = absl::InvalidArgumentError("the stamp goes backwards");
-    }
-    if (!status.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat((*reader)->Location(), ": ", status.message()));
-    }
-    trajectory.push_back(stamped);
-  }
+  const absl::Status status =
+      ForEachRecord(filename, [&trajectory](Tokens* const tokens) {
+        StampedPose stamped;
+        const absl::Status parsed = ParseLine(tokens, &stamped);
+        if (!parsed.ok()) return parsed;
+        if (!trajectory.empty() && stamped.time < trajectory.back().time) {
+          return absl::InvalidArgumentError("the stamp goes backwards");
+        }
+        trajectory.push_back(stamped);
+        return absl::OkStatus();
+      });
+  if (!status.ok()) return status;
   if (trajectory.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(filename, ": no pose"));
   }
