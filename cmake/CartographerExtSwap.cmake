@@ -13,6 +13,7 @@
 #   ceres_scan_matcher        CeresScanMatcher2D and its options
 #   optimization_problem      OptimizationProblem2D and its options
 #   local_trajectory_builder  LocalTrajectoryBuilder2D and its options
+#   full_information          the SPA residual, for constraints with a whole information matrix (no block of its own)
 #
 # Works on the bundled host and on a real tree, in two ways:
 #   superproject   add_subdirectory(<tree>), then this function (CMake 3.16 or newer)
@@ -26,12 +27,12 @@ include_guard(GLOBAL)
 cmake_policy(VERSION 3.16)
 
 get_filename_component(CARTOGRAPHER_EXT_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
-set(CARTOGRAPHER_EXT_ALL_SWAPS optimization_problem)
+set(CARTOGRAPHER_EXT_ALL_SWAPS optimization_problem full_information)
 
 # Modules whose sources need no host; they are compiled once as objects and become part of the target.
 set(CARTOGRAPHER_EXT_CORE_MODULES common options optimization loop_closure scan_matching front_end)
 
-# The module whose dropin/ folder holds the class behind a swap.
+# The module whose dropin/ folder holds the class behind a swap; full_information needs none.
 set(CARTOGRAPHER_EXT_MODULE_OF_constraint_builder loop_closure)
 set(CARTOGRAPHER_EXT_MODULE_OF_ceres_scan_matcher scan_matching)
 set(CARTOGRAPHER_EXT_MODULE_OF_optimization_problem optimization)
@@ -55,6 +56,9 @@ function(cartographer_ext_swap_renames swap result)
     set(renames
         "2d/local_trajectory_builder_2d.cc|LocalTrajectoryBuilder2D|2d/local_trajectory_builder_2d.h"
         "2d/local_trajectory_builder_options_2d.cc|CreateLocalTrajectoryBuilderOptions2D|2d/local_trajectory_builder_options_2d.h")
+  elseif(swap STREQUAL "full_information")
+    set(spa "optimization/cost_functions/spa_cost_function_2d")
+    set(renames "${spa}.cc|CreateAutoDiffSpaCostFunction|${spa}.h" "${spa}.cc|CreateAnalyticalSpaCostFunction|${spa}.h")
   endif()
   if(NOT swap IN_LIST CARTOGRAPHER_EXT_ALL_SWAPS)
     message(FATAL_ERROR "cartographer_ext: there is no swap '${swap}', there are: ${CARTOGRAPHER_EXT_ALL_SWAPS}")
@@ -216,9 +220,11 @@ function(cartographer_ext_apply_swap target swap)
     list(REMOVE_ITEM sources "${listed_${key}}")
     list(APPEND sources "${generated}")
   endforeach()
-  file(GLOB dropin CONFIGURE_DEPENDS
-       "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/overlay/dropin/${swap}/*.cc"
-       "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${CARTOGRAPHER_EXT_MODULE_OF_${swap}}/dropin/*.cc")
+  set(dropin_globs "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/overlay/dropin/${swap}/*.cc")
+  if(DEFINED CARTOGRAPHER_EXT_MODULE_OF_${swap})
+    list(APPEND dropin_globs "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${CARTOGRAPHER_EXT_MODULE_OF_${swap}}/dropin/*.cc")
+  endif()
+  file(GLOB dropin CONFIGURE_DEPENDS ${dropin_globs})
   set_target_properties(${target} PROPERTIES SOURCES "${sources};${dropin}")
   string(TOUPPER "CARTOGRAPHER_EXT_SWAP_${swap}" definition)
   target_compile_definitions(${target} PUBLIC $<BUILD_INTERFACE:${definition}=1>)

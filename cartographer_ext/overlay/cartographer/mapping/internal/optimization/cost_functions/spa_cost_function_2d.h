@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Stands in front of Cartographer's header of the same path: the factories
+// found there get the prefix Stock, and those of the original names also know
+// constraints with a full information matrix.
+#pragma GCC system_header
+
+#if !defined(CARTOGRAPHER_EXT_SWAP_FULL_INFORMATION) || \
+    defined(CreateAutoDiffSpaCostFunction)
+// Not selected, or this is the stock source with its functions renamed.
+#include_next "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d.h"
+#else
+#ifndef CARTOGRAPHER_EXT_OVERLAY_SPA_COST_FUNCTION_2D_H_
+#define CARTOGRAPHER_EXT_OVERLAY_SPA_COST_FUNCTION_2D_H_
+
+#define CreateAutoDiffSpaCostFunction StockCreateAutoDiffSpaCostFunction
+#define CreateAnalyticalSpaCostFunction StockCreateAnalyticalSpaCostFunction
+#include_next "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d.h"
+#undef CreateAutoDiffSpaCostFunction
+#undef CreateAnalyticalSpaCostFunction
+
+namespace cartographer {
+namespace mapping {
+namespace optimization {
+
+// The stock residual, or, where cartographer_ext/common/full_information.h
+// knows the bits of `pose`, the one weighted with the whole matrix.
+ceres::CostFunction* CreateAutoDiffSpaCostFunction(
+    const PoseGraphInterface::Constraint::Pose& pose);
+ceres::CostFunction* CreateAnalyticalSpaCostFunction(
+    const PoseGraphInterface::Constraint::Pose& pose);
+
+}  // namespace optimization
+}  // namespace mapping
+}  // namespace cartographer
+
+#endif  // CARTOGRAPHER_EXT_OVERLAY_SPA_COST_FUNCTION_2D_H_
+#endif
