@@ -60,13 +60,35 @@ TEST(LuaOptionsDeathTest, ErrorsNameKeyValueAndRange) {
   EXPECT_DEATH(
       Read("return { cartographer_ext = { window = { length = 2.5 } } }",
            &sample),
-      "window.length: 2.5 is not an integer");
+      "window.length: 2.5 is not an integer, allowed: >= 1 and <= 100");
   EXPECT_DEATH(
       Read("return { cartographer_ext = { mode = 'exact' } }", &sample),
       "mode: \"exact\" is not allowed, one of: as_printed, proper");
-  EXPECT_DEATH(
-      Read("return { cartographer_ext = { enabled = 'yes' } }", &sample),
-      "enabled");
+}
+
+TEST(LuaOptionsDeathTest, WrongTypesNameKeyValueAndRange) {
+  test::SampleOptions sample;
+  const auto expect_error = [&sample](const std::string& block,
+                                      const std::string& error) {
+    EXPECT_DEATH(Read("return { cartographer_ext = " + block + " }", &sample),
+                 "POSE_GRAPH.sample.cartographer_ext" + error);
+  };
+  expect_error("3", ": 3(.000000)? is not a table");
+  expect_error("{ enabled = 'yes' }",
+               ".enabled: \"yes\" is not a boolean, allowed: true, false");
+  expect_error("{ enabled = 1 }", ".enabled: 1(.000000)? is not a boolean");
+  expect_error("{ mode = true }",
+               ".mode: true is not a string, one of: as_printed, proper");
+  expect_error("{ window = 4 }",
+               ".window: 4(.000000)? is not a table, allowed: length, gamma");
+  expect_error("{ window = { length = '4' } }",
+               ".window.length: \"4\" is not a number, allowed: >= 1 and <= "
+               "100");
+  expect_error("{ window = { gamma = {} } }",
+               ".window.gamma: \\{ ... \\} is not a number, allowed: > 0");
+  expect_error("{ window = { gamma = 0 / 0 } }", ".window.gamma: ");
+  expect_error("{ window = { gamma = math.huge } }",
+               ".window.gamma: inf is out of range, allowed: > 0");
 }
 
 }  // namespace

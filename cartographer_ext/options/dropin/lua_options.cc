@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "cartographer_ext/options/lua_literals.h"
 #include "cartographer_ext/options/option_description.h"
 #include "glog/logging.h"
 
@@ -28,6 +30,37 @@ std::vector<std::string> KnownKeys(const pb::Descriptor& descriptor) {
     }
   }
   return keys;
+}
+
+std::string AllowedNumbers(const FieldDescriptor& field) {
+  const std::string range = RangeText(field);
+  return range.empty() ? "a finite number" : range;
+}
+
+// Fatal unless the literal has the type of the field.
+void CheckType(const std::string& path, const FieldDescriptor& field,
+               const LuaLiteral& literal) {
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      CHECK(literal.kind == LuaKind::TABLE)
+          << path << ": " << literal.text << " is not a table, allowed: "
+          << absl::StrJoin(KnownKeys(*field.message_type()), ", ");
+      return;
+    case FieldDescriptor::CPPTYPE_BOOL:
+      CHECK(literal.kind == LuaKind::BOOLEAN)
+          << path << ": " << literal.text
+          << " is not a boolean, allowed: true, false";
+      return;
+    case FieldDescriptor::CPPTYPE_ENUM:
+      CHECK(literal.kind == LuaKind::STRING)
+          << path << ": " << literal.text << " is not a string, "
+          << RangeText(field);
+      return;
+    default:
+      CHECK(literal.kind == LuaKind::NUMBER)
+          << path << ": " << literal.text
+          << " is not a number, allowed: " << AllowedNumbers(field);
+  }
 }
 
 void ReadTable(const std::string& path, LuaParameterDictionary* table,
@@ -57,7 +90,8 @@ void ReadField(const std::string& path, const FieldDescriptor& field,
       // Read as a number: GetInt turns 2.5 silently into something else.
       const double value = table->GetDouble(key);
       CHECK(value == std::floor(value) && std::abs(value) < 2e9)
-          << path << ": " << value << " is not an integer";
+          << path << ": " << value
+          << " is not an integer, allowed: " << AllowedNumbers(field);
       const std::string error = CheckNumber(field, value);
       CHECK(error.empty()) << path << ": " << error;
       reflection->SetInt32(options, &field, static_cast<int>(value));
@@ -83,12 +117,17 @@ void ReadTable(const std::string& path, LuaParameterDictionary* const table,
                pb::Message* const options) {
   const pb::Descriptor& descriptor = *options->GetDescriptor();
   const std::vector<std::string> known = KnownKeys(descriptor);
+  const std::map<std::string, LuaLiteral> literals =
+      LuaLiterals(table->ToString());
   for (const std::string& key : table->GetKeys()) {
     CHECK(std::find(known.begin(), known.end(), key) != known.end())
         << path << "." << key
         << ": unknown key, allowed: " << absl::StrJoin(known, ", ");
-    ReadField(absl::StrCat(path, ".", key), *descriptor.FindFieldByName(key),
-              table, options);
+    const FieldDescriptor& field = *descriptor.FindFieldByName(key);
+    const std::string key_path = absl::StrCat(path, ".", key);
+    const auto literal = literals.find(key);
+    if (literal != literals.end()) CheckType(key_path, field, literal->second);
+    ReadField(key_path, field, table, options);
   }
 }
 
@@ -98,10 +137,16 @@ bool ReadExtension(const std::string& stock_path,
                    LuaParameterDictionary* const stock,
                    pb::Message* const options) {
   if (!stock->HasKey(kExtensionKey)) return false;
+  const std::string path = absl::StrCat(stock_path, ".", kExtensionKey);
+  const std::map<std::string, LuaLiteral> literals =
+      LuaLiterals(stock->ToString());
+  const auto literal = literals.find(kExtensionKey);
+  CHECK(literal == literals.end() || literal->second.kind == LuaKind::TABLE)
+      << path << ": " << literal->second.text << " is not a table";
   SetDefaults(options);
   const std::unique_ptr<LuaParameterDictionary> table =
       stock->GetDictionary(kExtensionKey);
-  ReadTable(absl::StrCat(stock_path, ".", kExtensionKey), table.get(), options);
+  ReadTable(path, table.get(), options);
   return true;
 }
 
