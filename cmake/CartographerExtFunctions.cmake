@@ -9,6 +9,17 @@ function(cartographer_ext_sanitize_all)
     add_compile_options(-fsanitize=${CARTOGRAPHER_EXT_SANITIZE} -fno-omit-frame-pointer
                         -fno-sanitize-recover=all)
     add_link_options(-fsanitize=${CARTOGRAPHER_EXT_SANITIZE})
+    if(CARTOGRAPHER_EXT_SANITIZE MATCHES "thread")
+      # The sanitizer cannot see through the synchronization of the uninstrumented Abseil; this tells it what it does.
+      add_library(cartographer_ext_absl_annotations OBJECT tests/thread_sanitizer/absl_annotations.cc)
+      link_libraries($<TARGET_OBJECTS:cartographer_ext_absl_annotations>)
+      foreach(symbol _ZN4absl7debian35Mutex4LockEv _ZN4absl7debian35Mutex6UnlockEv
+              _ZN4absl7debian35Mutex5AwaitERKNS0_9ConditionE _ZN4absl7debian312Notification6NotifyEv
+              _ZNK4absl7debian312Notification19WaitForNotificationEv
+              _ZN4absl7debian315BlockingCounter14DecrementCountEv _ZN4absl7debian315BlockingCounter4WaitEv)
+        add_link_options(-Wl,--wrap=${symbol})
+      endforeach()
+    endif()
   endif()
 endfunction()
 
