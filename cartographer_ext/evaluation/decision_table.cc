@@ -59,7 +59,7 @@ std::string ConstraintTable(const MapGraph& graph,
   std::string table = absl::StrCat(
       kIdColumns,
       ",kind,node_time,x,y,theta,translation_weight,rotation_weight,"
-      "residual_translation,residual_rotation",
+      "residual_translation,residual_rotation,switched_off",
       loops == nullptr ? "" : ",truth,error_translation,error_rotation", "\n");
   for (size_t i = 0; i < graph.constraints.size(); ++i) {
     const GraphConstraint& constraint = graph.constraints[i];
@@ -68,7 +68,8 @@ std::string ConstraintTable(const MapGraph& graph,
         ",", NodeStamp(graph, constraint.node_id), ",",
         PoseColumns(constraint.relative_pose), ",",
         constraint.translation_weight, ",", constraint.rotation_weight, ",",
-        ResidualColumns(graph, constraint));
+        ResidualColumns(graph, constraint), ",",
+        constraint.switched_off ? 1 : 0);
     if (loops != nullptr) {
       const auto it = judgements.find(i);
       if (it == judgements.end() ||
@@ -95,7 +96,8 @@ std::string DecisionTable(const MapGraph& graph) {
     if (!constraint.is_loop) continue;
     absl::StrAppend(
         &table, Ids(constraint), ",", NodeStamp(graph, constraint.node_id),
-        ",accepted,", PoseColumns(constraint.relative_pose), ",",
+        constraint.switched_off ? ",switched_off," : ",accepted,",
+        PoseColumns(constraint.relative_pose), ",",
         constraint.translation_weight, ",", constraint.rotation_weight, ",",
         ResidualColumns(graph, constraint), "\n");
   }

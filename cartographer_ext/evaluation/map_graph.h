@@ -64,6 +64,8 @@ struct GraphConstraint {
   double translation_weight = 0.;
   double rotation_weight = 0.;
   bool is_loop = false;  // INTER_SUBMAP: found by search, not by insertion
+  // Left out of the last optimisation (MarkSwitchedOff); no file stores this.
+  bool switched_off = false;
 };
 
 struct MapGraph {

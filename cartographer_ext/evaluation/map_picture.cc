@@ -13,6 +13,29 @@ namespace {
 
 constexpr double kLargeResidual = 0.5;  // metres
 
+enum class LoopKind { kAgrees, kAgainstTheMap, kSwitchedOff };
+
+LoopKind KindOf(const GraphConstraint& constraint, const GraphSubmap& submap,
+                const GraphNode& node) {
+  if (constraint.switched_off) return LoopKind::kSwitchedOff;
+  const Pose2 residual = Residual(constraint, submap, node);
+  return residual.translation().norm() > kLargeResidual
+             ? LoopKind::kAgainstTheMap
+             : LoopKind::kAgrees;
+}
+
+io::Color ColorOf(const LoopKind kind) {
+  switch (kind) {
+    case LoopKind::kAgrees:
+      return io::palette::kSkyBlue;
+    case LoopKind::kAgainstTheMap:
+      return io::palette::kVermilion;
+    case LoopKind::kSwitchedOff:
+      return io::palette::kPurple;
+  }
+  return io::palette::kGrey;
+}
+
 // Where a submap was begun, to draw lines to: the first inserted node rather
 // than the origin of the submap, which may lie outside the room.
 Eigen::Vector2d Anchor(
@@ -39,22 +62,22 @@ absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
   picture.DrawMap(map);
 
   const auto inserted = graph.InsertedNodes();
-  bool has_loops = false, has_large = false;
   // Those that agree first: the others are what one looks for.
-  for (const bool large : {false, true}) {
+  std::map<LoopKind, bool> present;
+  for (const LoopKind kind :
+       {LoopKind::kAgrees, LoopKind::kAgainstTheMap, LoopKind::kSwitchedOff}) {
     for (const GraphConstraint& constraint : graph.constraints) {
       const auto submap = graph.submaps.find(constraint.submap_id);
       const auto node = graph.nodes.find(constraint.node_id);
       if (!constraint.is_loop || submap == graph.submaps.end() ||
-          node == graph.nodes.end()) {
+          node == graph.nodes.end() ||
+          KindOf(constraint, submap->second, node->second) != kind) {
         continue;
       }
-      const Pose2 residual = Residual(constraint, submap->second, node->second);
-      if ((residual.translation().norm() > kLargeResidual) != large) continue;
-      (large ? has_large : has_loops) = true;
+      present[kind] = true;
       io::LineStyle style;
-      style.color = large ? io::palette::kVermilion : io::palette::kSkyBlue;
-      style.color.alpha = large ? 0.9 : 0.35;
+      style.color = ColorOf(kind);
+      style.color.alpha = kind == LoopKind::kAgrees ? 0.35 : 0.9;
       style.width = 1.;
       picture.DrawLine(Anchor(graph, constraint.submap_id, inserted),
                        node->second.global_pose.translation(), style);
@@ -70,9 +93,14 @@ absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
   }
   if (!title.empty()) picture.SetTitle(title);
   picture.AddLegend("path", io::palette::kBlue);
-  if (has_loops) picture.AddLegend("loop", io::palette::kSkyBlue);
-  if (has_large) {
-    picture.AddLegend("loop against the map", io::palette::kVermilion);
+  const std::map<LoopKind, const char*> legends = {
+      {LoopKind::kAgrees, "loop"},
+      {LoopKind::kAgainstTheMap, "loop against the map"},
+      {LoopKind::kSwitchedOff, "loop switched off"}};
+  for (const auto& legend : legends) {
+    if (present[legend.first]) {
+      picture.AddLegend(legend.second, ColorOf(legend.first));
+    }
   }
   return picture.Write(filename);
 }

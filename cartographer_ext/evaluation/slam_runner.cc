@@ -197,6 +197,7 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   const bool use_odometry =
       configuration.sensors.use_odometry && info.num_odometry > 0;
 
+  optimization::ResetSwitchedLoops();
   MetricsCollector* const metrics = MetricsCollector::Global();
   const auto metrics_before = metrics->Values();
   const double searched_before =
@@ -236,6 +237,14 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   Feeder feeder(configuration.sensors, use_odometry, use_imu,
                 run.map_builder->GetTrajectoryBuilder(run.trajectory_id), &run);
 
+  WrongLoopOptions wrong_loops = options.wrong_loops;
+  const auto& loop_options =
+      map_builder_options.pose_graph_options().constraint_builder_options();
+  wrong_loops.translation_weight =
+      loop_options.loop_closure_translation_weight();
+  wrong_loops.rotation_weight = loop_options.loop_closure_rotation_weight();
+  WrongLoopInjector injector(wrong_loops);
+
   SlamProgress progress;
   progress.total_scans = info.num_scans;
   io::SensorEvent event;
@@ -249,6 +258,8 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
     if (!*more) break;
     absl::visit(feeder, event);
     if (!absl::holds_alternative<io::LaserScan>(event)) continue;
+    injector.AfterScan(run.scans + run.scans_left_out, info.num_scans,
+                       run.map_builder.get());
     WaitForBackEnd(*metrics, options.max_queue_length);
     if (options.on_progress) {
       progress.scans = run.scans + run.scans_left_out;
@@ -256,6 +267,7 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
       options.on_progress(progress);
     }
   }
+  run.wrong_loops = injector.injected();
   run.map_builder->FinishTrajectory(run.trajectory_id);
   if (run.scans == 0) {
     return absl::InvalidArgumentError(
@@ -267,6 +279,8 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   const auto optimization_start = std::chrono::steady_clock::now();
   run.map_builder->pose_graph()->RunFinalOptimization();
   run.final_optimization_wall_seconds = SecondsSince(optimization_start);
+
+  run.switched_loops = optimization::LastSwitchedLoops();
 
   CountResults(*run.map_builder->pose_graph(), &run);
   run.global_scan_poses = GlobalScanPoses(

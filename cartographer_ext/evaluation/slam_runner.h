@@ -29,7 +29,9 @@
 #include "cartographer/mapping/map_builder_interface.h"
 #include "cartographer_ext/evaluation/slam_configuration.h"
 #include "cartographer_ext/evaluation/trajectory.h"
+#include "cartographer_ext/evaluation/wrong_loops.h"
 #include "cartographer_ext/io/sensor_source.h"
+#include "cartographer_ext/optimization/switched_loops.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -48,6 +50,9 @@ struct SlamRunOptions {
   int num_background_threads = 0;
   // Feeding waits while the back end's queue is longer.
   int max_queue_length = 1000;
+  // Wrong loops injected on the way, to test the back end; none by default.
+  // Their weights are those of the configuration.
+  WrongLoopOptions wrong_loops;
   // Called now and then from the calling thread.
   std::function<void(const SlamProgress&)> on_progress;
 };
@@ -70,6 +75,10 @@ struct SlamRun {
   int64_t submaps = 0;
   int64_t inter_constraints = 0;
   int64_t intra_constraints = 0;
+  std::vector<GraphConstraint> wrong_loops;  // injected
+  // Verdicts of the robust optimisation problem in the last optimisation and
+  // what it took in all of them; `optimizations` is 0 without it.
+  optimization::SwitchedLoops switched_loops;
   // (local <- tracking) and (map <- tracking) at every scan that local SLAM
   // matched.
   std::vector<StampedPose> local_scan_poses;

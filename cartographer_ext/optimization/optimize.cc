@@ -167,8 +167,10 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
   result->poses = best->poses;
   result->member = best->name;
   result->member_truncated_chi2 = best->truncated_cost;
-  AddSummary(PolishTruncated(edges, AdaptiveGate(edges, result->poses),
-                             kPolishRounds, &result->poses, &result->weights),
+  const double gate =
+      options.adaptive_gate ? AdaptiveGate(edges, result->poses) : kChi2Gate;
+  AddSummary(PolishTruncated(edges, gate, kPolishRounds, &result->poses,
+                             &result->weights),
              result);
   result->accepted.assign(edges.size(), true);
   for (size_t i = 0; i != edges.size(); ++i) {

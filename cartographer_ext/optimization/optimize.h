@@ -37,6 +37,10 @@ struct OptimizeOptions {
   int max_iterations = 200;
   double max_seconds = 1e9;  // sc
   bool prune = true;
+  // auto: end with the gate narrowed to the scale of the accepted loops
+  // (AdaptiveGate). For graphs whose information matrices are only a guess,
+  // such as those of Cartographer, it would cost right loops.
+  bool adaptive_gate = true;
   SmootherOptions smoother;
 };
 

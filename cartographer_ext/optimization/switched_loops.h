@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
 namespace cartographer_ext {
 namespace optimization {
 
@@ -28,14 +31,22 @@ struct SwitchedLoops {
   int64_t loops = 0;              // in the last one
   std::vector<SwitchedLoop> off;  // in the last one, in order of constraints
   double selection_cpu_seconds = 0.;  // of all
+  double solution_cpu_seconds = 0.;   // of all, in the stock problem
 };
 
 SwitchedLoops LastSwitchedLoops();
 void PublishSwitchedLoops(int64_t loops, std::vector<SwitchedLoop> off,
-                          double cpu_seconds);
+                          double selection_cpu_seconds,
+                          double solution_cpu_seconds);
+// Forgets everything, before another run in the same program.
+void ResetSwitchedLoops();
 
 // One line per loop switched off, with a heading.
 std::string SwitchedLoopsTable(const SwitchedLoops& loops);
+
+// The loops of such a table; an error which names the first bad line.
+absl::StatusOr<std::vector<SwitchedLoop>> ParseSwitchedLoopsTable(
+    absl::string_view table);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

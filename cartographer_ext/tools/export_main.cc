@@ -15,10 +15,14 @@
 #include "cartographer_ext/evaluation/map_graph.h"
 #include "cartographer_ext/evaluation/map_picture.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
+#include "cartographer_ext/evaluation/pbstream_optimization.h"
 #include "cartographer_ext/evaluation/pose_graph_export.h"
+#include "cartographer_ext/evaluation/switched_constraints.h"
 #include "cartographer_ext/io/g2o.h"
+#include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
@@ -35,6 +39,11 @@ DEFINE_string(g2o_filename, "",
               "2000000 t + 1000000 + j.");
 DEFINE_string(constraints_filename, "",
               "Output: CSV of all constraints with weights and residuals.");
+DEFINE_string(switched_loops_filename, "",
+              "Marks these loops in constraints and picture: the CSV of this "
+              "name that cartographer_ext_slam has written.");
+DEFINE_string(output_pbstream_filename, "",
+              "Output: the map without those loops.");
 DEFINE_string(map_filestem, "",
               "Output: occupancy map <stem>.pgm and <stem>.yaml, as map_server "
               "and nav2 read it.");
@@ -44,6 +53,8 @@ DEFINE_string(picture_filename, "",
 
 namespace cartographer_ext {
 namespace {
+
+constexpr size_t kMaxTableBytes = size_t{100} << 20;
 
 constexpr char kDescription[] =
     R"(Gets trajectory, graph, constraints and map out of a .pbstream, without ROS.
@@ -72,10 +83,23 @@ absl::Status ExportMap(const io::Pbstream& pbstream,
   return absl::OkStatus();
 }
 
+// Marks the loops of -switched_loops_filename and returns their indices.
+absl::StatusOr<std::vector<int>> MarkLoops(evaluation::MapGraph* const graph) {
+  const auto text = io::ReadFile(FLAGS_switched_loops_filename, kMaxTableBytes);
+  if (!text.ok()) return text.status();
+  const auto off = optimization::ParseSwitchedLoopsTable(*text);
+  if (!off.ok()) {
+    return absl::Status(off.status().code(),
+                        absl::StrCat(FLAGS_switched_loops_filename, ": ",
+                                     off.status().message()));
+  }
+  return evaluation::MarkSwitchedOff(*off, graph);
+}
+
 absl::Status Run() {
   std::vector<std::string> outputs = {
       FLAGS_trajectory_filename, FLAGS_g2o_filename, FLAGS_constraints_filename,
-      FLAGS_picture_filename};
+      FLAGS_picture_filename, FLAGS_output_pbstream_filename};
   if (!FLAGS_map_filestem.empty()) {
     outputs.push_back(FLAGS_map_filestem + ".pgm");
     outputs.push_back(FLAGS_map_filestem + ".yaml");
@@ -84,7 +108,18 @@ absl::Status Run() {
   if (!writable.ok()) return writable;
   const auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
   if (!pbstream.ok()) return pbstream.status();
-  const evaluation::MapGraph graph = evaluation::MakeMapGraph(*pbstream);
+  evaluation::MapGraph graph = evaluation::MakeMapGraph(*pbstream);
+  if (!FLAGS_switched_loops_filename.empty()) {
+    const auto off = MarkLoops(&graph);
+    if (!off.ok()) return off.status();
+    if (!FLAGS_output_pbstream_filename.empty()) {
+      io::Pbstream output = *pbstream;
+      evaluation::DropConstraints(*off, &output);
+      const absl::Status status =
+          io::WritePbstream(output, FLAGS_output_pbstream_filename);
+      if (!status.ok()) return status;
+    }
+  }
   if (!FLAGS_trajectory_filename.empty()) {
     const evaluation::Trajectory trajectory =
         FLAGS_trajectory_id < 0 ? graph.GlobalTrajectory()
@@ -129,8 +164,14 @@ int main(int argc, char** argv) {
   }
   if (FLAGS_trajectory_filename.empty() && FLAGS_g2o_filename.empty() &&
       FLAGS_constraints_filename.empty() && FLAGS_map_filestem.empty() &&
-      FLAGS_picture_filename.empty()) {
+      FLAGS_picture_filename.empty() &&
+      FLAGS_output_pbstream_filename.empty()) {
     return tools::UsageError("nothing to write: no output was named");
+  }
+  if (!FLAGS_output_pbstream_filename.empty() &&
+      FLAGS_switched_loops_filename.empty()) {
+    return tools::UsageError(
+        "-output_pbstream_filename needs -switched_loops_filename");
   }
   return tools::ExitCode(Run());
 }

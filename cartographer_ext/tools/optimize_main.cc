@@ -16,6 +16,7 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
 #include "cartographer_ext/evaluation/pbstream_optimization.h"
+#include "cartographer_ext/evaluation/wrong_loops.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/io/trajectory_file.h"
@@ -44,6 +45,10 @@ DEFINE_bool(keep_rejected, true,
 DEFINE_string(drop_loops, "",
               "Undo loops of a pbstream before optimising: comma separated "
               "submap_trajectory:submap:node_trajectory:node.");
+DEFINE_int32(wrong_loops, 0,
+             "pbstream: add this many wrong loops before optimising, to see "
+             "what becomes of them; they are the last lines of the verdicts.");
+DEFINE_uint64(wrong_loops_seed, 1, "Chooses them.");
 DEFINE_double(loop_sigma, 0.1,
               "pbstream: standard deviation in metres that the loops' weights "
               "stand for.");
@@ -80,8 +85,10 @@ struct Input {
 absl::StatusOr<Input> ReadInput() {
   Input input;
   if (!absl::EndsWith(FLAGS_input_filename, ".pbstream")) {
-    if (!FLAGS_drop_loops.empty()) {
-      return absl::InvalidArgumentError("-drop_loops needs a pbstream");
+    if (!FLAGS_drop_loops.empty() || FLAGS_wrong_loops > 0) {
+      return absl::InvalidArgumentError(
+          "-drop_loops and -wrong_loops need a pbstream; for a g2o file "
+          "cartographer_ext_robustness adds wrong loops");
     }
     auto graph = tools::ReadPoseGraph(FLAGS_input_filename);
     if (!graph.ok()) return graph.status();
@@ -95,6 +102,11 @@ absl::StatusOr<Input> ReadInput() {
       evaluation::MakeMapGraph(*input.pbstream), FLAGS_drop_loops);
   if (!dropped.ok()) return dropped.status();
   evaluation::DropConstraints(*dropped, &*input.pbstream);
+  evaluation::WrongLoopOptions wrong_loops;
+  wrong_loops.count = FLAGS_wrong_loops;
+  wrong_loops.seed = FLAGS_wrong_loops_seed;
+  const auto added = evaluation::AddWrongLoops(wrong_loops, &*input.pbstream);
+  if (!added.ok()) return added.status();
   evaluation::MapOptimizationOptions options;
   options.loop_sigma = FLAGS_loop_sigma;
   auto map = evaluation::MakeMapPoseGraph(
@@ -200,6 +212,9 @@ absl::Status Run() {
   options.norm = *norm;
   auto input = ReadInput();
   if (!input.ok()) return input.status();
+  // Weights of a map are relative; their scale is a guess.
+  options.adaptive_gate = !input->pbstream.has_value();
+  options.smoother.adaptive_gate = options.adaptive_gate;
   if (FLAGS_dead_reckoning) {
     input->graph.poses = optimization::DeadReckoning(input->graph);
   }

@@ -21,9 +21,14 @@
 #include "cartographer_ext/evaluation/host_map.h"
 #include "cartographer_ext/evaluation/map_picture.h"
 #include "cartographer_ext/evaluation/open_recording.h"
+#include "cartographer_ext/evaluation/pbstream_map.h"
+#include "cartographer_ext/evaluation/pbstream_optimization.h"
 #include "cartographer_ext/evaluation/slam_configuration.h"
 #include "cartographer_ext/evaluation/slam_runner.h"
+#include "cartographer_ext/evaluation/switched_constraints.h"
 #include "cartographer_ext/io/occupancy_map.h"
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
@@ -50,7 +55,8 @@ DEFINE_string(local_trajectory_filename, "",
               "Output: pose at every scan as local SLAM found it, without loop "
               "closure (TUM).");
 DEFINE_string(decisions_filename, "",
-              "Output: CSV of the loop closures that were accepted.");
+              "Output: CSV of the loop closures that were accepted, and which "
+              "of them the optimisation has switched off.");
 DEFINE_int32(num_background_threads, 0,
              "Threads of the back end; 0 takes the number from the "
              "configuration. The result is the same for any number.");
@@ -68,6 +74,15 @@ DEFINE_double(max_range, 0.,
               "Drop readings farther than this (metres) before local SLAM sees "
               "them; 0: as the configuration says.");
 DEFINE_uint64(seed, 0, "Worlds: chooses noise and faults.");
+DEFINE_string(switched_loops_filename, "",
+              "Output: CSV of the loop closures that the robust optimisation "
+              "problem left out of the last optimisation.");
+DEFINE_bool(keep_switched_loops, true,
+            "Keep those loop closures in the pbstream.");
+DEFINE_int32(wrong_loops, 0,
+             "Test of the back end: inject this many wrong loop closures, "
+             "spread evenly over the run.");
+DEFINE_uint64(wrong_loops_seed, 1, "Chooses them.");
 DEFINE_string(json, "",
               "Output: what was done and what it took, as JSON; - is standard "
               "output.");
@@ -120,6 +135,24 @@ std::string ToText(const evaluation::SlamRun& run) {
   return text;
 }
 
+// Of the wrong loops that were injected.
+int CountSwitchedOff(const evaluation::SlamRun& run) {
+  evaluation::MapGraph injected;
+  injected.constraints = run.wrong_loops;
+  return evaluation::MarkSwitchedOff(run.switched_loops.off, &injected).size();
+}
+
+// Leaves the loops that were switched off out of a map just written.
+absl::Status RemoveSwitchedLoops(const evaluation::SlamRun& run,
+                                 const std::string& filename) {
+  auto pbstream = io::ReadPbstream(filename);
+  if (!pbstream.ok()) return pbstream.status();
+  evaluation::MapGraph map = evaluation::MakeMapGraph(*pbstream);
+  evaluation::DropConstraints(
+      evaluation::MarkSwitchedOff(run.switched_loops.off, &map), &*pbstream);
+  return io::WritePbstream(*pbstream, filename);
+}
+
 nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
   nlohmann::ordered_json json;
   json["input"] = FLAGS_input_filename;
@@ -145,6 +178,16 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
       {"cpu_seconds", run.loop_search_cpu_seconds},
       // Otherwise all threads of the back end are counted.
       {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured}};
+  const optimization::SwitchedLoops& switched = run.switched_loops;
+  json["optimizations"] = {
+      {"robust", switched.optimizations},
+      {"loops_switched_off", switched.off.size()},
+      {"selection_cpu_seconds", switched.selection_cpu_seconds},
+      {"solution_cpu_seconds", switched.solution_cpu_seconds}};
+  if (FLAGS_wrong_loops > 0) {
+    json["wrong_loops"] = {{"injected", run.wrong_loops.size()},
+                           {"switched_off", CountSwitchedOff(run)}};
+  }
   json["metrics"] = run.metrics;
   json["warnings"] = run.warnings;
   return json;
@@ -156,6 +199,17 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
   if (!FLAGS_pbstream_filename.empty()) {
     const absl::Status status =
         evaluation::WritePbstream(map_builder, FLAGS_pbstream_filename);
+    if (!status.ok()) return status;
+    if (!FLAGS_keep_switched_loops && !run.switched_loops.off.empty()) {
+      const absl::Status removed =
+          RemoveSwitchedLoops(run, FLAGS_pbstream_filename);
+      if (!removed.ok()) return removed;
+    }
+  }
+  if (!FLAGS_switched_loops_filename.empty()) {
+    const absl::Status status = WriteFileAtomically(
+        FLAGS_switched_loops_filename,
+        optimization::SwitchedLoopsTable(run.switched_loops));
     if (!status.ok()) return status;
   }
   if (!FLAGS_trajectory_filename.empty()) {
@@ -171,7 +225,8 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
   const bool wants_map =
       !FLAGS_map_filestem.empty() || !FLAGS_picture_filename.empty();
   if (FLAGS_decisions_filename.empty() && !wants_map) return absl::OkStatus();
-  const evaluation::MapGraph graph = evaluation::MakeMapGraph(pose_graph);
+  evaluation::MapGraph graph = evaluation::MakeMapGraph(pose_graph);
+  evaluation::MarkSwitchedOff(run.switched_loops.off, &graph);
   if (!FLAGS_decisions_filename.empty()) {
     const absl::Status status = WriteFileAtomically(
         FLAGS_decisions_filename, evaluation::DecisionTable(graph));
@@ -193,10 +248,13 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
 }
 
 absl::Status Run() {
-  std::vector<std::string> outputs = {
-      FLAGS_pbstream_filename,   FLAGS_picture_filename,
-      FLAGS_trajectory_filename, FLAGS_local_trajectory_filename,
-      FLAGS_decisions_filename,  FLAGS_json};
+  std::vector<std::string> outputs = {FLAGS_pbstream_filename,
+                                      FLAGS_picture_filename,
+                                      FLAGS_trajectory_filename,
+                                      FLAGS_local_trajectory_filename,
+                                      FLAGS_decisions_filename,
+                                      FLAGS_switched_loops_filename,
+                                      FLAGS_json};
   if (!FLAGS_map_filestem.empty()) {
     outputs.push_back(FLAGS_map_filestem + ".pgm");
     outputs.push_back(FLAGS_map_filestem + ".yaml");
@@ -231,6 +289,8 @@ absl::Status Run() {
       std::make_unique<Progress>("mapping", (*source)->info().num_scans);
   evaluation::SlamRunOptions run_options;
   run_options.num_background_threads = FLAGS_num_background_threads;
+  run_options.wrong_loops.count = FLAGS_wrong_loops;
+  run_options.wrong_loops.seed = FLAGS_wrong_loops_seed;
   run_options.on_progress = [&](const evaluation::SlamProgress& now) {
     if (now.stage == evaluation::SlamProgress::Stage::kOptimizing) {
       progress->Update(now.total_scans, "closing loops, last optimisation");
@@ -272,8 +332,9 @@ int main(int argc, char** argv) {
   if (FLAGS_input_filename.empty()) {
     return tools::UsageError("-input_filename is missing");
   }
-  if (FLAGS_num_background_threads < 0) {
-    return tools::UsageError("-num_background_threads must not be negative");
+  if (FLAGS_num_background_threads < 0 || FLAGS_wrong_loops < 0) {
+    return tools::UsageError(
+        "-num_background_threads and -wrong_loops must not be negative");
   }
   return tools::ExitCode(Run());
 }

@@ -30,11 +30,11 @@ TEST(DecisionTableTest, ConstraintsOnePerLine) {
   EXPECT_EQ(ConstraintTable(SmallGraph(), nullptr),
             "submap_trajectory_id,submap_index,node_trajectory_id,node_index,"
             "kind,node_time,x,y,theta,translation_weight,rotation_weight,"
-            "residual_translation,residual_rotation\n"
+            "residual_translation,residual_rotation,switched_off\n"
             "0,2,0,5,intra,12.500000000,1.000000,0.000000,0.000000,500,1600,"
-            "0.000000,0.000000\n"
+            "0.000000,0.000000,0\n"
             "0,2,0,5,inter,12.500000000,0.500000,0.000000,0.250000,500,1600,"
-            "0.500000,0.250000\n");
+            "0.500000,0.250000,0\n");
 }
 
 TEST(DecisionTableTest, TruthAddsColumns) {
@@ -46,8 +46,8 @@ TEST(DecisionTableTest, TruthAddsColumns) {
   const std::string table = ConstraintTable(SmallGraph(), &loops);
   EXPECT_NE(table.find(",truth,error_translation,error_rotation\n"),
             std::string::npos);
-  EXPECT_NE(table.find("0.000000,0.000000,unknown,,\n"), std::string::npos);
-  EXPECT_NE(table.find("0.500000,0.250000,wrong,2.000000,0.000000\n"),
+  EXPECT_NE(table.find("0.000000,0.000000,0,unknown,,\n"), std::string::npos);
+  EXPECT_NE(table.find("0.500000,0.250000,0,wrong,2.000000,0.000000\n"),
             std::string::npos);
 }
 
@@ -58,6 +58,15 @@ TEST(DecisionTableTest, DecisionsAreTheLoops) {
             "residual_translation,residual_rotation\n"
             "0,2,0,5,12.500000000,accepted,0.500000,0.000000,0.250000,500,1600,"
             "0.500000,0.250000\n");
+}
+
+TEST(DecisionTableTest, TellsWhatIsSwitchedOff) {
+  MapGraph graph = SmallGraph();
+  graph.constraints[1].switched_off = true;
+  EXPECT_NE(ConstraintTable(graph, nullptr).find("0.500000,0.250000,1\n"),
+            std::string::npos);
+  EXPECT_NE(DecisionTable(graph).find(",switched_off,0.500000,"),
+            std::string::npos);
 }
 
 TEST(DecisionTableTest, MissingNodesLeaveColumnsEmpty) {

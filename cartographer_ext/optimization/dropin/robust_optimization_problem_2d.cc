@@ -11,7 +11,6 @@
 
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/optimization/robust_solver.h"
-#include "cartographer_ext/optimization/switched_loops.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -179,11 +178,30 @@ void RobustOptimizationProblem2D::Solve(
     const std::map<int, TrajectoryState>& trajectories_state,
     const std::map<std::string, LandmarkNode>& landmark_nodes) {
   const double start = ThreadCpuSeconds();
-  int64_t loops = 0;
-  bool new_loops = false;
+  std::vector<SwitchedLoop> off;
+  const std::vector<Constraint> kept =
+      Select(constraints, trajectories_state, &off);
+  int64_t loops = off.size();
+  for (const Constraint& constraint : kept) {
+    loops += constraint.tag == Constraint::INTER_SUBMAP;
+  }
+  LOG_IF(INFO, !off.empty())
+      << off.size() << " of " << loops << " loop constraints are switched off";
+  const double selected = ThreadCpuSeconds();
+  stock_.Solve(kept, trajectories_state, landmark_nodes);
+  PublishSwitchedLoops(loops, std::move(off), selected - start,
+                       ThreadCpuSeconds() - selected);
+}
+
+std::vector<RobustOptimizationProblem2D::Constraint>
+RobustOptimizationProblem2D::Select(
+    const std::vector<Constraint>& constraints,
+    const std::map<int, TrajectoryState>& trajectories_state,
+    std::vector<SwitchedLoop>* const off) {
+  bool has_loops = false, new_loops = false;
   for (const Constraint& constraint : constraints) {
     if (constraint.tag != Constraint::INTER_SUBMAP) continue;
-    ++loops;
+    has_loops = true;
     new_loops |= seen_loops_
                      .emplace(constraint.submap_id.trajectory_id,
                               constraint.submap_id.submap_index,
@@ -191,11 +209,9 @@ void RobustOptimizationProblem2D::Solve(
                               constraint.node_id.node_index)
                      .second;
   }
-  if (loops == 0 ||
+  if (!has_loops ||
       (!extension_.robust_loops() && !extension_.odometry_check())) {
-    PublishSwitchedLoops(loops, {}, ThreadCpuSeconds() - start);
-    stock_.Solve(constraints, trajectories_state, landmark_nodes);
-    return;
+    return constraints;
   }
   const Problem problem = MakeProblem(constraints, trajectories_state);
   LoopSelectionOptions options;
@@ -208,7 +224,6 @@ void RobustOptimizationProblem2D::Solve(
   const LoopSelection selection =
       SelectLoops(problem.graph, problem.neighbours, options);
   std::vector<bool> keep(constraints.size(), true);
-  std::vector<SwitchedLoop> off;
   for (size_t i = 0; i != problem.graph.edges.size(); ++i) {
     const int index = problem.constraint_of_edge[i];
     if (index < 0 || selection.accepted[i]) continue;
@@ -222,21 +237,13 @@ void RobustOptimizationProblem2D::Solve(
     loop.by_odometry_check =
         std::find(selection.blamed.begin(), selection.blamed.end(),
                   static_cast<int>(i)) != selection.blamed.end();
-    off.push_back(loop);
-  }
-  LOG_IF(INFO, !off.empty())
-      << off.size() << " of " << loops << " loop constraints are switched off";
-  if (off.empty()) {
-    PublishSwitchedLoops(loops, {}, ThreadCpuSeconds() - start);
-    stock_.Solve(constraints, trajectories_state, landmark_nodes);
-    return;
+    off->push_back(loop);
   }
   std::vector<Constraint> kept;
   for (size_t i = 0; i != constraints.size(); ++i) {
     if (keep[i]) kept.push_back(constraints[i]);
   }
-  PublishSwitchedLoops(loops, std::move(off), ThreadCpuSeconds() - start);
-  stock_.Solve(kept, trajectories_state, landmark_nodes);
+  return kept;
 }
 
 }  // namespace optimization

@@ -15,6 +15,7 @@
 
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer_ext/optimization/loop_selection.h"
+#include "cartographer_ext/optimization/switched_loops.h"
 #include "cartographer_ext/robust_optimization_options.pb.h"
 
 namespace cartographer_ext {
@@ -131,6 +132,12 @@ class RobustOptimizationProblem2D
   Problem MakeProblem(const std::vector<Constraint>& constraints,
                       const std::map<int, PoseGraphInterface::TrajectoryState>&
                           trajectories_state) const;
+  // The constraints that may act; the others go to `off`.
+  std::vector<Constraint> Select(
+      const std::vector<Constraint>& constraints,
+      const std::map<int, PoseGraphInterface::TrajectoryState>&
+          trajectories_state,
+      std::vector<SwitchedLoop>* off);
 
   const proto::RobustOptimizationOptions extension_;
   const double local_slam_translation_weight_;
