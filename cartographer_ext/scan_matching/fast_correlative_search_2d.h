@@ -28,7 +28,7 @@
 // alone, and the search is over before it began ("rejected").
 //
 // Ties: of poses with equal sums the one is returned that Cartographer's
-// depth-first search meets first, see FirstOfEquals in the source.
+// depth-first search meets first, see equal_scores.h.
 //
 // Objects are immutable after construction; all methods may be used by several
 // threads at once. Only `max_seconds` makes a result depend on time.
@@ -41,6 +41,7 @@
 #include <vector>
 
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/scan_matching/rotated_scans.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -56,16 +57,6 @@ struct SearchGrid2D {
   float min_score = 0.f;  // of value 0, unknown cells, and outside the grid
   float max_score = 1.f;  // of value 255
   std::vector<uint8_t> values;
-};
-
-// Points in the frame of the sensor, metres. Points that are not finite count
-// as points outside the grid.
-struct PlanarCloud {
-  std::vector<float> x;
-  std::vector<float> y;
-
-  size_t size() const { return x.size(); }
-  bool empty() const { return x.empty(); }
 };
 
 // Half sizes, to either side of the initial pose.
@@ -114,6 +105,8 @@ struct SearchResult {
   SearchStatistics statistics;
 };
 
+struct PreparedGrid;
+
 class FastCorrelativeSearch2D {
  public:
   // A grid whose sizes do not fit its values, or without cells, makes a search
@@ -138,12 +131,12 @@ class FastCorrelativeSearch2D {
   size_t MemoryBytes() const;
   const FastCorrelativeSearchOptions& options() const;
 
-  class Level;   // the prepared grids
-  class Search;  // one search under way
+  // Prepared for searching; for MatchBestFew. Null when there is nothing.
+  const PreparedGrid* prepared() const { return grid_.get(); }
 
  private:
   const FastCorrelativeSearchOptions options_;
-  const std::unique_ptr<const Level> level_;
+  std::unique_ptr<const PreparedGrid> grid_;
 };
 
 // One of several places where a scan may belong. What it points to must stay.

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The poses a correlative matcher tries, and the cells a scan falls into, with
+// exactly the arithmetic of Cartographer's matchers:
+//
+//  * The angular step moves the farthest point by a little less than a cell,
+//    0.999 acos(1 - resolution^2 / (2 range^2)) with range >= 3 resolution;
+//    2 n + 1 rotations cover the angular window, n = ceil(window / step).
+//  * The cloud is turned by the initial angle, then by each of the rotations,
+//    then moved by the initial translation, all in single precision; cells are
+//    found in double precision.
+//  * Offsets of whole cells cover the linear window, without those that put the
+//    whole scan outside the grid; the offset (0, 0) always stays in.
+#ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_ROTATED_SCANS_H_
+#define CARTOGRAPHER_EXT_SCAN_MATCHING_ROTATED_SCANS_H_
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/scan_matching/search_kernels.h"
+
+namespace cartographer_ext {
+namespace scan_matching {
+
+// Points in the frame of the sensor, metres. Points that are not finite count
+// as points outside the grid.
+struct PlanarCloud {
+  std::vector<float> x;
+  std::vector<float> y;
+
+  size_t size() const { return x.size(); }
+  bool empty() const { return x.empty(); }
+};
+
+// Where a grid lies. The centre of cell (ix, iy) is at
+//   x = max_x - resolution * (iy + 0.5),  y = max_y - resolution * (ix + 0.5).
+struct GridGeometry {
+  int num_x = 0;
+  int num_y = 0;
+  double resolution = 0.;  // metres per cell
+  double max_x = 0.;       // metres
+  double max_y = 0.;
+};
+
+// Of offsets in cells; both ends belong to it.
+struct OffsetBounds {
+  int min_x = 0;
+  int max_x = 0;
+  int min_y = 0;
+  int max_y = 0;
+
+  bool Contains(const int x, const int y) const {
+    return min_x <= x && x <= max_x && min_y <= y && y <= max_y;
+  }
+};
+
+// The scan in one rotation.
+struct RotatedScan {
+  const int32_t* x = nullptr;  // cells at offset (0, 0), one per point
+  const int32_t* y = nullptr;
+  OffsetBounds cells;  // that the points are in
+  OffsetBounds offsets;
+};
+
+class RotatedScans {
+ public:
+  // Half sizes in metres and radians; `initial` is (grid <- cloud). The cloud
+  // must not be empty and its two vectors equally long.
+  RotatedScans(const PlanarCloud& cloud, const Pose2& initial, double linear,
+               double angular, const GridGeometry& geometry,
+               const SearchKernels& kernels);
+
+  // False when the window is too large to be searched: more than 2^24
+  // rotations, or offsets of more than 10^8 cells, or 2^31 cells in total.
+  bool valid() const { return valid_; }
+
+  int num_points() const { return static_cast<int>(turned_x_.size()); }
+  int num_rotations() const { return static_cast<int>(angles_.size()); }
+  double angular_step() const { return angular_step_; }
+  // To either side, before the grid's size is considered.
+  int linear_cells() const { return linear_cells_; }
+
+  // How many cells the point may move from a rotation to the next, at most.
+  double CellsPerStep(int point) const;
+  // Of that, what rounding may add to the way between any two rotations.
+  double RoundingCells() const;
+
+  // Writes num_points() cells to each of `x` and `y`.
+  void FindCells(int rotation, int32_t* x, int32_t* y) const;
+
+  // The smallest rectangle of cells with all (finite) points.
+  OffsetBounds CellBounds(const int32_t* x, const int32_t* y) const;
+
+  // The same as FindCells, kept; with bounds.
+  const RotatedScan& Get(int rotation);
+
+  // What `offsets` are for points in these cells.
+  OffsetBounds BoundsFor(const OffsetBounds& cells) const;
+
+  // Relative to nothing: (grid <- cloud); the angle is not wrapped.
+  Pose2 PoseOf(int rotation, int offset_x, int offset_y) const;
+
+ private:
+  bool valid_ = false;
+  bool all_finite_ = true;
+  const Pose2 initial_;
+  const GridGeometry geometry_;
+  const SearchKernels& kernels_;
+  double angular_step_ = 0.;
+  int linear_cells_ = 0;
+  double largest_range_ = 0.;
+  std::vector<float> turned_x_;
+  std::vector<float> turned_y_;
+  std::vector<float> ranges_;
+  std::vector<float> angles_;
+  std::vector<RotatedScan> scans_;
+  std::vector<std::unique_ptr<int32_t[]>> storage_;
+  size_t storage_left_ = 0;
+  int32_t* next_storage_ = nullptr;
+};
+
+}  // namespace scan_matching
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SCAN_MATCHING_ROTATED_SCANS_H_

@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/scan_matching/search_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+#define CARTOGRAPHER_EXT_X86_KERNELS 1
+#include <immintrin.h>
+#endif
+
+namespace cartographer_ext {
+namespace scan_matching {
+namespace {
+
+// As lround, but without a function call and defined for every number.
+inline int32_t RoundIndex(const double value) {
+  constexpr double kFarAway = 1e8;
+  // The largest number below 0.5: so 0.49999999999999994 does not become 1.
+  constexpr double kAlmostHalf = 0.49999999999999994;
+  // In this order NaN becomes the lower bound.
+  const double bounded = std::min(kFarAway, std::max(-kFarAway, value));
+  return static_cast<int32_t>(bounded + std::copysign(kAlmostHalf, bounded));
+}
+
+// The operations of a quaternion-vector product that do not vanish, in Eigen's
+// order: with u = 2 q x p, the result is p + w u + q x u.
+inline __attribute__((always_inline)) void FindCellsInline(
+    const CellFrame& frame, const float* __restrict const point_x,
+    const float* __restrict const point_y, const int count,
+    int32_t* __restrict const x, int32_t* __restrict const y) {
+  const float w = frame.w;
+  const float z = frame.z;
+  const float translation_x = frame.translation_x;
+  const float translation_y = frame.translation_y;
+  const double max_x = frame.max_x;
+  const double max_y = frame.max_y;
+  const double resolution = frame.resolution;
+  for (int i = 0; i < count; ++i) {
+    const float half_u = -(z * point_y[i]);
+    const float half_v = z * point_x[i];
+    const float u = half_u + half_u;
+    const float v = half_v + half_v;
+    const float world_x = ((point_x[i] + w * u) - z * v) + translation_x;
+    const float world_y = ((point_y[i] + w * v) + z * u) + translation_y;
+    x[i] = RoundIndex((max_y - world_y) / resolution - 0.5);
+    y[i] = RoundIndex((max_x - world_x) / resolution - 0.5);
+  }
+}
+
+void FindCells(const CellFrame& frame, const float* const point_x,
+               const float* const point_y, const int count, int32_t* const x,
+               int32_t* const y) {
+  FindCellsInline(frame, point_x, point_y, count, x, y);
+}
+
+void AddRows(const uint8_t* rows, const int row_stride, const int num_columns,
+             const int num_rows, uint8_t* sums, const int sums_stride) {
+  for (int j = 0; j != num_rows; ++j, rows += row_stride, sums += sums_stride) {
+    for (int i = 0; i != num_columns; ++i) {
+      sums[i] = static_cast<uint8_t>(sums[i] + rows[i]);
+    }
+  }
+}
+
+void MoveSums(const int count, uint8_t* const sums, uint16_t* const totals) {
+  for (int i = 0; i != count; ++i) {
+    totals[i] = static_cast<uint16_t>(totals[i] + sums[i]);
+    sums[i] = 0;
+  }
+}
+
+void AddSquares(const uint8_t* const cells, const int stride,
+                const int32_t* const offsets, const int count,
+                uint16_t* const sums) {
+  for (int k = 0; k != count; ++k) {
+    const uint8_t* row = cells + offsets[k];
+    for (int j = 0; j != 8; ++j, row += stride) {
+      for (int i = 0; i != 8; ++i) {
+        sums[8 * j + i] = static_cast<uint16_t>(sums[8 * j + i] + row[i]);
+      }
+    }
+  }
+}
+
+constexpr SearchKernels kPlain = {"plain", &FindCells, &AddRows, &MoveSums,
+                                  &AddSquares};
+
+#ifdef CARTOGRAPHER_EXT_X86_KERNELS
+
+// Read from 32 - n on: n times 0xff, then zeros.
+alignas(64) constexpr uint8_t kMask[64] = {
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255,
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255,
+    255, 255, 255, 255, 255, 255, 255, 255, 255, 255};
+
+inline __m128i Load16(const void* const from) {
+  return _mm_loadu_si128(static_cast<const __m128i*>(from));
+}
+inline void Store16(const __m128i value, void* const to) {
+  _mm_storeu_si128(static_cast<__m128i*>(to), value);
+}
+inline __m128i Load8(const void* const from) {
+  return _mm_loadl_epi64(static_cast<const __m128i*>(from));
+}
+
+// SSE2 is part of every x86-64.
+void AddRowsSse2(const uint8_t* rows, const int row_stride,
+                 const int num_columns, const int num_rows, uint8_t* sums,
+                 const int sums_stride) {
+  const int full = num_columns & ~15;
+  const __m128i mask = Load16(kMask + 32 - (num_columns - full));
+  for (int j = 0; j != num_rows; ++j, rows += row_stride, sums += sums_stride) {
+    for (int i = 0; i != full; i += 16) {
+      Store16(_mm_add_epi8(Load16(sums + i), Load16(rows + i)), sums + i);
+    }
+    if (full != num_columns) {
+      Store16(_mm_add_epi8(Load16(sums + full),
+                           _mm_and_si128(mask, Load16(rows + full))),
+              sums + full);
+    }
+  }
+}
+
+void MoveSumsSse2(const int count, uint8_t* const sums,
+                  uint16_t* const totals) {
+  const __m128i zero = _mm_setzero_si128();
+  for (int i = 0; i != count; i += 16) {
+    const __m128i values = Load16(sums + i);
+    Store16(zero, sums + i);
+    Store16(_mm_add_epi16(Load16(totals + i), _mm_unpacklo_epi8(values, zero)),
+            totals + i);
+    Store16(
+        _mm_add_epi16(Load16(totals + i + 8), _mm_unpackhi_epi8(values, zero)),
+        totals + i + 8);
+  }
+}
+
+void AddSquaresSse2(const uint8_t* const cells, const int stride,
+                    const int32_t* const offsets, const int count,
+                    uint16_t* const sums) {
+  const __m128i zero = _mm_setzero_si128();
+  __m128i rows[8];
+  for (int j = 0; j != 8; ++j) rows[j] = Load16(sums + 8 * j);
+  for (int k = 0; k != count; ++k) {
+    const uint8_t* const square = cells + offsets[k];
+    for (int j = 0; j != 8; ++j) {
+      rows[j] = _mm_add_epi16(
+          rows[j], _mm_unpacklo_epi8(Load8(square + stride * j), zero));
+    }
+  }
+  for (int j = 0; j != 8; ++j) Store16(rows[j], sums + 8 * j);
+}
+
+constexpr SearchKernels kSse2 = {"sse2", &FindCells, &AddRowsSse2,
+                                 &MoveSumsSse2, &AddSquaresSse2};
+
+// round((max - world) / resolution - 0.5) of four.
+__attribute__((target("avx2"))) inline __m128i FourIndices(
+    const double max, const __m128 world, const double resolution) {
+  const __m256d value = _mm256_sub_pd(
+      _mm256_div_pd(_mm256_sub_pd(_mm256_set1_pd(max), _mm256_cvtps_pd(world)),
+                    _mm256_set1_pd(resolution)),
+      _mm256_set1_pd(0.5));
+  // Of a NaN and a number, these instructions return the second operand.
+  const __m256d bounded = _mm256_min_pd(
+      _mm256_max_pd(value, _mm256_set1_pd(-1e8)), _mm256_set1_pd(1e8));
+  const __m256d almost_half =
+      _mm256_or_pd(_mm256_set1_pd(0.49999999999999994),
+                   _mm256_and_pd(_mm256_set1_pd(-0.), bounded));
+  return _mm256_cvttpd_epi32(_mm256_add_pd(bounded, almost_half));
+}
+
+__attribute__((target("avx2"))) void FindCellsAvx2(const CellFrame& frame,
+                                                   const float* const point_x,
+                                                   const float* const point_y,
+                                                   const int count,
+                                                   int32_t* const x,
+                                                   int32_t* const y) {
+  const __m128 w = _mm_set1_ps(frame.w);
+  const __m128 z = _mm_set1_ps(frame.z);
+  const __m128 translation_x = _mm_set1_ps(frame.translation_x);
+  const __m128 translation_y = _mm_set1_ps(frame.translation_y);
+  const __m128 sign = _mm_set1_ps(-0.f);
+  int i = 0;
+  for (; i + 4 <= count; i += 4) {
+    const __m128 px = _mm_loadu_ps(point_x + i);
+    const __m128 py = _mm_loadu_ps(point_y + i);
+    const __m128 half_u = _mm_xor_ps(sign, _mm_mul_ps(z, py));
+    const __m128 half_v = _mm_mul_ps(z, px);
+    const __m128 u = _mm_add_ps(half_u, half_u);
+    const __m128 v = _mm_add_ps(half_v, half_v);
+    const __m128 world_x = _mm_add_ps(
+        _mm_sub_ps(_mm_add_ps(px, _mm_mul_ps(w, u)), _mm_mul_ps(z, v)),
+        translation_x);
+    const __m128 world_y = _mm_add_ps(
+        _mm_add_ps(_mm_add_ps(py, _mm_mul_ps(w, v)), _mm_mul_ps(z, u)),
+        translation_y);
+    Store16(FourIndices(frame.max_y, world_y, frame.resolution), x + i);
+    Store16(FourIndices(frame.max_x, world_x, frame.resolution), y + i);
+  }
+  FindCells(frame, point_x + i, point_y + i, count - i, x + i, y + i);
+}
+
+__attribute__((target("avx2"))) inline __m256i Load32(const void* const from) {
+  return _mm256_loadu_si256(static_cast<const __m256i*>(from));
+}
+__attribute__((target("avx2"))) inline void Store32(const __m256i value,
+                                                    void* const to) {
+  _mm256_storeu_si256(static_cast<__m256i*>(to), value);
+}
+
+__attribute__((target("avx2"))) void AddRowsAvx2(
+    const uint8_t* rows, const int row_stride, const int num_columns,
+    const int num_rows, uint8_t* sums, const int sums_stride) {
+  const int full = num_columns & ~31;
+  const int rest = num_columns - full;
+  if (rest == 0) {
+    for (int j = 0; j != num_rows;
+         ++j, rows += row_stride, sums += sums_stride) {
+      for (int i = 0; i != full; i += 32) {
+        Store32(_mm256_add_epi8(Load32(sums + i), Load32(rows + i)), sums + i);
+      }
+    }
+  } else if (rest <= 16) {
+    const __m128i mask = Load16(kMask + 32 - rest);
+    for (int j = 0; j != num_rows;
+         ++j, rows += row_stride, sums += sums_stride) {
+      for (int i = 0; i != full; i += 32) {
+        Store32(_mm256_add_epi8(Load32(sums + i), Load32(rows + i)), sums + i);
+      }
+      Store16(_mm_add_epi8(Load16(sums + full),
+                           _mm_and_si128(mask, Load16(rows + full))),
+              sums + full);
+    }
+  } else {
+    const __m256i mask = Load32(kMask + 32 - rest);
+    for (int j = 0; j != num_rows;
+         ++j, rows += row_stride, sums += sums_stride) {
+      for (int i = 0; i != full; i += 32) {
+        Store32(_mm256_add_epi8(Load32(sums + i), Load32(rows + i)), sums + i);
+      }
+      Store32(_mm256_add_epi8(Load32(sums + full),
+                              _mm256_and_si256(mask, Load32(rows + full))),
+              sums + full);
+    }
+  }
+}
+
+__attribute__((target("avx2"))) void MoveSumsAvx2(const int count,
+                                                  uint8_t* const sums,
+                                                  uint16_t* const totals) {
+  for (int i = 0; i != count; i += 16) {
+    const __m256i values = _mm256_cvtepu8_epi16(Load16(sums + i));
+    Store16(_mm_setzero_si128(), sums + i);
+    Store32(_mm256_add_epi16(Load32(totals + i), values), totals + i);
+  }
+}
+
+__attribute__((target("avx2"))) void AddSquaresAvx2(
+    const uint8_t* const cells, const int stride, const int32_t* const offsets,
+    const int count, uint16_t* const sums) {
+  __m256i* const target = reinterpret_cast<__m256i*>(sums);
+  __m256i rows[4];
+  for (int j = 0; j != 4; ++j) rows[j] = Load32(target + j);
+  for (int k = 0; k != count; ++k) {
+    const uint8_t* const square = cells + offsets[k];
+    for (int j = 0; j != 4; ++j) {
+      const __m128i pair =
+          _mm_unpacklo_epi64(Load8(square + stride * (2 * j)),
+                             Load8(square + stride * (2 * j + 1)));
+      rows[j] = _mm256_add_epi16(rows[j], _mm256_cvtepu8_epi16(pair));
+    }
+  }
+  for (int j = 0; j != 4; ++j) Store32(rows[j], target + j);
+}
+
+constexpr SearchKernels kAvx2 = {"avx2", &FindCellsAvx2, &AddRowsAvx2,
+                                 &MoveSumsAvx2, &AddSquaresAvx2};
+
+#endif  // CARTOGRAPHER_EXT_X86_KERNELS
+
+}  // namespace
+
+const SearchKernels& BestSearchKernels() {
+  static const SearchKernels* const best = AllSearchKernels().back();
+  return *best;
+}
+
+std::vector<const SearchKernels*> AllSearchKernels() {
+  std::vector<const SearchKernels*> all = {&kPlain};
+#ifdef CARTOGRAPHER_EXT_X86_KERNELS
+  all.push_back(&kSse2);
+  if (__builtin_cpu_supports("avx2")) all.push_back(&kAvx2);
+#endif
+  return all;
+}
+
+}  // namespace scan_matching
+}  // namespace cartographer_ext

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The inner loops of the correlative matchers, for several instruction sets.
+// All sets give the same results, bit for bit: sums are of integers, and the
+// floating point operations are the same ones in the same order, without fused
+// multiply-add.
+#ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_SEARCH_KERNELS_H_
+#define CARTOGRAPHER_EXT_SCAN_MATCHING_SEARCH_KERNELS_H_
+
+#include <cstdint>
+#include <vector>
+
+namespace cartographer_ext {
+namespace scan_matching {
+
+// A rotation about z as a unit quaternion (w, 0, 0, z), a translation, and a
+// grid: cell indices are
+//   x = round((max_y - world_y) / resolution - 0.5),  y likewise with max_x,
+// halves away from zero, bounded to +-1e8; NaN becomes the lower bound.
+struct CellFrame {
+  float w = 1.f;
+  float z = 0.f;
+  float translation_x = 0.f;
+  float translation_y = 0.f;
+  double max_x = 0.;
+  double max_y = 0.;
+  double resolution = 1.;
+};
+
+struct SearchKernels {
+  const char* name;
+
+  // Cells of `count` points.
+  void (*find_cells)(const CellFrame& frame, const float* point_x,
+                     const float* point_y, int count, int32_t* x, int32_t* y);
+
+  // sums[j * sums_stride + i] += rows[j * row_stride + i], modulo 256, for
+  // i < num_columns and j < num_rows. Up to 31 bytes to the right of both are
+  // accessed, but not changed.
+  void (*add_rows)(const uint8_t* rows, int row_stride, int num_columns,
+                   int num_rows, uint8_t* sums, int sums_stride);
+
+  // totals[i] += sums[i], sums[i] = 0 for i < count, a multiple of 16.
+  void (*move_sums)(int count, uint8_t* sums, uint16_t* totals);
+
+  // sums[8 * j + i] += cells[offsets[k] + stride * j + i] for all k < count and
+  // i, j < 8, modulo 65536.
+  void (*add_squares)(const uint8_t* cells, int stride, const int32_t* offsets,
+                      int count, uint16_t* sums);
+};
+
+// The fastest set of this machine.
+const SearchKernels& BestSearchKernels();
+
+// All that this machine has, the plain C++ one first. For tests.
+std::vector<const SearchKernels*> AllSearchKernels();
+
+}  // namespace scan_matching
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SCAN_MATCHING_SEARCH_KERNELS_H_

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What FastCorrelativeSearch2D prepares of a grid: its cells and the largest
+// values of squares of cells, each in the order in which they will be read.
+#ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_SEARCH_MAXIMA_H_
+#define CARTOGRAPHER_EXT_SCAN_MATCHING_SEARCH_MAXIMA_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace cartographer_ext {
+namespace scan_matching {
+
+// Offsets are searched in blocks of so many in x and in y.
+constexpr int kBlockSize = 8;
+
+// Element (x, y), at row-major place, is the largest value of the `width` x
+// `width` cells that begin at (x, y). There are elements for all squares that
+// touch the grid, x >= 1 - width; all others would be 0.
+struct SquareMaxima {
+  int width = 1;
+  int num_x = 0;  // elements per row
+  int num_y = 0;
+  std::vector<uint8_t> values;
+
+  // 0 outside.
+  int Value(const int x, const int y) const {
+    const int column = x + width - 1;
+    const int row = y + width - 1;
+    if (static_cast<unsigned>(column) >= static_cast<unsigned>(num_x) ||
+        static_cast<unsigned>(row) >= static_cast<unsigned>(num_y)) {
+      return 0;
+    }
+    return values[static_cast<size_t>(row) * num_x + column];
+  }
+};
+
+// Of `num_x` x `num_y` cells, row by row, squares of one cell.
+SquareMaxima CellMaxima(const std::vector<uint8_t>& cells, int num_x,
+                        int num_y);
+
+// Squares larger by `more` <= width cells.
+SquareMaxima Widen(const SquareMaxima& maxima, int more);
+
+// SquareMaxima in steps of 255 / 31, rounded up, and in another order:
+// elements kBlockSize apart are neighbours. Element (x, y) with column c = x +
+// width - 1 and row r = y + width - 1 is found in plane (c % 8, r % 8), which
+// is a row-major picture, at (c / 8, r / 8).
+class CoarseMaxima {
+ public:
+  // So many values added give at most 255.
+  static constexpr int kNumPerByte = 8;
+  static constexpr int kMaxValue = 31;
+
+  CoarseMaxima() = default;
+  explicit CoarseMaxima(const SquareMaxima& maxima);
+
+  int width() const { return width_; }
+  int num_columns() const { return num_columns_; }  // of a plane
+  int num_rows() const { return num_rows_; }
+  // Of plane (c % 8, r % 8); 31 bytes beyond its end may be read.
+  const uint8_t* Plane(const int column, const int row) const {
+    return values_.data() +
+           static_cast<size_t>((row & 7) * kBlockSize + (column & 7)) *
+               num_columns_ * num_rows_;
+  }
+  size_t MemoryBytes() const { return values_.capacity(); }
+
+ private:
+  int width_ = 1;
+  int num_columns_ = 0;
+  int num_rows_ = 0;
+  std::vector<uint8_t> values_;
+};
+
+}  // namespace scan_matching
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SCAN_MATCHING_SEARCH_MAXIMA_H_
