@@ -226,8 +226,19 @@ function(cartographer_ext_apply_swap target swap)
   endif()
   file(GLOB dropin CONFIGURE_DEPENDS ${dropin_globs})
   set_target_properties(${target} PROPERTIES SOURCES "${sources};${dropin}")
-  string(TOUPPER "CARTOGRAPHER_EXT_SWAP_${swap}" definition)
-  target_compile_definitions(${target} PUBLIC $<BUILD_INTERFACE:${definition}=1>)
+endfunction()
+
+# Tells sources which swaps are selected, in a header: as definitions on the command line they would compile all of the
+# target, and all that links it, again whenever the selection changes.
+function(cartographer_ext_write_swaps_header target swaps)
+  set(SWAP_DEFINES)
+  foreach(swap IN LISTS swaps)
+    string(TOUPPER "${swap}" upper)
+    string(APPEND SWAP_DEFINES "#define CARTOGRAPHER_EXT_SWAP_${upper} 1\n")
+  endforeach()
+  set(generated "${CMAKE_BINARY_DIR}/cartographer_ext_stock/${target}/include")
+  configure_file("${CARTOGRAPHER_EXT_ROOT}/cmake/swaps.h.in" "${generated}/cartographer_ext/swaps.h" @ONLY)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${generated}>)
 endfunction()
 
 function(cartographer_ext_swap_into target)
@@ -252,6 +263,7 @@ function(cartographer_ext_swap_into target)
   foreach(swap IN LISTS ARG_SWAPS)
     cartographer_ext_apply_swap(${target} ${swap})
   endforeach()
+  cartographer_ext_write_swaps_header(${target} "${ARG_SWAPS}")
 
   # The modules as objects; a library of its own would have to be installed and exported with Cartographer's.
   file(GLOB dropin CONFIGURE_DEPENDS "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/options/dropin/*.cc")

@@ -7,6 +7,7 @@
 
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/options/option_description.h"
+#include "cartographer_ext/swaps.h"
 #ifdef CARTOGRAPHER_EXT_SWAP_CONSTRAINT_BUILDER
 #include "cartographer_ext/loop_closure_options.pb.h"
 #endif

@@ -13,6 +13,7 @@
 #include "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d.h"
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/swaps.h"
 #include "gtest/gtest.h"
 
 #ifdef CARTOGRAPHER_EXT_SWAP_FULL_INFORMATION

@@ -16,6 +16,7 @@
 #include "cartographer/mapping/trajectory_builder_interface.h"
 #include "cartographer/metrics/register.h"
 #include "cartographer_ext/options/extension_field.h"
+#include "cartographer_ext/swaps.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {

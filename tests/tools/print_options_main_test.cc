@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/swaps.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/tools/run_command.h"

@@ -16,6 +16,7 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/scan_matcher_options.pb.h"
 #include "cartographer_ext/scan_matching/match_report.h"
+#include "cartographer_ext/swaps.h"
 #include "ceres/ceres.h"
 
 namespace cartographer_ext {

@@ -6,6 +6,8 @@
 // forwards to it, or, where the options have our block, to ours.
 #pragma GCC system_header
 
+#include "cartographer_ext/swaps.h"
+
 #if !defined(CARTOGRAPHER_EXT_SWAP_LOCAL_TRAJECTORY_BUILDER) || \
     defined(LocalTrajectoryBuilder2D)
 // Not selected, or this is the stock source with its class renamed.

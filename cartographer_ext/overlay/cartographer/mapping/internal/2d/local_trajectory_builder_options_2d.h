@@ -6,6 +6,8 @@
 // original name also reads our block.
 #pragma GCC system_header
 
+#include "cartographer_ext/swaps.h"
+
 #if !defined(CARTOGRAPHER_EXT_SWAP_LOCAL_TRAJECTORY_BUILDER) || \
     defined(CreateLocalTrajectoryBuilderOptions2D)
 // Not selected, or this is the stock source with its function renamed.

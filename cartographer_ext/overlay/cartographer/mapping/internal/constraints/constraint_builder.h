@@ -6,6 +6,8 @@
 // name also reads our block.
 #pragma GCC system_header
 
+#include "cartographer_ext/swaps.h"
+
 #if !defined(CARTOGRAPHER_EXT_SWAP_CONSTRAINT_BUILDER) || \
     defined(CreateConstraintBuilderOptions)
 // Not selected, or this is the stock source with its function renamed.

@@ -7,6 +7,8 @@
 // them, or, where the options have our block, to ours.
 #pragma GCC system_header
 
+#include "cartographer_ext/swaps.h"
+
 #if !defined(CARTOGRAPHER_EXT_SWAP_CERES_SCAN_MATCHER) || \
     defined(CeresScanMatcher2D)
 // Not selected, or this is the stock source with its names renamed.

@@ -6,6 +6,8 @@
 // constraints with a full information matrix.
 #pragma GCC system_header
 
+#include "cartographer_ext/swaps.h"
+
 #if !defined(CARTOGRAPHER_EXT_SWAP_FULL_INFORMATION) || \
     defined(CreateAutoDiffSpaCostFunction)
 // Not selected, or this is the stock source with its functions renamed.
