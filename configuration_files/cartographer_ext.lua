@@ -7,11 +7,214 @@
 --
 -- Including this file changes nothing. A configuration switches a block on by
 -- assigning it to the stock table it extends, and may change values then:
+--   POSE_GRAPH.constraint_builder.cartographer_ext =
+--     CARTOGRAPHER_EXT.constraint_builder
 --   POSE_GRAPH.optimization_problem.cartographer_ext =
 --     CARTOGRAPHER_EXT.optimization_problem
 -- Keys that are left out of a block keep their default.
 
 CARTOGRAPHER_EXT = {}
+
+-- Loop closures that are verified over time and weighted by confidence.
+CARTOGRAPHER_EXT.constraint_builder = {
+  search = {
+    -- Windows that follow the uncertainty and a cap on searches. Off: every
+    -- sampled candidate is searched in Cartographer's fixed window.
+    enabled = true,
+    -- Hard cap on searches for one node. Fewer is faster and may miss loops.
+    -- [>= 1 and <= 100000]
+    max_searches_per_node = 8,
+    -- Half width of the window in standard deviations of the prediction.
+    -- Wider finds loops after more drift and costs more. [> 0 and <= 20]
+    window_sigmas = 3,
+    -- The window is never smaller than this. [> 0 and <= 1000, m]
+    min_linear_window = 1,
+    -- Beyond this the whole submap is searched instead, when global_search is
+    -- on. [> 0 and <= 1000, m]
+    max_linear_window = 15,
+    -- The window is never smaller than this. [> 0 and <= 3.1416, rad]
+    min_angular_window = 0.17,
+    -- Whether whole submaps of the same trajectory may be searched when the
+    -- uncertainty exceeds the largest window.
+    global_search = true,
+    -- After an accepted loop the same submap is not searched again before the
+    -- robot has gone this far. 0: never skipped. [>= 0 and <= 1000, m]
+    redundant_distance = 2,
+    -- Way between two searches of the same submap. Larger is faster and gives
+    -- the later stages less to go by. [>= 0 and <= 1000, m]
+    search_spacing = 0.5,
+    -- The same for searches of a whole submap within a trajectory. [>= 0 and
+    -- <= 1000, m]
+    full_search_spacing = 3,
+    -- Where the way to the submap is known better than this, a loop would
+    -- tell nothing new and is not searched. [>= 0 and <= 1000, m]
+    informative_sigma = 0.05,
+  },
+  temporal_verification = {
+    -- Compares the last nodes with what the submap predicts along the same
+    -- way.
+    enabled = true,
+    -- Nodes compared for a new submap; the paper has 4. Longer tells
+    -- look-alike places apart better and needs more known map. [>= 1 and <=
+    -- 200, nodes]
+    window_base = 12,
+    -- How much the window grows with the age of the submap. [>= 0 and <= 200,
+    -- nodes]
+    window_span = 2,
+    -- How fast the window grows. [>= 0 and <= 1000, 1/s or 1/node]
+    window_gamma = 0.3,
+    -- Unit of the age of a submap; the paper does not name it. [one of:
+    -- seconds, nodes]
+    age_unit = "seconds",
+    -- Way between the nodes compared. Larger sees more of the way with the
+    -- same number of nodes. [>= 0 and <= 100, m]
+    spacing = 0.5,
+    -- With fewer comparable nodes there is no temporal score. [>= 1 and <=
+    -- 200, nodes]
+    minimum_length = 4,
+    -- Predictions for each step of the way. More absorbs the error of the
+    -- odometry's scale more finely and costs more. [>= 1 and <= 20]
+    oversampling = 2,
+    -- Half width of the warping band. Wider forgives more and discriminates
+    -- less; negative: no band. [>= -1 and <= 200, steps]
+    band = 1,
+    -- Whether every prediction has to be matched (symmetric, the textbook) or
+    -- one for each node. [one of: symmetric, asymmetric]
+    step = "asymmetric",
+    -- Angular sectors of a range signature. [>= 1 and <= 720]
+    num_sectors = 36,
+    -- Rays of a sector; their median is its range. [>= 1 and <= 100]
+    rays_per_sector = 4,
+    -- Longer ranges count as this. [> 0 and <= 1000, m]
+    max_range = 10,
+    -- A predicted ray that crosses more unknown space than this predicts
+    -- nothing. [>= 0 and <= 1000, m]
+    max_unknown = 0.15,
+    -- Sectors that differ by more count as this. Smaller punishes small
+    -- differences more. [> 0 and <= 1000, m]
+    clip = 1,
+    -- Share of a node's sectors that the submap has to predict. [> 0 and <=
+    -- 1]
+    minimum_overlap = 0.5,
+    -- Nodes remembered of each trajectory, about 300 bytes each. [>= 1 and <=
+    -- 1e+07, nodes]
+    max_history_nodes = 20000,
+    -- Neighbouring submaps on each side that continue the reference where the
+    -- way leaves the submap. [>= 0 and <= 100]
+    num_neighbours = 2,
+  },
+  dynamic_threshold = {
+    -- Off: the base threshold holds always.
+    enabled = true,
+    -- The formula of the paper relaxes the threshold when scores vary, its
+    -- text wants the opposite. [one of: as_printed, stricter_when_unstable]
+    direction = "stricter_when_unstable",
+    -- Lower end of the threshold. [>= 0 and <= 1]
+    low = 0.5,
+    -- Range of the threshold above its lower end. [>= 0 and <= 1]
+    span = 0.2,
+    -- C of equation 1. Variances are 0.001 to 0.01, so tens to hundreds
+    -- matter. [>= 0 and <= 1000000]
+    sensitivity = 100,
+    -- How many of the last scores the variance is taken of. [>= 1 and <=
+    -- 100000]
+    window = 10,
+    -- Threshold until there are that many scores. [>= 0 and <= 1]
+    base_threshold = 0.5,
+  },
+  fusion = {
+    -- Off: the final score is the grid score.
+    enabled = true,
+    -- as_printed blends by how typical the scores are, proper_posterior
+    -- normalises that, likelihood_ratio gives the probability that the loop
+    -- is true. [one of: as_printed, proper_posterior, likelihood_ratio]
+    mode = "likelihood_ratio",
+    -- How many of the last scores the blends look at. [>= 1 and <= 100000]
+    window = 10,
+    -- Smallest deviation of the scores that is believed. [> 0 and <= 1]
+    sigma_floor = 0.01,
+    -- Weight of the grid score in proper_posterior. [>= 0 and <= 1]
+    grid_weight = 0.5,
+    -- Candidates with a lower final score are rejected. [>= 0 and <= 1]
+    min_final_score = 0.5,
+    -- Candidates that the prior of the mixture counts as. Stronger is safer
+    -- with few candidates. [> 0 and <= 100000]
+    prior_strength = 5,
+    -- Candidates the mixture remembers. [>= 1 and <= 1000000]
+    capacity = 500,
+  },
+  information = {
+    -- Off: every loop has Cartographer's constant weights.
+    enabled = true,
+    -- Exponent of the final score for the translation. [>= 0 and <= 20]
+    alpha = 1.2,
+    -- Exponent of the final score for the rotation. [>= 0 and <= 20]
+    beta = 1.5,
+    -- The final score that leaves the weights as they are. [> 0 and <= 1]
+    reference_score = 1,
+    -- Lower final scores count as this. [> 0 and <= 1]
+    minimum_score = 0.001,
+  },
+  path_noise = {
+    -- Standard deviation after one metre; it grows with the square root of
+    -- the way. [>= 0 and <= 10, m]
+    translation_per_metre = 0.05,
+    -- Standard deviation after turning one radian. [>= 0 and <= 10, m]
+    translation_per_radian = 0.02,
+    -- Standard deviation after one metre. [>= 0 and <= 10, rad]
+    rotation_per_metre = 0.01,
+    -- Standard deviation after turning one radian. [>= 0 and <= 10, rad]
+    rotation_per_radian = 0.03,
+    -- Standard deviation of a loop itself. [> 0 and <= 10, m]
+    loop_translation = 0.05,
+    -- Standard deviation of a loop itself. [> 0 and <= 10, rad]
+    loop_rotation = 0.01,
+  },
+  compatible_subset = {
+    -- Candidates wait until others confirm them. Off: every candidate that
+    -- has come this far is accepted at once.
+    enabled = true,
+    -- Whether cycles are compared with their uncertainty or with fixed
+    -- bounds, as the paper prints it. [one of: chi_square, fixed_bound]
+    test = "chi_square",
+    -- Largest squared error of a cycle in standard deviations; 11.345 is the
+    -- 99 percent point for 3 degrees of freedom. [> 0 and <= 1000]
+    chi_square_bound = 11.345,
+    -- Largest error of a cycle for fixed_bound. [> 0 and <= 1000, m]
+    translation_bound = 0.5,
+    -- Largest error of a cycle for fixed_bound. [> 0 and <= 3.1416, rad]
+    rotation_bound = 0.1,
+    -- Loops nearer than this along the way are one piece of evidence. [>= 0
+    -- and <= 1000, m]
+    revisit_distance = 5,
+    -- A closed cycle confirms only when it is known this well. [> 0 and <=
+    -- 1000, m]
+    informative_sigma = 1,
+    -- Revisits that have to agree. More is safer and later. [>= 1 and <= 100]
+    min_revisits = 2,
+    -- Share of contradictions that is forgiven. 0: exactly the maximum
+    -- clique. [>= 0 and <= 0.5]
+    tolerance = 0.1,
+    -- Whether a loop that nothing confirms may be accepted by stricter rules.
+    single_strong = true,
+    -- Final score it needs. [>= 0 and <= 1]
+    single_strong_score = 0.8,
+    -- Loops of neighbouring nodes it needs. [>= 1 and <= 1000]
+    single_strong_loops = 3,
+    -- Revisits remembered. [>= 1 and <= 10000]
+    max_clusters = 400,
+    -- Steps after which the search for the largest set takes the best found.
+    -- [>= 1 and <= 1e+09]
+    max_clique_steps = 100000,
+  },
+  innovation_veto = {
+    -- Rejects loops that demand more than the uncertainty allows.
+    enabled = true,
+    -- Largest squared innovation in standard deviations; 21.108 is the 99.99
+    -- percent point for 3 degrees of freedom. [> 0 and <= 1000000]
+    chi_square_bound = 21.108,
+  },
+}
 
 -- Optimisation that finds and leaves out false loop closures.
 CARTOGRAPHER_EXT.optimization_problem = {

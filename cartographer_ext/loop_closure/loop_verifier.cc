@@ -24,11 +24,6 @@ constexpr int kScanPerNode = 50;
 // Probability of a candidate about which nothing is known.
 constexpr double kNeutralScore = 0.5;
 
-// Submaps share the paths with the nodes, under negative trajectory ids.
-NodeKey PathKey(const SubmapKey& submap) {
-  return NodeKey{-1 - submap.trajectory_id, submap.submap_index};
-}
-
 void ToProto(const MixtureComponent& from,
              LoopDecision::MixtureComponent* const to) {
   to->set_weight(from.weight);
@@ -93,6 +88,10 @@ LoopVerifier::LoopVerifier(const proto::LoopClosureOptions& options,
 bool LoopVerifier::AddNode(const int trajectory_id, HistoryNode node) {
   paths_.Add(NodeKey{trajectory_id, node.node_index}, node.local_pose);
   return history_.Add(trajectory_id, std::move(node));
+}
+
+void LoopVerifier::AddSubmap(const SubmapKey& submap, const Pose2& local_pose) {
+  paths_.Add(PathKey(submap), local_pose);
 }
 
 bool LoopVerifier::HasNode(const NodeKey& node) const {
@@ -181,8 +180,11 @@ bool LoopVerifier::PassesVeto(const LoopCandidate& candidate,
       candidate.submap.trajectory_id != candidate.node.trajectory_id) {
     return true;
   }
-  const auto anchor = paths_.Nearest(candidate.submap.trajectory_id,
-                                     candidate.submap_local_pose.translation());
+  const auto anchor =
+      candidate.anchor.has_value()
+          ? candidate.anchor
+          : paths_.Nearest(candidate.submap.trajectory_id,
+                           candidate.submap_local_pose.translation());
   if (!anchor.has_value()) return true;
   const auto prior = paths_.Between(*anchor, candidate.node);
   if (!prior.has_value()) return true;
@@ -201,21 +203,36 @@ bool LoopVerifier::PassesVeto(const LoopCandidate& candidate,
   return !result.vetoed || Reject(LoopDecision::INNOVATION_TOO_LARGE, outcome);
 }
 
-void LoopVerifier::Process(const LoopCandidate& candidate) {
-  const int64_t number = next_candidate_++;
-  paths_.Add(PathKey(candidate.submap), candidate.submap_local_pose);
+LoopOutcome LoopVerifier::MakeOutcome(const LoopCandidate& candidate) {
   LoopOutcome outcome;
   outcome.submap = candidate.submap;
   outcome.node = candidate.node;
+  outcome.anchor = candidate.anchor;
+  outcome.submap_local_pose = candidate.submap_local_pose;
   outcome.pose = candidate.refined;
   LoopDecision& decision = outcome.decision;
-  decision.set_candidate(number);
+  decision.set_candidate(next_candidate_++);
   decision.set_submap_trajectory_id(candidate.submap.trajectory_id);
   decision.set_submap_index(candidate.submap.submap_index);
   decision.set_node_trajectory_id(candidate.node.trajectory_id);
   decision.set_node_index(candidate.node.node_index);
   decision.set_node_time(candidate.node_time);
   *decision.mutable_search() = candidate.search;
+  return outcome;
+}
+
+void LoopVerifier::Dismiss(const LoopCandidate& candidate,
+                           const LoopDecision::Reason reason) {
+  LoopOutcome outcome = MakeOutcome(candidate);
+  Reject(reason, &outcome);
+  settled_.push_back(std::move(outcome));
+}
+
+void LoopVerifier::Process(const LoopCandidate& candidate) {
+  paths_.Add(PathKey(candidate.submap), candidate.submap_local_pose);
+  LoopOutcome outcome = MakeOutcome(candidate);
+  LoopDecision& decision = outcome.decision;
+  const int64_t number = decision.candidate();
   decision.mutable_search()->set_grid_score(candidate.grid_score);
 
   if (!VerifyScores(candidate, &outcome) || !PassesVeto(candidate, &outcome)) {
@@ -225,6 +242,13 @@ void LoopVerifier::Process(const LoopCandidate& candidate) {
   decision.mutable_information()->set_translation_weight(
       outcome.weights.translation);
   decision.mutable_information()->set_rotation_weight(outcome.weights.rotation);
+  if (!candidate.information.isZero(0.)) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) {
+        decision.mutable_information()->add_matrix(candidate.information(i, j));
+      }
+    }
+  }
   if (!options_.compatible_subset().enabled()) {
     decision.set_verdict(LoopDecision::ACCEPTED);
     decision.set_reason(LoopDecision::ALL_STAGES_PASSED);
@@ -273,6 +297,15 @@ std::vector<LoopOutcome> LoopVerifier::TakeSettled() {
               return a.decision.candidate() < b.decision.candidate();
             });
   return outcomes;
+}
+
+std::vector<LoopDecision> LoopVerifier::Undecided() const {
+  std::vector<LoopDecision> decisions;
+  for (const auto& entry : waiting_) {
+    decisions.push_back(entry.second.decision);
+    decisions.back().set_verdict(LoopDecision::UNDECIDED);
+  }
+  return decisions;
 }
 
 std::vector<LoopOutcome> LoopVerifier::Decide() {

@@ -26,6 +26,7 @@
 #include <map>
 #include <vector>
 
+#include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/compatible_subset.h"
 #include "cartographer_ext/loop_closure/constraint_information.h"
@@ -53,8 +54,14 @@ struct LoopCandidate {
   int64_t node_time = 0;    // host ticks
   double submap_age = 0.;   // seconds or nodes, as `age_unit` says
   Pose2 submap_local_pose;  // (local frame of its trajectory <- submap)
-  Pose2 refined;            // (submap <- node)
-  double grid_score = 0.;   // S_g
+  // A node of the submap, for the veto; where absent the node is taken whose
+  // local position is nearest to the submap's.
+  absl::optional<NodeKey> anchor;
+  Pose2 refined;           // (submap <- node)
+  double grid_score = 0.;  // S_g
+  // Of the refined pose from the scan alone, (submap <- node), metres and
+  // radians; zero where it is not known.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   proto::LoopDecision::Search search;  // for the record
   // The submap first, then its neighbours; needed during `Process` only.
   std::vector<ReferenceMap> maps;
@@ -63,6 +70,8 @@ struct LoopCandidate {
 struct LoopOutcome {
   SubmapKey submap;
   NodeKey node;
+  absl::optional<NodeKey> anchor;
+  Pose2 submap_local_pose;
   Pose2 pose;                 // (submap <- node)
   ConstraintWeights weights;  // for the constraint when accepted
   proto::LoopDecision decision;
@@ -82,14 +91,19 @@ class LoopVerifier {
 
   // For every node offered, before any sampler. True when it was new.
   bool AddNode(int trajectory_id, HistoryNode node);
+  // For every submap offered; the order of the calls does not matter.
+  void AddSubmap(const SubmapKey& submap, const Pose2& local_pose);
   bool HasNode(const NodeKey& node) const;
   // Options of the signatures that `AddNode` wants.
   const RangeSignatureOptions& signature_options() const {
     return temporal_options_.signature;
   }
 
-  // Candidates in the order they were offered.
+  // Candidates in the order they were offered: those that the search found, and
+  // those that it did not find or that were not searched, with the reason.
   void Process(const LoopCandidate& candidate);
+  void Dismiss(const LoopCandidate& candidate,
+               proto::LoopDecision::Reason reason);
 
   // Outcomes that became certain since the last call, in the order of their
   // candidates. `Flush` leaves nothing undecided.
@@ -102,8 +116,17 @@ class LoopVerifier {
   void DeleteNodes(int trajectory_id, int last_node_index);
 
   int num_undecided() const { return subset_.num_undecided(); }
+  // Records of what waits, in candidate order, as UNDECIDED.
+  std::vector<proto::LoopDecision> Undecided() const;
+
+  const PathUncertainty& paths() const { return paths_; }
+  // Submaps share the paths with the nodes, under negative trajectory ids.
+  static NodeKey PathKey(const SubmapKey& submap) {
+    return NodeKey{-1 - submap.trajectory_id, submap.submap_index};
+  }
 
  private:
+  LoopOutcome MakeOutcome(const LoopCandidate& candidate);
   // Fills the stages of the record. False: rejected, with the reason.
   bool VerifyScores(const LoopCandidate& candidate, LoopOutcome* outcome);
   bool PassesVeto(const LoopCandidate& candidate, LoopOutcome* outcome) const;

@@ -125,16 +125,27 @@ absl::optional<Pose2> PathUncertainty::LocalPose(const NodeKey& node) const {
 
 absl::optional<NodeKey> PathUncertainty::Nearest(
     const int trajectory_id, const Eigen::Vector2d& local_position) const {
+  return Nearest(trajectory_id, local_position, std::numeric_limits<int>::min(),
+                 std::numeric_limits<int>::max());
+}
+
+absl::optional<NodeKey> PathUncertainty::Nearest(
+    const int trajectory_id, const Eigen::Vector2d& local_position,
+    const int first, const int last) const {
   const auto it = trajectories_.find(trajectory_id);
   if (it == trajectories_.end()) return absl::nullopt;
+  const std::deque<Entry>& entries = it->second.entries;
   absl::optional<NodeKey> nearest;
   double nearest_distance = std::numeric_limits<double>::infinity();
-  for (const Entry& entry : it->second.entries) {
+  for (auto entry = std::lower_bound(
+           entries.begin(), entries.end(), first,
+           [](const Entry&e, const int index) { return e.node_index < index; });
+       entry != entries.end() && entry->node_index <= last; ++entry) {
     const double distance =
-        (entry.local_pose.translation() - local_position).squaredNorm();
+        (entry->local_pose.translation() - local_position).squaredNorm();
     if (distance < nearest_distance) {
       nearest_distance = distance;
-      nearest = NodeKey{trajectory_id, entry.node_index};
+      nearest = NodeKey{trajectory_id, entry->node_index};
     }
   }
   return nearest;

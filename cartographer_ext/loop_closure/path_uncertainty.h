@@ -66,6 +66,10 @@ class PathUncertainty {
   // the trajectory has no nodes.
   absl::optional<NodeKey> Nearest(int trajectory_id,
                                   const Eigen::Vector2d& local_position) const;
+  // The same among the nodes `first` to `last`, both included.
+  absl::optional<NodeKey> Nearest(int trajectory_id,
+                                  const Eigen::Vector2d& local_position,
+                                  int first, int last) const;
 
   void DeleteTrajectory(int trajectory_id);
 

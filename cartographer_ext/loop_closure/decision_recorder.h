@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Where the records of loop decisions go. The builder of loop closures is deep
+// inside the host, out of reach of who runs it, so there is one recorder for
+// the process, like the host's metrics. It keeps nothing until somebody starts
+// it. Thread-safe.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
+#include "cartographer_ext/loop_decision.pb.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+class DecisionRecorder {
+ public:
+  using Decisions = std::vector<proto::LoopDecision>;
+
+  static DecisionRecorder* Global();
+
+  // Forgets everything and keeps up to `capacity` records from now on; what
+  // comes after is counted only.
+  void Start(size_t capacity) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Stop() ABSL_LOCKS_EXCLUDED(mutex_);
+  bool started() const ABSL_LOCKS_EXCLUDED(mutex_);
+
+  void Record(const Decisions& decisions) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Registers somebody whose candidates wait for a decision. `undecided` is
+  // called without any lock of the recorder held. Returns a number for
+  // `RemovePending`, after which it is not called any more.
+  int64_t AddPending(std::function<Decisions()> undecided)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  void RemovePending(int64_t id) ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // All records in the order of their verdicts, and behind them what is
+  // undecided now.
+  Decisions All() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Records that the capacity left out.
+  int64_t num_left_out() const ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  mutable absl::Mutex mutex_;
+  // Held while the functions in `pending_` are called, and before `mutex_`.
+  mutable absl::Mutex pending_mutex_ ABSL_ACQUIRED_BEFORE(mutex_);
+  size_t capacity_ ABSL_GUARDED_BY(mutex_) = 0;
+  bool started_ ABSL_GUARDED_BY(mutex_) = false;
+  int64_t num_left_out_ ABSL_GUARDED_BY(mutex_) = 0;
+  Decisions decisions_ ABSL_GUARDED_BY(mutex_);
+  std::map<int64_t, std::function<Decisions()>> pending_
+      ABSL_GUARDED_BY(pending_mutex_);
+  int64_t next_pending_ ABSL_GUARDED_BY(pending_mutex_) = 0;
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/dropin/match_information.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "cartographer/mapping/2d/map_limits.h"
+#include "cartographer_ext/scan_matching/occupied_space_cost.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using cartographer::mapping::Grid2D;
+
+// A Grid2D as OccupiedSpaceCost wants it.
+class GridCells {
+ public:
+  explicit GridCells(const Grid2D& grid) : grid_(grid) {}
+  double resolution() const { return grid_.limits().resolution(); }
+  double max_x() const { return grid_.limits().max().x(); }
+  double max_y() const { return grid_.limits().max().y(); }
+  int num_rows() const { return grid_.limits().cell_limits().num_y_cells; }
+  int num_columns() const { return grid_.limits().cell_limits().num_x_cells; }
+  float Cost(const int row, const int column) const {
+    return grid_.GetCorrespondenceCost(Eigen::Array2i(column, row));
+  }
+
+ private:
+  const Grid2D& grid_;
+};
+
+}  // namespace
+
+Eigen::Matrix3d MatchInformation(const Grid2D& grid,
+                                 const cartographer::sensor::PointCloud& cloud,
+                                 const Pose2& pose, const Pose2& submap_pose) {
+  if (grid.GetGridType() == cartographer::mapping::GridType::TSDF ||
+      cloud.empty()) {
+    return Eigen::Matrix3d::Zero();
+  }
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(cloud.size());
+  for (const auto& point : cloud) {
+    points.emplace_back(point.position.x(), point.position.y());
+  }
+  const GridCells cells(grid);
+  scan_matching::OccupiedSpaceCost<GridCells> cost(&cells, std::move(points));
+  const scan_matching::OccupiedSpaceSums sums = cost.Evaluate(pose);
+  const double variance = sums.squares / static_cast<double>(cloud.size());
+  if (!(variance > 0.) || !sums.hessian.allFinite()) {
+    return Eigen::Matrix3d::Zero();
+  }
+  // Moving (submap <- cloud) by d moves (grid <- cloud) by the rotated d.
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  const double c = std::cos(submap_pose.theta), s = std::sin(submap_pose.theta);
+  rotation.topLeftCorner<2, 2>() << c, -s, s, c;
+  return rotation.transpose() * sums.hessian * rotation / variance;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

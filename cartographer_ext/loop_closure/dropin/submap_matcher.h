@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The search in one submap: what the builder of loop closures wants from a
+// matcher, and no more.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
+
+#include <memory>
+
+#include "cartographer/mapping/2d/grid_2d.h"
+#include "cartographer/mapping/internal/2d/scan_matching/fast_correlative_scan_matcher_2d.h"
+#include "cartographer/mapping/proto/scan_matching/fast_correlative_scan_matcher_options_2d.pb.h"
+#include "cartographer/sensor/point_cloud.h"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/occupancy_view.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+struct SubmapMatch {
+  bool found = false;
+  double score = 0.;
+  Pose2 pose;  // (frame of the grid <- cloud)
+};
+
+// Does not refer to the grid after construction. Thread-safe.
+class SubmapMatcher {
+ public:
+  SubmapMatcher(const cartographer::mapping::Grid2D& grid,
+                const cartographer::mapping::scan_matching::proto::
+                    FastCorrelativeScanMatcherOptions2D& options);
+  SubmapMatcher(const SubmapMatcher&) = delete;
+  SubmapMatcher& operator=(const SubmapMatcher&) = delete;
+
+  // The best pose in the window (half widths, metres and radians) around
+  // `initial` that scores more than `min_score`.
+  SubmapMatch Match(const Pose2& initial, double linear_window,
+                    double angular_window,
+                    const cartographer::sensor::PointCloud& cloud,
+                    double min_score) const;
+  // The same anywhere in the submap.
+  SubmapMatch MatchFullSubmap(const cartographer::sensor::PointCloud& cloud,
+                              double min_score) const;
+
+ private:
+  const cartographer::mapping::scan_matching::FastCorrelativeScanMatcher2D
+      matcher_;
+};
+
+// Cells more likely occupied than not are occupied, other known ones free. Of a
+// TSDF those within one cell of the surface are occupied.
+OccupancyView MakeOccupancyView(const cartographer::mapping::Grid2D& grid);
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_

@@ -1,0 +1,12 @@
+-- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+-- SPDX-License-Identifier: Apache-2.0
+--
+-- The default of cartographer_ext: everything of ours that pays, with one set
+-- of values for all data sets.
+include "common_2d.lua"
+include "loop_closure_default.lua"
+
+return {
+  map_builder = MAP_BUILDER,
+  trajectory_builder = TRAJECTORY_BUILDER,
+}
