@@ -11,8 +11,8 @@ function(cartographer_ext_sanitize_all)
     add_link_options(-fsanitize=${CARTOGRAPHER_EXT_SANITIZE})
     if(CARTOGRAPHER_EXT_SANITIZE MATCHES "thread")
       # The sanitizer cannot see through the synchronization of the uninstrumented Abseil; this tells it what it does.
-      add_library(cartographer_ext_absl_annotations OBJECT tests/thread_sanitizer/absl_annotations.cc)
-      link_libraries($<TARGET_OBJECTS:cartographer_ext_absl_annotations>)
+      add_library(cartographer_ext_uninstrumented_libraries OBJECT tests/thread_sanitizer/uninstrumented_libraries.cc)
+      link_libraries($<TARGET_OBJECTS:cartographer_ext_uninstrumented_libraries>)
       foreach(symbol _ZN4absl7debian35Mutex4LockEv _ZN4absl7debian35Mutex6UnlockEv
               _ZN4absl7debian35Mutex5AwaitERKNS0_9ConditionE _ZN4absl7debian312Notification6NotifyEv
               _ZNK4absl7debian312Notification19WaitForNotificationEv

@@ -14,6 +14,11 @@
 
 extern "C" {
 
+// CHOLMOD shares work among threads of OpenMP; neither library is instrumented.
+const char* __tsan_default_suppressions() {
+  return "called_from_lib:libcholmod\ncalled_from_lib:libgomp\n";
+}
+
 // The sanitizer's interface.
 void __tsan_acquire(void* address);
 void __tsan_release(void* address);
