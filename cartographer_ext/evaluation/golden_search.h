@@ -30,6 +30,7 @@
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/scan_matching/fast_correlative_search_2d.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -78,7 +79,11 @@ struct GoldenOutcome {
   std::string mismatch;  // empty when within the tolerance
 };
 
+// Who searches: the host's matcher, or FastCorrelativeSearch2D.
+enum class GoldenMatcher { kStock, kOurs };
+
 struct GoldenReport {
+  GoldenMatcher matcher = GoldenMatcher::kStock;
   std::vector<GoldenOutcome> outcomes;  // in the order of the pairs
   int num_found = 0;
   int num_ties = 0;
@@ -88,6 +93,11 @@ struct GoldenReport {
   double max_refined_translation_deviation = 0.;
   double max_refined_rotation_deviation = 0.;
   double max_relative_cost_deviation = 0.;
+  // Of the search grids, mean over the submaps built. For the stock matcher,
+  // the cells of its levels; those of the real Cartographer are as many.
+  double mean_matcher_bytes = 0.;
+  int num_rejected_early = 0;                  // ours only
+  scan_matching::SearchStatistics statistics;  // ours only, summed up
 };
 
 // Mean of a time over all pairs, or over those with a result.
@@ -128,11 +138,19 @@ class GoldenMap {
 };
 
 // Search grids are built once per run of pairs with the same submap. Times are
-// CPU time of this thread. `progress`, if any, gets the number of pairs done.
-GoldenReport CheckGoldenPairs(const std::vector<GoldenPair>& pairs,
-                              const GoldenMap& map,
-                              const GoldenTolerance& tolerance,
-                              const std::function<void(int)>& progress);
+// CPU time of this thread, the smallest of `repeat` tries. With several
+// matchers, each try is made with all of them in turn, so that their ratios
+// mean something on a busy machine. `progress`, if any, gets the number of
+// pairs done. One report per matcher.
+struct GoldenCheckOptions {
+  GoldenTolerance tolerance;
+  std::vector<GoldenMatcher> matchers = {GoldenMatcher::kStock};
+  int repeat = 1;
+  std::function<void(int)> progress;
+};
+std::vector<GoldenReport> CheckGoldenPairs(const std::vector<GoldenPair>& pairs,
+                                           const GoldenMap& map,
+                                           const GoldenCheckOptions& options);
 
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // LINK: evaluation
 //
-// Compares the host's scan matchers with golden vectors taken from the real
-// Cartographer, and times them.
+// Compares the scan matchers, the host's and ours, with golden vectors taken
+// from the real Cartographer, and times them.
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -21,6 +22,10 @@
 DEFINE_string(pbstream_filename, "", "the state the golden vectors are about");
 DEFINE_string(golden_filename, "",
               "CSV of search and refinement results of the real Cartographer");
+DEFINE_string(
+    matcher, "both",
+    "who searches: stock (the host's matcher), ours, or both in turn");
+DEFINE_int32(repeat, 1, "tries per pair; the smallest CPU time counts");
 DEFINE_bool(all, false, "print every pair, not only those that differ");
 DEFINE_string(json, "", "write figures to this file; - is standard output");
 
@@ -28,9 +33,27 @@ namespace cartographer_ext {
 namespace tools {
 namespace {
 
+using evaluation::GoldenMatcher;
 using evaluation::GoldenOutcome;
 using evaluation::GoldenReport;
 using evaluation::GoldenTimes;
+
+std::string MatcherName(const GoldenMatcher matcher) {
+  return matcher == GoldenMatcher::kStock ? "stock" : "ours";
+}
+
+// True when `name` is allowed.
+bool MatchersOfFlag(const std::string& name,
+                    std::vector<GoldenMatcher>* const matchers) {
+  matchers->clear();
+  if (name == "stock" || name == "both") {
+    matchers->push_back(GoldenMatcher::kStock);
+  }
+  if (name == "ours" || name == "both") {
+    matchers->push_back(GoldenMatcher::kOurs);
+  }
+  return !matchers->empty();
+}
 
 std::string PairName(const evaluation::GoldenPair& pair) {
   return absl::StrFormat(
@@ -43,8 +66,9 @@ void PrintPairs(const GoldenReport& report) {
   for (const GoldenOutcome& outcome : report.outcomes) {
     if (outcome.mismatch.empty() && !FLAGS_all) continue;
     std::cout << absl::StrFormat(
-        "line %3d  %-34s  %s  search %8.0f us (%5.2f x golden)  %s\n",
+        "line %3d  %-34s  %-5s  %s  search %8.0f us (%5.2f x golden)  %s\n",
         outcome.golden.line, PairName(outcome.golden),
+        MatcherName(report.matcher),
         !outcome.ours.found ? "nothing       "
                             : absl::StrFormat("score %.6f", outcome.ours.score),
         outcome.ours.search_microseconds,
@@ -58,9 +82,9 @@ void PrintPairs(const GoldenReport& report) {
 
 void PrintSummary(const GoldenReport& report) {
   std::cout << absl::StrFormat(
-      "%d pairs, %d matches found, %d ties, %d mismatches\n",
-      report.outcomes.size(), report.num_found, report.num_ties,
-      report.num_mismatches);
+      "%s: %d pairs, %d matches found, %d ties, %d mismatches\n",
+      MatcherName(report.matcher), report.outcomes.size(), report.num_found,
+      report.num_ties, report.num_mismatches);
   std::cout << absl::StrFormat(
       "largest deviation: score %.1e; search %.1e m; refinement %.1e m, %.1e "
       "rad, cost %.1e (relative)\n",
@@ -68,34 +92,70 @@ void PrintSummary(const GoldenReport& report) {
       report.max_refined_translation_deviation,
       report.max_refined_rotation_deviation,
       report.max_relative_cost_deviation);
-  const GoldenTimes ours = MeanTimes(report, true);
-  const GoldenTimes golden = MeanTimes(report, false);
-  const auto print_time = [](const char* const what, const double our_time,
-                             const double golden_time) {
-    std::cout << absl::StrFormat("%-7s %9.0f %9.0f %6.2f\n", what, our_time,
-                                 golden_time,
-                                 our_time / std::max(1., golden_time));
+  if (report.matcher != GoldenMatcher::kOurs) return;
+  const scan_matching::SearchStatistics& statistics = report.statistics;
+  std::cout << absl::StrFormat(
+      "poses %d; coarse nodes %d, opened %d; blocks %d, opened %d; %d searches "
+      "ended by the coarse bounds\n",
+      statistics.num_poses, statistics.coarse_scored,
+      statistics.coarse_scored - statistics.coarse_pruned,
+      statistics.blocks_scored, statistics.blocks_opened,
+      report.num_rejected_early);
+}
+
+void PrintTimes(const std::vector<GoldenReport>& reports) {
+  std::cout << "mean us     golden";
+  for (const GoldenReport& report : reports) {
+    std::cout << absl::StrFormat("%10s", MatcherName(report.matcher));
+  }
+  if (reports.size() == 2) std::cout << "  stock/ours";
+  std::cout << "\n";
+  const auto print = [&reports](
+                         const char* const what, const double golden,
+                         const std::function<double(const GoldenReport&)>& of) {
+    std::cout << absl::StrFormat("%-8s%10.0f", what, golden);
+    for (const GoldenReport& report : reports) {
+      std::cout << absl::StrFormat("%10.0f", of(report));
+    }
+    if (reports.size() == 2) {
+      std::cout << absl::StrFormat(
+          "%12.2f", of(reports[0]) / std::max(1., of(reports[1])));
+    }
+    std::cout << "\n";
   };
-  std::cout << "mean us      ours    golden  ratio\n";
-  print_time("search", ours.search_microseconds, golden.search_microseconds);
-  print_time("refine", ours.refine_microseconds, golden.refine_microseconds);
-  print_time("build", ours.build_microseconds, golden.build_microseconds);
+  const GoldenTimes golden = MeanTimes(reports.front(), false);
+  print("search", golden.search_microseconds, [](const GoldenReport& report) {
+    return MeanTimes(report, true).search_microseconds;
+  });
+  print("refine", golden.refine_microseconds, [](const GoldenReport& report) {
+    return MeanTimes(report, true).refine_microseconds;
+  });
+  print("build", golden.build_microseconds, [](const GoldenReport& report) {
+    return MeanTimes(report, true).build_microseconds;
+  });
+  print("KiB", reports.front().mean_matcher_bytes / 1024.,
+        [](const GoldenReport& report) {
+          return report.mean_matcher_bytes / 1024.;
+        });
+}
+
+nlohmann::ordered_json TimesToJson(const GoldenTimes& times) {
+  nlohmann::ordered_json json;
+  json["mean_search_microseconds"] = times.search_microseconds;
+  json["mean_refine_microseconds"] = times.refine_microseconds;
+  json["mean_build_microseconds"] = times.build_microseconds;
+  return json;
 }
 
 nlohmann::ordered_json ToJson(const GoldenReport& report) {
-  const GoldenTimes ours = MeanTimes(report, true);
-  const GoldenTimes golden = MeanTimes(report, false);
   nlohmann::ordered_json json;
+  json["matcher"] = MatcherName(report.matcher);
   json["pairs"] = report.outcomes.size();
   json["mismatches"] = report.num_mismatches;
   json["ties"] = report.num_ties;
   json["found"] = report.num_found;
-  json["mean_search_microseconds"] = ours.search_microseconds;
-  json["mean_refine_microseconds"] = ours.refine_microseconds;
-  json["mean_build_microseconds"] = ours.build_microseconds;
-  json["golden"]["mean_search_microseconds"] = golden.search_microseconds;
-  json["golden"]["mean_refine_microseconds"] = golden.refine_microseconds;
-  json["golden"]["mean_build_microseconds"] = golden.build_microseconds;
+  json.update(TimesToJson(MeanTimes(report, true)));
+  json["mean_matcher_bytes"] = report.mean_matcher_bytes;
   json["largest_deviation"]["score"] = report.max_score_deviation;
   json["largest_deviation"]["search_translation"] =
       report.max_translation_deviation;
@@ -105,12 +165,34 @@ nlohmann::ordered_json ToJson(const GoldenReport& report) {
       report.max_refined_rotation_deviation;
   json["largest_deviation"]["relative_cost"] =
       report.max_relative_cost_deviation;
+  if (report.matcher == GoldenMatcher::kOurs) {
+    const scan_matching::SearchStatistics& statistics = report.statistics;
+    json["statistics"]["poses"] = statistics.num_poses;
+    json["statistics"]["coarse_scored"] = statistics.coarse_scored;
+    json["statistics"]["coarse_pruned"] = statistics.coarse_pruned;
+    json["statistics"]["blocks_scored"] = statistics.blocks_scored;
+    json["statistics"]["blocks_pruned"] = statistics.blocks_pruned;
+    json["statistics"]["blocks_opened"] = statistics.blocks_opened;
+    json["statistics"]["blocks_cut"] = statistics.blocks_cut;
+    json["statistics"]["rejected_early"] = report.num_rejected_early;
+  }
   json["mismatching_pairs"] = nlohmann::ordered_json::array();
   for (const GoldenOutcome& outcome : report.outcomes) {
     if (outcome.mismatch.empty()) continue;
     json["mismatching_pairs"].push_back({{"line", outcome.golden.line},
                                          {"pair", PairName(outcome.golden)},
                                          {"reason", outcome.mismatch}});
+  }
+  return json;
+}
+
+nlohmann::ordered_json ToJson(const std::vector<GoldenReport>& reports) {
+  // What is asked for on the outermost level is the one matcher's, or ours.
+  nlohmann::ordered_json json = ToJson(reports.back());
+  json["golden"] = TimesToJson(MeanTimes(reports.front(), false));
+  json["matchers"] = nlohmann::ordered_json::array();
+  for (const GoldenReport& report : reports) {
+    json["matchers"].push_back(ToJson(report));
   }
   return json;
 }
@@ -132,17 +214,23 @@ absl::Status Run(int* const num_mismatches) {
   *pbstream = io::Pbstream();
 
   Progress progress("matching", static_cast<int64_t>(pairs->size()));
-  const GoldenReport report =
-      CheckGoldenPairs(*pairs, *map, evaluation::GoldenTolerance(),
-                       [&progress](const int done) { progress.Update(done); });
+  evaluation::GoldenCheckOptions options;
+  MatchersOfFlag(FLAGS_matcher, &options.matchers);
+  options.repeat = FLAGS_repeat;
+  options.progress = [&progress](const int done) { progress.Update(done); };
+  const std::vector<GoldenReport> reports =
+      CheckGoldenPairs(*pairs, *map, options);
   progress.Finish();
-  *num_mismatches = report.num_mismatches;
+  for (const GoldenReport& report : reports) {
+    *num_mismatches += report.num_mismatches;
+  }
   if (FLAGS_json != "-") {
-    PrintPairs(report);
-    PrintSummary(report);
+    for (const GoldenReport& report : reports) PrintPairs(report);
+    for (const GoldenReport& report : reports) PrintSummary(report);
+    PrintTimes(reports);
   }
   return FLAGS_json.empty() ? absl::OkStatus()
-                            : WriteJson(ToJson(report), FLAGS_json);
+                            : WriteJson(ToJson(reports), FLAGS_json);
 }
 
 }  // namespace
@@ -152,7 +240,8 @@ absl::Status Run(int* const num_mismatches) {
 int main(int argc, char** argv) {
   using namespace cartographer_ext;
   tools::CommandLine command_line(
-      "Checks the scan matchers of the host against golden vectors.\n\n"
+      "Checks the scan matchers, the host's and ours, against golden "
+      "vectors.\n\n"
       "For pairs of a submap and a node the CSV holds what the real "
       "Cartographer's\nbranch-and-bound search and Ceres matcher found. The "
       "search must find the same\npose and score (another pose with the same "
@@ -160,7 +249,7 @@ int main(int argc, char** argv) {
       "within 1 mm, 1 mrad and 1 % of cost. CPU times\nare printed beside the "
       "golden ones, which were taken on another machine.\n\n"
       "  cartographer_ext_benchmark_search -pbstream_filename map.pbstream \\\n"
-      "      -golden_filename map.search.csv\n\n"
+      "      -golden_filename map.search.csv -matcher both -repeat 3\n\n"
       "Exit codes: 0 all the same, 1 mismatches or bad input, 2 wrong usage.");
   command_line.Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty()) {
@@ -169,6 +258,11 @@ int main(int argc, char** argv) {
   if (FLAGS_golden_filename.empty()) {
     return tools::UsageError("-golden_filename is missing");
   }
+  std::vector<evaluation::GoldenMatcher> matchers;
+  if (!tools::MatchersOfFlag(FLAGS_matcher, &matchers)) {
+    return tools::UsageError("-matcher is stock, ours or both");
+  }
+  if (FLAGS_repeat < 1) return tools::UsageError("-repeat is at least 1");
   int num_mismatches = 0;
   const int exit_code = tools::ExitCode(tools::Run(&num_mismatches));
   if (exit_code != tools::kExitSuccess) return exit_code;

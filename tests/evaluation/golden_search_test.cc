@@ -114,7 +114,7 @@ class GoldenSearchTest : public ::testing::Test {
   GoldenReport Check(const std::vector<GoldenPair>& pairs) {
     const auto map = GoldenMap::Create(pbstream_, pairs);
     EXPECT_TRUE(map.ok()) << map.status();
-    return CheckGoldenPairs(pairs, *map, GoldenTolerance(), nullptr);
+    return CheckGoldenPairs(pairs, *map, GoldenCheckOptions()).front();
   }
 
   // What the matchers themselves find.
@@ -196,12 +196,29 @@ TEST_P(SharedGoldenTest, FindsWhatCartographerFinds) {
   ASSERT_TRUE(pbstream.ok()) << pbstream.status();
   const auto map = GoldenMap::Create(*pbstream, *pairs);
   ASSERT_TRUE(map.ok()) << map.status();
-  const GoldenReport report =
-      CheckGoldenPairs(*pairs, *map, GoldenTolerance(), nullptr);
-  EXPECT_EQ(report.outcomes.size(), 64u);
-  for (const GoldenOutcome& outcome : report.outcomes) {
-    EXPECT_EQ(outcome.mismatch, "") << "line " << outcome.golden.line;
+  GoldenCheckOptions options;
+  options.matchers = {GoldenMatcher::kStock, GoldenMatcher::kOurs};
+  const std::vector<GoldenReport> reports =
+      CheckGoldenPairs(*pairs, *map, options);
+  ASSERT_EQ(reports.size(), 2u);
+  for (const GoldenReport& report : reports) {
+    EXPECT_EQ(report.outcomes.size(), 64u);
+    for (const GoldenOutcome& outcome : report.outcomes) {
+      EXPECT_EQ(outcome.mismatch, "") << "line " << outcome.golden.line;
+      EXPECT_FALSE(outcome.tie) << "line " << outcome.golden.line;
+    }
   }
+  // The same as the host's matcher to the last bit.
+  for (size_t i = 0; i != 64; ++i) {
+    const GoldenPair& stock = reports[0].outcomes[i].ours;
+    const GoldenPair& ours = reports[1].outcomes[i].ours;
+    EXPECT_EQ(ours.found, stock.found);
+    EXPECT_EQ(ours.score, stock.score);
+    EXPECT_EQ(ours.pose.x, stock.pose.x);
+    EXPECT_EQ(ours.pose.y, stock.pose.y);
+    EXPECT_EQ(ours.pose.theta, stock.pose.theta);
+  }
+  EXPECT_LE(reports[1].mean_matcher_bytes, reports[0].mean_matcher_bytes);
 }
 
 INSTANTIATE_TEST_SUITE_P(States, SharedGoldenTest,
