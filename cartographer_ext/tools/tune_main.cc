@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+// LINK: tuning evaluation
+//
+// cartographer_ext_tune: a configuration that suits the recordings.
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/tools/command_line.h"
+#include "cartographer_ext/tuning/configuration_patch.h"
+#include "cartographer_ext/tuning/journal.h"
+#include "cartographer_ext/tuning/mpi_worker_pool.h"
+#include "cartographer_ext/tuning/result_writer.h"
+#include "cartographer_ext/tuning/search_spec.h"
+#include "cartographer_ext/tuning/sensitivity_plot.h"
+#include "cartographer_ext/tuning/tuner.h"
+#include "cartographer_ext/tuning/worker_pool.h"
+#include "gflags/gflags.h"
+
+DEFINE_string(search_filename, "",
+              "Lua file that says which keys to search and where; see "
+              "docs/tuning.md.");
+DEFINE_string(configuration_directory, "configuration_files",
+              "Where Lua files are searched, comma separated; the first that "
+              "has a file wins.");
+DEFINE_string(configuration_basename, "",
+              "Configuration to start from. Empty: as the search file says, "
+              "else stock.lua.");
+DEFINE_string(inputs, "",
+              "Recordings or finished maps (.pbstream: loop closure only), "
+              "comma separated: FILE, FILE=TRUTH or WORLD.world#SEED. TRUTH is "
+              "a reference trajectory (.tum) or relations. Without it FILE's "
+              "name with .relations or .tum is looked for. Empty: as the "
+              "search file says.");
+DEFINE_string(holdout, "",
+              "The same for what the search does not see: the result is tried "
+              "on it at the end.");
+DEFINE_string(objective, "",
+              "What is made small: a name or name:weight,name:weight. Empty: "
+              "as the search file says, else relations.");
+DEFINE_string(method, "halving",
+              "grid, random, halving (random with successive halving), "
+              "nlopt_global, nlopt_local, or an algorithm of NLopt.");
+DEFINE_int32(max_trials, 0, "At most so many trials; 0: no limit.");
+DEFINE_double(budget_minutes, 0.,
+              "About so long in all, baseline and pruning included; 0: no "
+              "limit.");
+DEFINE_uint64(seed, 1, "Chooses the trials of random methods.");
+DEFINE_double(min_fidelity, 0.3,
+              "halving: the smallest part of the recordings that is tried "
+              "first; the parts are 1, 1/3, 1/9 ...");
+DEFINE_int32(folds, 0,
+             "Search this often with a part of the inputs left out and try the "
+             "result on it; 0: not.");
+DEFINE_bool(prune, true,
+            "At the end set back each changed key in turn, keep those that "
+            "gain something, and tell how much.");
+DEFINE_int32(workers, 0,
+             "Runs at the same time; 0: as many as there are processors. Under "
+             "mpirun the other ranks are the workers.");
+DEFINE_int32(threads, 1, "Background threads of each run.");
+DEFINE_double(max_run_cpu_seconds, 3600.,
+              "A run that takes more CPU time is ended and fails; 0: no "
+              "limit.");
+DEFINE_string(odometry_source, "",
+              "CARMEN logs: odom, scan, both or auto. Empty: as the "
+              "configuration says.");
+DEFINE_string(journal_filename, "",
+              "Every finished run is added here at once; a search started "
+              "again with the same journal goes on where it stopped.");
+DEFINE_string(output_filename, "",
+              "Output: Lua file with the changed keys, to be included.");
+DEFINE_string(picture_filename, "",
+              "Output: objective over each key (.png or .svg).");
+DEFINE_string(json, "", "Output: the result as JSON; - is standard output.");
+
+namespace cartographer_ext {
+namespace {
+
+constexpr char kDescription[] =
+    R"(Searches Lua keys for the configuration that suits the recordings best.
+
+  cartographer_ext_tune -search_filename=configuration_files/tuning/stock.lua
+      -inputs=aces.clf,csail.clf -holdout=intel.clf -budget_minutes=30
+      -journal_filename=tune.jsonl -output_filename=tuned.lua
+  mpirun -n 9 cartographer_ext_tune ...        (the same on eight workers)
+
+A killed search started again with the same journal loses no finished run. The
+list of trials depends on -seed and -max_trials, not on the number of workers.)";
+
+struct Setup {
+  tuning::SearchSpec spec;
+  std::vector<tuning::TuneInput> inputs;
+  std::vector<tuning::TuneInput> holdout;
+  tuning::TunerOptions options;
+};
+
+std::vector<std::string> Words(const std::string& text) {
+  return absl::StrSplit(text, ',', absl::SkipEmpty());
+}
+
+absl::StatusOr<Setup> ReadSetup() {
+  Setup setup;
+  auto spec = tuning::ReadSearchSpec(FLAGS_search_filename);
+  if (!spec.ok()) return spec.status();
+  setup.spec = *std::move(spec);
+  if (!FLAGS_objective.empty()) {
+    auto weights = tuning::ParseWeights(FLAGS_objective);
+    if (!weights.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("-objective: ", weights.status().message()));
+    }
+    setup.spec.objective.weights = *std::move(weights);
+  }
+  if (!FLAGS_configuration_basename.empty()) {
+    setup.spec.configuration = FLAGS_configuration_basename;
+  } else if (setup.spec.configuration.empty()) {
+    setup.spec.configuration = "stock.lua";
+  }
+  const auto inputs = tuning::ParseInputs(
+      FLAGS_inputs.empty() ? setup.spec.inputs : Words(FLAGS_inputs));
+  if (!inputs.ok()) return inputs.status();
+  const auto holdout = tuning::ParseInputs(
+      FLAGS_holdout.empty() ? setup.spec.holdout : Words(FLAGS_holdout));
+  if (!holdout.ok()) return holdout.status();
+  setup.inputs = *inputs;
+  setup.holdout = *holdout;
+  if (setup.inputs.empty()) {
+    return absl::InvalidArgumentError(
+        "there is nothing to search on: -inputs, or inputs in the search file");
+  }
+  for (const tuning::TuneInput& held_out : setup.holdout) {
+    for (const tuning::TuneInput& input : setup.inputs) {
+      if (held_out.name == input.name) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(input.recording, " is both searched on and held out"));
+      }
+    }
+  }
+  tuning::TunerOptions& options = setup.options;
+  options.sampler.method = FLAGS_method;
+  options.sampler.seed = FLAGS_seed;
+  options.sampler.min_fidelity = FLAGS_min_fidelity;
+  options.max_trials = FLAGS_max_trials;
+  options.budget_seconds = 60. * FLAGS_budget_minutes;
+  options.folds = FLAGS_folds;
+  options.prune = FLAGS_prune;
+  options.odometry_source = FLAGS_odometry_source;
+  options.num_threads = FLAGS_threads;
+  return setup;
+}
+
+std::string ObjectiveText(const tuning::Objective& objective) {
+  std::vector<std::string> parts;
+  for (const auto& entry : objective.weights) {
+    parts.push_back(entry.second == 1.
+                        ? entry.first
+                        : absl::StrFormat("%g %s", entry.second, entry.first));
+  }
+  return absl::StrJoin(parts, " + ");
+}
+
+std::unique_ptr<tuning::WorkerPool> CreatePool(
+    const tuning::MpiSession& session) {
+  auto pool = tuning::CreateMpiWorkerPool(session);
+  if (pool != nullptr) return pool;
+  const int workers =
+      FLAGS_workers > 0
+          ? FLAGS_workers
+          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return std::unique_ptr<tuning::WorkerPool>(
+      new tuning::LocalWorkerPool(workers, FLAGS_max_run_cpu_seconds));
+}
+
+absl::Status WriteResults(const tuning::TuneResult& result,
+                          const tuning::ResultContext& context) {
+  if (!FLAGS_output_filename.empty()) {
+    const absl::Status status = WriteFileAtomically(
+        FLAGS_output_filename, tuning::ToLuaFile(result, context));
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_picture_filename.empty()) {
+    const absl::Status status =
+        tuning::WriteSensitivityPlot(result, context, FLAGS_picture_filename);
+    if (!status.ok()) return status;
+  }
+  if (FLAGS_json != "-") std::cout << tuning::ToText(result, context);
+  if (FLAGS_json.empty()) return absl::OkStatus();
+  return tools::WriteJson(tuning::ToJson(result, context), FLAGS_json);
+}
+
+absl::Status Run(const tuning::MpiSession& session) {
+  const absl::Status writable = tools::CheckWritable(
+      {FLAGS_output_filename, FLAGS_picture_filename, FLAGS_json});
+  if (!writable.ok()) return writable;
+  auto setup = ReadSetup();
+  if (!setup.ok()) return setup.status();
+  auto configuration = tuning::BaseConfiguration::Load(
+      absl::StrSplit(FLAGS_configuration_directory, ','),
+      setup->spec.configuration);
+  if (!configuration.ok()) return configuration.status();
+  const absl::Status checked =
+      configuration->CheckParameters(setup->spec.parameters);
+  if (!checked.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(FLAGS_search_filename, ": ", checked.message()));
+  }
+  const auto journal = tuning::Journal::Open(
+      FLAGS_journal_filename,
+      absl::StrCat(configuration->Fingerprint(), "|", FLAGS_odometry_source));
+  if (!journal.ok()) return journal.status();
+  if ((*journal)->was_torn()) {
+    std::cerr << tools::ProgramName() << ": " << FLAGS_journal_filename
+              << ": the last line was half written and is dropped\n";
+  }
+
+  const std::unique_ptr<tuning::WorkerPool> pool = CreatePool(session);
+  tuning::Tuner tuner(*configuration, setup->spec.parameters,
+                      setup->spec.objective, setup->inputs, setup->holdout,
+                      setup->options, pool.get(), journal->get());
+  Progress progress("Trial", FLAGS_max_trials);
+  tuner.SetProgressCallback([&progress](const tuning::TunerProgress& state) {
+    progress.Update(
+        state.trials,
+        absl::StrCat(state.step,
+                     state.best.has_value()
+                         ? absl::StrFormat(", best so far %.4g", *state.best)
+                         : ""));
+  });
+  const auto result = tuner.Run();
+  progress.Finish();
+  if (!result.ok()) return result.status();
+  tuning::ResultContext context;
+  context.configuration = setup->spec.configuration;
+  context.objective = ObjectiveText(setup->spec.objective);
+  context.parameters = setup->spec.parameters;
+  context.inputs = setup->inputs;
+  context.holdout = setup->holdout;
+  return WriteResults(*result, context);
+}
+
+int CheckUsage() {
+  if (FLAGS_search_filename.empty()) {
+    return tools::UsageError("-search_filename is missing");
+  }
+  const std::vector<std::string> methods = tuning::MethodNames();
+  if (std::find(methods.begin(), methods.end(), FLAGS_method) ==
+      methods.end()) {
+    return tools::UsageError(absl::StrCat("unknown -method ", FLAGS_method,
+                                          ", known are ",
+                                          absl::StrJoin(methods, ", ")));
+  }
+  if (FLAGS_max_trials < 0 || !(FLAGS_budget_minutes >= 0.) ||
+      FLAGS_folds < 0 || FLAGS_workers < 0 || FLAGS_threads < 1 ||
+      !(FLAGS_max_run_cpu_seconds >= 0.)) {
+    return tools::UsageError(
+        "-max_trials, -budget_minutes, -folds, -workers and "
+        "-max_run_cpu_seconds must not be negative, -threads at least 1");
+  }
+  if (!(FLAGS_min_fidelity > 0.) || !(FLAGS_min_fidelity <= 1.)) {
+    return tools::UsageError("-min_fidelity must be above 0 and at most 1");
+  }
+  if (FLAGS_max_trials == 0 && FLAGS_budget_minutes == 0. &&
+      FLAGS_method != "grid") {
+    return tools::UsageError(
+        "only a grid ends by itself: -max_trials or -budget_minutes is needed");
+  }
+  return tools::kExitSuccess;
+}
+
+}  // namespace
+}  // namespace cartographer_ext
+
+int main(int argc, char** argv) {
+  using namespace cartographer_ext;  // NOLINT
+  tools::CommandLine(kDescription).Parse(argc, argv);
+  const int usage = CheckUsage();
+  if (usage != tools::kExitSuccess) return usage;
+  tuning::MpiSession session(&argc, &argv);
+  if (session.rank() > 0) {
+    session.Serve(FLAGS_max_run_cpu_seconds);
+    return tools::kExitSuccess;
+  }
+  return tools::ExitCode(Run(session));
+}

@@ -1,0 +1,268 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/tuning/configuration_patch.h"
+
+#include <algorithm>
+#include <set>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_ext/evaluation/option_blocks.h"
+#include "cartographer_ext/options/option_description.h"
+#include "cartographer_ext/tuning/lua_value.h"
+
+namespace cartographer_ext {
+namespace tuning {
+namespace {
+
+constexpr char kBlockName[] = "cartographer_ext";
+
+// Makes the tables on the way where they are absent; whether they may be is
+// checked before.
+constexpr char kAssignFunction[] = R"(
+local function assign(path, value)
+  local names = {}
+  for name in path:gmatch("[^.]+") do names[#names + 1] = name end
+  local place = _G
+  for i = 1, #names - 1 do
+    if place[names[i]] == nil then place[names[i]] = {} end
+    place = place[names[i]]
+  end
+  place[names[#names]] = value
+end
+)";
+
+// The file's code as a function, with its line numbers kept.
+std::string AsFunction(const std::string& code) {
+  return absl::StrCat("local configuration = (function() ", code, "\nend)()\n");
+}
+
+bool IsInBlock(const std::vector<std::string>& path) {
+  return std::find(path.begin(), path.end(), kBlockName) != path.end();
+}
+
+// The name that has the longest common start with `wanted`, of at least half
+// its length; empty when there is none.
+std::string Similar(const std::string& wanted,
+                    const std::vector<std::string>& names) {
+  std::string best;
+  size_t best_length = (wanted.size() + 1) / 2;
+  for (const std::string& name : names) {
+    size_t length = 0;
+    while (length < std::min(name.size(), wanted.size()) &&
+           name[length] == wanted[length]) {
+      ++length;
+    }
+    if (length >= best_length && !(name == wanted)) {
+      best = name;
+      best_length = length + 1;
+    }
+  }
+  return best;
+}
+
+absl::Status NoSuchKey(const std::string& key, const std::string& missing,
+                       const std::vector<std::string>& names) {
+  const std::string similar = Similar(missing, names);
+  return absl::InvalidArgumentError(
+      absl::StrCat("the configuration has no key ", key,
+                   similar.empty() ? ""
+                                   : absl::StrCat(": '", missing,
+                                                  "' is unknown, did you "
+                                                  "mean '",
+                                                  similar, "'?")));
+}
+
+std::vector<std::string> Names(const nlohmann::json& table) {
+  std::vector<std::string> names;
+  for (const auto& item : table.items()) names.push_back(item.key());
+  return names;
+}
+
+Value ParseDescribed(const options::OptionDescription& description) {
+  if (description.type == "boolean") return description.value == "true";
+  int64_t integer;
+  if (description.type == "integer" &&
+      absl::SimpleAtoi(description.value, &integer)) {
+    return integer;
+  }
+  double number;
+  if (description.type == "number" &&
+      absl::SimpleAtod(description.value, &number)) {
+    return number;
+  }
+  return description.value;
+}
+
+// What 2D SLAM looks at, as bytes.
+std::string Bytes(const evaluation::SlamConfiguration& configuration) {
+  auto map_builder = configuration.map_builder_options;
+  auto* const constraint_builder = map_builder.mutable_pose_graph_options()
+                                       ->mutable_constraint_builder_options();
+  constraint_builder->clear_fast_correlative_scan_matcher_options_3d();
+  constraint_builder->clear_ceres_scan_matcher_options_3d();
+  auto trajectory_builder = configuration.trajectory_builder_options;
+  trajectory_builder.clear_trajectory_builder_3d_options();
+  return absl::StrCat(map_builder.SerializeAsString(), "|",
+                      trajectory_builder.SerializeAsString());
+}
+
+// What is tried of a parameter before the search.
+std::vector<Value> Probes(const Parameter& parameter) {
+  if (parameter.kind == Parameter::Kind::kChoice) return parameter.choices;
+  return {parameter.FromUnit(0.), parameter.FromUnit(1.)};
+}
+
+}  // namespace
+
+std::string HashText(const std::string& text) {
+  uint64_t hash = 14695981039346656037ULL;
+  for (const char c : text) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  }
+  return absl::StrFormat("%016x", hash);
+}
+
+absl::StatusOr<BaseConfiguration> BaseConfiguration::Load(
+    const std::vector<std::string>& directories, const std::string& basename) {
+  BaseConfiguration result;
+  result.name_ = basename;
+  result.directories_ = directories;
+  auto code = ReadFromDirectories(basename, directories);
+  if (!code.ok()) return code.status();
+  result.code_ = *std::move(code);
+  auto parsed =
+      evaluation::ParseSlamConfiguration(directories, basename, result.code_);
+  if (!parsed.ok()) return parsed.status();
+  result.parsed_ = *std::move(parsed);
+  return result;
+}
+
+absl::StatusOr<Point> BaseConfiguration::Values(
+    const std::vector<Parameter>& parameters) const {
+  std::set<std::string> roots;
+  for (const Parameter& parameter : parameters) {
+    roots.insert(parameter.key.substr(0, parameter.key.find('.')));
+  }
+  std::string code = AsFunction(code_) + "return {\n";
+  for (const std::string& root : roots) {
+    absl::StrAppend(&code, root, " = ", root, ",\n");
+  }
+  const auto tables = EvaluateLua(code + "}\n", name_, directories_);
+  if (!tables.ok()) return tables.status();
+  Point point;
+  for (const Parameter& parameter : parameters) {
+    const std::vector<std::string> path = absl::StrSplit(parameter.key, '.');
+    const nlohmann::json* place = &*tables;
+    bool in_block = false;
+    size_t i = 0;
+    for (; i < path.size(); ++i) {
+      if (!place->is_object() || !place->contains(path[i])) break;
+      place = &(*place)[path[i]];
+      in_block |= path[i] == kBlockName;
+    }
+    if (i == path.size()) {
+      if (!place->is_primitive()) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(parameter.key, " is a table; give the keys in it"));
+      }
+      point.push_back(*place);
+      continue;
+    }
+    if (in_block) {
+      auto value = BlockValue(parameter);
+      if (!value.ok()) return value.status();
+      point.push_back(*std::move(value));
+      continue;
+    }
+    if (IsInBlock(path) && path[i] == kBlockName) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          name_, " does not have the block ",
+          absl::StrJoin(path.begin(), path.begin() + i + 1, "."), ", so ",
+          parameter.key, " has no effect; switch the block on first"));
+    }
+    return NoSuchKey(
+        parameter.key, path[i],
+        place->is_object() ? Names(*place) : std::vector<std::string>());
+  }
+  return point;
+}
+
+absl::StatusOr<Value> BaseConfiguration::BlockValue(
+    const Parameter& parameter) const {
+  const std::string separator = absl::StrCat(".", kBlockName, ".");
+  const size_t end = parameter.key.find(separator);
+  if (end == std::string::npos) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(parameter.key, " is a table; give the keys in it"));
+  }
+  const std::string stock_path = parameter.key.substr(0, end);
+  const std::string option = parameter.key.substr(end + separator.size());
+  std::vector<std::string> names;
+  for (const options::OptionBlock& block : evaluation::OptionBlocks(parsed_)) {
+    if (block.stock_path != stock_path || !block.present) continue;
+    for (const auto& description : options::Describe(*block.options)) {
+      if (description.key == option) return ParseDescribed(description);
+      names.push_back(description.key);
+    }
+  }
+  return NoSuchKey(parameter.key, option, names);
+}
+
+absl::Status BaseConfiguration::CheckParameters(
+    const std::vector<Parameter>& parameters) const {
+  const auto values = Values(parameters);
+  if (!values.ok()) return values.status();
+  const std::string base_bytes = Bytes(parsed_);
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& parameter = parameters[i];
+    const Value& value = (*values)[i];
+    const bool wants_number = parameter.kind != Parameter::Kind::kChoice;
+    if (wants_number && !value.is_number()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(parameter.key, " is ", ToLua(value),
+                       " in the configuration; give choices, not a range"));
+    }
+    bool changes = false;
+    for (const Value& probe : Probes(parameter)) {
+      const auto configuration = evaluation::ParseSlamConfiguration(
+          directories_, name_, CodeWith({{parameter.key, probe}}));
+      if (!configuration.ok()) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(parameter.key, " = ", ToLua(probe), ": ",
+                         configuration.status().message()));
+      }
+      changes |= Bytes(*configuration) != base_bytes;
+    }
+    if (!changes) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(parameter.key, " is not used: nothing that ", name_,
+                       " gives to 2D SLAM changes with it"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+std::string BaseConfiguration::CodeWith(
+    const nlohmann::json& assignment) const {
+  std::string code = AsFunction(code_) + kAssignFunction;
+  for (const auto& item : assignment.items()) {
+    absl::StrAppend(&code, "assign(\"", item.key(), "\", ", ToLua(item.value()),
+                    ")\n");
+  }
+  return code + "return configuration\n";
+}
+
+std::string BaseConfiguration::Fingerprint() const {
+  const evaluation::SensorSettings& sensors = parsed_.sensors;
+  return HashText(absl::StrCat(Bytes(parsed_), "|", sensors.use_odometry, "|",
+                               sensors.odometry_source, "|", sensors.min_range,
+                               "|", sensors.max_range, "|",
+                               sensors.tracking_frame));
+}
+
+}  // namespace tuning
+}  // namespace cartographer_ext

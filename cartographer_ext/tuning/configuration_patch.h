@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A configuration with some keys changed. The file of the user stays as it is;
+// a trial runs its code and then assigns to the global tables (POSE_GRAPH,
+// TRAJECTORY_BUILDER_2D, ...), which the returned table refers to.
+//
+// Keys are checked before the first trial: they must exist, must take the
+// values of their range, and must make a difference to 2D SLAM. Keys of our own
+// blocks (...cartographer_ext...) may be left out of the file; then they have
+// their default, but the block itself must be there.
+#ifndef CARTOGRAPHER_EXT_TUNING_CONFIGURATION_PATCH_H_
+#define CARTOGRAPHER_EXT_TUNING_CONFIGURATION_PATCH_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/tuning/parameter_space.h"
+
+namespace cartographer_ext {
+namespace tuning {
+
+class BaseConfiguration {
+ public:
+  // Reads the file; errors as of evaluation::LoadSlamConfiguration.
+  static absl::StatusOr<BaseConfiguration> Load(
+      const std::vector<std::string>& directories, const std::string& basename);
+
+  const std::string& name() const { return name_; }
+  const std::vector<std::string>& directories() const { return directories_; }
+  const evaluation::SlamConfiguration& parsed() const { return parsed_; }
+
+  // The values that the configuration gives to the keys. Errors name the key
+  // and, where something like it exists, what may have been meant.
+  absl::StatusOr<Point> Values(const std::vector<Parameter>& parameters) const;
+
+  // Tries the ends of each range and each choice. Errors name the key: it is
+  // of another type, the value is not allowed, or nothing changes with it.
+  absl::Status CheckParameters(const std::vector<Parameter>& parameters) const;
+
+  // Lua code of the configuration with { key: value } assigned.
+  std::string CodeWith(const nlohmann::json& assignment) const;
+
+  // Of all that runs depend on, as a short text.
+  std::string Fingerprint() const;
+
+ private:
+  BaseConfiguration() = default;
+  absl::StatusOr<Value> BlockValue(const Parameter& parameter) const;
+
+  std::string name_;
+  std::vector<std::string> directories_;
+  std::string code_;
+  evaluation::SlamConfiguration parsed_;
+};
+
+// 64 bits of FNV-1a as hexadecimal digits.
+std::string HashText(const std::string& text);
+
+}  // namespace tuning
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_TUNING_CONFIGURATION_PATCH_H_

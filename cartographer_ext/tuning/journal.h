@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What has been run, on disk: a line of JSON for each finished run, appended
+// and flushed to the disk at once. A search that is started again with the same
+// journal finds every run there instead of doing it again; as the list of
+// trials depends on results only, it goes on as if nothing had happened.
+//
+// The first line says what was tuned. A power cut or kill -9 can leave half a
+// line at the end, which is cut off; half a line anywhere else is an error. A
+// lock keeps two searches from writing into one journal.
+#ifndef CARTOGRAPHER_EXT_TUNING_JOURNAL_H_
+#define CARTOGRAPHER_EXT_TUNING_JOURNAL_H_
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace tuning {
+
+// One configuration on one recording.
+struct RunRecord {
+  // What identifies it.
+  nlohmann::json assignment;  // { key: value }
+  std::string input;
+  double fidelity = 1.;
+
+  // What came out.
+  bool ok = false;
+  std::string message;                    // why not
+  std::map<std::string, double> metrics;  // relations, ate, cpu_seconds, ...
+  double wall_seconds = 0.;
+  double cpu_seconds = 0.;
+};
+
+// Identifies the run among all of a journal.
+std::string RunKey(const RunRecord& record);
+
+nlohmann::ordered_json ToJson(const RunRecord& record);
+absl::StatusOr<RunRecord> RunFromJson(const nlohmann::json& json);
+
+class Journal {
+ public:
+  // Opens or starts the journal. `fingerprint` tells what the runs depend on
+  // besides their key; a journal of another fingerprint is refused. Errors name
+  // the file, and the line where there is one. An empty name gives a journal
+  // that is not kept.
+  static absl::StatusOr<std::unique_ptr<Journal>> Open(
+      const std::string& filename, const std::string& fingerprint);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  // The runs it held when it was opened, in the order of the file.
+  const std::vector<RunRecord>& runs() const { return runs_; }
+
+  // Whether half a line was cut off its end.
+  bool was_torn() const { return was_torn_; }
+
+  // On disk when it returns OK.
+  absl::Status Append(const RunRecord& record);
+
+ private:
+  Journal(std::string filename, int descriptor);
+  absl::Status ReadAll(const std::string& fingerprint);
+  absl::Status WriteLine(const std::string& line);
+
+  const std::string filename_;
+  const int descriptor_;  // -1: not kept
+  std::vector<RunRecord> runs_;
+  bool was_torn_ = false;
+};
+
+}  // namespace tuning
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_TUNING_JOURNAL_H_

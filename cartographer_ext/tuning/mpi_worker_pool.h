@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The same search on several machines: rank 0 of an MPI job keeps the journal
+// and hands out runs, all other ranks do them, each in a child process as
+// LocalWorkerPool does. Recordings and configurations have to be there under
+// the same paths on all machines. Nothing of MPI is started outside an MPI job.
+#ifndef CARTOGRAPHER_EXT_TUNING_MPI_WORKER_POOL_H_
+#define CARTOGRAPHER_EXT_TUNING_MPI_WORKER_POOL_H_
+
+#include <map>
+#include <memory>
+#include <set>
+
+#include "cartographer_ext/tuning/worker_pool.h"
+
+namespace cartographer_ext {
+namespace tuning {
+
+// Whether the program was started as part of an MPI job, by the environment.
+// Such a job of a program built without MPI would be the same search several
+// times over.
+bool IsMpiJob();
+
+// Starts and ends MPI. `rank()` is 0 and `size()` 1 outside MPI jobs and
+// without MPI.
+class MpiSession {
+ public:
+  MpiSession(int* argc, char*** argv);
+  // On rank 0, tells the others that nothing more comes.
+  ~MpiSession();
+  MpiSession(const MpiSession&) = delete;
+  MpiSession& operator=(const MpiSession&) = delete;
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+
+  // On all ranks but 0: does what rank 0 sends until that is over.
+  void Serve(double max_cpu_seconds);
+
+ private:
+  bool started_ = false;
+  int rank_ = 0;
+  int size_ = 1;
+};
+
+// On rank 0 of a job of at least two ranks; null otherwise.
+std::unique_ptr<WorkerPool> CreateMpiWorkerPool(const MpiSession& session);
+
+}  // namespace tuning
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_TUNING_MPI_WORKER_POOL_H_

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What is to be made small. A run is measured by several numbers; the objective
+// is a weighted sum of some of them, put together over the recordings.
+//
+//   objective = "relations"
+//   objective = { relations = 1., cpu_seconds = 0.001 }
+//
+// | name                    | meaning                                        |
+// |-------------------------|------------------------------------------------|
+// | relations               | mean translational error of the relations, m   |
+// | relations_loop          | the same of those that close loops             |
+// | relations_median        | their median, m                                |
+// | relations_rotation      | mean rotational error, degrees                 |
+// | broken_fraction         | share of relations off by more than 0.5 m      |
+// | ate                     | root mean square distance to the reference, m  |
+// | rpe                     | relative error over a metre, m                 |
+// | precision_at_recall     | share of wrong loops where at least            |
+// |                         | `target_recall` of the revisits are closed,    |
+// |                         | else 1 + the missing share of that recall      |
+// | wall_seconds            | of the run                                     |
+// | cpu_seconds             | of the run, all threads                        |
+// | loop_search_cpu_seconds | of the loop search                             |
+// | self_consistency        | without truth: map entropy and disagreement of |
+// |                         | loops and local SLAM, see self_consistency.h   |
+//
+// Smaller is better for each.
+#ifndef CARTOGRAPHER_EXT_TUNING_OBJECTIVE_H_
+#define CARTOGRAPHER_EXT_TUNING_OBJECTIVE_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace tuning {
+
+struct Objective {
+  enum class Aggregation { kMean, kMax, kGeometricMean };
+
+  std::map<std::string, double> weights = {{"relations", 1.}};
+  Aggregation aggregation = Aggregation::kMean;
+  double target_recall = 0.5;
+
+  bool Wants(const std::string& metric) const {
+    return weights.count(metric) > 0;
+  }
+};
+
+std::vector<std::string> ObjectiveNames();
+
+// From a Lua value: a name, or a table of weights.
+absl::StatusOr<std::map<std::string, double>> ParseWeights(
+    const nlohmann::json& value);
+
+// From a flag: "relations" or "relations:1,cpu_seconds:0.001".
+absl::StatusOr<std::map<std::string, double>> ParseWeights(
+    const std::string& text);
+
+// mean, max or geometric_mean.
+absl::StatusOr<Objective::Aggregation> ParseAggregation(
+    const std::string& name);
+
+// The weighted sum for one run. An error names the number that the run lacks
+// (relations without truth, for example) or that is not finite.
+absl::StatusOr<double> EvaluateRun(
+    const Objective& objective, const std::map<std::string, double>& metrics);
+
+// Over the recordings. The geometric mean treats a halved error alike on each,
+// whatever its size; it takes values of at least 1e-9.
+double Aggregate(const Objective& objective, const std::vector<double>& values);
+
+// 1 - precision where recall reaches the target, else 2 - (recall / target).
+double PrecisionAtRecall(double precision, double recall, double target);
+
+}  // namespace tuning
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_TUNING_OBJECTIVE_H_

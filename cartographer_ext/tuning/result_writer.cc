@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/tuning/result_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "absl/types/optional.h"
+#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/tuning/sensitivity.h"
+
+namespace cartographer_ext {
+namespace tuning {
+namespace {
+
+constexpr char kBlockName[] = "cartographer_ext";
+
+// "-31.2 %"; empty when nothing can be said.
+std::string Change(const double before, const double after) {
+  if (!(std::abs(before) > 0.)) return "";
+  return absl::StrFormat("%+.1f %%", 100. * (after / before - 1.));
+}
+
+absl::optional<double> ObjectiveOf(const absl::optional<Trial>& trial) {
+  if (!trial.has_value() || !trial->ok) return absl::nullopt;
+  return trial->objective;
+}
+
+// Trials that can be compared: on whole recordings.
+void WholeTrials(const TuneResult& result, std::vector<Point>* points,
+                 std::vector<double>* objectives) {
+  for (const Trial& trial : result.trials) {
+    if (!trial.ok || trial.fidelity != 1.) continue;
+    points->push_back(trial.point);
+    objectives->push_back(trial.objective);
+  }
+}
+
+// Tables below a block of ours may be left out in the configuration.
+std::string EnsureTables(const std::string& key,
+                         std::set<std::string>* const ensured) {
+  const std::vector<std::string> parts = absl::StrSplit(key, '.');
+  std::string text, path;
+  bool in_block = false;
+  for (size_t i = 0; i + 1 < parts.size(); ++i) {
+    absl::StrAppend(&path, i > 0 ? "." : "", parts[i]);
+    if (in_block && ensured->insert(path).second) {
+      absl::StrAppend(&text, path, " = ", path, " or {}\n");
+    }
+    in_block |= parts[i] == kBlockName;
+  }
+  return text;
+}
+
+std::string Gain(const KeyResult& key, const Trial& best,
+                 const size_t num_inputs) {
+  if (!key.gain.has_value()) return "gain not measured";
+  return absl::StrFormat(
+      "gain %.4g (%.1f %% of the result), better on %d of %d recordings",
+      *key.gain,
+      best.objective != 0. ? 100. * *key.gain / std::abs(best.objective) : 0.,
+      key.better_on, num_inputs);
+}
+
+nlohmann::ordered_json TrialJson(const std::vector<Parameter>& parameters,
+                                 const Trial& trial) {
+  nlohmann::ordered_json json;
+  json["values"] = ToAssignment(parameters, trial.point);
+  json["fidelity"] = trial.fidelity;
+  json["status"] = trial.ok ? "ok" : "failed";
+  if (trial.ok) {
+    json["objective"] = trial.objective;
+    json["objectives"] = trial.objectives;
+  } else {
+    json["message"] = trial.message;
+  }
+  return json;
+}
+
+nlohmann::ordered_json OrNull(const absl::optional<double>& value) {
+  if (!value.has_value()) return nullptr;
+  return *value;
+}
+
+}  // namespace
+
+std::string Confidence(const KeyResult& key, const size_t num_inputs) {
+  if (!key.gain.has_value()) return "not measured";
+  const size_t better = static_cast<size_t>(key.better_on);
+  if (better == num_inputs && num_inputs >= 3) return "high";
+  if (better == num_inputs && num_inputs == 2) return "medium";
+  if (num_inputs > 2 && 3 * better >= 2 * num_inputs) return "medium";
+  return "low";
+}
+
+std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
+  std::string text = absl::StrCat(
+      "-- Found by cartographer_ext_tune for ", context.configuration,
+      ".\n-- Include it behind the files that fill the tables.\n--\n");
+  absl::StrAppendFormat(&text, "-- Objective: %s, %.6g -> %.6g",
+                        context.objective, result.baseline.objective,
+                        result.best.objective);
+  const std::string change =
+      Change(result.baseline.objective, result.best.objective);
+  absl::StrAppend(&text, change.empty() ? "" : " (" + change + ")", "\n");
+  for (size_t i = 0; i < context.inputs.size(); ++i) {
+    absl::StrAppendFormat(&text, "--   %s: %.6g -> %.6g\n",
+                          context.inputs[i].name, result.baseline.objectives[i],
+                          result.best.objectives[i]);
+  }
+  const auto before = ObjectiveOf(result.baseline_holdout);
+  const auto after = ObjectiveOf(result.best_holdout);
+  if (before.has_value() && after.has_value()) {
+    absl::StrAppendFormat(&text, "-- Held out: %.6g -> %.6g\n", *before,
+                          *after);
+  } else if (result.best_holdout.has_value()) {
+    absl::StrAppend(&text, "-- Held out: not known, a run failed\n");
+  }
+  for (const FoldResult& fold : result.folds) {
+    absl::StrAppendFormat(&text,
+                          "-- Searched without %d of them: %.6g -> "
+                          "%.6g on these\n",
+                          fold.left_out.size(), fold.before, fold.after);
+  }
+  if (result.keys.empty()) {
+    return text +
+           "--\n-- Nothing was better than the configuration as it is.\n";
+  }
+  std::set<std::string> ensured;
+  for (const KeyResult& key : result.keys) {
+    absl::StrAppend(&text, "\n-- Before: ", ToLua(key.before), ". ");
+    absl::StrAppend(&text, Gain(key, result.best, context.inputs.size()),
+                    ". Confidence: ", Confidence(key, context.inputs.size()),
+                    ".\n");
+    absl::StrAppend(&text, EnsureTables(key.key, &ensured), key.key, " = ",
+                    ToLua(key.after), "\n");
+  }
+  return text;
+}
+
+std::string ToText(const TuneResult& result, const ResultContext& context) {
+  std::string text;
+  int failed = 0, partial = 0;
+  for (const Trial& trial : result.trials) {
+    failed += !trial.ok;
+    partial += trial.ok && trial.fidelity != 1.;
+  }
+  absl::StrAppendFormat(
+      &text,
+      "Trials     %d (%d on a part of the recordings, %d failed), %d runs, %d "
+      "more known from the journal, %.0f CPU s\n",
+      result.trials.size(), partial, failed, result.num_runs,
+      result.num_known_runs, result.cpu_seconds);
+  absl::StrAppendFormat(
+      &text, "Objective  %s: %.6g -> %.6g  %s\n", context.objective,
+      result.baseline.objective, result.best.objective,
+      Change(result.baseline.objective, result.best.objective));
+  for (size_t i = 0; i < context.inputs.size(); ++i) {
+    absl::StrAppendFormat(
+        &text, "           %-40s %.6g -> %.6g  %s\n", context.inputs[i].name,
+        result.baseline.objectives[i], result.best.objectives[i],
+        Change(result.baseline.objectives[i], result.best.objectives[i]));
+  }
+  if (result.best_holdout.has_value()) {
+    const auto before = ObjectiveOf(result.baseline_holdout);
+    const auto after = ObjectiveOf(result.best_holdout);
+    if (before.has_value() && after.has_value()) {
+      absl::StrAppendFormat(&text, "Held out   %.6g -> %.6g  %s\n", *before,
+                            *after, Change(*before, *after));
+    } else {
+      absl::StrAppend(&text, "Held out   ",
+                      after.has_value() ? result.baseline_holdout->message
+                                        : result.best_holdout->message,
+                      "\n");
+    }
+  }
+  for (const FoldResult& fold : result.folds) {
+    absl::StrAppendFormat(&text, "Fold       %.6g -> %.6g  %s on", fold.before,
+                          fold.after, Change(fold.before, fold.after));
+    for (const std::string& name : fold.left_out) {
+      absl::StrAppend(&text, " ", name);
+    }
+    absl::StrAppend(&text, "\n");
+  }
+  if (result.keys.empty()) {
+    absl::StrAppend(&text,
+                    "Nothing was better than the configuration as it is.\n");
+  }
+  for (const KeyResult& key : result.keys) {
+    absl::StrAppend(
+        &text, "\n", key.key, "\n  ", ToLua(key.before), " -> ",
+        ToLua(key.after), ", ", Gain(key, result.best, context.inputs.size()),
+        ", confidence: ", Confidence(key, context.inputs.size()), "\n");
+  }
+  std::vector<Point> points;
+  std::vector<double> objectives;
+  WholeTrials(result, &points, &objectives);
+  absl::StrAppendFormat(
+      &text,
+      "\nSensitivity, from %d trials on whole recordings:\n  %-72s  "
+      "effect  trend\n",
+      points.size(), "key");
+  auto sensitivities =
+      ComputeSensitivity(context.parameters, points, objectives);
+  std::stable_sort(sensitivities.begin(), sensitivities.end(),
+                   [](const Sensitivity& a, const Sensitivity& b) {
+                     return a.effect > b.effect;
+                   });
+  for (const Sensitivity& sensitivity : sensitivities) {
+    absl::StrAppendFormat(&text, "  %-72s  %6.2f  %+5.2f\n", sensitivity.key,
+                          sensitivity.effect, sensitivity.trend);
+  }
+  return text;
+}
+
+nlohmann::ordered_json ToJson(const TuneResult& result,
+                              const ResultContext& context) {
+  nlohmann::ordered_json json;
+  json["configuration"] = context.configuration;
+  json["objective"] = context.objective;
+  for (const TuneInput& input : context.inputs) {
+    json["inputs"].push_back(input.name);
+  }
+  nlohmann::ordered_json keys = nlohmann::ordered_json::object();
+  nlohmann::ordered_json details = nlohmann::ordered_json::array();
+  for (const KeyResult& key : result.keys) {
+    keys[key.key] = key.after;
+    details.push_back({{"key", key.key},
+                       {"before", key.before},
+                       {"after", key.after},
+                       {"gain", OrNull(key.gain)},
+                       {"better_on", key.better_on},
+                       {"confidence", Confidence(key, context.inputs.size())}});
+  }
+  json["baseline"] = {
+      {"objective", result.baseline.objective},
+      {"objectives", result.baseline.objectives},
+      {"holdout", OrNull(ObjectiveOf(result.baseline_holdout))}};
+  json["best"] = {{"objective", result.best.objective},
+                  {"objectives", result.best.objectives},
+                  {"holdout", OrNull(ObjectiveOf(result.best_holdout))},
+                  {"keys", keys}};
+  json["changes"] = details;
+  json["trials"] = result.trials.size();
+  json["runs"] = result.num_runs;
+  json["runs_from_journal"] = result.num_known_runs;
+  json["cpu_seconds"] = result.cpu_seconds;
+  json["ended_by_budget"] = result.ended_by_budget;
+  json["folds"] = nlohmann::ordered_json::array();
+  for (const FoldResult& fold : result.folds) {
+    json["folds"].push_back(
+        {{"left_out", fold.left_out},
+         {"values", ToAssignment(context.parameters, fold.point)},
+         {"before", fold.before},
+         {"after", fold.after}});
+  }
+  std::vector<Point> points;
+  std::vector<double> objectives;
+  WholeTrials(result, &points, &objectives);
+  json["sensitivity"] = nlohmann::ordered_json::array();
+  for (const Sensitivity& sensitivity :
+       ComputeSensitivity(context.parameters, points, objectives)) {
+    json["sensitivity"].push_back({{"key", sensitivity.key},
+                                   {"effect", sensitivity.effect},
+                                   {"trend", sensitivity.trend}});
+  }
+  json["trial_list"] = nlohmann::ordered_json::array();
+  for (const Trial& trial : result.trials) {
+    json["trial_list"].push_back(TrialJson(context.parameters, trial));
+  }
+  return json;
+}
+
+}  // namespace tuning
+}  // namespace cartographer_ext

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a search found: as a Lua file to be included behind the configuration,
+// as a table for people, as JSON for programs.
+#ifndef CARTOGRAPHER_EXT_TUNING_RESULT_WRITER_H_
+#define CARTOGRAPHER_EXT_TUNING_RESULT_WRITER_H_
+
+#include <string>
+#include <vector>
+
+#include "cartographer_ext/tuning/tuner.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace tuning {
+
+// How sure it is that a key is better changed: "high" when it was on every
+// recording of at least three, "medium" when it was on every recording of two,
+// or on two thirds of more, "low" otherwise, "not measured" where pruning did
+// not get to it.
+std::string Confidence(const KeyResult& key, size_t num_inputs);
+
+// What the search was about.
+struct ResultContext {
+  std::string configuration;
+  std::string objective;  // "relations"
+  std::vector<Parameter> parameters;
+  std::vector<TuneInput> inputs;
+  std::vector<TuneInput> holdout;
+};
+
+// The changed keys, each with what it was, what it gains and how sure that is.
+std::string ToLuaFile(const TuneResult& result, const ResultContext& context);
+
+std::string ToText(const TuneResult& result, const ResultContext& context);
+
+nlohmann::ordered_json ToJson(const TuneResult& result,
+                              const ResultContext& context);
+
+}  // namespace tuning
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_TUNING_RESULT_WRITER_H_

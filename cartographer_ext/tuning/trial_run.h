@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// One run of a search: a configuration on a recording (or a finished map), and
+// the numbers that come out.
+#ifndef CARTOGRAPHER_EXT_TUNING_TRIAL_RUN_H_
+#define CARTOGRAPHER_EXT_TUNING_TRIAL_RUN_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/tuning/search_spec.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace tuning {
+
+struct RunRequest {
+  // Lua code of the configuration, its name in messages, and where it includes
+  // from.
+  std::string code;
+  std::string name;
+  std::vector<std::string> directories;
+  TuneInput input;
+  // The first part of the recording by time that is run, in (0, 1]. Of a
+  // finished map always all.
+  double fidelity = 1.;
+  // Overrides that of the configuration unless empty.
+  std::string odometry_source;
+  int num_threads = 1;
+  // Whether self_consistency is wanted; the map has to be painted for it.
+  bool wants_self_consistency = false;
+};
+
+// For workers in other processes.
+nlohmann::json ToJson(const RunRequest& request);
+absl::StatusOr<RunRequest> RequestFromJson(const nlohmann::json& json);
+
+// Metrics by the names of objective.h, and besides them nodes, submaps, loops,
+// loop_precision, loop_recall, map_entropy, loop_residual, bending. What cannot
+// be known, for example relations without truth, is left out.
+absl::StatusOr<std::map<std::string, double>> RunTrial(
+    const RunRequest& request);
+
+}  // namespace tuning
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_TUNING_TRIAL_RUN_H_

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Where runs are done. Each has a process of its own: one that crashes, runs
+// out of memory or meets a failed check is a failed trial, not the end of the
+// search, and memory does not grow from run to run.
+#ifndef CARTOGRAPHER_EXT_TUNING_WORKER_POOL_H_
+#define CARTOGRAPHER_EXT_TUNING_WORKER_POOL_H_
+
+#include <sys/types.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/types/optional.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace tuning {
+
+// { "ok": true, "metrics": {...} } or { "ok": false, "message": "..." }, with
+// "wall_seconds" and "cpu_seconds" of the process in either case.
+struct WorkerResult {
+  int id = 0;
+  nlohmann::json answer;
+};
+
+class WorkerPool {
+ public:
+  virtual ~WorkerPool() = default;
+
+  virtual int num_workers() const = 0;
+  virtual int num_running() const = 0;
+
+  // Requires num_running() < num_workers(). `id` comes back with the result.
+  virtual void Start(int id, const nlohmann::json& request) = 0;
+
+  // Some finished run; nothing after `timeout_seconds`.
+  virtual absl::optional<WorkerResult> Wait(double timeout_seconds) = 0;
+
+  // Ends what is running; no results of it come.
+  virtual void StopAll() = 0;
+};
+
+// Answers { "ok": ... } to a request; called in a process of its own.
+using RunFunction = std::function<nlohmann::json(const nlohmann::json&)>;
+
+// Does the request as a run of trial_run.h.
+nlohmann::json AnswerRequest(const nlohmann::json& request);
+
+// A failed answer.
+nlohmann::json Failure(const std::string& message);
+
+// Child processes of this one, which must have no other threads. They die with
+// it.
+class LocalWorkerPool : public WorkerPool {
+ public:
+  // Runs that take more than `max_cpu_seconds` (0: no limit) of CPU time are
+  // ended and fail.
+  LocalWorkerPool(int num_workers, double max_cpu_seconds,
+                  RunFunction run = &AnswerRequest);
+  ~LocalWorkerPool() override;
+
+  int num_workers() const override { return num_workers_; }
+  int num_running() const override {
+    return static_cast<int>(children_.size() + failed_.size());
+  }
+  void Start(int id, const nlohmann::json& request) override;
+  absl::optional<WorkerResult> Wait(double timeout_seconds) override;
+  void StopAll() override;
+
+ private:
+  struct Child {
+    int id = 0;
+    int answer = -1;    // file descriptors without a name
+    int messages = -1;  // its standard error
+    double start = 0.;  // seconds
+  };
+
+  absl::optional<WorkerResult> Reap();
+
+  const int num_workers_;
+  const double max_cpu_seconds_;
+  const RunFunction run_;
+  std::map<pid_t, Child> children_;
+  std::vector<WorkerResult> failed_;  // that could not be started
+};
+
+}  // namespace tuning
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_TUNING_WORKER_POOL_H_
