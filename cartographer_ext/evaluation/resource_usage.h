@@ -17,6 +17,14 @@ double ThreadCpuSeconds();
 // Largest resident memory of this process so far, in bytes.
 int64_t PeakMemoryBytes();
 
+// Starts a new count of the peak and returns the resident memory at this time,
+// in bytes. Where the system cannot (it is a Linux matter), the peak goes on
+// counting from the start of the process.
+int64_t ResetPeakMemory();
+
+// Largest resident memory since ResetPeakMemory, in bytes.
+int64_t PeakMemorySinceReset();
+
 }  // namespace evaluation
 }  // namespace cartographer_ext
 

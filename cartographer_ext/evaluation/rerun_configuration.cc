@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/evaluation/rerun_configuration.h"
+
+#include <map>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/options/extension_field.h"
+#include "google/protobuf/descriptor.h"
+#include "google/protobuf/message.h"
+#include "google/protobuf/text_format.h"
+#include "google/protobuf/unknown_field_set.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using cartographer::mapping::proto::PoseGraphOptions;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+constexpr char kAssumedBasename[] = "stock.lua";
+
+// The pair of weights that the constraints of one kind have in common.
+struct Weights {
+  double translation = 0.;
+  double rotation = 0.;
+  bool found = false;
+  bool unique = true;
+};
+
+Weights CommonWeights(const MapGraph& graph, const bool loops) {
+  Weights weights;
+  for (const GraphConstraint& constraint : graph.constraints) {
+    if (constraint.is_loop != loops) continue;
+    if (!weights.found) {
+      weights.found = true;
+      weights.translation = constraint.translation_weight;
+      weights.rotation = constraint.rotation_weight;
+    }
+    weights.unique = weights.unique &&
+                     weights.translation == constraint.translation_weight &&
+                     weights.rotation == constraint.rotation_weight;
+  }
+  return weights;
+}
+
+void TakeWeights(const MapGraph& graph, PoseGraphOptions* const options) {
+  const Weights loops = CommonWeights(graph, true);
+  if (loops.found && loops.unique) {
+    auto* const builder = options->mutable_constraint_builder_options();
+    builder->set_loop_closure_translation_weight(loops.translation);
+    builder->set_loop_closure_rotation_weight(loops.rotation);
+  }
+  const Weights insertions = CommonWeights(graph, false);
+  if (insertions.found && insertions.unique) {
+    options->set_matcher_translation_weight(insertions.translation);
+    options->set_matcher_rotation_weight(insertions.rotation);
+  }
+}
+
+void FlattenTo(const Message& message, const std::string& prefix,
+               std::map<std::string, std::string>* const values) {
+  const auto* const descriptor = message.GetDescriptor();
+  const auto* const reflection = message.GetReflection();
+  for (int i = 0; i < descriptor->field_count(); ++i) {
+    const FieldDescriptor* const field = descriptor->field(i);
+    const std::string name = absl::StrCat(prefix, field->name());
+    if (field->is_repeated()) continue;
+    if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      if (reflection->HasField(message, field)) {
+        FlattenTo(reflection->GetMessage(message, field),
+                  absl::StrCat(name, "."), values);
+      }
+      continue;
+    }
+    std::string text;
+    google::protobuf::TextFormat::PrintFieldValueToString(message, field, -1,
+                                                          &text);
+    (*values)[name] = text;
+  }
+  if (options::HasExtension(message)) {
+    (*values)[absl::StrCat(prefix, "cartographer_ext")] = "(block of ours)";
+  }
+}
+
+}  // namespace
+
+bool RemoveExtensions(Message* const message) {
+  const auto* const reflection = message->GetReflection();
+  bool removed = options::HasExtension(*message);
+  reflection->MutableUnknownFields(message)->DeleteByNumber(
+      options::kExtensionFieldNumber);
+  std::vector<const FieldDescriptor*> fields;
+  reflection->ListFields(*message, &fields);
+  for (const FieldDescriptor* const field : fields) {
+    if (field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE ||
+        field->is_repeated()) {
+      continue;
+    }
+    removed =
+        RemoveExtensions(reflection->MutableMessage(message, field)) || removed;
+  }
+  return removed;
+}
+
+std::vector<std::string> DescribeDifferences(const Message& first,
+                                             const Message& second) {
+  std::map<std::string, std::string> a, b;
+  FlattenTo(first, "", &a);
+  FlattenTo(second, "", &b);
+  std::map<std::string, std::pair<std::string, std::string>> both;
+  for (const auto& entry : a) both[entry.first].first = entry.second;
+  for (const auto& entry : b) both[entry.first].second = entry.second;
+  const auto shown = [](const std::string& value) {
+    return value.empty() ? std::string("absent") : value;
+  };
+  std::vector<std::string> lines;
+  for (const auto& entry : both) {
+    if (entry.second.first == entry.second.second) continue;
+    lines.push_back(absl::StrCat(entry.first, ": ", shown(entry.second.first),
+                                 " -> ", shown(entry.second.second)));
+  }
+  return lines;
+}
+
+absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
+    const std::vector<std::string>& directories, const std::string& basename,
+    const std::string& stock_basename, const MapGraph& graph) {
+  RerunConfiguration result;
+  std::string stock_name = stock_basename;
+  if (!basename.empty()) {
+    auto configuration = LoadSlamConfiguration(directories, basename);
+    if (!configuration.ok()) return configuration.status();
+    PoseGraphOptions options =
+        configuration->map_builder_options.pose_graph_options();
+    TakeWeights(graph, &options);
+    PoseGraphOptions without = options;
+    if (RemoveExtensions(&without)) {
+      result.ours = options;
+      result.ours_name = basename;
+    }
+    if (stock_name.empty()) {
+      result.stock = std::move(without);
+      result.stock_name = basename;
+      if (result.ours.has_value()) {
+        result.assumptions.push_back(absl::StrCat(
+            "stock is ", basename, " with the blocks of ours taken out"));
+      }
+    }
+  }
+  if (result.stock_name.empty()) {
+    const bool assumed = stock_name.empty();
+    if (assumed) stock_name = kAssumedBasename;
+    auto configuration = LoadSlamConfiguration(directories, stock_name);
+    if (!configuration.ok()) return configuration.status();
+    result.stock = configuration->map_builder_options.pose_graph_options();
+    TakeWeights(graph, &result.stock);
+    RemoveExtensions(&result.stock);
+    result.stock_name = stock_name;
+    if (assumed) {
+      result.assumptions.push_back(absl::StrCat(
+          "no configuration was given, so stock's defaults (", stock_name,
+          ") are assumed; a map does not keep the options of its pose graph"));
+    }
+  }
+  const Weights loops = CommonWeights(graph, true);
+  const Weights insertions = CommonWeights(graph, false);
+  if (loops.found && loops.unique) {
+    result.assumptions.push_back(
+        absl::StrFormat("the weights of loops are those of the map, %g and %g",
+                        loops.translation, loops.rotation));
+  } else if (loops.found) {
+    result.assumptions.push_back(
+        "the loops of the map have various weights; those of the "
+        "configuration are used");
+  }
+  if (insertions.found && insertions.unique) {
+    result.assumptions.push_back(absl::StrFormat(
+        "the weights of insertions are those of the map, %g and %g",
+        insertions.translation, insertions.rotation));
+  }
+  return result;
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
