@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/dropin/local_matcher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cartographer/mapping/internal/2d/scan_matching/real_time_correlative_scan_matcher_2d.h"
+#include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/options/extension_field.h"
+#include "cartographer_ext/options/option_description.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+using cartographer::mapping::Grid2D;
+using cartographer::mapping::GridType;
+using cartographer::sensor::PointCloud;
+using cartographer::transform::Rigid2d;
+using scan_matching::Prediction;
+
+namespace stock_proto = cartographer::mapping::scan_matching::proto;
+
+// Of a new score in the running mean.
+constexpr double kScoreRate = 0.02;
+// Penalties of the search, per metre and radian: only to break ties.
+constexpr double kSearchPenalty = 0.1;
+// Predictions around which is searched at most.
+constexpr size_t kMaxStarts = 4;
+// A search result stands for itself; the motion it came from hardly pulls.
+constexpr double kSearchSpread = 100.;
+
+Rigid2d ToRigid(const Pose2& pose) {
+  return Rigid2d(Eigen::Vector2d(pose.x, pose.y), pose.theta);
+}
+
+Pose2 FromRigid(const Rigid2d& pose) {
+  return Pose2(pose.translation().x(), pose.translation().y(),
+               pose.normalized_angle());
+}
+
+// The block of the scan matcher, or its defaults.
+proto::ScanMatcherOptions MatcherExtension(
+    const stock_proto::CeresScanMatcherOptions2D& options) {
+  proto::ScanMatcherOptions extension;
+  if (!options::GetExtension(options, &extension)) {
+    options::SetDefaults(&extension);
+  }
+  return extension;
+}
+
+// Into the local frame.
+Prediction ToPrediction(const Pose2& last_pose, const Pose2& motion,
+                        const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  const double c = std::cos(last_pose.theta), s = std::sin(last_pose.theta);
+  rotation.topLeftCorner<2, 2>() << c, -s, s, c;
+  Prediction prediction;
+  prediction.pose = last_pose * motion;
+  prediction.covariance = rotation * covariance * rotation.transpose();
+  return prediction;
+}
+
+bool IsNear(const Pose2& a, const Pose2& b) {
+  return std::hypot(a.x - b.x, a.y - b.y) < 0.02 &&
+         std::abs(NormalizeAngle(a.theta - b.theta)) < 0.01;
+}
+
+}  // namespace
+
+double MeanScore(const Pose2& pose, const PointCloud& cloud,
+                 const Grid2D& grid) {
+  if (cloud.empty()) return 0.;
+  const bool is_tsdf = grid.GetGridType() == GridType::TSDF;
+  const float c = static_cast<float>(std::cos(pose.theta));
+  const float s = static_cast<float>(std::sin(pose.theta));
+  const float x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
+  double sum = 0.;
+  for (const auto& point : cloud) {
+    const Eigen::Vector3f& p = point.position;
+    const Eigen::Array2i cell = grid.limits().GetCellIndex(
+        Eigen::Vector2f(x + c * p.x() - s * p.y(), y + s * p.x() + c * p.y()));
+    const double cost = grid.GetCorrespondenceCost(cell);
+    sum += is_tsdf ? 1. - std::abs(cost) / grid.GetMaxCorrespondenceCost()
+                   : 1. - cost;
+  }
+  return sum / static_cast<double>(cloud.size());
+}
+
+LocalMatcher::LocalMatcher(
+    const proto::FrontEndOptions& options,
+    const stock_proto::CeresScanMatcherOptions2D& matcher_options)
+    : options_(options.search()),
+      matcher_(matcher_options, MatcherExtension(matcher_options)) {}
+
+LocalMatch LocalMatcher::MatchFrom(const Prediction& prediction,
+                                   const Pose2& initial,
+                                   const PointCloud& cloud,
+                                   const Grid2D& grid) const {
+  LocalMatch match;
+  Rigid2d pose = ToRigid(initial);
+  matcher_.MatchWithPrediction(prediction, ToRigid(initial), cloud, grid, &pose,
+                               &match.report);
+  match.pose = FromRigid(pose);
+  match.score = MeanScore(match.pose, cloud, grid);
+  return match;
+}
+
+bool LocalMatcher::IsDoubtful(const LocalMatch& match,
+                              const MotionPrediction& prediction) const {
+  return prediction.is_uncertain ||
+         (has_mean_score_ &&
+          match.score < mean_score_ - options_.score_drop()) ||
+         match.report.mahalanobis > options_.gate();
+}
+
+Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
+                           const PointCloud& cloud, const Grid2D& grid) const {
+  stock_proto::RealTimeCorrelativeScanMatcherOptions options;
+  options.set_linear_search_window(std::min(
+      options_.max_linear_window(),
+      options_.linear_window() + 0.5 * std::hypot(motion.x, motion.y)));
+  options.set_angular_search_window(
+      std::min(options_.max_angular_window(),
+               options_.angular_window() + std::abs(motion.theta)));
+  options.set_translation_delta_cost_weight(kSearchPenalty);
+  options.set_rotation_delta_cost_weight(kSearchPenalty);
+  const cartographer::mapping::scan_matching::RealTimeCorrelativeScanMatcher2D
+      search(options);
+  Rigid2d found = ToRigid(center);
+  search.Match(ToRigid(center), cloud, grid, &found);
+  return FromRigid(found);
+}
+
+LocalMatch LocalMatcher::Match(const Pose2& last_pose,
+                               const MotionPrediction& prediction,
+                               const PointCloud& cloud, const Grid2D& grid) {
+  LocalMatch best = MatchFrom(
+      ToPrediction(last_pose, prediction.motion, prediction.covariance),
+      last_pose * prediction.motion, cloud, grid);
+  if (options_.enabled() && IsDoubtful(best, prediction)) {
+    best.searched = true;
+    std::vector<Pose2> motions = {prediction.motion};
+    for (const Pose2& motion : prediction.alternatives) {
+      bool is_new = motions.size() < kMaxStarts;
+      for (const Pose2& other : motions) {
+        is_new = is_new && !IsNear(motion, other);
+      }
+      if (is_new) motions.push_back(motion);
+    }
+    double to_beat = best.score + options_.min_gain();
+    for (const Pose2& motion : motions) {
+      const Prediction start = ToPrediction(
+          last_pose, motion, kSearchSpread * prediction.covariance);
+      const LocalMatch match = MatchFrom(
+          start, Search(start.pose, motion, cloud, grid), cloud, grid);
+      if (match.score <= to_beat) continue;
+      to_beat = match.score;
+      best = match;
+      best.searched = true;
+      best.relocated = true;
+    }
+  }
+  mean_score_ +=
+      (has_mean_score_ ? kScoreRate : 1.) * (best.score - mean_score_);
+  has_mean_score_ = true;
+  return best;
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/dropin/scan_assembler.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cartographer/sensor/internal/voxel_filter.h"
+#include "cartographer/transform/rigid_transform.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+using cartographer::sensor::RangeData;
+using cartographer::transform::Rigid3f;
+
+Rigid3f ToRigid3f(const Pose2& pose) {
+  return Rigid3f(
+      Eigen::Vector3f(static_cast<float>(pose.x), static_cast<float>(pose.y),
+                      0.f),
+      Eigen::Quaternionf(Eigen::AngleAxisf(static_cast<float>(pose.theta),
+                                           Eigen::Vector3f::UnitZ())));
+}
+
+}  // namespace
+
+ScanAssembler::ScanAssembler(
+    const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
+        options)
+    : options_(options) {}
+
+void ScanAssembler::Add(
+    const cartographer::sensor::TimedPointCloudOriginData& sweep,
+    const double interval, const Pose2& motion,
+    const Eigen::Quaterniond& alignment) {
+  if (num_sweeps_ == 0) accumulated_ = RangeData();
+  ++num_sweeps_;
+  const Rigid3f levelled = Rigid3f::Rotation(alignment.cast<float>());
+  float offset = 0.f;
+  Rigid3f pose = ToRigid3f(motion) * levelled;
+  for (const auto& range : sweep.ranges) {
+    if (range.point_time.time != offset) {
+      offset = range.point_time.time;
+      const double ratio =
+          interval > 0. ? std::max(0., (interval + offset) / interval) : 1.;
+      pose = ToRigid3f(Interpolate(Pose2(), motion, ratio)) * levelled;
+    }
+    const Eigen::Vector3f origin = pose * sweep.origins.at(range.origin_index);
+    cartographer::sensor::RangefinderPoint hit;
+    hit.position = pose * range.point_time.position;
+    const Eigen::Vector3f ray = hit.position - origin;
+    const float length = ray.norm();
+    // Written so that ranges which are not a number fall out.
+    if (!(length >= options_.min_range())) continue;
+    if (length <= options_.max_range()) {
+      accumulated_.returns.push_back(hit);
+    } else if (std::isfinite(length)) {
+      // Only the beginning of the ray is surely free.
+      hit.position = origin + options_.missing_data_ray_length() / length * ray;
+      accumulated_.misses.push_back(hit);
+    }
+  }
+  newest_motion_ = motion;
+  // One ray of each point starts at one place: that of the laser if there is
+  // only one, else the robot's own.
+  newest_origin_ = sweep.origins.size() == 1
+                       ? (levelled * sweep.origins.front()).eval()
+                       : Eigen::Vector3f::Zero().eval();
+}
+
+RangeData ScanAssembler::Take() {
+  num_sweeps_ = 0;
+  accumulated_.origin = ToRigid3f(newest_motion_) * newest_origin_;
+  const RangeData cropped = cartographer::sensor::CropRangeData(
+      cartographer::sensor::TransformRangeData(
+          accumulated_, ToRigid3f(newest_motion_).inverse()),
+      options_.min_z(), options_.max_z());
+  return RangeData{cropped.origin,
+                   cartographer::sensor::VoxelFilter(
+                       cropped.returns, options_.voxel_filter_size()),
+                   cartographer::sensor::VoxelFilter(
+                       cropped.misses, options_.voxel_filter_size())};
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext

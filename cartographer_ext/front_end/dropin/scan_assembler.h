@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Range data of one match from one or more sweeps: every point moved from where
+// the robot was at its moment to where the robot is at the end, sorted into
+// returns and misses, levelled, cropped and thinned as the stock builder does.
+#ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_
+#define CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_
+
+#include "Eigen/Geometry"
+#include "cartographer/mapping/proto/local_trajectory_builder_options_2d.pb.h"
+#include "cartographer/sensor/range_data.h"
+#include "cartographer/sensor/timed_point_cloud_data.h"
+#include "cartographer_ext/common/pose2.h"
+
+namespace cartographer_ext {
+namespace front_end {
+
+class ScanAssembler {
+ public:
+  explicit ScanAssembler(
+      const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
+          options);
+
+  // Adds a sweep. Points are stamped relative to its end. `interval` is the
+  // time since the last match (seconds, positive) and `motion` what the robot
+  // did in it, (robot at the last match <- robot at the end of the sweep);
+  // points in between get their part of it. `alignment` is (gravity aligned <-
+  // tracking) now.
+  void Add(const cartographer::sensor::TimedPointCloudOriginData& sweep,
+           double interval, const Pose2& motion,
+           const Eigen::Quaterniond& alignment);
+
+  int num_sweeps() const { return num_sweeps_; }
+
+  // All sweeps since the last call, in the gravity-aligned frame at the end of
+  // the last one. Rays start at the laser (the stock builder's at the robot's
+  // origin), or at the robot's origin where there are several lasers.
+  cartographer::sensor::RangeData Take();
+
+ private:
+  const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
+  int num_sweeps_ = 0;
+  // In the gravity-aligned frame of the last match.
+  cartographer::sensor::RangeData accumulated_;
+  // In the gravity-aligned frame at the end of the newest sweep.
+  Eigen::Vector3f newest_origin_ = Eigen::Vector3f::Zero();
+  Pose2 newest_motion_;
+};
+
+}  // namespace front_end
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_

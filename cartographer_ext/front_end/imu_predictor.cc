@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/imu_predictor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+constexpr double kBufferSeconds = 10.;
+constexpr size_t kMaxReadings = 20000;
+// The newest reading may be this much older than the scan, seconds.
+constexpr double kMaxExtrapolation = 0.1;
+// A matched motion below these rates is standing, m/s and rad/s.
+constexpr double kStandingSpeed = 0.03;
+constexpr double kStandingTurnRate = 0.02;
+
+bool IsFinite(const PlanarImuReading& reading) {
+  return std::isfinite(reading.time) && reading.acceleration.allFinite() &&
+         std::isfinite(reading.yaw_rate);
+}
+
+bool IsEarlier(const PlanarImuReading& reading, const double time) {
+  return reading.time < time;
+}
+
+}  // namespace
+
+ImuPredictor::ImuPredictor(const ImuPredictorOptions& options)
+    : options_(options) {}
+
+void ImuPredictor::Add(const PlanarImuReading& reading) {
+  if (!options_.enabled || !IsFinite(reading)) return;
+  if (!readings_.empty() && reading.time <= readings_.back().time) return;
+  readings_.push_back(reading);
+  while (readings_.size() > kMaxReadings ||
+         readings_.front().time < reading.time - kBufferSeconds) {
+    readings_.pop_front();
+  }
+}
+
+bool ImuPredictor::Predict(const double from, const double to,
+                           const Eigen::Vector2d& velocity,
+                           ImuMotion* const motion) const {
+  if (readings_.size() < 2 || readings_.front().time > from ||
+      readings_.back().time < to - kMaxExtrapolation || !(to > from)) {
+    return false;
+  }
+  const auto after =
+      std::lower_bound(readings_.begin(), readings_.end(), from, IsEarlier);
+  ImuPreintegrator integrator(options_.noise, bias_);
+  PlanarImuReading last;
+  if (after == readings_.begin()) {
+    last = *after;
+  } else if (after == readings_.end()) {
+    last = readings_.back();
+  } else {
+    last = InterpolateReading(*(after - 1), *after, from);
+  }
+  last.time = from;
+  for (auto it = after; it != readings_.end() && it->time < to; ++it) {
+    if (it->time <= from) continue;
+    integrator.Add(last, *it);
+    last = *it;
+  }
+  const auto end =
+      std::lower_bound(readings_.begin(), readings_.end(), to, IsEarlier);
+  PlanarImuReading final_reading = readings_.back();
+  if (end != readings_.end() && end != readings_.begin()) {
+    final_reading = InterpolateReading(*(end - 1), *end, to);
+  }
+  final_reading.time = to;
+  integrator.Add(last, final_reading);
+
+  PlanarState state;
+  state.velocity = velocity;
+  const PreintegratedImu& imu = integrator.result();
+  const PlanarState next = front_end::Predict(state, imu);
+  motion->motion = next.pose;
+  motion->speed_change = imu.beta.x();
+  const double t = imu.duration;
+  const double bias_way = 0.5 * options_.acceleration_bias_noise * t * t;
+  const double bias_turn = options_.yaw_rate_bias_noise * t;
+  motion->covariance.setZero();
+  motion->covariance.topLeftCorner<2, 2>() =
+      imu.covariance.topLeftCorner<2, 2>() +
+      bias_way * bias_way * Eigen::Matrix2d::Identity();
+  motion->covariance(2, 2) = imu.covariance(4, 4) + bias_turn * bias_turn;
+  return true;
+}
+
+void ImuPredictor::AddMatch(const double from, const double to,
+                            const Pose2& match) {
+  const double interval = to - from;
+  if (readings_.empty() || !(interval > 0.)) return;
+  const bool stands =
+      std::hypot(match.x, match.y) <= kStandingSpeed * interval &&
+      std::abs(match.theta) <= kStandingTurnRate * interval;
+  if (!stands) {
+    is_standing_ = false;
+    return;
+  }
+  if (!is_standing_) {
+    is_standing_ = true;
+    standing_since_ = from;
+    sum_.setZero();
+    num_summed_ = 0;
+  }
+  for (auto it = std::lower_bound(readings_.begin(), readings_.end(), from,
+                                  IsEarlier);
+       it != readings_.end() && it->time < to; ++it) {
+    sum_ += Eigen::Vector3d(it->acceleration.x(), it->acceleration.y(),
+                            it->yaw_rate);
+    ++num_summed_;
+  }
+  if (to - standing_since_ < options_.standing_time || num_summed_ == 0) return;
+  const Eigen::Vector3d mean = sum_ / num_summed_;
+  bias_.acceleration = mean.head<2>();
+  bias_.yaw_rate = mean.z();
+  bias_is_known_ = true;
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Prediction from an IMU: preintegration between two scans (paper G, improved
+// graph optimisation 2024, section 3.2) with biases learnt while the robot
+// stands. Readings are to be gravity aligned, so that tilt does not turn
+// gravity into acceleration; what is left of it is part of the bias.
+#ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_PREDICTOR_H_
+#define CARTOGRAPHER_EXT_FRONT_END_IMU_PREDICTOR_H_
+
+#include <deque>
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/imu_preintegration.h"
+
+namespace cartographer_ext {
+namespace front_end {
+
+struct ImuPredictorOptions {
+  bool enabled = true;
+  ImuNoiseOptions noise;
+  double yaw_rate_bias_noise = 0.002;     // rad/s
+  double acceleration_bias_noise = 0.05;  // m/s^2
+  double standing_time = 1.;              // seconds
+};
+
+struct ImuMotion {
+  Pose2 motion;  // (robot at `from` <- robot at `to`)
+  // Of (x, y, theta) of the motion, biases included, that of the speed at
+  // `from` not.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  double speed_change = 0.;  // forwards, m/s
+};
+
+class ImuPredictor {
+ public:
+  explicit ImuPredictor(const ImuPredictorOptions& options);
+
+  // Late and not finite readings are ignored.
+  void Add(const PlanarImuReading& reading);
+
+  // The motion between two times, seconds, with the velocity at `from` in the
+  // robot's frame (m/s). False when the readings do not cover the interval.
+  bool Predict(double from, double to, const Eigen::Vector2d& velocity,
+               ImuMotion* motion) const;
+
+  // What really happened between two scans; learns the biases when it is
+  // nothing.
+  void AddMatch(double from, double to, const Pose2& match);
+
+  const ImuBias& bias() const { return bias_; }
+  bool bias_is_known() const { return bias_is_known_; }
+
+ private:
+  const ImuPredictorOptions options_;
+  std::deque<PlanarImuReading> readings_;
+  ImuBias bias_;
+  bool bias_is_known_ = false;
+  // Sums over the readings since the robot stopped.
+  double standing_since_ = 0.;
+  bool is_standing_ = false;
+  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
+  int num_summed_ = 0;
+};
+
+}  // namespace front_end
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_FRONT_END_IMU_PREDICTOR_H_

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/match_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "absl/status/status.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "google/protobuf/io/coded_stream.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+using proto::MatchRecord;
+using scan_matching::DegeneracyState;
+
+constexpr char kHead[] =
+    "builder,time,node,x,y,theta_degrees,sigma_long,sigma_short,"
+    "long_axis_degrees,sigma_theta_degrees,degeneracy,weak_direction_degrees,"
+    "information_ratio,disagreement_x,disagreement_y,"
+    "disagreement_theta_degrees,chi_square,odometry,source,searched,score,"
+    "time_offset,interval\n";
+constexpr int64_t kTicksPerSecond = 10000000;
+constexpr int64_t kUnixEpochSeconds = 719162LL * 86400LL;
+
+MatchRecord::Degeneracy ToProto(const DegeneracyState state) {
+  switch (state) {
+    case DegeneracyState::kNone:
+      return MatchRecord::NONE;
+    case DegeneracyState::kTranslation:
+      return MatchRecord::TRANSLATION;
+    case DegeneracyState::kPosition:
+      return MatchRecord::POSITION;
+    case DegeneracyState::kRotation:
+      return MatchRecord::ROTATION;
+    case DegeneracyState::kEverything:
+      return MatchRecord::EVERYTHING;
+  }
+  return MatchRecord::NONE;
+}
+
+MatchRecord::OdometryState ToProto(const OdometryState state) {
+  switch (state) {
+    case OdometryState::kOk:
+      return MatchRecord::OK;
+    case OdometryState::kAbsent:
+      return MatchRecord::ABSENT;
+    case OdometryState::kStale:
+      return MatchRecord::STALE;
+    case OdometryState::kJumping:
+      return MatchRecord::JUMPING;
+    case OdometryState::kWrongSign:
+      return MatchRecord::WRONG_SIGN;
+    case OdometryState::kSlipping:
+      return MatchRecord::SLIPPING;
+    case OdometryState::kSlipSuspected:
+      return MatchRecord::SLIP_SUSPECTED;
+  }
+  return MatchRecord::OK;
+}
+
+MatchRecord::Source ToProto(const PredictionSource source) {
+  switch (source) {
+    case PredictionSource::kNothing:
+      return MatchRecord::NOTHING;
+    case PredictionSource::kConstantVelocity:
+      return MatchRecord::CONSTANT_VELOCITY;
+    case PredictionSource::kOdometry:
+      return MatchRecord::ODOMETRY;
+    case PredictionSource::kImu:
+      return MatchRecord::INERTIAL;
+  }
+  return MatchRecord::NOTHING;
+}
+
+// The ellipse of one standard deviation.
+struct Ellipse {
+  double long_axis;
+  double short_axis;
+  double direction;  // of the long axis, [0, pi)
+};
+
+Ellipse PositionEllipse(const Eigen::Matrix3d& covariance) {
+  const double a = covariance(0, 0), b = covariance(0, 1), c = covariance(1, 1);
+  const double mean = 0.5 * (a + c);
+  const double radius = std::hypot(0.5 * (a - c), b);
+  Ellipse ellipse;
+  ellipse.long_axis = std::sqrt(std::max(0., mean + radius));
+  ellipse.short_axis = std::sqrt(std::max(0., mean - radius));
+  ellipse.direction = 0.5 * std::atan2(2. * b, a - c);
+  if (ellipse.direction < 0.) ellipse.direction += kPi;
+  return ellipse;
+}
+
+}  // namespace
+
+void SetPose(const Pose2& pose, MatchRecord* const record) {
+  record->set_x(pose.x);
+  record->set_y(pose.y);
+  record->set_theta(pose.theta);
+}
+
+void SetReport(const scan_matching::MatchReport& report,
+               MatchRecord* const record) {
+  record->clear_covariance();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      record->add_covariance(report.covariance(i, j));
+    }
+  }
+  record->set_degeneracy(ToProto(report.degeneracy.state));
+  record->set_weak_direction(report.degeneracy.direction);
+  record->set_information_ratio(report.degeneracy.ratio);
+  record->set_disagreement_x(report.disagreement.x());
+  record->set_disagreement_y(report.disagreement.y());
+  record->set_disagreement_theta(report.disagreement.z());
+  record->set_chi_square(report.mahalanobis);
+}
+
+void SetPrediction(const PredictionSource source, const OdometryState state,
+                   MatchRecord* const record) {
+  record->set_source(ToProto(source));
+  record->set_odometry(ToProto(state));
+}
+
+Eigen::Matrix3d Covariance(const MatchRecord& record) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  if (record.covariance_size() != 6) return covariance;
+  int k = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      covariance(i, j) = covariance(j, i) = record.covariance(k++);
+    }
+  }
+  return covariance;
+}
+
+void AppendRecord(const MatchRecord& record, std::string* const bytes) {
+  const std::string message = record.SerializeAsString();
+  uint64_t length = message.size();
+  while (length >= 0x80) {
+    bytes->push_back(static_cast<char>(length | 0x80));
+    length >>= 7;
+  }
+  bytes->push_back(static_cast<char>(length));
+  bytes->append(message);
+}
+
+absl::StatusOr<std::vector<MatchRecord>> ParseRecords(
+    const absl::string_view bytes) {
+  const auto error = [](const size_t offset) {
+    return absl::DataLossError(
+        absl::StrCat("the record at byte ", offset, " is damaged"));
+  };
+  if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
+    return absl::DataLossError("more than 2 GiB of records");
+  }
+  std::vector<MatchRecord> records;
+  size_t offset = 0;
+  while (offset < bytes.size()) {
+    const absl::string_view rest = bytes.substr(offset);
+    google::protobuf::io::CodedInputStream stream(
+        reinterpret_cast<const uint8_t*>(rest.data()),
+        static_cast<int>(rest.size()));
+    uint32_t length = 0;
+    if (!stream.ReadVarint32(&length)) return error(offset);
+    const size_t head = static_cast<size_t>(stream.CurrentPosition());
+    if (length > rest.size() - head) return error(offset);
+    MatchRecord record;
+    if (!record.ParseFromArray(rest.data() + head, static_cast<int>(length))) {
+      return error(offset);
+    }
+    records.push_back(record);
+    offset += head + length;
+  }
+  return records;
+}
+
+std::string RecordCsv(const std::vector<MatchRecord>& records) {
+  std::string table = kHead;
+  for (const MatchRecord& record : records) {
+    const Eigen::Matrix3d covariance = Covariance(record);
+    const Ellipse ellipse = PositionEllipse(covariance);
+    const int64_t seconds = record.time() / kTicksPerSecond;
+    absl::StrAppendFormat(
+        &table, "%d,%d.%07d,%d,%.6f,%.6f,%.5f,%.5g,%.5g,%.2f,%.5g,%s,%.2f,",
+        record.builder(), seconds - kUnixEpochSeconds,
+        record.time() % kTicksPerSecond, record.is_node() ? 1 : 0, record.x(),
+        record.y(), RadToDeg(record.theta()), ellipse.long_axis,
+        ellipse.short_axis, RadToDeg(ellipse.direction),
+        RadToDeg(std::sqrt(std::max(0., covariance(2, 2)))),
+        absl::AsciiStrToLower(
+            MatchRecord::Degeneracy_Name(record.degeneracy())),
+        RadToDeg(record.weak_direction()));
+    absl::StrAppendFormat(
+        &table, "%.4g,%.5f,%.5f,%.4f,%.4g,%s,%s,%d,%.4f,%.4f,%.4f\n",
+        record.information_ratio(), record.disagreement_x(),
+        record.disagreement_y(), RadToDeg(record.disagreement_theta()),
+        record.chi_square(),
+        absl::AsciiStrToLower(
+            MatchRecord::OdometryState_Name(record.odometry())),
+        absl::AsciiStrToLower(MatchRecord::Source_Name(record.source())),
+        record.searched() ? 1 : 0, record.score(), record.time_offset(),
+        record.interval());
+  }
+  return table;
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Records of matched scans: filled in from the parts of local SLAM, as bytes
+// (length-delimited messages one after the other: a varint length, then the
+// message) and as a table (CSV with a head line, one scan a line).
+#ifndef CARTOGRAPHER_EXT_FRONT_END_MATCH_RECORD_H_
+#define CARTOGRAPHER_EXT_FRONT_END_MATCH_RECORD_H_
+
+#include <string>
+#include <vector>
+
+#include "Eigen/Core"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/motion_predictor.h"
+#include "cartographer_ext/match_record.pb.h"
+#include "cartographer_ext/scan_matching/match_report.h"
+
+namespace cartographer_ext {
+namespace front_end {
+
+void SetPose(const Pose2& pose, proto::MatchRecord* record);
+void SetReport(const scan_matching::MatchReport& report,
+               proto::MatchRecord* record);
+void SetPrediction(PredictionSource source, OdometryState state,
+                   proto::MatchRecord* record);
+
+// Of (x, y, theta); zero where the record has none.
+Eigen::Matrix3d Covariance(const proto::MatchRecord& record);
+
+// Appends one record.
+void AppendRecord(const proto::MatchRecord& record, std::string* bytes);
+
+// All records; DataLoss with the byte offset where they end in the middle of a
+// record or do not decode.
+absl::StatusOr<std::vector<proto::MatchRecord>> ParseRecords(
+    absl::string_view bytes);
+
+// Times in seconds since the Unix epoch, angles in degrees.
+std::string RecordCsv(const std::vector<proto::MatchRecord>& records);
+
+}  // namespace front_end
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_FRONT_END_MATCH_RECORD_H_

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/motion_predictor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+// A velocity needs an interval that a stamp of arrival does not spoil, seconds.
+constexpr double kMinVelocityInterval = 0.02;
+
+double Squared(const double x) { return x * x; }
+
+// The second moment of being off by all of `difference`.
+Eigen::Matrix3d Spread(const Pose2& difference) {
+  const Eigen::Vector3d d(difference.x, difference.y, difference.theta);
+  return d.cwiseAbs2().asDiagonal();
+}
+
+}  // namespace
+
+MotionPredictor::MotionPredictor(const MotionPredictorOptions& options)
+    : options_(options),
+      odometry_(options.odometry, options.time_offset),
+      imu_(options.imu),
+      monitor_(options.check) {}
+
+void MotionPredictor::AddOdometry(const double time, const Pose2& pose) {
+  if (options_.use_odometry) odometry_.Add(time, pose);
+}
+
+void MotionPredictor::AddImu(const PlanarImuReading& reading) {
+  imu_.Add(reading);
+}
+
+Pose2 MotionPredictor::VelocityMotion(const double interval) const {
+  // Beyond that nothing is known, least of all a turn.
+  if (interval > options_.constant_velocity.max_time) return Pose2();
+  return Pose2(velocity_.x * interval, velocity_.y * interval,
+               velocity_.theta * interval);
+}
+
+Eigen::Matrix3d MotionPredictor::VelocityCovariance(
+    const double interval) const {
+  const double way = options_.odometry.translation +
+                     options_.constant_velocity.speed_noise * interval;
+  const double turn = options_.odometry.rotation +
+                      options_.constant_velocity.turn_rate_noise * interval;
+  return Eigen::Vector3d(Squared(way), Squared(way), Squared(turn))
+      .asDiagonal();
+}
+
+bool MotionPredictor::PredictOdometry(const double time,
+                                      OdometryMotion* const motion) const {
+  return options_.use_odometry && odometry_.Predict(last_time_, time, motion);
+}
+
+MotionPrediction MotionPredictor::Predict(const double time) const {
+  MotionPrediction prediction;
+  const double interval = time - last_time_;
+  if (!has_match_ || !(interval > 0.)) return prediction;
+
+  prediction.source = interval > options_.constant_velocity.max_time
+                          ? PredictionSource::kNothing
+                          : PredictionSource::kConstantVelocity;
+  prediction.motion = VelocityMotion(interval);
+  prediction.covariance = VelocityCovariance(interval);
+  prediction.is_uncertain = prediction.source == PredictionSource::kNothing;
+
+  ImuMotion imu;
+  const bool has_imu = imu_.Predict(
+      last_time_, time, Eigen::Vector2d(velocity_.x, velocity_.y), &imu);
+  if (has_imu) {
+    prediction.source = PredictionSource::kImu;
+    prediction.motion = imu.motion;
+    prediction.covariance =
+        imu.covariance + OdometryCovariance(options_.odometry, Pose2());
+    // The speed at the start is that of a match.
+    const double way = 0.2 * options_.constant_velocity.speed_noise * interval;
+    prediction.covariance(0, 0) += Squared(way);
+    prediction.covariance(1, 1) += Squared(way);
+    prediction.is_uncertain = interval > options_.constant_velocity.max_time;
+  }
+
+  OdometryMotion odometry;
+  if (!PredictOdometry(time, &odometry)) return prediction;
+  const Pose2 without = prediction.motion;
+  const bool expectation_is_known =
+      has_imu || interval <= options_.constant_velocity.max_time;
+  const bool is_suspect =
+      expectation_is_known &&
+      monitor_.IsSuspect(odometry.motion, odometry.frozen, without);
+  if (!monitor_.IsTrusted() && monitor_.state() != OdometryState::kAbsent &&
+      expectation_is_known) {
+    // Out of favour until the monitor says otherwise; still worth a try.
+    prediction.alternatives.push_back(odometry.motion);
+    prediction.alternatives.push_back(monitor_.BacklogUntilNow() *
+                                      odometry.motion);
+    prediction.is_uncertain = prediction.is_uncertain || is_suspect;
+    return prediction;
+  }
+  const Eigen::Matrix3d covariance_without = prediction.covariance;
+  prediction.source = PredictionSource::kOdometry;
+  prediction.motion = odometry.motion;
+  prediction.covariance = odometry.covariance;
+  prediction.is_uncertain = is_suspect;
+  if (is_suspect) {
+    prediction.alternatives.push_back(without);
+    prediction.covariance += covariance_without;
+    prediction.covariance += Spread(
+        Pose2(odometry.motion.x - without.x, odometry.motion.y - without.y,
+              NormalizeAngle(odometry.motion.theta - without.theta)));
+  } else {
+    prediction.alternatives.push_back(without);
+    if (has_imu) {
+      // Two independent readings of the turn.
+      const double a = odometry.covariance(2, 2);
+      const double b = imu.covariance(2, 2);
+      const double ratio = a / (a + b);
+      prediction.motion.theta = NormalizeAngle(
+          odometry.motion.theta +
+          ratio * NormalizeAngle(imu.motion.theta - odometry.motion.theta));
+      prediction.covariance(2, 2) = a * b / (a + b);
+    }
+  }
+  return prediction;
+}
+
+OdometryState MotionPredictor::AddMatch(const double time,
+                                        const MatchedMotion& matched) {
+  const double interval = time - last_time_;
+  if (!has_match_) {
+    has_match_ = true;
+    last_time_ = time;
+    return monitor_.state();
+  }
+  if (!(interval > 0.)) return monitor_.state();
+
+  MotionComparison comparison;
+  comparison.time = time;
+  comparison.interval = interval;
+  OdometryMotion odometry;
+  comparison.has_odometry = PredictOdometry(time, &odometry);
+  comparison.odometry = odometry.motion;
+  comparison.frozen = odometry.frozen;
+  comparison.match = matched.motion;
+  comparison.way_is_determined = matched.way_is_determined;
+  ImuMotion imu;
+  if (imu_.Predict(last_time_, time, Eigen::Vector2d(velocity_.x, velocity_.y),
+                   &imu)) {
+    comparison.has_inertial = imu_.bias_is_known();
+    comparison.inertial_speed_change = imu.speed_change;
+  }
+  const OdometryState state = monitor_.Add(comparison);
+  if (state == OdometryState::kOk && matched.turn_is_determined) {
+    odometry_.AddMatch(last_time_, time, matched.motion);
+  }
+  imu_.AddMatch(last_time_, time, matched.motion);
+
+  if (interval >= kMinVelocityInterval) {
+    velocity_ = Pose2(matched.motion.x / interval, matched.motion.y / interval,
+                      matched.motion.theta / interval);
+  }
+  last_time_ = time;
+  return state;
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext

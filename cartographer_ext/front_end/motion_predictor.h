@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Where the robot will be found at the next scan, and how sure that is: from
+// odometry, IMU, or the velocity of the last scans, whichever is there and to
+// be believed.
+//
+//   odometry and IMU   the way from odometry, the turn from both, weighed by
+//                      their variances
+//   odometry alone     its motion over the interval
+//   IMU alone          preintegrated from the velocity of the last scans
+//   neither            constant velocity for a while, then no motion
+//
+// Odometry that the monitor has found at fault is not used as long as the
+// velocity does better. An interval that looks wrong before the match (a jump,
+// a frozen pose while moving) gets a wide covariance and alternatives to search
+// around; the match then tells who was right.
+#ifndef CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_
+#define CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_
+
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/imu_predictor.h"
+#include "cartographer_ext/front_end/odometry_monitor.h"
+#include "cartographer_ext/front_end/odometry_predictor.h"
+
+namespace cartographer_ext {
+namespace front_end {
+
+struct ConstantVelocityOptions {
+  double speed_noise = 0.5;      // m/s
+  double turn_rate_noise = 0.5;  // rad/s
+  double max_time = 0.6;         // seconds
+};
+
+struct MotionPredictorOptions {
+  bool use_odometry = true;
+  OdometryNoiseOptions odometry;
+  TimeOffsetOptions time_offset;
+  ConstantVelocityOptions constant_velocity;
+  OdometryCheckOptions check;
+  ImuPredictorOptions imu;
+};
+
+enum class PredictionSource { kNothing, kConstantVelocity, kOdometry, kImu };
+
+struct MotionPrediction {
+  PredictionSource source = PredictionSource::kNothing;
+  Pose2 motion;  // (robot at the last scan <- robot now)
+  // Of (x, y, theta) of the motion, in the frame of the robot at the last scan.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  // Not to be relied on: search.
+  bool is_uncertain = false;
+  // Other motions worth a try then.
+  std::vector<Pose2> alternatives;
+};
+
+// The outcome of a match, for AddMatch.
+struct MatchedMotion {
+  Pose2 motion;  // (robot at the last scan <- robot now)
+  bool way_is_determined = true;
+  bool turn_is_determined = true;
+};
+
+class MotionPredictor {
+ public:
+  explicit MotionPredictor(const MotionPredictorOptions& options);
+
+  // Times in seconds from any one start. Late readings are ignored.
+  void AddOdometry(double time, const Pose2& pose);
+  void AddImu(const PlanarImuReading& reading);
+
+  // For a scan at `time`, not before the last one. Without a scan before it
+  // nothing is predicted.
+  MotionPrediction Predict(double time) const;
+
+  // The scan at `time` was matched. Returns what the match says of odometry.
+  OdometryState AddMatch(double time, const MatchedMotion& matched);
+
+  double time_offset() const { return odometry_.time_offset(); }
+  OdometryState odometry_state() const { return monitor_.state(); }
+  // Of the last match, robot's frame, per second; zero before the second one.
+  const Pose2& velocity() const { return velocity_; }
+
+ private:
+  Pose2 VelocityMotion(double interval) const;
+  Eigen::Matrix3d VelocityCovariance(double interval) const;
+  bool PredictOdometry(double time, OdometryMotion* motion) const;
+
+  const MotionPredictorOptions options_;
+  OdometryPredictor odometry_;
+  ImuPredictor imu_;
+  OdometryMonitor monitor_;
+  bool has_match_ = false;
+  double last_time_ = 0.;
+  Pose2 velocity_;
+};
+
+}  // namespace front_end
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/odometry_buffer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+// A velocity is taken over at least this long, seconds, ...
+constexpr double kVelocitySpan = 0.05;
+// ... and from readings not further apart than this.
+constexpr double kMaxVelocitySpan = 0.7;
+
+bool IsSame(const Pose2& a, const Pose2& b) {
+  return a.x == b.x && a.y == b.y && a.theta == b.theta;
+}
+
+}  // namespace
+
+OdometryBuffer::OdometryBuffer(const double seconds, const size_t max_readings,
+                               const double max_extrapolation)
+    : seconds_(seconds),
+      max_readings_(max_readings),
+      max_extrapolation_(max_extrapolation) {}
+
+bool OdometryBuffer::Add(const double time, const Pose2& pose) {
+  if (!std::isfinite(time) || !std::isfinite(pose.x) ||
+      !std::isfinite(pose.y) || !std::isfinite(pose.theta)) {
+    return false;
+  }
+  if (!readings_.empty() && time <= readings_.back().time) return false;
+  readings_.push_back({time, pose});
+  // The reading before the span stays, so that all of it can be interpolated.
+  while (readings_.size() > max_readings_ ||
+         (readings_.size() > 2 && readings_[1].time < time - seconds_)) {
+    readings_.pop_front();
+  }
+  return true;
+}
+
+Pose2 OdometryBuffer::Extrapolate(const double seconds) const {
+  const Reading& last = readings_.back();
+  if (readings_.size() < 2) return last.pose;
+  size_t i = readings_.size() - 2;
+  while (i > 0 && last.time - readings_[i].time < kVelocitySpan) --i;
+  const double span = last.time - readings_[i].time;
+  if (span > kMaxVelocitySpan) return last.pose;
+  const double ratio = std::min(seconds, max_extrapolation_) / span;
+  const Pose2 motion = Between(readings_[i].pose, last.pose);
+  return last.pose *
+         Pose2(motion.x * ratio, motion.y * ratio, motion.theta * ratio);
+}
+
+bool OdometryBuffer::Lookup(const double time,
+                            OdometrySample* const sample) const {
+  if (readings_.empty()) return false;
+  *sample = OdometrySample();
+  if (time <= readings_.front().time) {
+    sample->pose = readings_.front().pose;
+    sample->extrapolated = readings_.front().time - time;
+    return true;
+  }
+  if (time >= readings_.back().time) {
+    sample->extrapolated = time - readings_.back().time;
+    sample->pose = Extrapolate(sample->extrapolated);
+    sample->frozen =
+        readings_.size() > 1 &&
+        IsSame(readings_[readings_.size() - 2].pose, readings_.back().pose);
+    return true;
+  }
+  const auto after = std::upper_bound(
+      readings_.begin(), readings_.end(), time,
+      [](const double t, const Reading& reading) { return t < reading.time; });
+  const auto before = after - 1;
+  sample->pose =
+      Interpolate(before->pose, after->pose,
+                  (time - before->time) / (after->time - before->time));
+  sample->frozen = IsSame(before->pose, after->pose);
+  return true;
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The last odometry readings, to be asked for the pose at any time.
+//
+// Between two readings the pose is interpolated (straight in translation,
+// shortest way in angle). Beyond the last one it goes on with the velocity of
+// the last tenth of a second, for a bounded time: a scan may arrive one message
+// before the odometry of its moment. Before the first one it is the first.
+#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_BUFFER_H_
+#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_BUFFER_H_
+
+#include <cstddef>
+#include <deque>
+
+#include "cartographer_ext/common/pose2.h"
+
+namespace cartographer_ext {
+namespace front_end {
+
+struct OdometrySample {
+  Pose2 pose;  // (odometry <- robot)
+  // Seconds between `time` and the readings it was made from: beyond the last,
+  // before the first, 0 in between.
+  double extrapolated = 0.;
+  // The readings around `time` have the same pose: standing, or stale.
+  bool frozen = false;
+};
+
+class OdometryBuffer {
+ public:
+  // Keeps the readings of the last `seconds`, and `max_readings` at most.
+  OdometryBuffer(double seconds, size_t max_readings, double max_extrapolation);
+
+  // Seconds and (odometry <- robot). False, and nothing is kept, when the time
+  // is not later than that of the reading before or something is not finite.
+  bool Add(double time, const Pose2& pose);
+
+  // False without readings.
+  bool Lookup(double time, OdometrySample* sample) const;
+
+  bool empty() const { return readings_.empty(); }
+  double first_time() const { return readings_.front().time; }
+  double last_time() const { return readings_.back().time; }
+
+ private:
+  struct Reading {
+    double time;
+    Pose2 pose;
+  };
+
+  Pose2 Extrapolate(double seconds) const;
+
+  const double seconds_;
+  const size_t max_readings_;
+  const double max_extrapolation_;
+  std::deque<Reading> readings_;
+};
+
+}  // namespace front_end
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_BUFFER_H_

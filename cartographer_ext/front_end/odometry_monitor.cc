@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/odometry_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+// Motions below these are standing.
+constexpr double kStandingDistance = 0.03;  // metres
+constexpr double kStandingAngle = 0.035;    // radians
+// A fault ends at this part of the gate, so that it does not flicker.
+constexpr double kExitRatio = 0.4;
+// A suspected slip is forgotten after this long, seconds.
+constexpr double kSuspicionTime = 5.;
+// Entries of the window, whatever the rate of scans.
+constexpr size_t kMaxEntries = 200;
+
+double Distance(const Pose2& pose) { return std::hypot(pose.x, pose.y); }
+
+bool IsMotion(const Pose2& motion) {
+  return Distance(motion) > kStandingDistance ||
+         std::abs(motion.theta) > kStandingAngle;
+}
+
+}  // namespace
+
+OdometryMonitor::OdometryMonitor(const OdometryCheckOptions& options)
+    : options_(options) {
+  Restart(0.);
+}
+
+void OdometryMonitor::Restart(const double time) {
+  window_.clear();
+  window_.push_back({time, Pose2(), Pose2()});
+  last_agreed_ = window_.back();
+}
+
+double OdometryMonitor::ChiSquare(const Pose2& odometry,
+                                  const Pose2& match) const {
+  const double way = std::max(Distance(odometry), Distance(match));
+  const double turn = std::max(std::abs(odometry.theta), std::abs(match.theta));
+  const double rotation_sigma = std::hypot(
+      options_.rotation_noise, options_.rotation_noise_per_radian * turn);
+  const double translation_sigma =
+      std::hypot(std::hypot(options_.translation_noise,
+                            options_.translation_noise_per_metre * way),
+                 0.5 * way * rotation_sigma);
+  const double dt = std::hypot(match.x - odometry.x, match.y - odometry.y);
+  const double dr = NormalizeAngle(match.theta - odometry.theta);
+  return dt * dt / (translation_sigma * translation_sigma) +
+         dr * dr / (rotation_sigma * rotation_sigma);
+}
+
+bool OdometryMonitor::IsSuspect(const Pose2& odometry, const bool frozen,
+                                const Pose2& expected) const {
+  if (!options_.enabled) return false;
+  if (frozen && !IsMotion(odometry) && IsMotion(expected)) return true;
+  return std::hypot(odometry.x - expected.x, odometry.y - expected.y) >
+             options_.jump_distance ||
+         std::abs(NormalizeAngle(odometry.theta - expected.theta)) >
+             options_.jump_angle;
+}
+
+OdometryState OdometryMonitor::CheckInterval(
+    const MotionComparison& comparison) const {
+  if (ChiSquare(comparison.odometry, comparison.match) <= options_.gate) {
+    // Not much of it may be missing from one scan to the next.
+    const bool stands_still = comparison.frozen &&
+                              !IsMotion(comparison.odometry) &&
+                              IsMotion(comparison.match);
+    return stands_still ? OdometryState::kStale : OdometryState::kOk;
+  }
+  if (comparison.frozen && !IsMotion(comparison.odometry)) {
+    return OdometryState::kStale;
+  }
+  const double distance =
+      std::hypot(comparison.match.x - comparison.odometry.x,
+                 comparison.match.y - comparison.odometry.y);
+  const double angle = std::abs(
+      NormalizeAngle(comparison.match.theta - comparison.odometry.theta));
+  if (distance > options_.jump_distance || angle > options_.jump_angle) {
+    return OdometryState::kJumping;
+  }
+  // What is too small for a jump is left to the window.
+  return OdometryState::kOk;
+}
+
+OdometryState OdometryMonitor::CheckWindow() const {
+  const Pose2 odometry =
+      Between(window_.front().odometry, window_.back().odometry);
+  const Pose2 match = Between(window_.front().match, window_.back().match);
+  const bool in_fault =
+      state_ == OdometryState::kWrongSign || state_ == OdometryState::kSlipping;
+  const double gate = in_fault ? kExitRatio * options_.gate : options_.gate;
+  if (ChiSquare(odometry, match) <= gate) return OdometryState::kOk;
+  const double sum = std::abs(odometry.x + match.x);
+  const double larger = std::max(std::abs(odometry.x), std::abs(match.x));
+  if (odometry.x * match.x < 0. && larger > 2. * kStandingDistance &&
+      sum < 0.4 * larger) {
+    return OdometryState::kWrongSign;
+  }
+  return OdometryState::kSlipping;
+}
+
+bool OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
+  const double speed = comparison.odometry.x / comparison.interval;
+  const double change = has_speed_ ? speed - speed_ : 0.;
+  speed_ = speed;
+  has_speed_ = true;
+  // An IMU tells how much of the change is the robot's own.
+  const double own = comparison.has_inertial
+                         ? std::abs(change - comparison.inertial_speed_change)
+                         : std::abs(change);
+  const double limit = (comparison.has_inertial ? 0.5 : 1.) *
+                       options_.max_acceleration * comparison.interval;
+  if (own > limit) {
+    const bool ends = excess_speed_ * change < 0.;
+    excess_speed_ = ends ? 0. : excess_speed_ + change;
+    suspected_since_ = comparison.time;
+  }
+  if (comparison.way_is_determined ||
+      comparison.time - suspected_since_ > kSuspicionTime) {
+    excess_speed_ = 0.;
+  }
+  return excess_speed_ != 0.;
+}
+
+OdometryState OdometryMonitor::Add(const MotionComparison& comparison) {
+  if (!options_.enabled) {
+    state_ =
+        comparison.has_odometry ? OdometryState::kOk : OdometryState::kAbsent;
+    return state_;
+  }
+  if (!comparison.has_odometry) {
+    Restart(comparison.time);
+    has_speed_ = false;
+    state_ = OdometryState::kAbsent;
+    return state_;
+  }
+  const bool slip_suspected = SuspectSlip(comparison);
+  Entry entry;
+  entry.time = comparison.time;
+  entry.odometry = window_.back().odometry * comparison.odometry;
+  entry.match = window_.back().match * comparison.match;
+  window_.push_back(entry);
+  while (window_.size() > 2 &&
+         (window_[1].time <= comparison.time - options_.window ||
+          window_.size() > kMaxEntries)) {
+    window_.pop_front();
+  }
+
+  const OdometryState interval = CheckInterval(comparison);
+  if (interval == OdometryState::kJumping) {
+    // After a stale burst odometry catches up; either way it starts anew.
+    const bool caught_up =
+        state_ == OdometryState::kStale &&
+        ChiSquare(Between(last_agreed_.odometry, entry.odometry),
+                  Between(last_agreed_.match, entry.match)) <= options_.gate;
+    state_ = caught_up ? OdometryState::kStale : OdometryState::kJumping;
+    const OdometryState result = state_;
+    Restart(comparison.time);
+    return result;
+  }
+  if (interval == OdometryState::kStale) {
+    state_ = OdometryState::kStale;
+    return state_;
+  }
+  if (state_ == OdometryState::kStale) {
+    // Moves again: what it left out is either made up for or gone.
+    Restart(comparison.time);
+    state_ = OdometryState::kOk;
+    return state_;
+  }
+  state_ = CheckWindow();
+  if (state_ == OdometryState::kOk) {
+    last_agreed_ = entry;
+    if (slip_suspected) state_ = OdometryState::kSlipSuspected;
+  }
+  return state_;
+}
+
+Pose2 OdometryMonitor::BacklogUntilNow() const {
+  const Entry& now = window_.back();
+  return Between(now.match, last_agreed_.match) *
+         Between(last_agreed_.odometry, now.odometry);
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/odometry_predictor.h"
+
+#include <cmath>
+#include <vector>
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+// A gap between scans may be this long and still be bridged, seconds.
+constexpr double kBufferSeconds = 30.;
+constexpr size_t kMaxReadings = 20000;
+// Longer intervals say nothing about a clock offset, seconds.
+constexpr double kMaxOffsetInterval = 1.;
+// Matches that wait for the odometry after them.
+constexpr size_t kMaxPending = 20;
+
+double Squared(const double x) { return x * x; }
+
+}  // namespace
+
+Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
+                                   const Pose2& motion) {
+  const double way = std::hypot(motion.x, motion.y);
+  const double along =
+      options.translation + options.translation_per_metre * way;
+  const double turn = options.rotation +
+                      options.rotation_per_radian * std::abs(motion.theta) +
+                      options.rotation_per_metre * way;
+  const Eigen::Vector2d across =
+      way > 0. ? Eigen::Vector2d(-motion.y / way, motion.x / way)
+               : Eigen::Vector2d(0., 1.);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.topLeftCorner<2, 2>() =
+      Squared(along) * Eigen::Matrix2d::Identity() +
+      Squared(0.5 * way * turn) * across * across.transpose();
+  covariance(2, 2) = Squared(turn);
+  return covariance;
+}
+
+OdometryPredictor::OdometryPredictor(const OdometryNoiseOptions& noise,
+                                     const TimeOffsetOptions& offset)
+    : noise_(noise),
+      buffer_(kBufferSeconds, kMaxReadings, noise.max_extrapolation),
+      offset_(offset) {}
+
+bool OdometryPredictor::Predict(const double from, const double to,
+                                OdometryMotion* const motion) const {
+  const double offset = offset_.offset();
+  OdometrySample begin, end;
+  if (!buffer_.Lookup(from - offset, &begin) ||
+      !buffer_.Lookup(to - offset, &end) ||
+      begin.extrapolated > noise_.max_extrapolation ||
+      end.extrapolated > noise_.max_extrapolation) {
+    return false;
+  }
+  motion->motion = Between(begin.pose, end.pose);
+  motion->frozen = begin.frozen && end.frozen && motion->motion.x == 0. &&
+                   motion->motion.y == 0. && motion->motion.theta == 0.;
+  motion->covariance = OdometryCovariance(noise_, motion->motion);
+  return true;
+}
+
+void OdometryPredictor::AddMatch(const double from, const double to,
+                                 const Pose2& match) {
+  if (offset_.candidates().empty() || !(to > from) ||
+      to - from > kMaxOffsetInterval) {
+    return;
+  }
+  pending_.push_back({from, to, match.theta});
+  while (!pending_.empty()) {
+    const MatchedTurn& oldest = pending_.front();
+    const bool is_there =
+        !buffer_.empty() &&
+        buffer_.last_time() >= oldest.to - offset_.candidates().front() &&
+        buffer_.first_time() <= oldest.from - offset_.candidates().back();
+    if (is_there) {
+      LearnOffset(oldest);
+    } else if (pending_.size() <= kMaxPending) {
+      return;
+    }
+    pending_.pop_front();
+  }
+}
+
+void OdometryPredictor::LearnOffset(const MatchedTurn& matched) {
+  std::vector<double> turns;
+  turns.reserve(offset_.candidates().size());
+  for (const double offset : offset_.candidates()) {
+    OdometrySample begin, end;
+    buffer_.Lookup(matched.from - offset, &begin);
+    buffer_.Lookup(matched.to - offset, &end);
+    turns.push_back(NormalizeAngle(end.pose.theta - begin.pose.theta));
+  }
+  offset_.Add(matched.turn, turns);
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext
