@@ -9,23 +9,17 @@
 
 namespace cartographer_ext {
 namespace scan_matching {
-namespace {
 
-// 0 below the floor, 1 above full_ratio * floor, smooth in between
-// (3 t^2 - 2 t^3 on a logarithmic scale).
 double Belief(const double information, const double floor,
               const double full_ratio) {
-  if (information <= 0. || information <= floor) return 0.;
+  if (!(information > 0.) || information <= floor) return 0.;
   if (floor <= 0. || information >= full_ratio * floor) return 1.;
   const double t = std::log(information / floor) / std::log(full_ratio);
   return t * t * (3. - 2. * t);
 }
 
-}  // namespace
-
 DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
-                                   const Eigen::Matrix3d& hessian,
-                                   const int num_points) {
+                                   const Eigen::Matrix3d& hessian) {
   DegeneracyResult result;
   const Eigen::Matrix3d h =
       hessian.allFinite()
@@ -41,14 +35,16 @@ DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(translation);
   result.eigenvalues = solver.eigenvalues().cwiseMax(0.);
   result.eigenvectors = solver.eigenvectors();
+  // What is below the floor explains nothing away.
   result.rotation_information = c;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> of_a(a);
+  const double smallest =
+      std::max(options.translation_floor, 1e-12 * of_a.eigenvalues()(1));
   for (int i = 0; i < 2; ++i) {
-    const double eigenvalue = of_a.eigenvalues()(i);
-    if (eigenvalue > 1e-12 * std::abs(of_a.eigenvalues()(1))) {
-      const double projection = of_a.eigenvectors().col(i).dot(b);
-      result.rotation_information -= projection * projection / eigenvalue;
-    }
+    if (!(of_a.eigenvalues()(i) > smallest)) continue;
+    const double projection = of_a.eigenvectors().col(i).dot(b);
+    result.rotation_information -=
+        projection * projection / of_a.eigenvalues()(i);
   }
   result.rotation_information = std::max(0., result.rotation_information);
 
@@ -62,14 +58,14 @@ DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
 
   switch (options.mode) {
     case DegeneracyMode::kNoiseFloor: {
-      const double floor = options.translation_floor_per_point * num_points;
       for (int i = 0; i < 2; ++i) {
         result.translation_weights(i) =
-            Belief(result.eigenvalues(i), floor, options.full_ratio);
+            Belief(result.eigenvalues(i), options.translation_floor,
+                   options.full_ratio);
       }
-      result.rotation_weight = Belief(
-          result.rotation_information,
-          options.rotation_floor_per_point * num_points, options.full_ratio);
+      result.rotation_weight =
+          Belief(result.rotation_information, options.rotation_floor,
+                 options.full_ratio);
       break;
     }
     case DegeneracyMode::kPaperLiteral:
@@ -90,7 +86,8 @@ DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
     result.state =
         rotation ? DegeneracyState::kEverything : DegeneracyState::kPosition;
   } else if (first || second) {
-    result.state = DegeneracyState::kTranslation;
+    result.state = rotation ? DegeneracyState::kTranslationAndRotation
+                            : DegeneracyState::kTranslation;
   } else {
     result.state =
         rotation ? DegeneracyState::kRotation : DegeneracyState::kNone;

@@ -18,16 +18,15 @@
 // this is  X_f = sum_i v_i v_i^T (w_i X_s + (1 - w_i) X_0),  w_i = 0 or 1.
 //
 // What is different here, and why:
-//  * The matrix is the Hessian of the occupied-space block alone. That of the
-//    whole problem contains the priors that pull to the prediction, and these
-//    dominate it: its covariance is round even in a corridor.
+//  * The matrix is the information of the occupied space alone. The Hessian of
+//    the whole problem contains the priors that pull to the prediction, and
+//    these dominate it: its covariance is round even in a corridor.
 //  * Metres and radians are never in one decomposition. Rotation is eliminated
-//  by
-//    the Schur complement, S = A - b b^T / c for H = [A b; b^T c], and S is
-//    decomposed; the rotation has its own information c - b^T A^+ b.
+//    by the Schur complement, S = A - b b^T / c for H = [A b; b^T c], and S is
+//    decomposed; the rotation has its own information c - b^T A^-1 b.
 //  * A bare ratio of eigenvalues fails, because a quantised wall has spurious
-//    curvature along itself. An eigenvalue counts only as far as it exceeds a
-//    floor that grows with the number of points.
+//    information along itself. An eigenvalue counts only as far as it exceeds a
+//    floor (see scan_information.h for where the floor comes from).
 //  * w_i changes smoothly from 0 at the floor to 1 at `full_ratio` times the
 //    floor, so that the map does not jump when a door comes into view.
 //
@@ -50,12 +49,12 @@ enum class DegeneracyMode {
 
 struct DegeneracyOptions {
   DegeneracyMode mode = DegeneracyMode::kNoiseFloor;
-  // Spurious information of one point on a straight wall, 1/m^2 and 1/rad^2, in
-  // the units of the Hessian divided by the number of points.
-  double translation_floor_per_point = 0.05;
-  double rotation_floor_per_point = 0.05;
-  double full_ratio = 10.;   // > 1
-  double paper_ratio = 30.;  // kPaperLiteral: degenerate above, > 1
+  // Spurious information of a blank wall along itself, in the units of the
+  // Hessian, >= 0. Small rotations are scaled by how far they move the points.
+  double translation_floor = 10.;  // 1/m^2
+  double rotation_floor = 10.;     // 1/rad^2
+  double full_ratio = 10.;         // > 1
+  double paper_ratio = 30.;        // kPaperLiteral: degenerate above, > 1
 };
 
 enum class DegeneracyState {
@@ -63,12 +62,16 @@ enum class DegeneracyState {
   kTranslation,  // one direction of the plane is not
   kPosition,     // no direction of the plane is
   kRotation,     // only the heading is not
-  kEverything,   // nothing is observed
+  // One direction and the heading are not: as in a round room, where driving
+  // around the centre while turning along changes nothing.
+  kTranslationAndRotation,
+  kEverything,  // nothing is observed
 };
 
 struct DegeneracyResult {
   // Translation information with the rotation eliminated: eigenvalues in
-  // ascending order (1/m^2), unit eigenvectors as columns, in the frame of H.
+  // ascending order (1/m^2), unit eigenvectors as columns, in the frame of the
+  // matrix.
   Eigen::Vector2d eigenvalues = Eigen::Vector2d::Zero();
   Eigen::Matrix2d eigenvectors = Eigen::Matrix2d::Identity();
   double rotation_information = 0.;  // 1/rad^2, with translation eliminated
@@ -83,12 +86,15 @@ struct DegeneracyResult {
   double ratio = 1.;
 };
 
-// `hessian` is J^T J of the occupied-space residuals with respect to (x, y,
-// theta), metres and radians, any frame; `num_points` the number of residuals.
-// A matrix with NaN or infinity counts as without information.
+// How far information is believed: 0 up to the floor, 1 from `full_ratio` times
+// the floor on, in between 3 t^2 - 2 t^3 with t on a logarithmic scale.
+double Belief(double information, double floor, double full_ratio);
+
+// `hessian` is the information of the scan about (x, y, theta), metres and
+// radians, in any frame and any unit of cost. A matrix with NaN or infinity
+// counts as without information.
 DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
-                                   const Eigen::Matrix3d& hessian,
-                                   int num_points);
+                                   const Eigen::Matrix3d& hessian);
 
 // G eq. 19 with smooth weights: the match where it is believed, the prediction
 // elsewhere. Both poses in the frame of the Hessian.

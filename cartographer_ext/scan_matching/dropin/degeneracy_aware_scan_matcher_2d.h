@@ -16,6 +16,7 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/scan_matcher_options.pb.h"
 #include "cartographer_ext/scan_matching/match_report.h"
+#include "cartographer_ext/scan_matching/scan_match.h"
 #include "cartographer_ext/swaps.h"
 #include "ceres/ceres.h"
 
@@ -28,10 +29,9 @@ namespace scan_matching {
 class DegeneracyAwareScanMatcher2D {
  public:
   // The weights of `options` must be positive, as the stock matcher demands.
-  DegeneracyAwareScanMatcher2D(
-      const cartographer::mapping::scan_matching::proto::
-          CeresScanMatcherOptions2D& options,
-      const proto::ScanMatcherOptions& extension);
+  DegeneracyAwareScanMatcher2D(const cartographer::mapping::scan_matching::
+                                   proto::CeresScanMatcherOptions2D& options,
+                               const proto::ScanMatcherOptions& extension);
   ~DegeneracyAwareScanMatcher2D();
   DegeneracyAwareScanMatcher2D(const DegeneracyAwareScanMatcher2D&) = delete;
   DegeneracyAwareScanMatcher2D& operator=(const DegeneracyAwareScanMatcher2D&) =
@@ -66,9 +66,14 @@ class DegeneracyAwareScanMatcher2D {
   using StockMatcher = cartographer::mapping::scan_matching::CeresScanMatcher2D;
 #endif
 
-  const cartographer::mapping::scan_matching::proto::CeresScanMatcherOptions2D
-      options_;
-  const proto::ScanMatcherOptions extension_;
+  void MatchTsdf(const Prediction& prediction,
+                 const cartographer::transform::Rigid2d& initial_pose_estimate,
+                 const cartographer::sensor::PointCloud& point_cloud,
+                 const cartographer::mapping::Grid2D& grid,
+                 cartographer::transform::Rigid2d* pose_estimate,
+                 MatchReport* report) const;
+
+  const ScanMatchOptions options_;
   const StockMatcher stock_;
 };
 

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/scan_matching/dropin/degeneracy_aware_scan_matcher_2d.h"
+
+#include <utility>
+#include <vector>
+
+#include "cartographer_ext/scan_matching/scan_match.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace scan_matching {
+namespace {
+
+namespace mapping = cartographer::mapping;
+namespace sensor = cartographer::sensor;
+namespace transform = cartographer::transform;
+using StockOptions = mapping::scan_matching::proto::CeresScanMatcherOptions2D;
+
+// A probability grid as the cost functions want it. Host indices are (column,
+// row).
+class GridCells {
+ public:
+  explicit GridCells(const mapping::Grid2D* const grid) : grid_(*grid) {}
+
+  double resolution() const { return grid_.limits().resolution(); }
+  double max_x() const { return grid_.limits().max().x(); }
+  double max_y() const { return grid_.limits().max().y(); }
+  int num_rows() const { return grid_.limits().cell_limits().num_y_cells; }
+  int num_columns() const { return grid_.limits().cell_limits().num_x_cells; }
+  float Cost(const int row, const int column) const {
+    return grid_.GetCorrespondenceCost(Eigen::Array2i(column, row));
+  }
+
+ private:
+  const mapping::Grid2D& grid_;
+};
+
+Pose2 ToPose2(const transform::Rigid2d& pose) {
+  return Pose2(pose.translation().x(), pose.translation().y(),
+               pose.rotation().angle());
+}
+
+std::vector<Eigen::Vector2d> ToPoints(const sensor::PointCloud& cloud) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(cloud.size());
+  for (const sensor::RangefinderPoint& point : cloud) {
+    points.emplace_back(point.position.x(), point.position.y());
+  }
+  return points;
+}
+
+ScanMatchOptions ToOptions(const StockOptions& stock,
+                           const proto::ScanMatcherOptions& extension) {
+  ScanMatchOptions options;
+  options.occupied_space_weight = stock.occupied_space_weight();
+  options.translation_weight = stock.translation_weight();
+  options.rotation_weight = stock.rotation_weight();
+  options.solver.max_iterations =
+      stock.ceres_solver_options().max_num_iterations();
+  const auto& degeneracy = extension.degeneracy();
+  options.remap = degeneracy.enabled();
+  options.curvature_step = degeneracy.curvature_step();
+  options.information.mode =
+      degeneracy.mode() == proto::ScanMatcherOptions::Degeneracy::PAPER_LITERAL
+          ? DegeneracyMode::kPaperLiteral
+          : DegeneracyMode::kNoiseFloor;
+  options.information.floor = degeneracy.floor();
+  options.information.full_ratio = degeneracy.full_ratio();
+  options.information.paper_ratio = degeneracy.paper_ratio();
+  const auto& covariance = extension.covariance();
+  options.information.map_noise = covariance.map_noise();
+  options.information.point_noise = covariance.point_noise();
+  options.prediction_translation_sigma =
+      covariance.prediction_translation_sigma();
+  options.prediction_rotation_sigma = covariance.prediction_rotation_sigma();
+  return options;
+}
+
+void FillSummary(const MatchReport& report,
+                 ceres::Solver::Summary* const summary) {
+  *summary = ceres::Solver::Summary();
+  summary->termination_type =
+      report.converged ? ceres::CONVERGENCE : ceres::NO_CONVERGENCE;
+  summary->message = "degeneracy-aware scan matcher";
+  summary->initial_cost = report.initial_cost;
+  summary->final_cost = report.final_cost;
+  summary->fixed_cost = 0.;
+  summary->num_successful_steps = report.iterations;
+  summary->num_parameters = 3;
+}
+
+}  // namespace
+
+DegeneracyAwareScanMatcher2D::DegeneracyAwareScanMatcher2D(
+    const StockOptions& options, const proto::ScanMatcherOptions& extension)
+    : options_(ToOptions(options, extension)), stock_(options) {
+  CHECK_GT(options.occupied_space_weight(), 0.);
+  CHECK_GT(options.translation_weight(), 0.);
+  CHECK_GT(options.rotation_weight(), 0.);
+}
+
+DegeneracyAwareScanMatcher2D::~DegeneracyAwareScanMatcher2D() = default;
+
+void DegeneracyAwareScanMatcher2D::Match(
+    const Eigen::Vector2d& target_translation,
+    const transform::Rigid2d& initial_pose_estimate,
+    const sensor::PointCloud& point_cloud, const mapping::Grid2D& grid,
+    transform::Rigid2d* const pose_estimate,
+    ceres::Solver::Summary* const summary) const {
+  if (grid.GetGridType() == mapping::GridType::TSDF) {
+    ceres::Solver::Summary unused;
+    stock_.Match(target_translation, initial_pose_estimate, point_cloud, grid,
+                 pose_estimate, summary == nullptr ? &unused : summary);
+    return;
+  }
+  Prediction prediction;
+  prediction.pose = Pose2(target_translation.x(), target_translation.y(),
+                          initial_pose_estimate.rotation().angle());
+  MatchReport report;
+  MatchWithPrediction(prediction, initial_pose_estimate, point_cloud, grid,
+                      pose_estimate, summary == nullptr ? nullptr : &report);
+  if (summary != nullptr) FillSummary(report, summary);
+}
+
+void DegeneracyAwareScanMatcher2D::MatchWithPrediction(
+    const Prediction& prediction,
+    const transform::Rigid2d& initial_pose_estimate,
+    const sensor::PointCloud& point_cloud, const mapping::Grid2D& grid,
+    transform::Rigid2d* const pose_estimate, MatchReport* const report) const {
+  if (grid.GetGridType() == mapping::GridType::TSDF) {
+    MatchTsdf(prediction, initial_pose_estimate, point_cloud, grid,
+              pose_estimate, report);
+    return;
+  }
+  const Pose2 pose =
+      MatchScan(options_, prediction, ToPose2(initial_pose_estimate),
+                ToPoints(point_cloud), GridCells(&grid), report);
+  *pose_estimate = transform::Rigid2d({pose.x, pose.y}, pose.theta);
+}
+
+void DegeneracyAwareScanMatcher2D::MatchTsdf(
+    const Prediction& prediction,
+    const transform::Rigid2d& initial_pose_estimate,
+    const sensor::PointCloud& point_cloud, const mapping::Grid2D& grid,
+    transform::Rigid2d* const pose_estimate, MatchReport* const report) const {
+  ceres::Solver::Summary summary;
+  stock_.Match(prediction.pose.translation(), initial_pose_estimate,
+               point_cloud, grid, pose_estimate, &summary);
+  if (report == nullptr) return;
+  // Nothing is known of how sure the match is: as much as the prediction.
+  *report = MatchReport();
+  const double t = options_.prediction_translation_sigma;
+  const double r = options_.prediction_rotation_sigma;
+  report->covariance = Eigen::Vector3d(t * t, t * t, r * r).asDiagonal();
+  report->information =
+      Eigen::Vector3d(1. / (t * t), 1. / (t * t), 1. / (r * r)).asDiagonal();
+  report->match = ToPose2(*pose_estimate);
+  report->disagreement << report->match.x - prediction.pose.x,
+      report->match.y - prediction.pose.y,
+      NormalizeAngle(report->match.theta - prediction.pose.theta);
+  report->degrees_of_freedom = 3;
+  report->initial_cost = summary.initial_cost;
+  report->final_cost = summary.final_cost;
+  report->iterations = static_cast<int>(summary.iterations.size());
+  report->converged = summary.termination_type == ceres::CONVERGENCE;
+}
+
+}  // namespace scan_matching
+}  // namespace cartographer_ext
