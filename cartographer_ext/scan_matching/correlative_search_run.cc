@@ -18,7 +18,6 @@ constexpr size_t kMostEqual = 64;
 constexpr int kPointsPerWord =
     65535 / (CoarseMaxima::kMaxValue * CoarseMaxima::kNumPerByte) *
     CoarseMaxima::kNumPerByte;
-constexpr int kPointsPerSquareSum = 257;
 constexpr int kMostPoints = 1 << 22;
 constexpr int64_t kMostCoarseNodes = int64_t{1} << 28;
 constexpr int kLargestHalfGroup = 31;
@@ -42,10 +41,18 @@ PreparedGrid::PreparedGrid(const SearchGrid2D& grid, const int depth_in,
   geometry.resolution = grid.resolution;
   geometry.max_x = grid.max_x;
   geometry.max_y = grid.max_y;
-  const SquareMaxima single = CellMaxima(grid.values, grid.num_x, grid.num_y);
-  blocks = Widen(Widen(Widen(single, 1), 2), 4);
-  coarse[0] = CoarseMaxima(Widen(blocks, 2 * kReaches[0]));
-  coarse[1] = CoarseMaxima(Widen(blocks, 2 * kReaches[1]));
+  blocks = CellMaxima(grid.values, grid.num_x, grid.num_y);
+  for (int width = 1; width != kBlockSize; width *= 2) {
+    blocks = Widen(blocks, width, width);
+  }
+  const RectangleMaxima coarse_blocks = ToCoarse(blocks);
+  for (int i = 0; i != kNumReaches; ++i) {
+    coarse[i] = CoarseMaxima(
+        Widen(coarse_blocks, 2 * kReaches[i].x, 2 * kReaches[i].y), kernels);
+  }
+  // The instructions that gather bytes read three more.
+  blocks.values.reserve(blocks.values.size() + 3);
+  blocks.values.resize(blocks.values.size() + 3);
   padded_stride = grid.num_x + 2 * kMargin;
   padded.resize(static_cast<size_t>(padded_stride) *
                 (grid.num_y + 2 * kMargin));
@@ -57,7 +64,7 @@ PreparedGrid::PreparedGrid(const SearchGrid2D& grid, const int depth_in,
   }
 }
 
-SquareMaxima PreparedGrid::Cells() const {
+RectangleMaxima PreparedGrid::Cells() const {
   std::vector<uint8_t> values;
   values.reserve(static_cast<size_t>(geometry.num_x) * geometry.num_y);
   for (int y = 0; y != geometry.num_y; ++y) {
@@ -144,27 +151,34 @@ int CorrelativeSearchRun::SmallestSumOfScore(const float score) const {
 // steps apart a point moves by at most `way` = k CellsPerStep + RoundingCells
 // cells, hence its index by at most ceil(way).
 void CorrelativeSearchRun::ChooseGroups() {
-  const int num_points = scans_.num_points();
-  const double rounding = scans_.RoundingCells();
-  std::vector<double> way(num_points);
   double longest = 0.;
-  for (int i = 0; i != num_points; ++i) {
-    way[i] = scans_.CellsPerStep(i);
-    longest = std::max(longest, way[i]);
+  for (int i = 0; i != scans_.num_points(); ++i) {
+    longest = std::max(longest, scans_.CellsPerStep(i));
   }
-  const int reach = kReaches[kNumReaches - 1];
+  const Reach& reach = kReaches[kNumReaches - 1];
   while (half_group_ < kLargestHalfGroup &&
-         (half_group_ + 1) * longest + rounding <= reach) {
+         (half_group_ + 1) * longest + scans_.RoundingCells() <=
+             std::min(reach.x, reach.y)) {
     ++half_group_;
   }
-  level_of_point_.resize(num_points);
-  for (int i = 0; i != num_points; ++i) {
-    const double moved =
-        half_group_ == 0 ? 0. : half_group_ * way[i] + rounding;
-    int level = 0;
-    while (level + 1 < kNumReaches && moved > kReaches[level]) ++level;
-    level_of_point_[i] = level;
+  const double angle = half_group_ * scans_.angular_step() * (1. + 1e-6);
+  sine_ = std::sin(angle);
+  versine_ = 1. - std::cos(angle);
+}
+
+// The reach a point needs: turned by up to `angle`, the point at (x, y) moves
+// by at most |y| sin + |x| (1 - cos) along x.
+int CorrelativeSearchRun::ReachOf(const double x, const double y) const {
+  if (half_group_ == 0) return 0;
+  const double rounding = scans_.RoundingCells();
+  const double move_x = y * sine_ + x * versine_ + rounding;
+  const double move_y = x * sine_ + y * versine_ + rounding;
+  int i = 0;
+  while (i + 1 < kNumReaches &&
+         (move_x > kReaches[i].x || move_y > kReaches[i].y)) {
+    ++i;
   }
+  return i;
 }
 
 bool CorrelativeSearchRun::ScoreCoarseNodes() {
@@ -184,14 +198,7 @@ void CorrelativeSearchRun::ScoreGroup(const int group) {
   const int last =
       std::min(first + 2 * half_group_, scans_.num_rotations() - 1);
   scans_.FindCells((first + last) / 2, group_x_.data(), group_y_.data());
-  // Of all rotations of the group.
-  OffsetBounds cells = scans_.CellBounds(group_x_.data(), group_y_.data());
-  const int reach = half_group_ == 0 ? 0 : kReaches[kNumReaches - 1];
-  cells.min_x -= reach;
-  cells.max_x += reach;
-  cells.min_y -= reach;
-  cells.max_y += reach;
-  const OffsetBounds bounds = scans_.BoundsFor(cells);
+  const OffsetBounds bounds = GroupBounds();
   const int64_t width = bounds.max_x - bounds.min_x + 1;
   const int64_t height = bounds.max_y - bounds.min_y + 1;
   const int num_x = static_cast<int>((width + kBlockSize - 1) / kBlockSize);
@@ -205,42 +212,80 @@ void CorrelativeSearchRun::ScoreGroup(const int group) {
   byte_sums_.assign(size + 32, 0);
   word_sums_.assign(size, 0);
   wide_sums_.assign(size, 0);
-  for (int begin = 0; begin < num_points; begin += kPointsPerWord) {
-    const int end = std::min(begin + kPointsPerWord, num_points);
-    for (int i = begin; i != end; ++i) {
-      if (i != begin && (i - begin) % CoarseMaxima::kNumPerByte == 0) {
-        grid_.kernels.move_sums(static_cast<int>(size), byte_sums_.data(),
-                                word_sums_.data());
-      }
-      const int level = level_of_point_[i];
-      const CoarseMaxima& maxima = grid_.coarse[level];
-      // The first element: width - 1 from the border, reach cells before.
-      const int shift = maxima.width() - 1 - kReaches[level];
-      const int column = group_x_[i] + bounds.min_x + shift;
-      const int row = group_y_[i] + bounds.min_y + shift;
-      const int x = column >> 3;
-      const int y = row >> 3;
-      const int x_begin = std::max(0, -x);
-      const int x_end = std::min(num_x, maxima.num_columns() - x);
-      const int y_begin = std::max(0, -y);
-      const int y_end = std::min(num_y, maxima.num_rows() - y);
-      if (x_begin >= x_end || y_begin >= y_end) continue;
-      grid_.kernels.add_rows(
-          maxima.Plane(column, row) +
-              static_cast<size_t>(y + y_begin) * maxima.num_columns() + x +
-              x_begin,
-          maxima.num_columns(), x_end - x_begin, y_end - y_begin,
-          byte_sums_.data() + static_cast<size_t>(y_begin) * num_x + x_begin,
-          num_x);
+  for (std::vector<uint16_t>& sums : sums_so_far_) sums.assign(size, 0);
+  if (num_points <= kPointsPerWord) {
+    for (int part = 0; part != RotatedScans::kNumParts; ++part) {
+      AddCoarse(bounds, num_x, num_y, scans_.PartBegin(part),
+                scans_.PartBegin(part + 1));
+      if (part != kNumSumsSoFar) sums_so_far_[part] = word_sums_;
     }
-    grid_.kernels.move_sums(static_cast<int>(size), byte_sums_.data(),
-                            word_sums_.data());
-    for (size_t k = 0; k != size; ++k) {
-      wide_sums_[k] += word_sums_[k];
-      word_sums_[k] = 0;
+    std::copy(word_sums_.begin(), word_sums_.end(), wide_sums_.begin());
+  } else {
+    // Without sums so far: zero is right, too.
+    for (int begin = 0; begin < num_points; begin += kPointsPerWord) {
+      AddCoarse(bounds, num_x, num_y, begin,
+                std::min(begin + kPointsPerWord, num_points));
+      for (size_t k = 0; k != size; ++k) {
+        wide_sums_[k] += word_sums_[k];
+        word_sums_[k] = 0;
+      }
     }
   }
   CollectCoarse(group, bounds, num_x, num_y);
+}
+
+// Offsets for any rotation of the group in group_x_, group_y_.
+OffsetBounds CorrelativeSearchRun::GroupBounds() const {
+  OffsetBounds cells = scans_.CellBounds(group_x_.data(), group_y_.data());
+  if (half_group_ != 0) {
+    const Reach& reach = kReaches[kNumReaches - 1];
+    cells.min_x -= reach.x;
+    cells.max_x += reach.x;
+    cells.min_y -= reach.y;
+    cells.max_y += reach.y;
+  }
+  return scans_.BoundsFor(cells);
+}
+
+// Points [begin, end), to word_sums_.
+void CorrelativeSearchRun::AddCoarse(const OffsetBounds& bounds,
+                                     const int num_x, const int num_y,
+                                     const int begin, const int end) {
+  const double sensor_x = scans_.SensorCellX();
+  const double sensor_y = scans_.SensorCellY();
+  const int size = static_cast<int>(word_sums_.size());
+  int num_added = 0;
+  for (int i = begin; i != end; ++i) {
+    // Distances from the sensor; the place within cells is not known.
+    const int level = ReachOf(std::abs(group_x_[i] - sensor_x) + 1.,
+                              std::abs(group_y_[i] - sensor_y) + 1.);
+    const CoarseMaxima& maxima = grid_.coarse[level];
+    // The first element: width - 1 from the border, reach cells before.
+    const int column =
+        group_x_[i] + bounds.min_x + maxima.width() - 1 - kReaches[level].x;
+    const int row =
+        group_y_[i] + bounds.min_y + maxima.height() - 1 - kReaches[level].y;
+    const int x = column >> 3;
+    const int y = row >> 3;
+    const int x_begin = std::max(0, -x);
+    const int x_end = std::min(num_x, maxima.num_columns() - x);
+    const int y_begin = std::max(0, -y);
+    const int y_end = std::min(num_y, maxima.num_rows() - y);
+    if (x_begin >= x_end || y_begin >= y_end) continue;
+    if (num_added == CoarseMaxima::kNumPerByte) {
+      grid_.kernels.move_sums(size, byte_sums_.data(), word_sums_.data());
+      num_added = 0;
+    }
+    ++num_added;
+    grid_.kernels.add_rows(
+        maxima.Plane(column, row) +
+            static_cast<size_t>(y + y_begin) * maxima.num_columns() + x +
+            x_begin,
+        maxima.num_columns(), x_end - x_begin, y_end - y_begin,
+        byte_sums_.data() + static_cast<size_t>(y_begin) * num_x + x_begin,
+        num_x);
+  }
+  grid_.kernels.move_sums(size, byte_sums_.data(), word_sums_.data());
 }
 
 void CorrelativeSearchRun::CollectCoarse(const int group,
@@ -250,12 +295,19 @@ void CorrelativeSearchRun::CollectCoarse(const int group,
   const int64_t scaled =
       (static_cast<int64_t>(threshold_) + 1) * CoarseMaxima::kMaxValue;
   const int needed = static_cast<int>((scaled + 254) / 255);
-  const int32_t* sum = wide_sums_.data();
+  int k = 0;
   for (int y = 0; y != num_y; ++y) {
-    for (int x = 0; x != num_x; ++x, ++sum) {
-      if (*sum < needed) continue;
-      coarse_.push_back(CoarseNode{*sum, group, bounds.min_x + kBlockSize * x,
-                                   bounds.min_y + kBlockSize * y});
+    for (int x = 0; x != num_x; ++x, ++k) {
+      if (wide_sums_[k] < needed) continue;
+      CoarseNode node = {wide_sums_[k],
+                         group,
+                         bounds.min_x + kBlockSize * x,
+                         bounds.min_y + kBlockSize * y,
+                         {}};
+      for (int part = 0; part != kNumSumsSoFar; ++part) {
+        node.so_far[part] = sums_so_far_[part][k];
+      }
+      coarse_.push_back(node);
     }
   }
 }
@@ -275,8 +327,7 @@ void CorrelativeSearchRun::SortCoarse() {
 
 int CorrelativeSearchRun::CoarseBound() const {
   if (next_coarse_ == coarse_.size()) return -1;
-  return static_cast<int>(static_cast<int64_t>(coarse_[next_coarse_].sum) *
-                          255 / CoarseMaxima::kMaxValue);
+  return FromCoarse(coarse_[next_coarse_].sum);
 }
 
 int CorrelativeSearchRun::BlockBound() const {
@@ -326,11 +377,18 @@ void CorrelativeSearchRun::Run(const float score, BudgetMeter* const meter) {
   }
 }
 
+// In steps of CoarseMaxima to values, as an upper bound of a sum of integers.
+int CorrelativeSearchRun::FromCoarse(const int sum) {
+  return static_cast<int>(static_cast<int64_t>(sum) * 255 /
+                          CoarseMaxima::kMaxValue);
+}
+
 void CorrelativeSearchRun::OpenCoarse(const CoarseNode& node) {
   const int first = node.group * (2 * half_group_ + 1);
   const int last =
       std::min(first + 2 * half_group_, scans_.num_rotations() - 1);
   const int needed = Needed();
+  const RectangleMaxima& maxima = grid_.blocks;
   for (int rotation = first; rotation <= last; ++rotation) {
     const RotatedScan& scan = scans_.Get(rotation);
     if (node.x > scan.offsets.max_x || node.y > scan.offsets.max_y ||
@@ -339,9 +397,24 @@ void CorrelativeSearchRun::OpenCoarse(const CoarseNode& node) {
       continue;
     }
     ++statistics_.blocks_scored;
-    const int sum = BlockSum(scan, node.x, node.y);
-    if (sum < needed) continue;
-    blocks_.push_back(Block{sum, rotation, node.x, node.y});
+    Block block = {0, rotation, node.x, node.y, {}};
+    // What the parts to come may add at most.
+    int rest = 0;
+    for (int part = 0; part != RotatedScans::kNumParts; ++part) {
+      const int begin = scans_.PartBegin(part);
+      block.sum += grid_.kernels.sum_values(
+          maxima.values.data(), maxima.num_x, maxima.num_y, scan.x + begin,
+          scan.y + begin, node.x + kMargin, node.y + kMargin,
+          scans_.PartBegin(part + 1) - begin);
+      rest = 0;
+      if (part != kNumSumsSoFar) {
+        block.so_far[part] = block.sum;
+        rest = FromCoarse(node.sum - node.so_far[part]);
+      }
+      if (block.sum + rest < needed) break;
+    }
+    if (block.sum + rest < needed) continue;
+    blocks_.push_back(block);
     std::push_heap(blocks_.begin(), blocks_.end(), &Worse);
   }
 }
@@ -351,49 +424,42 @@ bool CorrelativeSearchRun::Worse(const Block& a, const Block& b) {
   return std::tie(a.rotation, a.x, a.y) > std::tie(b.rotation, b.x, b.y);
 }
 
-int CorrelativeSearchRun::BlockSum(const RotatedScan& scan, const int x,
-                                   const int y) const {
-  const SquareMaxima& blocks = grid_.blocks;
-  const int num_points = scans_.num_points();
-  const int x_shift = x + kMargin;
-  const int y_shift = y + kMargin;
-  const unsigned num_x = blocks.num_x;
-  const unsigned num_y = blocks.num_y;
-  const uint8_t* const values = blocks.values.data();
-  int sum = 0;
-  for (int i = 0; i != num_points; ++i) {
-    const unsigned column = scan.x[i] + x_shift;
-    const unsigned row = scan.y[i] + y_shift;
-    if (column < num_x && row < num_y) sum += values[row * num_x + column];
-  }
-  return sum;
-}
-
 void CorrelativeSearchRun::OpenBlock(const Block& block) {
+  constexpr int kNumPoses = kBlockSize * kBlockSize;
   ++statistics_.blocks_opened;
   const RotatedScan& scan = scans_.Get(block.rotation);
-  const int num_points = scans_.num_points();
-  const int x_shift = block.x + kMargin;
-  const int y_shift = block.y + kMargin;
-  const unsigned num_x = grid_.blocks.num_x;
-  const unsigned num_y = grid_.blocks.num_y;
-  places_.resize(kPointsPerSquareSum + 1);
-  int32_t sums[kBlockSize * kBlockSize] = {};
-  for (int begin = 0; begin < num_points; begin += kPointsPerSquareSum) {
-    const int end = std::min(begin + kPointsPerSquareSum, num_points);
-    int count = 0;
-    for (int i = begin; i != end; ++i) {
-      const unsigned column = scan.x[i] + x_shift;
-      const unsigned row = scan.y[i] + y_shift;
-      places_[count] = static_cast<int32_t>(row * grid_.padded_stride + column);
-      count += column < num_x && row < num_y;
+  const int needed = Needed();
+  uint16_t words[kNumPoses] = {};
+  int32_t sums[kNumPoses] = {};
+  int largest = 0;
+  int num_in_words = 0;
+  for (int part = 0; part != RotatedScans::kNumParts; ++part) {
+    const int end = scans_.PartBegin(part + 1);
+    for (int begin = scans_.PartBegin(part); begin != end;) {
+      const int count = std::min(end - begin, int{kPointsPerSquareSum});
+      if (num_in_words + count > kPointsPerSquareSum) {
+        for (int k = 0; k != kNumPoses; ++k) sums[k] += words[k];
+        std::fill(words, words + kNumPoses, uint16_t{0});
+        num_in_words = 0;
+      }
+      const int num_places = grid_.kernels.find_places(
+          grid_.blocks.num_x, grid_.blocks.num_y, grid_.padded_stride,
+          scan.x + begin, scan.y + begin, block.x + kMargin, block.y + kMargin,
+          count, places_);
+      largest = grid_.kernels.add_squares(
+          grid_.padded.data(), grid_.padded_stride, places_, num_places, words);
+      num_in_words += count;
+      begin += count;
     }
-    uint16_t words[kBlockSize * kBlockSize] = {};
-    grid_.kernels.add_squares(grid_.padded.data(), grid_.padded_stride,
-                              places_.data(), count, words);
-    for (int k = 0; k != kBlockSize * kBlockSize; ++k) sums[k] += words[k];
+    // Only while all is in the words; a large scan is added to the end.
+    const int rest = part == kNumSumsSoFar ? 0 : block.sum - block.so_far[part];
+    if (end <= kPointsPerSquareSum && largest + rest < needed) {
+      ++statistics_.blocks_cut;
+      return;
+    }
   }
-  for (int k = 0; k != kBlockSize * kBlockSize; ++k) {
+  for (int k = 0; k != kNumPoses; ++k) sums[k] += words[k];
+  for (int k = 0; k != kNumPoses; ++k) {
     if (sums[k] < Needed()) continue;
     const int x = block.x + k % kBlockSize;
     const int y = block.y + k / kBlockSize;
@@ -432,7 +498,7 @@ SearchResult CorrelativeSearchRun::Result() {
   if (!result.found) return result;
   DiscretePose pose = best_.front();
   if (result.complete && best_.size() > 1) {
-    const SquareMaxima cells = grid_.Cells();
+    const RectangleMaxima cells = grid_.Cells();
     const EqualScores equal(cells, grid_.blocks, grid_.depth, &scans_);
     pose = too_many_equal_ ? equal.FirstOfAll(best_sum_) : equal.First(best_);
   }

@@ -20,9 +20,16 @@ namespace cartographer_ext {
 namespace scan_matching {
 
 // How far, in cells, points may move within a coarse node to either side of
-// where they are in its middle rotation; ascending.
-constexpr int kNumReaches = 2;
-constexpr int kReaches[kNumReaches] = {2, 4};
+// where they are in its middle rotation. A point moves across its ray, so that
+// one on an axis of the grid needs room along the other axis only.
+struct Reach {
+  int x;
+  int y;
+};
+constexpr int kNumReaches = 5;
+// Each point uses the first that suffices; the last is for all points.
+constexpr Reach kReaches[kNumReaches] = {
+    {1, 1}, {1, 4}, {4, 1}, {2, 2}, {4, 4}};
 
 struct PreparedGrid {
   PreparedGrid(const SearchGrid2D& grid, int depth,
@@ -36,14 +43,14 @@ struct PreparedGrid {
   GridGeometry geometry;
   float min_score;
   float max_score;
-  int depth;            // of Cartographer's search
-  SquareMaxima blocks;  // of kBlockSize
+  int depth;               // of Cartographer's search
+  RectangleMaxima blocks;  // of kBlockSize
   // The cells with kBlockSize - 1 zeros on every side.
   std::vector<uint8_t> padded;
   int padded_stride = 0;
   CoarseMaxima coarse[kNumReaches];
 
-  SquareMaxima Cells() const;  // a copy without the margin
+  RectangleMaxima Cells() const;  // a copy without the margin
   size_t MemoryBytes() const;
 };
 
@@ -81,34 +88,44 @@ class CorrelativeSearchRun {
   SearchResult Result();
 
  private:
+  // 16 bits hold the values of so many points.
+  static constexpr int kPointsPerSquareSum = 257;
+  // Sums so far, after each part of the scan but the last.
+  static constexpr int kNumSumsSoFar = RotatedScans::kNumParts - 1;
   struct CoarseNode {
     int32_t sum;    // bound, in steps of CoarseMaxima
     int32_t group;  // of rotations
     int32_t x;      // smallest offsets
     int32_t y;
+    uint16_t so_far[kNumSumsSoFar];
   };
   struct Block {
     int32_t sum;  // bound
     int32_t rotation;
     int32_t x;
     int32_t y;
+    int32_t so_far[kNumSumsSoFar];
   };
 
   int LargestSumNotAbove(float score) const;
   int SmallestSumOfScore(float score) const;
   void ChooseGroups();
+  int ReachOf(double x, double y) const;
   bool ScoreCoarseNodes();
   void ScoreGroup(int group);
+  OffsetBounds GroupBounds() const;
+  void AddCoarse(const OffsetBounds& bounds, int num_x, int num_y, int begin,
+                 int end);
   void CollectCoarse(int group, const OffsetBounds& bounds, int num_x,
                      int num_y);
   void SortCoarse();
+  static int FromCoarse(int sum);
   int CoarseBound() const;
   int BlockBound() const;
   int BestBound() const;
   // The smallest sum that is of interest.
   int Needed() const;
   void OpenCoarse(const CoarseNode& node);
-  int BlockSum(const RotatedScan& scan, int x, int y) const;
   void OpenBlock(const Block& block);
   void TakePose(int sum, int rotation, int x, int y);
   static bool Worse(const Block& a, const Block& b);
@@ -123,17 +140,19 @@ class CorrelativeSearchRun {
   bool too_many_equal_ = false;
 
   int half_group_ = 0;
-  std::vector<int> level_of_point_;  // index of kReaches
+  double sine_ = 0.;     // of the angle from the middle of a group to its ends
+  double versine_ = 0.;  // 1 - cosine
   std::vector<int32_t> group_x_;
   std::vector<int32_t> group_y_;
   std::vector<uint8_t> byte_sums_;
   std::vector<uint16_t> word_sums_;
   std::vector<int32_t> wide_sums_;
+  std::vector<uint16_t> sums_so_far_[kNumSumsSoFar];
 
   std::vector<CoarseNode> coarse_;  // best first
   size_t next_coarse_ = 0;
   std::vector<Block> blocks_;  // a heap
-  std::vector<int32_t> places_;
+  int32_t places_[kPointsPerSquareSum + 8];
   SearchStatistics statistics_;
 };
 

@@ -10,14 +10,14 @@ namespace scan_matching {
 namespace {
 
 // The largest value of a square of 2^level cells.
-int LargestInSquare(const SquareMaxima& cells, const SquareMaxima& blocks,
+int LargestInSquare(const RectangleMaxima& cells, const RectangleMaxima& blocks,
                     const int x, const int y, const int level) {
   const bool use_blocks = (1 << level) >= kBlockSize;
-  const SquareMaxima& maxima = use_blocks ? blocks : cells;
+  const RectangleMaxima& maxima = use_blocks ? blocks : cells;
   const int step = maxima.width;
   // The part of the square where there is anything.
   const int num_x = maxima.num_x - maxima.width + 1;
-  const int num_y = maxima.num_y - maxima.width + 1;
+  const int num_y = maxima.num_y - maxima.height + 1;
   const int x_end = std::min(x + (1 << level), num_x);
   const int y_end = std::min(y + (1 << level), num_y);
   const auto first = [step](const int begin) {
@@ -34,8 +34,9 @@ int LargestInSquare(const SquareMaxima& cells, const SquareMaxima& blocks,
 
 }  // namespace
 
-EqualScores::EqualScores(const SquareMaxima& cells, const SquareMaxima& blocks,
-                         const int depth, RotatedScans* const scans)
+EqualScores::EqualScores(const RectangleMaxima& cells,
+                         const RectangleMaxima& blocks, const int depth,
+                         RotatedScans* const scans)
     : cells_(cells),
       blocks_(blocks),
       top_level_(std::min(16, std::max(1, depth)) - 1),
@@ -86,7 +87,7 @@ int EqualScores::Bound(const DiscretePose& pose, const int level) const {
   return sum;
 }
 
-int EqualScores::Sum(const SquareMaxima& maxima,
+int EqualScores::Sum(const RectangleMaxima& maxima,
                      const DiscretePose& pose) const {
   const RotatedScan& scan = scans_->Get(pose.rotation);
   int sum = 0;
@@ -97,9 +98,10 @@ int EqualScores::Sum(const SquareMaxima& maxima,
 }
 
 DiscretePose EqualScores::FirstOfAll(const int sum) const {
-  std::vector<SquareMaxima> levels = {cells_};
+  std::vector<RectangleMaxima> levels = {cells_};
   while (static_cast<int>(levels.size()) <= top_level_) {
-    levels.push_back(Widen(levels.back(), levels.back().width));
+    levels.push_back(
+        Widen(levels.back(), levels.back().width, levels.back().height));
   }
   const int step = 1 << top_level_;
   std::vector<Square> squares;
@@ -124,7 +126,7 @@ DiscretePose EqualScores::FirstOfAll(const int sum) const {
   return found;
 }
 
-bool EqualScores::Descend(const std::vector<SquareMaxima>& levels,
+bool EqualScores::Descend(const std::vector<RectangleMaxima>& levels,
                           const Square& square, const int level, const int sum,
                           DiscretePose* const found) const {
   if (level == 0) {

@@ -27,8 +27,8 @@ struct DiscretePose {
 class EqualScores {
  public:
   // All must stay. `cells` has squares of one cell, `blocks` of kBlockSize.
-  EqualScores(const SquareMaxima& cells, const SquareMaxima& blocks, int depth,
-              RotatedScans* scans);
+  EqualScores(const RectangleMaxima& cells, const RectangleMaxima& blocks,
+              int depth, RotatedScans* scans);
 
   // The first of some poses with equal sums, not empty.
   DiscretePose First(const std::vector<DiscretePose>& poses) const;
@@ -48,12 +48,12 @@ class EqualScores {
   Square Ancestor(const DiscretePose& pose, int level) const;
   // Upper bound of the poses in a square of 2^level x 2^level offsets.
   int Bound(const DiscretePose& pose, int level) const;
-  bool Descend(const std::vector<SquareMaxima>& levels, const Square& square,
+  bool Descend(const std::vector<RectangleMaxima>& levels, const Square& square,
                int level, int sum, DiscretePose* found) const;
-  int Sum(const SquareMaxima& maxima, const DiscretePose& pose) const;
+  int Sum(const RectangleMaxima& maxima, const DiscretePose& pose) const;
 
-  const SquareMaxima& cells_;
-  const SquareMaxima& blocks_;
+  const RectangleMaxima& cells_;
+  const RectangleMaxima& blocks_;
   const int top_level_;
   RotatedScans* const scans_;
 };

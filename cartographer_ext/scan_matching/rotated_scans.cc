@@ -48,21 +48,24 @@ RotatedScans::RotatedScans(const PlanarCloud& cloud, const Pose2& initial,
                            const double linear, const double angular,
                            const GridGeometry& geometry,
                            const SearchKernels& kernels)
-    : initial_(initial),
-      geometry_(geometry),
-      kernels_(kernels),
-      turned_x_(cloud.x),
-      turned_y_(cloud.y) {
+    : initial_(initial), geometry_(geometry), kernels_(kernels) {
   const double resolution = geometry.resolution;
   float largest_range = 3.f * resolution;
+  turned_x_.reserve(cloud.size());
+  turned_y_.reserve(cloud.size());
   ranges_.reserve(cloud.size());
-  for (size_t i = 0; i != cloud.size(); ++i) {
-    const float range =
-        std::sqrt(cloud.x[i] * cloud.x[i] + cloud.y[i] * cloud.y[i]);
-    // A point that is not finite is nowhere, whatever the offset.
-    ranges_.push_back(std::isfinite(range) ? range : -1.f);
-    if (ranges_.back() < 0.f) all_finite_ = false;
-    largest_range = std::max(largest_range, ranges_.back());
+  for (size_t first = 0; first != kNumParts; ++first) {
+    for (size_t i = first; i < cloud.size(); i += kNumParts) {
+      const float x = cloud.x[i];
+      const float y = cloud.y[i];
+      turned_x_.push_back(x);
+      turned_y_.push_back(y);
+      const float range = std::sqrt(x * x + y * y);
+      // A point that is not finite is nowhere, whatever the offset.
+      ranges_.push_back(std::isfinite(range) ? range : -1.f);
+      if (ranges_.back() < 0.f) all_finite_ = false;
+      largest_range = std::max(largest_range, ranges_.back());
+    }
   }
   largest_range_ = largest_range;
   angular_step_ =
@@ -149,18 +152,33 @@ const RotatedScan& RotatedScans::Get(const int rotation) {
 OffsetBounds RotatedScans::CellBounds(const int32_t* const x,
                                       const int32_t* const y) const {
   const int count = num_points();
+  if (all_finite_) {
+    int min_x = x[0], max_x = x[0], min_y = y[0], max_y = y[0];
+    for (int i = 1; i < count; ++i) {
+      min_x = std::min<int>(min_x, x[i]);
+      max_x = std::max<int>(max_x, x[i]);
+      min_y = std::min<int>(min_y, y[i]);
+      max_y = std::max<int>(max_y, y[i]);
+    }
+    return OffsetBounds{min_x, max_x, min_y, max_y};
+  }
   int first = 0;
   while (first + 1 < count && ranges_[first] < 0.f) ++first;
-  if (ranges_[first] < 0.f) return OffsetBounds();
-  OffsetBounds cells = {x[first], x[first], y[first], y[first]};
+  if (ranges_[first] < 0.f) return OffsetBounds{0, 0, 0, 0};
+  OffsetBounds cells = OffsetBounds{x[first], x[first], y[first], y[first]};
   for (int i = first + 1; i < count; ++i) {
-    if (!all_finite_ && ranges_[i] < 0.f) continue;
+    if (ranges_[i] < 0.f) continue;
     cells.min_x = std::min(cells.min_x, x[i]);
     cells.max_x = std::max(cells.max_x, x[i]);
     cells.min_y = std::min(cells.min_y, y[i]);
     cells.max_y = std::max(cells.max_y, y[i]);
   }
   return cells;
+}
+
+int RotatedScans::PartBegin(const int part) const {
+  const int count = num_points();
+  return part * (count / kNumParts) + std::min(part, count % kNumParts);
 }
 
 OffsetBounds RotatedScans::BoundsFor(const OffsetBounds& cells) const {

@@ -47,10 +47,10 @@ struct GridGeometry {
 
 // Of offsets in cells; both ends belong to it.
 struct OffsetBounds {
-  int min_x = 0;
-  int max_x = 0;
-  int min_y = 0;
-  int max_y = 0;
+  int min_x;
+  int max_x;
+  int min_y;
+  int max_y;
 
   bool Contains(const int x, const int y) const {
     return min_x <= x && x <= max_x && min_y <= y && y <= max_y;
@@ -61,12 +61,17 @@ struct OffsetBounds {
 struct RotatedScan {
   const int32_t* x = nullptr;  // cells at offset (0, 0), one per point
   const int32_t* y = nullptr;
-  OffsetBounds cells;  // that the points are in
-  OffsetBounds offsets;
+  OffsetBounds cells = {0, 0, 0, 0};  // that the points are in
+  OffsetBounds offsets = {0, 0, 0, 0};
 };
 
 class RotatedScans {
  public:
+  // Points are kept in another order: every fourth, from the first, the second,
+  // the third, and the fourth on. So these parts of a scan are much alike, and
+  // one of them shows whether a pose is any good.
+  static constexpr int kNumParts = 4;
+
   // Half sizes in metres and radians; `initial` is (grid <- cloud). The cloud
   // must not be empty and its two vectors equally long.
   RotatedScans(const PlanarCloud& cloud, const Pose2& initial, double linear,
@@ -83,10 +88,21 @@ class RotatedScans {
   // To either side, before the grid's size is considered.
   int linear_cells() const { return linear_cells_; }
 
+  // Part `part` consists of points PartBegin(part) to PartBegin(part + 1) - 1.
+  int PartBegin(int part) const;
+
   // How many cells the point may move from a rotation to the next, at most.
   double CellsPerStep(int point) const;
   // Of that, what rounding may add to the way between any two rotations.
   double RoundingCells() const;
+
+  // Of the initial pose, in fractions of cells.
+  double SensorCellX() const {
+    return (geometry_.max_y - initial_.y) / geometry_.resolution - 0.5;
+  }
+  double SensorCellY() const {
+    return (geometry_.max_x - initial_.x) / geometry_.resolution - 0.5;
+  }
 
   // Writes num_points() cells to each of `x` and `y`.
   void FindCells(int rotation, int32_t* x, int32_t* y) const;

@@ -71,9 +71,9 @@ void MoveSums(const int count, uint8_t* const sums, uint16_t* const totals) {
   }
 }
 
-void AddSquares(const uint8_t* const cells, const int stride,
-                const int32_t* const offsets, const int count,
-                uint16_t* const sums) {
+int AddSquares(const uint8_t* const cells, const int stride,
+               const int32_t* const offsets, const int count,
+               uint16_t* const sums) {
   for (int k = 0; k != count; ++k) {
     const uint8_t* row = cells + offsets[k];
     for (int j = 0; j != 8; ++j, row += stride) {
@@ -82,10 +82,47 @@ void AddSquares(const uint8_t* const cells, const int stride,
       }
     }
   }
+  return *std::max_element(sums, sums + 64);
 }
 
-constexpr SearchKernels kPlain = {"plain", &FindCells, &AddRows, &MoveSums,
-                                  &AddSquares};
+int SumValues(const uint8_t* const values, const int num_x, const int num_y,
+              const int32_t* const x, const int32_t* const y, const int shift_x,
+              const int shift_y, const int count) {
+  int sum = 0;
+  for (int i = 0; i != count; ++i) {
+    const unsigned column = x[i] + shift_x;
+    const unsigned row = y[i] + shift_y;
+    if (column < static_cast<unsigned>(num_x) &&
+        row < static_cast<unsigned>(num_y)) {
+      sum += values[row * num_x + column];
+    }
+  }
+  return sum;
+}
+
+int FindPlaces(const int num_x, const int num_y, const int stride,
+               const int32_t* const x, const int32_t* const y,
+               const int shift_x, const int shift_y, const int count,
+               int32_t* const places) {
+  int num_places = 0;
+  for (int i = 0; i != count; ++i) {
+    const unsigned column = x[i] + shift_x;
+    const unsigned row = y[i] + shift_y;
+    places[num_places] = static_cast<int32_t>(row * stride + column);
+    num_places += column < static_cast<unsigned>(num_x) &&
+                  row < static_cast<unsigned>(num_y);
+  }
+  return num_places;
+}
+
+void SplitColumns(const uint8_t* const source, const int count,
+                  const size_t plane, uint8_t* const target) {
+  for (int i = 0; i != count; ++i) target[plane * (i % 8) + i / 8] = source[i];
+}
+
+constexpr SearchKernels kPlain = {"plain",       &FindCells, &AddRows,
+                                  &MoveSums,     &SumValues, &FindPlaces,
+                                  &SplitColumns, &AddSquares};
 
 #ifdef CARTOGRAPHER_EXT_X86_KERNELS
 
@@ -137,9 +174,9 @@ void MoveSumsSse2(const int count, uint8_t* const sums,
   }
 }
 
-void AddSquaresSse2(const uint8_t* const cells, const int stride,
-                    const int32_t* const offsets, const int count,
-                    uint16_t* const sums) {
+int AddSquaresSse2(const uint8_t* const cells, const int stride,
+                   const int32_t* const offsets, const int count,
+                   uint16_t* const sums) {
   const __m128i zero = _mm_setzero_si128();
   __m128i rows[8];
   for (int j = 0; j != 8; ++j) rows[j] = Load16(sums + 8 * j);
@@ -150,11 +187,41 @@ void AddSquaresSse2(const uint8_t* const cells, const int stride,
           rows[j], _mm_unpacklo_epi8(Load8(square + stride * j), zero));
     }
   }
-  for (int j = 0; j != 8; ++j) Store16(rows[j], sums + 8 * j);
+  // The larger of unsigned numbers is a + max(0, b - a).
+  __m128i largest = zero;
+  for (int j = 0; j != 8; ++j) {
+    Store16(rows[j], sums + 8 * j);
+    largest = _mm_add_epi16(largest, _mm_subs_epu16(rows[j], largest));
+  }
+  uint16_t eight[8];
+  Store16(largest, eight);
+  return *std::max_element(eight, eight + 8);
 }
 
-constexpr SearchKernels kSse2 = {"sse2", &FindCells, &AddRowsSse2,
-                                 &MoveSumsSse2, &AddSquaresSse2};
+// Four rounds of interleaving the first with the second half of 128 bytes make
+// a transposed matrix of 16 x 8.
+void SplitColumnsSse2(const uint8_t* const source, const int count,
+                      const size_t plane, uint8_t* const target) {
+  int i = 0;
+  for (; i + 128 <= count; i += 128) {
+    __m128i rows[8];
+    __m128i next[8];
+    for (int j = 0; j != 8; ++j) rows[j] = Load16(source + i + 16 * j);
+    for (int round = 0; round != 4; ++round) {
+      for (int j = 0; j != 4; ++j) {
+        next[2 * j] = _mm_unpacklo_epi8(rows[j], rows[j + 4]);
+        next[2 * j + 1] = _mm_unpackhi_epi8(rows[j], rows[j + 4]);
+      }
+      for (int j = 0; j != 8; ++j) rows[j] = next[j];
+    }
+    for (int j = 0; j != 8; ++j) Store16(rows[j], target + plane * j + i / 8);
+  }
+  SplitColumns(source + i, count - i, plane, target + i / 8);
+}
+
+constexpr SearchKernels kSse2 = {
+    "sse2",     &FindCells,  &AddRowsSse2,      &MoveSumsSse2,
+    &SumValues, &FindPlaces, &SplitColumnsSse2, &AddSquaresSse2};
 
 // round((max - world) / resolution - 0.5) of four.
 __attribute__((target("avx2"))) inline __m128i FourIndices(
@@ -258,9 +325,11 @@ __attribute__((target("avx2"))) void MoveSumsAvx2(const int count,
   }
 }
 
-__attribute__((target("avx2"))) void AddSquaresAvx2(
-    const uint8_t* const cells, const int stride, const int32_t* const offsets,
-    const int count, uint16_t* const sums) {
+__attribute__((target("avx2"))) int AddSquaresAvx2(const uint8_t* const cells,
+                                                   const int stride,
+                                                   const int32_t* const offsets,
+                                                   const int count,
+                                                   uint16_t* const sums) {
   __m256i* const target = reinterpret_cast<__m256i*>(sums);
   __m256i rows[4];
   for (int j = 0; j != 4; ++j) rows[j] = Load32(target + j);
@@ -274,10 +343,104 @@ __attribute__((target("avx2"))) void AddSquaresAvx2(
     }
   }
   for (int j = 0; j != 4; ++j) Store32(rows[j], target + j);
+  const __m256i sixteen = _mm256_max_epu16(_mm256_max_epu16(rows[0], rows[1]),
+                                           _mm256_max_epu16(rows[2], rows[3]));
+  const __m128i eight = _mm_max_epu16(_mm256_castsi256_si128(sixteen),
+                                      _mm256_extracti128_si256(sixteen, 1));
+  // There is an instruction for the smallest only.
+  const __m128i all = _mm_set1_epi16(-1);
+  return 65535 -
+         _mm_extract_epi16(_mm_minpos_epu16(_mm_xor_si128(eight, all)), 0);
 }
 
-constexpr SearchKernels kAvx2 = {"avx2", &FindCellsAvx2, &AddRowsAvx2,
-                                 &MoveSumsAvx2, &AddSquaresAvx2};
+// Places of eight points, and in the signs of `*inside` whether they are in the
+// grid. Numbers are compared as unsigned by flipping their highest bits.
+__attribute__((target("avx2"))) inline __m256i EightPlaces(
+    const int32_t* const x, const int32_t* const y, const __m256i shift_x,
+    const __m256i shift_y, const __m256i num_x, const __m256i num_y,
+    const __m256i stride, __m256i* const inside) {
+  const __m256i flip = _mm256_set1_epi32(static_cast<int>(0x80000000u));
+  const __m256i column = _mm256_add_epi32(Load32(x), shift_x);
+  const __m256i row = _mm256_add_epi32(Load32(y), shift_y);
+  *inside = _mm256_and_si256(_mm256_cmpgt_epi32(_mm256_xor_si256(num_x, flip),
+                                                _mm256_xor_si256(column, flip)),
+                             _mm256_cmpgt_epi32(_mm256_xor_si256(num_y, flip),
+                                                _mm256_xor_si256(row, flip)));
+  return _mm256_add_epi32(_mm256_mullo_epi32(row, stride), column);
+}
+
+__attribute__((target("avx2"))) int SumValuesAvx2(
+    const uint8_t* const values, const int num_x, const int num_y,
+    const int32_t* const x, const int32_t* const y, const int shift_x,
+    const int shift_y, const int count) {
+  const __m256i all_num_x = _mm256_set1_epi32(num_x);
+  const __m256i all_num_y = _mm256_set1_epi32(num_y);
+  const __m256i all_shift_x = _mm256_set1_epi32(shift_x);
+  const __m256i all_shift_y = _mm256_set1_epi32(shift_y);
+  const __m256i low_byte = _mm256_set1_epi32(255);
+  __m256i sums = _mm256_setzero_si256();
+  int i = 0;
+  for (; i + 8 <= count; i += 8) {
+    __m256i inside;
+    const __m256i places =
+        EightPlaces(x + i, y + i, all_shift_x, all_shift_y, all_num_x,
+                    all_num_y, all_num_x, &inside);
+    const __m256i four_bytes = _mm256_mask_i32gather_epi32(
+        _mm256_setzero_si256(), reinterpret_cast<const int*>(values), places,
+        inside, 1);
+    sums = _mm256_add_epi32(sums, _mm256_and_si256(four_bytes, low_byte));
+  }
+  alignas(32) int32_t parts[8];
+  Store32(sums, parts);
+  return parts[0] + parts[1] + parts[2] + parts[3] + parts[4] + parts[5] +
+         parts[6] + parts[7] +
+         SumValues(values, num_x, num_y, x + i, y + i, shift_x, shift_y,
+                   count - i);
+}
+
+// For each set of eight bits, the positions of those that are 1.
+struct BitPositions {
+  BitPositions() {
+    for (int set = 0; set != 256; ++set) {
+      int count = 0;
+      for (uint8_t bit = 0; bit != 8; ++bit) {
+        if (set >> bit & 1) positions[set][count++] = bit;
+      }
+      while (count != 8) positions[set][count++] = 0;
+    }
+  }
+  uint8_t positions[256][8];
+};
+
+__attribute__((target("avx2"))) int FindPlacesAvx2(
+    const int num_x, const int num_y, const int stride, const int32_t* const x,
+    const int32_t* const y, const int shift_x, const int shift_y,
+    const int count, int32_t* const places) {
+  static const BitPositions* const bits = new BitPositions;
+  const __m256i all_num_x = _mm256_set1_epi32(num_x);
+  const __m256i all_num_y = _mm256_set1_epi32(num_y);
+  const __m256i all_stride = _mm256_set1_epi32(stride);
+  const __m256i all_shift_x = _mm256_set1_epi32(shift_x);
+  const __m256i all_shift_y = _mm256_set1_epi32(shift_y);
+  int num_places = 0;
+  int i = 0;
+  for (; i + 8 <= count; i += 8) {
+    __m256i inside;
+    const __m256i eight =
+        EightPlaces(x + i, y + i, all_shift_x, all_shift_y, all_num_x,
+                    all_num_y, all_stride, &inside);
+    const int set = _mm256_movemask_ps(_mm256_castsi256_ps(inside));
+    const __m256i order = _mm256_cvtepu8_epi32(Load8(bits->positions[set]));
+    Store32(_mm256_permutevar8x32_epi32(eight, order), places + num_places);
+    num_places += __builtin_popcount(set);
+  }
+  return num_places + FindPlaces(num_x, num_y, stride, x + i, y + i, shift_x,
+                                 shift_y, count - i, places + num_places);
+}
+
+constexpr SearchKernels kAvx2 = {
+    "avx2",         &FindCellsAvx2,  &AddRowsAvx2,      &MoveSumsAvx2,
+    &SumValuesAvx2, &FindPlacesAvx2, &SplitColumnsSse2, &AddSquaresAvx2};
 
 #endif  // CARTOGRAPHER_EXT_X86_KERNELS
 

@@ -8,6 +8,7 @@
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_SEARCH_KERNELS_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_SEARCH_KERNELS_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -44,10 +45,27 @@ struct SearchKernels {
   // totals[i] += sums[i], sums[i] = 0 for i < count, a multiple of 16.
   void (*move_sums)(int count, uint8_t* sums, uint16_t* totals);
 
+  // The sum of values[num_x * (y[i] + shift_y) + x[i] + shift_x] over those i <
+  // count for which column and row are in [0, num_x) and [0, num_y). Up to 3
+  // bytes beyond the last value are accessed.
+  int (*sum_values)(const uint8_t* values, int num_x, int num_y,
+                    const int32_t* x, const int32_t* y, int shift_x,
+                    int shift_y, int count);
+
+  // Writes stride * row + column of the same ones to `places`, which must have
+  // room for count + 8, and returns how many there are.
+  int (*find_places)(int num_x, int num_y, int stride, const int32_t* x,
+                     const int32_t* y, int shift_x, int shift_y, int count,
+                     int32_t* places);
+
+  // target[plane * (i % 8) + i / 8] = source[i] for i < count.
+  void (*split_columns)(const uint8_t* source, int count, size_t plane,
+                        uint8_t* target);
+
   // sums[8 * j + i] += cells[offsets[k] + stride * j + i] for all k < count and
-  // i, j < 8, modulo 65536.
-  void (*add_squares)(const uint8_t* cells, int stride, const int32_t* offsets,
-                      int count, uint16_t* sums);
+  // i, j < 8, modulo 65536. Returns the largest sum.
+  int (*add_squares)(const uint8_t* cells, int stride, const int32_t* offsets,
+                     int count, uint16_t* sums);
 };
 
 // The fastest set of this machine.

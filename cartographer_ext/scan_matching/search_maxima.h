@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "cartographer_ext/scan_matching/search_kernels.h"
+
 namespace cartographer_ext {
 namespace scan_matching {
 
@@ -17,10 +19,11 @@ namespace scan_matching {
 constexpr int kBlockSize = 8;
 
 // Element (x, y), at row-major place, is the largest value of the `width` x
-// `width` cells that begin at (x, y). There are elements for all squares that
-// touch the grid, x >= 1 - width; all others would be 0.
-struct SquareMaxima {
+// `height` cells that begin at (x, y). There are elements for all rectangles
+// that touch the grid, x >= 1 - width, y >= 1 - height; all others would be 0.
+struct RectangleMaxima {
   int width = 1;
+  int height = 1;
   int num_x = 0;  // elements per row
   int num_y = 0;
   std::vector<uint8_t> values;
@@ -28,7 +31,7 @@ struct SquareMaxima {
   // 0 outside.
   int Value(const int x, const int y) const {
     const int column = x + width - 1;
-    const int row = y + width - 1;
+    const int row = y + height - 1;
     if (static_cast<unsigned>(column) >= static_cast<unsigned>(num_x) ||
         static_cast<unsigned>(row) >= static_cast<unsigned>(num_y)) {
       return 0;
@@ -37,16 +40,19 @@ struct SquareMaxima {
   }
 };
 
-// Of `num_x` x `num_y` cells, row by row, squares of one cell.
-SquareMaxima CellMaxima(const std::vector<uint8_t>& cells, int num_x,
-                        int num_y);
+// Of `num_x` x `num_y` cells, row by row, rectangles of one cell.
+RectangleMaxima CellMaxima(const std::vector<uint8_t>& cells, int num_x,
+                           int num_y);
 
-// Squares larger by `more` <= width cells.
-SquareMaxima Widen(const SquareMaxima& maxima, int more);
+// Rectangles larger by `more_x` <= width and `more_y` <= height cells.
+RectangleMaxima Widen(const RectangleMaxima& maxima, int more_x, int more_y);
 
-// SquareMaxima in steps of 255 / 31, rounded up, and in another order:
+// The values in steps of 255 / 31, rounded up.
+RectangleMaxima ToCoarse(const RectangleMaxima& maxima);
+
+// RectangleMaxima of ToCoarse in another order:
 // elements kBlockSize apart are neighbours. Element (x, y) with column c = x +
-// width - 1 and row r = y + width - 1 is found in plane (c % 8, r % 8), which
+// width - 1 and row r = y + height - 1 is found in plane (c % 8, r % 8), which
 // is a row-major picture, at (c / 8, r / 8).
 class CoarseMaxima {
  public:
@@ -55,9 +61,11 @@ class CoarseMaxima {
   static constexpr int kMaxValue = 31;
 
   CoarseMaxima() = default;
-  explicit CoarseMaxima(const SquareMaxima& maxima);
+  // The values of `maxima` must be those of ToCoarse.
+  CoarseMaxima(const RectangleMaxima& maxima, const SearchKernels& kernels);
 
   int width() const { return width_; }
+  int height() const { return height_; }
   int num_columns() const { return num_columns_; }  // of a plane
   int num_rows() const { return num_rows_; }
   // Of plane (c % 8, r % 8); 31 bytes beyond its end may be read.
@@ -70,6 +78,7 @@ class CoarseMaxima {
 
  private:
   int width_ = 1;
+  int height_ = 1;
   int num_columns_ = 0;
   int num_rows_ = 0;
   std::vector<uint8_t> values_;

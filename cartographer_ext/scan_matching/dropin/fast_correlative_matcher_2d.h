@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "Eigen/Core"
-#include "cartographer/common/port.h"
 #include "cartographer/mapping/2d/grid_2d.h"
 #include "cartographer/mapping/proto/scan_matching/fast_correlative_scan_matcher_options_2d.pb.h"
 #include "cartographer/sensor/point_cloud.h"
@@ -50,9 +49,11 @@ inline SearchGrid2D ToSearchGrid(const cartographer::mapping::Grid2D& grid) {
     for (int x = 0; x != result.num_x; ++x) {
       const float score =
           1.f - std::abs(grid.GetCorrespondenceCost(Eigen::Array2i(x, y)));
-      const int step = cartographer::common::RoundToInt(
-          (score - result.min_score) * steps_per_score);
-      *value++ = static_cast<uint8_t>(std::min(255, std::max(0, step)));
+      // Rounds like lround: the sum is exact, and below 0 nothing is left.
+      const double step =
+          static_cast<double>((score - result.min_score) * steps_per_score);
+      *value++ = static_cast<uint8_t>(
+          static_cast<int>(std::min(255., std::max(0., step)) + 0.5));
     }
   }
   return result;
