@@ -17,6 +17,7 @@
 #include "cartographer_ext/evaluation/resource_usage.h"
 #include "cartographer_ext/evaluation/scan_conversion.h"
 #include "cartographer_ext/evaluation/scan_trajectory.h"
+#include "cartographer_ext/loop_closure/decision_recorder.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -34,6 +35,10 @@ constexpr char kImuId[] = "imu";
 constexpr char kQueueMetric[] = "mapping_2d_pose_graph_work_queue_size";
 constexpr char kConstraintsMetric[] =
     "mapping_constraints_constraint_builder_2d_constraints";
+constexpr char kOurSearchesMetric[] = "cartographer_ext_loop_searches";
+constexpr char kOurCpuMetric[] = "cartographer_ext_loop_cpu_seconds";
+// Decision records kept, about 400 bytes each.
+constexpr size_t kMaxDecisions = 2000000;
 constexpr char kSearchCpuMetric[] =
     "mapping_constraints_constraint_builder_2d_search_cpu_seconds";
 
@@ -200,11 +205,20 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   optimization::ResetSwitchedLoops();
   MetricsCollector* const metrics = MetricsCollector::Global();
   const auto metrics_before = metrics->Values();
-  const double searched_before =
-      metrics->Sum(kConstraintsMetric, {{"matcher", "searched"}});
-  const double found_before =
-      metrics->Sum(kConstraintsMetric, {{"matcher", "found"}});
-  const double search_cpu_before = metrics->Sum(kSearchCpuMetric);
+  const auto sum_both = [metrics](const MetricsCollector::Labels& labels) {
+    return metrics->Sum(kConstraintsMetric, labels) +
+           metrics->Sum(kOurSearchesMetric, labels);
+  };
+  const auto search_cpu = [metrics]() {
+    return metrics->Sum(kSearchCpuMetric) +
+           metrics->Sum(kOurCpuMetric, {{"stage", "search"}});
+  };
+  const double searched_before = sum_both({{"matcher", "searched"}});
+  const double found_before = sum_both({{"matcher", "found"}});
+  const double search_cpu_before = search_cpu();
+  loop_closure::DecisionRecorder* const recorder =
+      loop_closure::DecisionRecorder::Global();
+  recorder->Start(kMaxDecisions);
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = ProcessCpuSeconds();
   const double thread_cpu_start = ThreadCpuSeconds();
@@ -282,6 +296,12 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
 
   run.switched_loops = optimization::LastSwitchedLoops();
 
+  run.decisions = recorder->All();
+  recorder->Stop();
+  if (recorder->num_left_out() > 0) {
+    run.warnings.push_back(
+        absl::StrCat(recorder->num_left_out(), " decision records left out"));
+  }
   CountResults(*run.map_builder->pose_graph(), &run);
   run.global_scan_poses = GlobalScanPoses(
       run.local_scan_poses,
@@ -291,15 +311,14 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   run.cpu_seconds = ProcessCpuSeconds() - cpu_start;
   run.peak_memory_bytes = PeakMemoryBytes();
   run.metrics = Difference(metrics->Values(), metrics_before);
-  run.loop_searches = static_cast<int64_t>(
-      metrics->Sum(kConstraintsMetric, {{"matcher", "searched"}}) -
-      searched_before);
-  run.loops_found = static_cast<int64_t>(
-      metrics->Sum(kConstraintsMetric, {{"matcher", "found"}}) - found_before);
+  run.loop_searches = static_cast<int64_t>(sum_both({{"matcher", "searched"}}) -
+                                           searched_before);
+  run.loops_found =
+      static_cast<int64_t>(sum_both({{"matcher", "found"}}) - found_before);
   run.loop_search_cpu_is_measured = metrics->Has(kSearchCpuMetric);
   run.loop_search_cpu_seconds =
       run.loop_search_cpu_is_measured
-          ? metrics->Sum(kSearchCpuMetric) - search_cpu_before
+          ? search_cpu() - search_cpu_before
           : run.cpu_seconds - (ThreadCpuSeconds() - thread_cpu_start);
   if (run.scans_left_out > 0) {
     run.warnings.push_back(absl::StrCat(

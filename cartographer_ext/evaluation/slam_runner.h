@@ -31,6 +31,7 @@
 #include "cartographer_ext/evaluation/trajectory.h"
 #include "cartographer_ext/evaluation/wrong_loops.h"
 #include "cartographer_ext/io/sensor_source.h"
+#include "cartographer_ext/loop_decision.pb.h"
 #include "cartographer_ext/optimization/switched_loops.h"
 
 namespace cartographer_ext {
@@ -98,6 +99,9 @@ struct SlamRun {
   bool loop_search_cpu_is_measured = false;
   // The host's metrics at the end, less those at the start.
   std::map<std::string, double> metrics;
+
+  // Why loop candidates were accepted or not, where our loop closure ran.
+  std::vector<proto::LoopDecision> decisions;
 
   std::vector<std::string> warnings;
 };

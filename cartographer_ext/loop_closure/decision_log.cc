@@ -20,7 +20,10 @@ using proto::LoopDecision;
 
 constexpr char kHead[] =
     "candidate,submap_trajectory,submap,node_trajectory,node,node_time,verdict,"
-    "reason,full_submap,linear_window,angular_window,grid_score,refined_x,"
+    "reason,full_submap,linear_window,angular_window,grid_score,prior_"
+    "translation_"
+    "sigma,prior_rotation_sigma,predicted_x,predicted_y,predicted_theta,"
+    "refined_x,"
     "refined_y,refined_theta,temporal_outcome,temporal_score,window,num_query,"
     "num_reference,travelled,threshold,score_variance,lambda,final_score,"
     "false_weight,false_mean_grid,false_mean_temporal,true_weight,"
@@ -72,6 +75,12 @@ std::string CsvLine(const LoopDecision& decision) {
   line.Number(search.linear_window());
   line.Number(search.angular_window());
   line.Number(search.grid_score());
+  line.Number(search.prior_translation_sigma());
+  line.Number(search.prior_rotation_sigma());
+  line.Begin(search.has_predicted());
+  line.Number(search.predicted().x());
+  line.Number(search.predicted().y());
+  line.Number(search.predicted().theta());
   line.Begin(search.has_refined());
   line.Number(search.refined().x());
   line.Number(search.refined().y());

@@ -210,6 +210,7 @@ LoopOutcome LoopVerifier::MakeOutcome(const LoopCandidate& candidate) {
   outcome.anchor = candidate.anchor;
   outcome.submap_local_pose = candidate.submap_local_pose;
   outcome.pose = candidate.refined;
+  outcome.constraint_pose = candidate.constraint_pose;
   LoopDecision& decision = outcome.decision;
   decision.set_candidate(next_candidate_++);
   decision.set_submap_trajectory_id(candidate.submap.trajectory_id);

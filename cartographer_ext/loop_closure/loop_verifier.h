@@ -73,6 +73,7 @@ struct LoopOutcome {
   absl::optional<NodeKey> anchor;
   Pose2 submap_local_pose;
   Pose2 pose;                 // (submap <- node)
+  Pose2 constraint_pose;      // of the candidate
   ConstraintWeights weights;  // for the constraint when accepted
   proto::LoopDecision decision;
   bool accepted() const {

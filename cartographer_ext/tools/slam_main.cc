@@ -17,6 +17,7 @@
 #include "absl/strings/str_split.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/evaluation/decision_files.h"
 #include "cartographer_ext/evaluation/decision_table.h"
 #include "cartographer_ext/evaluation/host_map.h"
 #include "cartographer_ext/evaluation/map_picture.h"
@@ -30,6 +31,7 @@
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/loop_closure/decision_log.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
@@ -178,6 +180,15 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
       {"cpu_seconds", run.loop_search_cpu_seconds},
       // Otherwise all threads of the back end are counted.
       {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured}};
+  if (!run.decisions.empty()) {
+    const evaluation::DecisionCounts counts =
+        evaluation::CountDecisions(run.decisions);
+    json["loop_decisions"] = {{"accepted", counts.accepted},
+                              {"rejected", counts.rejected},
+                              {"not_found", counts.not_found},
+                              {"undecided", counts.undecided},
+                              {"skipped", counts.skipped}};
+  }
   const optimization::SwitchedLoops& switched = run.switched_loops;
   json["optimizations"] = {
       {"robust", switched.optimizations},
@@ -200,6 +211,9 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
     const absl::Status status =
         evaluation::WritePbstream(map_builder, FLAGS_pbstream_filename);
     if (!status.ok()) return status;
+    const absl::Status decisions = evaluation::WriteDecisionsBeside(
+        FLAGS_pbstream_filename, run.decisions);
+    if (!decisions.ok()) return decisions;
     if (!FLAGS_keep_switched_loops && !run.switched_loops.off.empty()) {
       const absl::Status removed =
           RemoveSwitchedLoops(run, FLAGS_pbstream_filename);
@@ -229,7 +243,9 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
   evaluation::MarkSwitchedOff(run.switched_loops.off, &graph);
   if (!FLAGS_decisions_filename.empty()) {
     const absl::Status status = WriteFileAtomically(
-        FLAGS_decisions_filename, evaluation::DecisionTable(graph));
+        FLAGS_decisions_filename,
+        run.decisions.empty() ? evaluation::DecisionTable(graph)
+                              : loop_closure::DecisionCsv(run.decisions));
     if (!status.ok()) return status;
   }
   if (!wants_map) return absl::OkStatus();

@@ -3,9 +3,9 @@
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
 
 #include <cmath>
+#include <cstdint>
 
 #include "cartographer/mapping/2d/map_limits.h"
-#include "cartographer/transform/rigid_transform.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -13,15 +13,24 @@ namespace {
 
 using cartographer::mapping::Grid2D;
 using cartographer::mapping::GridType;
-using cartographer::transform::Rigid2d;
 
-SubmapMatch ToMatch(const bool found, const float score, const Rigid2d& pose) {
+// Searches of a whole submap end here at the latest, with the best so far.
+// Usual ones need a hundredth of it.
+constexpr int64_t kMaxCandidates = 5000000;
+
+SubmapMatch ToMatch(const scan_matching::SearchResult& result) {
   SubmapMatch match;
-  match.found = found;
-  match.score = found ? static_cast<double>(score) : 0.;
-  match.pose = Pose2(pose.translation().x(), pose.translation().y(),
-                     pose.normalized_angle());
+  match.found = result.found;
+  match.score = result.found ? static_cast<double>(result.score) : 0.;
+  match.pose = result.pose;
+  match.pose.theta = NormalizeAngle(match.pose.theta);
   return match;
+}
+
+scan_matching::SearchBudget Budget() {
+  scan_matching::SearchBudget budget;
+  budget.max_candidates = kMaxCandidates;
+  return budget;
 }
 
 }  // namespace
@@ -32,26 +41,23 @@ SubmapMatcher::SubmapMatcher(const Grid2D& grid,
     : matcher_(grid, options) {}
 
 SubmapMatch SubmapMatcher::Match(const Pose2& initial,
-                                 const double /*linear_window*/,
-                                 const double /*angular_window*/,
+                                 const double linear_window,
+                                 const double angular_window,
                                  const cartographer::sensor::PointCloud& cloud,
                                  const double min_score) const {
-  float score = 0.f;
-  Rigid2d pose = Rigid2d::Identity();
-  const bool found =
-      matcher_.Match(Rigid2d(initial.translation(), initial.theta), cloud,
-                     static_cast<float>(min_score), &score, &pose);
-  return ToMatch(found, score, pose);
+  scan_matching::SearchWindow window;
+  window.linear = linear_window;
+  window.angular = angular_window;
+  return ToMatch(matcher_.Match(
+      scan_matching::FastCorrelativeMatcher2D::ToRigid2d(initial), cloud,
+      window, static_cast<float>(min_score), Budget()));
 }
 
 SubmapMatch SubmapMatcher::MatchFullSubmap(
     const cartographer::sensor::PointCloud& cloud,
     const double min_score) const {
-  float score = 0.f;
-  Rigid2d pose = Rigid2d::Identity();
-  const bool found = matcher_.MatchFullSubmap(
-      cloud, static_cast<float>(min_score), &score, &pose);
-  return ToMatch(found, score, pose);
+  return ToMatch(
+      matcher_.MatchFullSubmap(cloud, static_cast<float>(min_score), Budget()));
 }
 
 OccupancyView MakeOccupancyView(const Grid2D& grid) {

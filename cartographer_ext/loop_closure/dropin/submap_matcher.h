@@ -6,14 +6,12 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
 
-#include <memory>
-
 #include "cartographer/mapping/2d/grid_2d.h"
-#include "cartographer/mapping/internal/2d/scan_matching/fast_correlative_scan_matcher_2d.h"
 #include "cartographer/mapping/proto/scan_matching/fast_correlative_scan_matcher_options_2d.pb.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/occupancy_view.h"
+#include "cartographer_ext/scan_matching/dropin/fast_correlative_matcher_2d.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -44,8 +42,7 @@ class SubmapMatcher {
                               double min_score) const;
 
  private:
-  const cartographer::mapping::scan_matching::FastCorrelativeScanMatcher2D
-      matcher_;
+  const scan_matching::FastCorrelativeMatcher2D matcher_;
 };
 
 // Cells more likely occupied than not are occupied, other known ones free. Of a

@@ -42,19 +42,28 @@ void ToProto(const Pose2& from, LoopDecision::Pose* const to) {
   to->set_theta(from.theta);
 }
 
-// (local <- node) of the gravity-aligned frame.
+// (local <- tracking frame)
 Pose2 LocalPose(const VerifiedConstraintBuilder2D::NodeData& node) {
-  return ToPose2(cartographer::transform::Project2D(
-      node.local_pose * cartographer::transform::Rigid3d::Rotation(
-                            node.gravity_alignment.inverse())));
+  return ToPose2(cartographer::transform::Project2D(node.local_pose));
 }
 
+// (gravity-aligned frame <- tracking frame), a rotation.
+Pose2 FromRobot(const VerifiedConstraintBuilder2D::NodeData& node) {
+  const Pose2 aligned = ToPose2(cartographer::transform::Project2D(
+      node.local_pose * cartographer::transform::Rigid3d::Rotation(
+                            node.gravity_alignment.inverse())));
+  return Pose2(0., 0., NormalizeAngle(LocalPose(node).theta - aligned.theta));
+}
+
+// Points of the cloud in the tracking frame.
 std::vector<Eigen::Vector2f> PlanarPoints(
-    const cartographer::sensor::PointCloud& cloud) {
+    const VerifiedConstraintBuilder2D::NodeData& node) {
+  const Pose2 to_robot = FromRobot(node).Inverse();
   std::vector<Eigen::Vector2f> points;
-  points.reserve(cloud.size());
-  for (const auto& point : cloud) {
-    points.push_back(point.position.head<2>());
+  points.reserve(node.filtered_gravity_aligned_point_cloud.size());
+  for (const auto& point : node.filtered_gravity_aligned_point_cloud) {
+    const Eigen::Vector2d aligned = point.position.head<2>().cast<double>();
+    points.push_back((to_robot * aligned).cast<float>());
   }
   return points;
 }
@@ -117,9 +126,8 @@ void VerifiedConstraintBuilder2D::RememberNode(const NodeId& node_id,
   history.node_index = node_id.node_index;
   history.time = cartographer::common::ToUniversal(node.time);
   history.local_pose = LocalPose(node);
-  history.signature = SignatureFromPoints(
-      verifier_.signature_options(),
-      PlanarPoints(node.filtered_gravity_aligned_point_cloud));
+  history.signature =
+      SignatureFromPoints(verifier_.signature_options(), PlanarPoints(node));
   const auto newest =
       newest_nodes_.emplace(node_id.trajectory_id, node_id.node_index).first;
   if (node_id.node_index >= newest->second) {
@@ -188,7 +196,7 @@ void VerifiedConstraintBuilder2D::MaybeAddConstraint(
   absl::MutexLock lock(&mutex_);
   const SubmapEntry* const entry = Offer(submap_id, submap, node_id, *node);
   pairs_.push_back(Pair{submap_id, node_id, node, false,
-                        ToPose2(initial_relative_pose),
+                        ToPose2(initial_relative_pose), FromRobot(*node),
                         Anchor(submap_id, *entry, node_id.trajectory_id)});
 }
 
@@ -198,6 +206,7 @@ void VerifiedConstraintBuilder2D::MaybeAddGlobalConstraint(
   absl::MutexLock lock(&mutex_);
   const SubmapEntry* const entry = Offer(submap_id, submap, node_id, *node);
   pairs_.push_back(Pair{submap_id, node_id, node, true, Pose2(),
+                        FromRobot(*node),
                         Anchor(submap_id, *entry, node_id.trajectory_id)});
 }
 
@@ -373,7 +382,8 @@ LoopCandidate VerifiedConstraintBuilder2D::MakeLoopCandidate(
   }
   loop.submap_local_pose = entry.local_pose;
   loop.anchor = pair.anchor;
-  loop.refined = candidate.refined;
+  loop.refined = candidate.refined * pair.from_robot;
+  loop.constraint_pose = candidate.refined;
   loop.grid_score = candidate.score;
   loop.information = candidate.information;
   LoopDecision::Search& search = loop.search;
@@ -382,10 +392,12 @@ LoopCandidate VerifiedConstraintBuilder2D::MakeLoopCandidate(
   search.set_angular_window(candidate.plan.angular_window);
   search.set_prior_translation_sigma(candidate.plan.translation_sigma);
   search.set_prior_rotation_sigma(candidate.plan.rotation_sigma);
-  if (!pair.is_global) ToProto(pair.predicted, search.mutable_predicted());
+  if (!pair.is_global) {
+    ToProto(pair.predicted * pair.from_robot, search.mutable_predicted());
+  }
   if (!candidate.found) return loop;
-  ToProto(candidate.matched, search.mutable_matched());
-  ToProto(candidate.refined, search.mutable_refined());
+  ToProto(candidate.matched * pair.from_robot, search.mutable_matched());
+  ToProto(loop.refined, search.mutable_refined());
   const int reach = extension_.temporal_verification().num_neighbours();
   for (int k = 0; k <= 2 * reach; ++k) {
     // The submap, then its neighbours from near to far.
@@ -423,9 +435,9 @@ VerifiedConstraintBuilder2D::Result VerifiedConstraintBuilder2D::Verify() {
     const NodeId node_id(outcome.node.trajectory_id, outcome.node.node_index);
     result.push_back(Constraint{
         submap_id, node_id,
-        Constraint::Pose{
-            cartographer::transform::Embed3D(ToRigid2d(outcome.pose)),
-            outcome.weights.translation, outcome.weights.rotation},
+        Constraint::Pose{cartographer::transform::Embed3D(
+                             ToRigid2d(outcome.constraint_pose)),
+                         outcome.weights.translation, outcome.weights.rotation},
         Constraint::INTER_SUBMAP});
     if (!outcome.anchor.has_value()) continue;
     const auto anchor_pose = verifier_.paths().LocalPose(*outcome.anchor);

@@ -18,6 +18,10 @@
 // Only planning and verification have memory, and both see the same sequence
 // for any number of threads.
 //
+// A node of the host stands for the gravity-aligned frame, which does not turn
+// with the robot. Searching and constraints keep to that; what knows about
+// motion (paths, signatures, verification, records) has the tracking frame.
+//
 // The pose graph deletes nodes together with the submaps they belong to, and
 // tells about the submaps only. A constraint with a node that is gone would be
 // fatal there, so with a submap all undecided loops of nodes are given up that
@@ -124,7 +128,8 @@ class VerifiedConstraintBuilder2D {
     NodeId node_id;
     const NodeData* node;
     bool is_global;
-    Pose2 predicted;  // (submap <- node)
+    Pose2 predicted;   // (submap <- node), gravity-aligned
+    Pose2 from_robot;  // (gravity-aligned <- tracking frame), a rotation
     absl::optional<NodeKey> anchor;
   };
 
@@ -138,7 +143,7 @@ class VerifiedConstraintBuilder2D {
     SubmapEntry* entry;
     bool found = false;
     double score = 0.;
-    Pose2 matched;  // (submap <- node)
+    Pose2 matched;  // (submap <- node), gravity-aligned
     Pose2 refined;
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   };

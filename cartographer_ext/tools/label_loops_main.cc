@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+// LINK: evaluation
+//
+// cartographer_ext_label_loops: which loop candidates are true, and do the
+// scores know?
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/evaluation/decision_files.h"
+#include "cartographer_ext/evaluation/host_map.h"
+#include "cartographer_ext/evaluation/labelled_loops.h"
+#include "cartographer_ext/evaluation/loop_statistics.h"
+#include "cartographer_ext/evaluation/open_recording.h"
+#include "cartographer_ext/evaluation/pbstream_map.h"
+#include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/evaluation/slam_runner.h"
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/relations_file.h"
+#include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/tools/command_line.h"
+#include "gflags/gflags.h"
+#include "nlohmann/json.hpp"
+
+DEFINE_string(input_filename, "",
+              "Recording: CARMEN log, ROS 1 bag or world file.");
+DEFINE_string(pbstream_filename, "",
+              "Instead of a recording: a finished map with the decision "
+              "records of its making beside it (<stem>.loops.pb).");
+DEFINE_string(configuration_directory, "configuration_files",
+              "Where Lua files are searched, comma separated.");
+DEFINE_string(configuration_basename, "default.lua",
+              "Configuration with our loop closure.");
+DEFINE_string(stock_configuration_basename, "stock.lua",
+              "Configuration to compare with; empty: none.");
+DEFINE_string(relations_filename, "",
+              "Truth: reference relations, t1 t2 x y z roll pitch yaw a line.");
+DEFINE_string(
+    reference_trajectory_filename, "",
+    "Truth: trajectory (TUM), for example a carefully optimised one.");
+DEFINE_double(loop_tolerance, 0.5,
+              "Metres that a loop may be off the truth to count as true.");
+DEFINE_double(stamp_tolerance, 0.001,
+              "Seconds within which stamps are the same scan.");
+DEFINE_int32(num_background_threads, 0,
+             "Threads of the back end; 0: as the configuration says.");
+DEFINE_uint64(seed, 0, "Worlds: chooses noise and faults.");
+DEFINE_string(csv_filename, "", "Output: every candidate with its label.");
+DEFINE_string(picture_filename, "",
+              "Output: ROC and precision-recall curves (.svg).");
+DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
+
+namespace cartographer_ext {
+namespace {
+
+using evaluation::LoopStatistics;
+using evaluation::LoopStatisticsOptions;
+
+constexpr char kDescription[] =
+    R"(Labels every loop candidate as true or false and tells how well the scores know.
+
+  cartographer_ext_label_loops -input_filename=aces.clf
+      -relations_filename=aces.relations -csv_filename=loops.csv
+      -picture_filename=loops.svg -json=-
+
+Runs the recording with our loop closure and, beside it, with Cartographer's.
+Precision is the share of true ones among the accepted loops that truth can
+judge, recall the share of the revisits that a true loop closes.)";
+
+struct Truth {
+  absl::optional<std::vector<evaluation::Relation>> relations;
+  absl::optional<evaluation::Trajectory> reference;
+};
+
+absl::StatusOr<Truth> ReadTruth() {
+  Truth truth;
+  if (!FLAGS_relations_filename.empty()) {
+    auto relations = io::ReadRelations(FLAGS_relations_filename);
+    if (!relations.ok()) return relations.status();
+    truth.relations = *std::move(relations);
+  } else {
+    auto poses = io::ReadTumTrajectory(FLAGS_reference_trajectory_filename);
+    if (!poses.ok()) return poses.status();
+    truth.reference = evaluation::Trajectory(*std::move(poses));
+  }
+  return truth;
+}
+
+LoopStatistics JudgeLoops(const evaluation::MapGraph& graph,
+                          const Truth& truth) {
+  LoopStatisticsOptions options;
+  options.correct_translation = FLAGS_loop_tolerance;
+  options.stamp_tolerance = io::FromSeconds(FLAGS_stamp_tolerance);
+  return truth.relations.has_value() ? evaluation::ComputeLoopStatistics(
+                                           graph, *truth.relations, options)
+                                     : evaluation::ComputeLoopStatistics(
+                                           graph, *truth.reference, options);
+}
+
+absl::StatusOr<evaluation::SlamRun> RunWith(const std::string& basename) {
+  const std::vector<std::string> directories =
+      absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+  const auto configuration =
+      evaluation::LoadSlamConfiguration(directories, basename);
+  if (!configuration.ok()) return configuration.status();
+  const auto source = evaluation::OpenRecording(
+      FLAGS_input_filename, evaluation::ToSourceOptions(configuration->sensors),
+      FLAGS_seed);
+  if (!source.ok()) return source.status();
+  evaluation::SlamRunOptions options;
+  options.num_background_threads = FLAGS_num_background_threads;
+  return evaluation::RunSlam(*configuration, source->get(), options);
+}
+
+nlohmann::ordered_json Number(const absl::optional<double>& value) {
+  return value.has_value() ? nlohmann::ordered_json(*value)
+                           : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json ToJson(const LoopStatistics& loops,
+                              const int64_t searches,
+                              const double search_cpu_seconds) {
+  return {{"precision", Number(loops.precision)},
+          {"recall", Number(loops.recall)},
+          {"accepted", loops.accepted},
+          {"judged", loops.judged},
+          {"correct", loops.correct},
+          {"revisits", loops.revisits},
+          {"revisits_closed", loops.revisits_closed},
+          {"searches", searches},
+          {"search_cpu_seconds", search_cpu_seconds}};
+}
+
+absl::Status Run() {
+  const absl::Status writable = tools::CheckWritable(
+      {FLAGS_csv_filename, FLAGS_picture_filename, FLAGS_json});
+  if (!writable.ok()) return writable;
+  const auto truth = ReadTruth();
+  if (!truth.ok()) return truth.status();
+
+  nlohmann::ordered_json json;
+  json["input"] = FLAGS_input_filename;
+  json["configuration"] = FLAGS_configuration_basename;
+  evaluation::MapGraph graph;
+  std::vector<proto::LoopDecision> decisions;
+  int64_t searches = 0;
+  double search_cpu_seconds = 0.;
+  if (FLAGS_pbstream_filename.empty()) {
+    const auto run = RunWith(FLAGS_configuration_basename);
+    if (!run.ok()) return run.status();
+    graph = evaluation::MakeMapGraph(*run->map_builder->pose_graph());
+    decisions = run->decisions;
+    searches = run->loop_searches;
+    search_cpu_seconds = run->loop_search_cpu_seconds;
+  } else {
+    json["pbstream"] = FLAGS_pbstream_filename;
+    const auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
+    if (!pbstream.ok()) return pbstream.status();
+    graph = evaluation::MakeMapGraph(*pbstream);
+    auto records = evaluation::ReadDecisions(
+        evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename));
+    if (!records.ok()) return records.status();
+    decisions = *std::move(records);
+  }
+  if (decisions.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(FLAGS_configuration_basename,
+                     ": no loop candidates; is POSE_GRAPH.constraint_builder."
+                     "cartographer_ext set?"));
+  }
+  const LoopStatistics ours = JudgeLoops(graph, *truth);
+  std::vector<proto::LoopDecision> candidates;
+  const evaluation::MapGraph candidate_graph =
+      evaluation::CandidateGraph(graph, decisions, &candidates);
+  const std::vector<evaluation::LabelledLoop> loops =
+      evaluation::LabelLoops(candidates, JudgeLoops(candidate_graph, *truth));
+  const evaluation::ChainRates chain = evaluation::RatesOfChain(loops);
+
+  json["candidates"] = loops.size();
+  json["judged_candidates"] = chain.true_candidates + chain.false_candidates;
+  json["true_candidates"] = chain.true_candidates;
+  const auto auc = [&](const evaluation::ScoreKind kind) {
+    return Number(evaluation::AreaUnderCurve(evaluation::Scores(loops, kind)));
+  };
+  json["auc"] = {{"grid", auc(evaluation::ScoreKind::kGrid)},
+                 {"temporal", auc(evaluation::ScoreKind::kTemporal)},
+                 {"fused", auc(evaluation::ScoreKind::kFused)}};
+  json["chain"] = {{"precision", Number(chain.precision())},
+                   {"recall", Number(chain.recall())},
+                   {"true_accepted", chain.true_accepted},
+                   {"false_accepted", chain.false_accepted}};
+  json["ours"] = ToJson(ours, searches, search_cpu_seconds);
+  json["stock"] = {{"precision", nullptr}, {"recall", nullptr}};
+  if (FLAGS_pbstream_filename.empty() &&
+      !FLAGS_stock_configuration_basename.empty()) {
+    const auto stock = RunWith(FLAGS_stock_configuration_basename);
+    if (!stock.ok()) return stock.status();
+    json["stock"] = ToJson(
+        JudgeLoops(evaluation::MakeMapGraph(*stock->map_builder->pose_graph()),
+                   *truth),
+        stock->loop_searches, stock->loop_search_cpu_seconds);
+  }
+
+  if (!FLAGS_csv_filename.empty()) {
+    const absl::Status status =
+        WriteFileAtomically(FLAGS_csv_filename, evaluation::LabelledCsv(loops));
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_picture_filename.empty()) {
+    const absl::Status status = WriteFileAtomically(
+        FLAGS_picture_filename,
+        evaluation::CurvesSvg(loops,
+                              tools::BaseName(FLAGS_pbstream_filename.empty()
+                                                  ? FLAGS_input_filename
+                                                  : FLAGS_pbstream_filename)));
+    if (!status.ok()) return status;
+  }
+  if (FLAGS_json != "-") {
+    std::cout << absl::StrFormat(
+        "%d candidates, %d true, %d false; accepted %d true, %d false\n",
+        loops.size(), chain.true_candidates, chain.false_candidates,
+        chain.true_accepted, chain.false_accepted);
+    std::cout << json["auc"].dump() << "\n";
+  }
+  if (FLAGS_json.empty()) return absl::OkStatus();
+  return tools::WriteJson(json, FLAGS_json);
+}
+
+}  // namespace
+}  // namespace cartographer_ext
+
+int main(int argc, char** argv) {
+  using namespace cartographer_ext;  // NOLINT
+  tools::CommandLine(kDescription).Parse(argc, argv);
+  if (FLAGS_input_filename.empty() == FLAGS_pbstream_filename.empty()) {
+    return tools::UsageError(
+        "one of -input_filename and -pbstream_filename is needed");
+  }
+  if (FLAGS_relations_filename.empty() ==
+      FLAGS_reference_trajectory_filename.empty()) {
+    return tools::UsageError(
+        "one of -relations_filename and -reference_trajectory_filename is "
+        "needed");
+  }
+  if (!FLAGS_picture_filename.empty() &&
+      !absl::EndsWith(FLAGS_picture_filename, ".svg")) {
+    return tools::UsageError("-picture_filename has to end in .svg");
+  }
+  if (FLAGS_num_background_threads < 0 || !(FLAGS_loop_tolerance > 0.) ||
+      !(FLAGS_stamp_tolerance >= 0.)) {
+    return tools::UsageError(
+        "-num_background_threads and -stamp_tolerance must not be negative, "
+        "-loop_tolerance must be above 0");
+  }
+  return tools::ExitCode(Run());
+}
