@@ -57,7 +57,10 @@ struct LoopCandidate {
   // A node of the submap, for the veto; where absent the node is taken whose
   // local position is nearest to the submap's.
   absl::optional<NodeKey> anchor;
-  Pose2 refined;           // (submap <- node)
+  Pose2 refined;  // (submap <- node)
+  // The same as the host's constraint wants it, whose frame of a node may be
+  // turned against the robot's; only handed through.
+  Pose2 constraint_pose;
   double grid_score = 0.;  // S_g
   // Of the refined pose from the scan alone, (submap <- node), metres and
   // radians; zero where it is not known.
