@@ -27,7 +27,7 @@ include_guard(GLOBAL)
 cmake_policy(VERSION 3.16)
 
 get_filename_component(CARTOGRAPHER_EXT_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
-set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder optimization_problem full_information)
+set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder ceres_scan_matcher optimization_problem full_information)
 
 # Modules whose sources need no host; they are compiled once as objects and become part of the target.
 set(CARTOGRAPHER_EXT_CORE_MODULES common options optimization loop_closure scan_matching front_end)
