@@ -92,7 +92,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
       has_imu || interval <= options_.constant_velocity.max_time;
   const bool is_suspect =
       expectation_is_known &&
-      monitor_.IsSuspect(odometry.motion, odometry.frozen, without);
+      monitor_.IsSuspect(interval, odometry.motion, odometry.frozen, without);
   if (!monitor_.IsTrusted() && monitor_.state() != OdometryState::kAbsent &&
       expectation_is_known) {
     // Out of favour until the monitor says otherwise; still worth a try.

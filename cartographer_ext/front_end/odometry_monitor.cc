@@ -13,6 +13,8 @@ namespace {
 // Motions below these are standing.
 constexpr double kStandingDistance = 0.03;  // metres
 constexpr double kStandingAngle = 0.035;    // radians
+// What stamps that are not quite even make of a steady motion, metres.
+constexpr double kUnevenWay = 0.06;
 // A fault ends at this part of the gate, so that it does not flicker.
 constexpr double kExitRatio = 0.4;
 // A suspected slip is forgotten after this long, seconds.
@@ -25,6 +27,13 @@ double Distance(const Pose2& pose) { return std::hypot(pose.x, pose.y); }
 bool IsMotion(const Pose2& motion) {
   return Distance(motion) > kStandingDistance ||
          std::abs(motion.theta) > kStandingAngle;
+}
+
+// Of a clear motion odometry saw hardly half.
+bool FallsShort(const Pose2& odometry, const Pose2& motion) {
+  return IsMotion(motion) && Distance(odometry) <= 0.5 * Distance(motion) &&
+         std::abs(odometry.theta) <=
+             0.5 * std::max(std::abs(motion.theta), kStandingAngle);
 }
 
 }  // namespace
@@ -56,12 +65,16 @@ double OdometryMonitor::ChiSquare(const Pose2& odometry,
          dr * dr / (rotation_sigma * rotation_sigma);
 }
 
-bool OdometryMonitor::IsSuspect(const Pose2& odometry, const bool frozen,
+bool OdometryMonitor::IsSuspect(const double interval, const Pose2& odometry,
+                                const bool frozen,
                                 const Pose2& expected) const {
   if (!options_.enabled) return false;
-  if (frozen && !IsMotion(odometry) && IsMotion(expected)) return true;
+  if (frozen && FallsShort(odometry, expected)) return true;
+  const double allowed =
+      std::min(options_.jump_distance,
+               kUnevenWay + options_.max_acceleration * interval * interval);
   return std::hypot(odometry.x - expected.x, odometry.y - expected.y) >
-             options_.jump_distance ||
+             allowed ||
          std::abs(NormalizeAngle(odometry.theta - expected.theta)) >
              options_.jump_angle;
 }
@@ -75,7 +88,7 @@ OdometryState OdometryMonitor::CheckInterval(
                               IsMotion(comparison.match);
     return stands_still ? OdometryState::kStale : OdometryState::kOk;
   }
-  if (comparison.frozen && !IsMotion(comparison.odometry)) {
+  if (comparison.frozen && FallsShort(comparison.odometry, comparison.match)) {
     return OdometryState::kStale;
   }
   const double distance =

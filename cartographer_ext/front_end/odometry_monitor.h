@@ -73,16 +73,17 @@ class OdometryMonitor {
 
   // Before the match: whether the motion by odometry is so different from what
   // the velocity makes expect that it should not be relied on.
-  bool IsSuspect(const Pose2& odometry, bool frozen,
+  bool IsSuspect(double interval, const Pose2& odometry, bool frozen,
                  const Pose2& expected) const;
 
   // After the match. Returns the state of the interval.
   OdometryState Add(const MotionComparison& comparison);
 
   OdometryState state() const { return state_; }
-  // Whether a prediction should rest on odometry.
+  // Whether a prediction should rest on odometry. A jump is over when it is
+  // seen.
   bool IsTrusted() const {
-    return state_ == OdometryState::kOk ||
+    return state_ == OdometryState::kOk || state_ == OdometryState::kJumping ||
            state_ == OdometryState::kSlipSuspected;
   }
 

@@ -57,8 +57,7 @@ bool OdometryPredictor::Predict(const double from, const double to,
     return false;
   }
   motion->motion = Between(begin.pose, end.pose);
-  motion->frozen = begin.frozen && end.frozen && motion->motion.x == 0. &&
-                   motion->motion.y == 0. && motion->motion.theta == 0.;
+  motion->frozen = begin.frozen || end.frozen;
   motion->covariance = OdometryCovariance(noise_, motion->motion);
   return true;
 }

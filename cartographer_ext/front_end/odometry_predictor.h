@@ -39,7 +39,7 @@ struct OdometryMotion {
   Pose2 motion;  // (robot at `from` <- robot at `to`)
   // Of (x, y, theta) of the motion, in the frame of the robot at `from`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  bool frozen = false;  // one pose was repeated all along
+  bool frozen = false;  // one pose is repeated at the start or the end
 };
 
 // The covariance above for a motion.

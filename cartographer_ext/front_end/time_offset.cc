@@ -65,7 +65,13 @@ void TimeOffsetEstimator::Update() {
   const size_t low = std::min(static_cast<size_t>(place), sums_.size() - 2);
   const double ratio = place - static_cast<double>(low);
   const double current = (1. - ratio) * sums_[low] + ratio * sums_[low + 1];
-  if (*best < (1. - options_.min_improvement) * current) offset_ = estimate;
+  // How much likelier it is, for errors of unknown variance: n / 2 times the
+  // logarithm of the ratio of the sums.
+  if (*best > 0. &&
+      0.5 * weight_ * std::log(current / *best) <= options_.evidence) {
+    return;
+  }
+  offset_ = estimate;
 }
 
 }  // namespace front_end

@@ -26,11 +26,11 @@ struct TimeOffsetOptions {
   double minimum = -0.1;
   double maximum = 0.25;
   double step = 0.01;
-  double forgetting = 0.998;     // a scan, of the sums
-  double min_spread = 0.01;      // radians, of the turns by offset
-  double clip = 0.05;            // radians
-  double min_weight = 25.;       // scans with evidence
-  double min_improvement = 0.1;  // of the sum of squares, relative
+  double forgetting = 0.998;  // a scan, of the sums
+  double min_spread = 0.01;   // radians, of the turns by offset
+  double clip = 0.05;         // radians
+  double min_weight = 25.;    // scans with evidence
+  double evidence = 2.;       // logarithm of the likelihood ratio
 };
 
 class TimeOffsetEstimator {
