@@ -28,8 +28,9 @@ std::unique_ptr<const PreparedGrid> Prepare(
       !std::isfinite(grid.max_x) || !std::isfinite(grid.max_y)) {
     return nullptr;
   }
-  return absl::make_unique<PreparedGrid>(grid, options.branch_and_bound_depth,
-                                         BestSearchKernels());
+  return absl::make_unique<PreparedGrid>(
+      grid, options.branch_and_bound_depth,
+      options.kernels == nullptr ? BestSearchKernels() : *options.kernels);
 }
 
 Pose2 Middle(const GridGeometry& geometry) {

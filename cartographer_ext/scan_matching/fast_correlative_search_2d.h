@@ -42,6 +42,7 @@
 
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/scan_matching/rotated_scans.h"
+#include "cartographer_ext/scan_matching/search_kernels.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -69,6 +70,8 @@ struct FastCorrelativeSearchOptions {
   SearchWindow window = {7., DegToRad(30.)};
   // Of Cartographer's search; decides only between poses of equal score.
   int branch_and_bound_depth = 7;
+  // Null means the fastest of this machine. All give the same results.
+  const SearchKernels* kernels = nullptr;
 };
 
 // Zero means without limit.

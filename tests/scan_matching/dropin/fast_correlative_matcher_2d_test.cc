@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Ours against the host's matcher: the same to the last bit.
+#include "cartographer_ext/scan_matching/dropin/fast_correlative_matcher_2d.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "absl/memory/memory.h"
+#include "cartographer/mapping/2d/probability_grid.h"
+#include "cartographer/mapping/internal/2d/scan_matching/fast_correlative_scan_matcher_2d.h"
+#include "cartographer/mapping/internal/2d/tsdf_2d.h"
+#include "cartographer_ext/common/random.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace scan_matching {
+namespace {
+
+namespace mapping = cartographer::mapping;
+using cartographer::sensor::PointCloud;
+using cartographer::transform::Rigid2d;
+using mapping::CellLimits;
+using mapping::Grid2D;
+using mapping::MapLimits;
+using mapping::ProbabilityGrid;
+using mapping::scan_matching::FastCorrelativeScanMatcher2D;
+using Options =
+    mapping::scan_matching::proto::FastCorrelativeScanMatcherOptions2D;
+
+constexpr double kResolution = 0.05;
+
+Options MakeOptions(const double linear, const double angular,
+                    const int depth) {
+  Options options;
+  options.set_linear_search_window(linear);
+  options.set_angular_search_window(angular);
+  options.set_branch_and_bound_depth(depth);
+  return options;
+}
+
+MapLimits RandomLimits(Random* const random) {
+  return MapLimits(
+      kResolution,
+      Eigen::Vector2d(random->Uniform(-60., 60.), random->Uniform(-60., 60.)),
+      CellLimits(static_cast<int>(random->UniformInt(1, 90)),
+                 static_cast<int>(random->UniformInt(1, 90))));
+}
+
+// Walls, free space, unknown space and noise.
+std::unique_ptr<Grid2D> RandomGrid(mapping::ValueConversionTables* const tables,
+                                   Random* const random) {
+  auto grid = absl::make_unique<ProbabilityGrid>(RandomLimits(random), tables);
+  const CellLimits size = grid->limits().cell_limits();
+  const double noise = random->Uniform() < 0.3 ? 0.3 : 0.01;
+  const double unknown = random->Uniform();
+  const int64_t spacing = random->UniformInt(4, 40);
+  for (const Eigen::Array2i& cell : mapping::XYIndexRangeIterator(size)) {
+    const bool wall = cell.x() % spacing == 2 || cell.y() % spacing == 3;
+    if (!wall && random->Uniform() < unknown) continue;
+    double probability = wall ? 0.85 : 0.15;
+    if (random->Uniform() < noise) probability = random->Uniform(0.1, 0.9);
+    grid->SetProbability(cell, static_cast<float>(probability));
+  }
+  return std::move(grid);
+}
+
+std::unique_ptr<Grid2D> RandomTsdf(mapping::ValueConversionTables* const tables,
+                                   Random* const random) {
+  auto grid = absl::make_unique<mapping::TSDF2D>(RandomLimits(random), 0.3f,
+                                                 10.f, tables);
+  for (const Eigen::Array2i& cell :
+       mapping::XYIndexRangeIterator(grid->limits().cell_limits())) {
+    if (random->Uniform() < 0.5) continue;
+    grid->SetCell(cell, static_cast<float>(random->Uniform(-0.3, 0.3)), 1.f);
+  }
+  grid->FinishUpdate();
+  return std::move(grid);
+}
+
+// Points at high scores, seen from `pose`, and some anywhere.
+PointCloud RandomCloud(const Grid2D& grid, const Rigid2d& pose,
+                       const int num_points, Random* const random) {
+  PointCloud cloud;
+  const CellLimits size = grid.limits().cell_limits();
+  const Rigid2d inverse = pose.inverse();
+  for (int i = 0; i != num_points; ++i) {
+    Eigen::Vector2d point;
+    for (int k = 0; k != 20; ++k) {
+      const Eigen::Array2i cell(
+          static_cast<int>(random->UniformInt(0, size.num_x_cells - 1)),
+          static_cast<int>(random->UniformInt(0, size.num_y_cells - 1)));
+      point = grid.limits().GetCellCenter(cell).cast<double>();
+      if (grid.GetCorrespondenceCost(cell) < 0.3f) break;
+    }
+    if (random->Uniform() < 0.15) {
+      point +=
+          Eigen::Vector2d(random->Uniform(-9., 9.), random->Uniform(-9., 9.));
+    }
+    const Eigen::Vector2d seen = inverse * point;
+    cloud.push_back({Eigen::Vector3f(static_cast<float>(seen.x()),
+                                     static_cast<float>(seen.y()), 1.f)});
+  }
+  return cloud;
+}
+
+struct Found {
+  bool found = false;
+  float score = -1.f;
+  Rigid2d pose = Rigid2d({7., 7.}, 7.);
+};
+
+template <typename Matcher>
+Found Search(const Matcher& matcher, const bool full, const Rigid2d& initial,
+             const PointCloud& cloud, const float min_score) {
+  Found found;
+  found.found =
+      full
+          ? matcher.MatchFullSubmap(cloud, min_score, &found.score, &found.pose)
+          : matcher.Match(initial, cloud, min_score, &found.score, &found.pose);
+  return found;
+}
+
+void ExpectSame(const Found& ours, const Found& stock) {
+  EXPECT_EQ(ours.found, stock.found);
+  EXPECT_EQ(ours.score, stock.score);
+  EXPECT_EQ(ours.pose.translation().x(), stock.pose.translation().x());
+  EXPECT_EQ(ours.pose.translation().y(), stock.pose.translation().y());
+  EXPECT_EQ(ours.pose.rotation().angle(), stock.pose.rotation().angle());
+}
+
+class FastCorrelativeMatcherTest
+    : public ::testing::TestWithParam<const SearchKernels*> {
+ protected:
+  void Compare(const Grid2D& grid, const Options& options, const bool full,
+               const Rigid2d& initial, const PointCloud& cloud,
+               const float min_score) {
+    const FastCorrelativeScanMatcher2D stock(grid, options);
+    FastCorrelativeSearchOptions ours_options = ToSearchOptions(options);
+    ours_options.kernels = GetParam();
+    const FastCorrelativeMatcher2D ours(grid, ours_options);
+    const Found expected = Search(stock, full, initial, cloud, min_score);
+    ExpectSame(Search(ours, full, initial, cloud, min_score), expected);
+    if (!expected.found) return;
+    ++num_found_;
+    // Only more than the minimum counts, and just less is enough.
+    EXPECT_FALSE(Search(ours, full, initial, cloud, expected.score).found);
+    const float less = std::nextafter(expected.score, 0.f);
+    ExpectSame(Search(ours, full, initial, cloud, less), expected);
+  }
+
+  mapping::ValueConversionTables tables_;
+  Random random_{11};
+  int num_found_ = 0;
+};
+
+TEST_P(FastCorrelativeMatcherTest, RandomWorlds) {
+  for (int i = 0; i != 250; ++i) {
+    SCOPED_TRACE(i);
+    const auto grid = i % 5 == 4 ? RandomTsdf(&tables_, &random_)
+                                 : RandomGrid(&tables_, &random_);
+    const Eigen::Vector2d middle =
+        grid->limits()
+            .GetCellCenter({grid->limits().cell_limits().num_x_cells / 2,
+                            grid->limits().cell_limits().num_y_cells / 2})
+            .cast<double>();
+    const Rigid2d truth(middle + Eigen::Vector2d(random_.Uniform(-1., 1.),
+                                                 random_.Uniform(-1., 1.)),
+                        random_.Uniform(-kPi, kPi));
+    // More than 257 points sometimes: sums need more than 16 bits then.
+    const int num_points = static_cast<int>(
+        i % 10 == 0 ? random_.UniformInt(258, 600) : random_.UniformInt(1, 90));
+    const PointCloud cloud = RandomCloud(*grid, truth, num_points, &random_);
+    const Rigid2d initial = truth * Rigid2d({random_.Uniform(-0.8, 0.8),
+                                             random_.Uniform(-0.8, 0.8)},
+                                            random_.Uniform(-0.2, 0.2));
+    const Options options =
+        MakeOptions(random_.Uniform(0., 1.2), random_.Uniform(0., 0.3),
+                    static_cast<int>(random_.UniformInt(1, 8)));
+    Compare(*grid, options, false, initial, cloud,
+            static_cast<float>(random_.Uniform(0., 0.7)));
+  }
+  EXPECT_GT(num_found_, 100);
+}
+
+TEST_P(FastCorrelativeMatcherTest, FullSubmaps) {
+  for (int i = 0; i != 25; ++i) {
+    SCOPED_TRACE(i);
+    const auto grid = RandomGrid(&tables_, &random_);
+    const Rigid2d truth(grid->limits().GetCellCenter({9, 9}).cast<double>(),
+                        random_.Uniform(-kPi, kPi));
+    const PointCloud cloud = RandomCloud(
+        *grid, truth, static_cast<int>(random_.UniformInt(1, 60)), &random_);
+    Compare(*grid, MakeOptions(0.1, 0.1, 6), true, Rigid2d::Identity(), cloud,
+            static_cast<float>(random_.Uniform(0.2, 0.7)));
+  }
+  EXPECT_GT(num_found_, 5);
+}
+
+// Nearly all poses score the same; the order of the stock search decides.
+TEST_P(FastCorrelativeMatcherTest, Ties) {
+  const CellLimits size(50, 40);
+  for (int i = 0; i != 60; ++i) {
+    SCOPED_TRACE(i);
+    ProbabilityGrid grid(MapLimits(kResolution, Eigen::Vector2d(1., 1.), size),
+                         &tables_);
+    for (int k = 0; k != i / 4; ++k) {
+      const Eigen::Array2i cell(static_cast<int>(random_.UniformInt(0, 49)),
+                                static_cast<int>(random_.UniformInt(0, 39)));
+      if (!grid.IsKnown(cell)) grid.SetProbability(cell, 0.9f);
+    }
+    const PointCloud cloud =
+        RandomCloud(grid, Rigid2d({0., 0.}, 0.3),
+                    static_cast<int>(random_.UniformInt(1, 3)), &random_);
+    Compare(grid,
+            MakeOptions(random_.Uniform(0.1, 1.5), 0.1,
+                        static_cast<int>(random_.UniformInt(1, 7))),
+            i % 3 == 0, Rigid2d({0.1, -0.2}, 0.3), cloud, i % 2 ? 0.f : 0.3f);
+  }
+  EXPECT_GT(num_found_, 30);
+}
+
+TEST_P(FastCorrelativeMatcherTest, FarFromEverything) {
+  const auto grid = RandomGrid(&tables_, &random_);
+  const PointCloud cloud =
+      RandomCloud(*grid, Rigid2d::Identity(), 20, &random_);
+  const Rigid2d initial({1000., -1000.}, 1.);
+  for (const float min_score : {0.f, 0.05f, 0.1f, 0.5f}) {
+    Compare(*grid, MakeOptions(1., 0.2, 4), false, initial, cloud, min_score);
+  }
+}
+
+TEST_P(FastCorrelativeMatcherTest, NothingIsWrittenWithoutAMatch) {
+  const auto grid = RandomGrid(&tables_, &random_);
+  const FastCorrelativeMatcher2D ours(*grid, MakeOptions(1., 0.2, 4));
+  EXPECT_LT(Search(ours, false, Rigid2d::Identity(), {}, 0.f).score, 0.f);
+  EXPECT_LT(Search(ours, true, Rigid2d::Identity(), {}, 0.f).score, 0.f);
+  const PointCloud cloud =
+      RandomCloud(*grid, Rigid2d::Identity(), 20, &random_);
+  const Found found = Search(ours, false, Rigid2d::Identity(), cloud, 1.f);
+  EXPECT_FALSE(found.found);
+  EXPECT_EQ(found.score, -1.f);
+  EXPECT_EQ(found.pose.rotation().angle(), 7.);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sets, FastCorrelativeMatcherTest, ::testing::ValuesIn(AllSearchKernels()),
+    [](const ::testing::TestParamInfo<const SearchKernels*>& info) {
+      return std::string(info.param->name);
+    });
+
+TEST(FastCorrelativeMatcherThreadsTest, ManyThreadsUseOneMatcher) {
+  mapping::ValueConversionTables tables;
+  Random random(5);
+  const auto grid = RandomGrid(&tables, &random);
+  const Rigid2d truth(grid->limits().GetCellCenter({9, 9}).cast<double>(), 0.2);
+  const PointCloud cloud = RandomCloud(*grid, truth, 50, &random);
+  const FastCorrelativeMatcher2D matcher(*grid, MakeOptions(1., 0.3, 5));
+  const Found expected = Search(matcher, false, truth, cloud, 0.2f);
+  std::vector<Found> found(16);
+  std::vector<std::thread> threads;
+  for (int i = 0; i != 4; ++i) {
+    threads.emplace_back([&, i] {
+      for (int k = 0; k != 4; ++k) {
+        found[4 * i + k] = Search(matcher, false, truth, cloud, 0.2f);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const Found& one : found) ExpectSame(one, expected);
+}
+
+}  // namespace
+}  // namespace scan_matching
+}  // namespace cartographer_ext
