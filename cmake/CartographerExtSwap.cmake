@@ -27,16 +27,17 @@ include_guard(GLOBAL)
 cmake_policy(VERSION 3.16)
 
 get_filename_component(CARTOGRAPHER_EXT_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
-set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder ceres_scan_matcher optimization_problem full_information)
+set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder ceres_scan_matcher optimization_problem local_trajectory_builder
+    full_information)
 
 # Modules whose sources need no host; they are compiled once as objects and become part of the target.
 set(CARTOGRAPHER_EXT_CORE_MODULES common options optimization loop_closure scan_matching front_end)
 
-# The module whose dropin/ folder holds the class behind a swap; full_information needs none.
-set(CARTOGRAPHER_EXT_MODULE_OF_constraint_builder loop_closure)
-set(CARTOGRAPHER_EXT_MODULE_OF_ceres_scan_matcher scan_matching)
-set(CARTOGRAPHER_EXT_MODULE_OF_optimization_problem optimization)
-set(CARTOGRAPHER_EXT_MODULE_OF_local_trajectory_builder front_end)
+# The modules whose dropin/ folders hold the class behind a swap and what it uses; full_information needs none.
+set(CARTOGRAPHER_EXT_MODULES_OF_constraint_builder loop_closure scan_matching)
+set(CARTOGRAPHER_EXT_MODULES_OF_ceres_scan_matcher scan_matching)
+set(CARTOGRAPHER_EXT_MODULES_OF_optimization_problem optimization)
+set(CARTOGRAPHER_EXT_MODULES_OF_local_trajectory_builder front_end scan_matching)
 
 # What a swap renames, as "stock source|name|declaring header", below cartographer/mapping/internal/.
 function(cartographer_ext_swap_renames swap result)
@@ -221,11 +222,14 @@ function(cartographer_ext_apply_swap target swap)
     list(APPEND sources "${generated}")
   endforeach()
   set(dropin_globs "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/overlay/dropin/${swap}/*.cc")
-  if(DEFINED CARTOGRAPHER_EXT_MODULE_OF_${swap})
-    list(APPEND dropin_globs "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${CARTOGRAPHER_EXT_MODULE_OF_${swap}}/dropin/*.cc")
-  endif()
+  foreach(module IN LISTS CARTOGRAPHER_EXT_MODULES_OF_${swap})
+    list(APPEND dropin_globs "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${module}/dropin/*.cc")
+  endforeach()
   file(GLOB dropin CONFIGURE_DEPENDS ${dropin_globs})
-  set_target_properties(${target} PROPERTIES SOURCES "${sources};${dropin}")
+  # Two swaps may share a module.
+  list(APPEND sources ${dropin})
+  list(REMOVE_DUPLICATES sources)
+  set_target_properties(${target} PROPERTIES SOURCES "${sources}")
 endfunction()
 
 # Tells sources which swaps are selected, in a header: as definitions on the command line they would compile all of the

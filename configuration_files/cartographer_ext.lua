@@ -7,13 +7,208 @@
 --
 -- Including this file changes nothing. A configuration switches a block on by
 -- assigning it to the stock table it extends, and may change values then:
+--   TRAJECTORY_BUILDER_2D.cartographer_ext =
+--     CARTOGRAPHER_EXT.trajectory_builder_2d
+--   TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext =
+--     CARTOGRAPHER_EXT.ceres_scan_matcher
 --   POSE_GRAPH.constraint_builder.cartographer_ext =
 --     CARTOGRAPHER_EXT.constraint_builder
+--   POSE_GRAPH.constraint_builder.ceres_scan_matcher.cartographer_ext =
+--     CARTOGRAPHER_EXT.ceres_scan_matcher
 --   POSE_GRAPH.optimization_problem.cartographer_ext =
 --     CARTOGRAPHER_EXT.optimization_problem
 -- Keys that are left out of a block keep their default.
 
 CARTOGRAPHER_EXT = {}
+
+-- Local SLAM with adaptive features and better motion prediction.
+CARTOGRAPHER_EXT.trajectory_builder_2d = {
+  odometry = {
+    -- Predict with odometry where there is any. Off: odometry is ignored by
+    -- local SLAM (loop closure still gets it).
+    enabled = true,
+    -- Standard deviation of the motion between two scans when standing.
+    -- Larger trusts the scan more. [> 0 and <= 10, m]
+    translation_noise = 0.01,
+    -- The same that every metre adds, along and across the way. [>= 0 and <=
+    -- 10]
+    translation_noise_per_metre = 0.1,
+    -- Standard deviation of the turn between two scans when standing. [> 0
+    -- and <= 10, rad]
+    rotation_noise = 0.005,
+    -- The same that every radian of turn adds. [>= 0 and <= 10]
+    rotation_noise_per_radian = 0.2,
+    -- The same that every metre adds. [>= 0 and <= 10, rad/m]
+    rotation_noise_per_metre = 0.02,
+    -- How far beyond its last message odometry is extrapolated; later the
+    -- prediction goes on without it. [>= 0 and <= 10, s]
+    max_extrapolation = 0.3,
+  },
+  time_offset = {
+    -- Estimate by how much scans are stamped later than the odometry of the
+    -- same moment, from the turns that both see.
+    estimate = true,
+    -- The offset before the estimate is sure, or for ever without estimate.
+    -- [>= -1 and <= 1, s]
+    initial = 0,
+    -- Smallest offset that is considered. [>= -1 and <= 1, s]
+    minimum = -0.1,
+    -- Largest offset that is considered. [>= -1 and <= 1, s]
+    maximum = 0.25,
+  },
+  constant_velocity = {
+    -- Standard deviation of the change of speed between two scans. [> 0 and
+    -- <= 100, m/s]
+    speed_noise = 0.5,
+    -- The same of the turn rate. [> 0 and <= 100, rad/s]
+    turn_rate_noise = 0.5,
+    -- A velocity is believed for this long; over a longer gap nothing is
+    -- known of the rest, and no turn is made up. [>= 0 and <= 10, s]
+    max_time = 0.6,
+  },
+  fault_check = {
+    -- Find out when odometry is stale, jumps, has the wrong sign or slips, do
+    -- without it then, and report it.
+    enabled = true,
+    -- Motions are compared over this time besides from scan to scan. Longer
+    -- finds weaker slip, later. [> 0 and <= 60, s]
+    window = 1,
+    -- chi2 (3 degrees of freedom) beyond which odometry is at fault. Smaller
+    -- finds more and gives more false alarms. [> 0]
+    gate = 25,
+    -- Standard deviation of the comparison of translations, of scan matching
+    -- above all. [> 0 and <= 10, m]
+    translation_noise = 0.03,
+    -- The same of rotations. [> 0 and <= 10, rad]
+    rotation_noise = 0.03,
+    -- What every metre adds to it. [>= 0 and <= 10]
+    translation_noise_per_metre = 0.05,
+    -- What every radian adds to it. [>= 0 and <= 10]
+    rotation_noise_per_radian = 0.1,
+    -- A change of motion between two scans by this much is suspected at once,
+    -- before matching. [> 0 and <= 100, m]
+    jump_distance = 0.3,
+    -- The same for the turn. [> 0 and <= 3.2, rad]
+    jump_angle = 0.3,
+    -- Where the scan does not tell the way (a blank corridor), a change of
+    -- the odometry's speed faster than this is reported as slip. Set it above
+    -- what the robot can do. [> 0 and <= 1000, m/s^2]
+    max_acceleration = 1.5,
+  },
+  imu = {
+    -- Preintegrate the IMU for the turn of the prediction, and for the way
+    -- where there is no odometry. Needs use_imu_data.
+    enabled = true,
+    -- Noise density of the accelerometers. [>= 0 and <= 100, m/s^2/sqrt(Hz)]
+    acceleration_noise = 0.02,
+    -- Noise density of the gyroscope. [>= 0 and <= 100, rad/s/sqrt(Hz)]
+    yaw_rate_noise = 0.001,
+    -- Standard deviation of the bias that is left after its estimate. [>= 0
+    -- and <= 10, rad/s]
+    yaw_rate_bias_noise = 0.002,
+    -- The same of the accelerometers, tilt included. [>= 0 and <= 100, m/s^2]
+    acceleration_bias_noise = 0.05,
+    -- After standing for this long the mean of the readings is taken as bias.
+    -- [> 0 and <= 1000, s]
+    standing_time = 1,
+  },
+  search = {
+    -- Search around the predictions when odometry is suspect, the gap is
+    -- long, or the scan fits worse than usual.
+    enabled = true,
+    -- Search when the mean probability under the points is this much below
+    -- its running mean. Smaller searches more. [>= 0 and <= 1]
+    score_drop = 0.12,
+    -- Search when chi2 of the match against the prediction exceeds this. [>
+    -- 0]
+    gate = 16,
+    -- By how much the mean probability must grow for another place to be
+    -- taken. [>= 0 and <= 1]
+    min_gain = 0.03,
+    -- Half width of the search; half the way since the last scan is added.
+    -- [>= 0 and <= 10, m]
+    linear_window = 0.15,
+    -- It never gets wider than this. The cost of a search grows with the
+    -- square. [>= 0 and <= 10, m]
+    max_linear_window = 0.5,
+    -- Half width of the search; the turn since the last scan is added. [>= 0
+    -- and <= 3.2, rad]
+    angular_window = 0.15,
+    -- It never gets wider than this. [>= 0 and <= 3.2, rad]
+    max_angular_window = 0.7,
+  },
+  features = {
+    -- Match only the points around which the surface varies. The cloud of the
+    -- node stays whole.
+    enabled = false,
+    -- Neighbours that describe the surface around a point (k of G eq. 1). [>=
+    -- 2 and <= 1000]
+    num_neighbors = 10,
+    -- Near neighbours count more (G eq. 2 instead of eq. 1).
+    distance_weighted = true,
+    -- Fill up to this many points with the most varied of the rest, so that
+    -- the match never starves. [>= 0 and <= 100000]
+    min_points = 80,
+  },
+  node_weights = {
+    -- Keep the covariance of every node's match for the weights of its
+    -- constraints within submaps.
+    enabled = false,
+    -- Standard deviation at which a node gets the stock translation weight;
+    -- the weight falls with the inverse of the deviation, down to a tenth. [>
+    -- 0 and <= 100, m]
+    reference_translation = 0.01,
+    -- The same of the rotation. [> 0 and <= 10, rad]
+    reference_rotation = 0.005,
+  },
+}
+
+-- Scan matching that knows which directions the scan determines.
+CARTOGRAPHER_EXT.ceres_scan_matcher = {
+  degeneracy = {
+    -- Take from the prediction what the scan does not determine. Off: the
+    -- analysis is reported and the match is returned as it is.
+    enabled = true,
+    -- noise_floor: a direction counts as far as its information exceeds what
+    -- a blank quantised wall shows along itself, with a smooth transition.
+    -- paper_literal: eigenvalue ratio of the 2 x 2 covariance against
+    -- paper_ratio, all or nothing, rotation always from the match. [one of:
+    -- noise_floor, paper_literal]
+    mode = "noise_floor",
+    -- noise_floor: an axis along which the cost of the scan curves less than
+    -- this is taken from the prediction, in squared cost per squared cell.
+    -- Blank walls show up to this much along themselves, and 0.1 across.
+    -- Higher takes more from the prediction. [>= 0 and <= 1]
+    floor = 0.005,
+    -- noise_floor: a curvature of this many times the floor is believed
+    -- fully, in between smoothly. [> 1 and <= 1000000]
+    full_ratio = 4,
+    -- paper_literal: ratio of the larger to the smaller eigenvalue of the
+    -- covariance beyond which the larger one's direction is taken from the
+    -- prediction. It depends on grid and laser: noise along a blank wall
+    -- keeps the ratio near 2 to 4 in a corridor. [> 1 and <= 1e+09]
+    paper_ratio = 2,
+    -- How far the scan is moved to see how its cost rises. Shorter sees the
+    -- noise of single cells, longer overlooks small structures. [>= 0.5 and
+    -- <= 20, cells]
+    curvature_step = 2,
+  },
+  covariance = {
+    -- The variance of a match along an axis of curvature e is (map_noise^2 +
+    -- point_noise^2 / points) / e squared cells. This part comes from the
+    -- map; more points do not reduce it. Higher trusts the scan less. [> 0
+    -- and <= 10]
+    map_noise = 0.019,
+    -- The part that comes from the points of the scan. [>= 0 and <= 10]
+    point_noise = 0.17,
+    -- Standard deviation reported along what the scan does not determine,
+    -- when the covariance of the prediction is not known. Has no influence on
+    -- the pose. [> 0 and <= 1000, m]
+    prediction_translation_sigma = 0.1,
+    -- The same for the rotation. [> 0 and <= 3.1416, rad]
+    prediction_rotation_sigma = 0.05,
+  },
+}
 
 -- Loop closures that are verified over time and weighted by confidence.
 CARTOGRAPHER_EXT.constraint_builder = {

@@ -73,7 +73,7 @@ struct ScanCurvature {
 
 // `half_mean_squares(motion)` is F at a scaled motion, `hessian` any symmetric
 // matrix whose eigenvectors are near the axes, in scaled motions. `step` in
-// cells, > 0.
+// cells, > 0. F is evaluated 25 times.
 template <typename Function>
 ScanCurvature MeasureCurvature(const Function& half_mean_squares,
                                const Eigen::Matrix3d& hessian, double step);
@@ -87,38 +87,42 @@ Eigen::Matrix3d Axes(const Eigen::Matrix3d& symmetric);
 // Puts the axes in ascending order of values.
 void Sort(ScanCurvature* curvature);
 
+// (F(+step) + F(-step) - 2 F(0)) / |step|^2.
+template <typename Function>
+double SecondDifference(const Function& function, const double at_zero,
+                        const Eigen::Vector3d& step) {
+  return (function(step) + function(-step) - 2. * at_zero) / step.squaredNorm();
+}
+
 }  // namespace internal
 
 template <typename Function>
 ScanCurvature MeasureCurvature(const Function& half_mean_squares,
                                const Eigen::Matrix3d& hessian,
                                const double step) {
-  const double at_match = half_mean_squares(Eigen::Vector3d(0., 0., 0.));
-  const double per_step2 = 1. / (step * step);
-  const auto second_difference = [&](const Eigen::Vector3d& axis) {
-    return (half_mean_squares(step * axis) + half_mean_squares(-step * axis) -
-            2. * at_match) *
-           per_step2;
-  };
   ScanCurvature curvature;
   curvature.axes = internal::Axes(hessian);
+  const double at_zero = half_mean_squares(Eigen::Vector3d(0., 0., 0.));
   Eigen::Matrix3d matrix;
   for (int k = 0; k < 3; ++k) {
-    matrix(k, k) = second_difference(curvature.axes.col(k));
+    const Eigen::Vector3d axis = curvature.axes.col(k);
+    matrix(k, k) =
+        internal::SecondDifference(half_mean_squares, at_zero, step * axis);
     for (int l = 0; l < k; ++l) {
-      const Eigen::Vector3d u = std::sqrt(0.5) * step *
-                                (curvature.axes.col(k) + curvature.axes.col(l));
-      const Eigen::Vector3d w = std::sqrt(0.5) * step *
-                                (curvature.axes.col(k) - curvature.axes.col(l));
+      const Eigen::Vector3d other = curvature.axes.col(l);
+      const Eigen::Vector3d u = std::sqrt(0.5) * step * (axis + other);
+      const Eigen::Vector3d w = std::sqrt(0.5) * step * (axis - other);
       matrix(k, l) = matrix(l, k) =
-          0.5 * per_step2 *
           (half_mean_squares(u) + half_mean_squares(-u) - half_mean_squares(w) -
-           half_mean_squares(-w));
+           half_mean_squares(-w)) /
+          (2. * step * step);
     }
   }
   curvature.axes = curvature.axes * internal::Axes(matrix);
   for (int k = 0; k < 3; ++k) {
-    curvature.values(k) = second_difference(curvature.axes.col(k));
+    const Eigen::Vector3d axis = curvature.axes.col(k);
+    curvature.values(k) =
+        internal::SecondDifference(half_mean_squares, at_zero, step * axis);
   }
   internal::Sort(&curvature);
   return curvature;

@@ -43,11 +43,11 @@ namespace scan_matching {
 
 struct ScanInformationOptions {
   DegeneracyMode mode = DegeneracyMode::kNoiseFloor;
-  double floor = 0.004;       // squared cost per squared cell, >= 0
+  double floor = 0.005;       // squared cost per squared cell, >= 0
   double full_ratio = 4.;     // > 1
   double paper_ratio = 30.;   // kPaperLiteral, > 1
-  double map_noise = 0.021;   // a above, > 0
-  double point_noise = 0.19;  // b above, >= 0
+  double map_noise = 0.019;   // a above, > 0
+  double point_noise = 0.17;  // b above, >= 0
 };
 
 struct ScanInformation {

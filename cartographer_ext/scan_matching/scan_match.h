@@ -147,7 +147,7 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
     hessian.diagonal() -= prior.weights;
     const double per_point = 0.5 / num_points;
     const auto half_mean_squares = [&](const Eigen::Vector3d& step) {
-      return per_point * cost.CoarseSquares(motion.Moved(step));
+      return per_point * cost.LinearSquares(motion.Moved(step));
     };
     scan = AnalyzeScan(options.information, motion,
                        MeasureCurvature(half_mean_squares,
