@@ -133,9 +133,12 @@ Verdict Judge(const Evaluation& evaluation) {
         });
     const double fraction =
         static_cast<double>(num_large) / static_cast<double>(loops.size());
-    // Loops that the optimisation has overruled do no harm where truth finds
-    // none.
-    if (severity == kUnknown && fraction > kBrokenFraction) raise(kDoubtful);
+    // Loops that the optimisation has overruled do no harm where truth, or the
+    // map itself, finds none.
+    if (severity == kUnknown && !evaluation.consistency.has_value() &&
+        fraction > kBrokenFraction) {
+      raise(kDoubtful);
+    }
     verdict.reasons.push_back(absl::StrFormat(
         "%d of the %d loops disagree with the map by more than half a metre",
         num_large, loops.size()));
@@ -144,6 +147,17 @@ Verdict Judge(const Evaluation& evaluation) {
           absl::StrFormat("%d of the %d loops that can be judged are right",
                           evaluation.loops->correct, evaluation.loops->judged));
     }
+  }
+  if (evaluation.consistency.has_value()) {
+    const SelfConsistency& consistency = *evaluation.consistency;
+    if (severity == kUnknown) {
+      raise(consistency.word == "broken"     ? kBroken
+            : consistency.word == "doubtful" ? kDoubtful
+            : consistency.word == "sound"    ? kSound
+                                             : kUnknown);
+    }
+    verdict.reasons.insert(verdict.reasons.end(), consistency.reasons.begin(),
+                           consistency.reasons.end());
   }
   static constexpr const char* kWords[] = {"unknown", "sound", "doubtful",
                                            "broken"};
@@ -177,6 +191,9 @@ ordered_json ToJson(const Evaluation& evaluation) {
   }
   if (evaluation.loops.has_value()) {
     json["loops"] = ToJson(*evaluation.loops);
+  }
+  if (evaluation.consistency.has_value()) {
+    json["consistency"] = ToJson(*evaluation.consistency);
   }
   const Verdict verdict = Judge(evaluation);
   json["verdict"] = verdict.word;
@@ -223,6 +240,9 @@ std::string ToText(const Evaluation& evaluation) {
                           loops.residual_translation.mean,
                           loops.residual_translation.max,
                           loops.residual_rotation_degrees.mean);
+  }
+  if (evaluation.consistency.has_value()) {
+    absl::StrAppend(&text, ToText(*evaluation.consistency));
   }
   const Verdict verdict = Judge(evaluation);
   absl::StrAppend(&text, "Verdict: ", verdict.word, "\n");

@@ -11,6 +11,7 @@
 #include "absl/types/optional.h"
 #include "cartographer_ext/evaluation/loop_statistics.h"
 #include "cartographer_ext/evaluation/relations_metric.h"
+#include "cartographer_ext/evaluation/self_consistency.h"
 #include "cartographer_ext/evaluation/trajectory_metrics.h"
 #include "nlohmann/json.hpp"
 
@@ -26,6 +27,7 @@ struct Evaluation {
   absl::optional<RelationsMetric> node_relations;
   absl::optional<TrajectoryErrors> trajectory;
   absl::optional<LoopStatistics> loops;
+  absl::optional<SelfConsistency> consistency;
   double trajectory_metres = 0.;
 };
 
@@ -39,8 +41,9 @@ struct Verdict {
 // A map counts as broken when more than 2 % of the loop relations are off by
 // more than half a metre, or when the trajectory is more than a metre from the
 // reference (root mean square); as doubtful at a tenth and a half of that.
-// Without any truth it is doubtful when more than 2 % of the loops disagree
-// with the optimised graph by more than half a metre.
+// Without any truth the self-consistency of the map decides, where it is known;
+// else the map is doubtful when more than 2 % of the loops disagree with the
+// optimised graph by more than half a metre.
 Verdict Judge(const Evaluation& evaluation);
 
 nlohmann::ordered_json ToJson(const Statistics& statistics);

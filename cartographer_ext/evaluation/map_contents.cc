@@ -15,6 +15,7 @@ namespace {
 
 constexpr float kOccupiedFrom = 0.6f;
 constexpr float kFreeUpTo = 0.4f;
+constexpr float kUnknownProbability = 0.1f;
 
 // Spreads marked cells to all within `radius` cells (a square, in two passes).
 std::vector<bool> Dilate(const std::vector<bool>& marked, const int num_x,
@@ -47,7 +48,8 @@ SubmapCells::SubmapCells(const cartographer::mapping::proto::Grid2D& grid,
       max_(grid.limits().max().x(), grid.limits().max().y()),
       num_x_(grid.limits().cell_limits().num_x_cells()),
       num_y_(grid.limits().cell_limits().num_y_cells()),
-      cells_(static_cast<size_t>(num_x_) * num_y_, CellEvidence::kUnsure) {
+      cells_(static_cast<size_t>(num_x_) * num_y_, CellEvidence::kUnsure),
+      probabilities_(cells_.size(), 0) {
   std::vector<bool> occupied(cells_.size(), false);
   std::vector<bool> not_free(cells_.size(), false);
   for (int iy = 0; iy < num_y_; ++iy) {
@@ -56,6 +58,9 @@ SubmapCells::SubmapCells(const cartographer::mapping::proto::Grid2D& grid,
       const size_t i = static_cast<size_t>(iy) * num_x_ + ix;
       occupied[i] = probability >= kOccupiedFrom;
       not_free[i] = !(probability <= kFreeUpTo);  // also where unknown
+      probabilities_[i] = static_cast<uint8_t>(
+          std::lround(255.f * (std::isnan(probability) ? kUnknownProbability
+                                                       : probability)));
     }
   }
   const int radius =
@@ -88,6 +93,17 @@ CellEvidence SubmapCells::At(const Eigen::Vector2d& point) const {
 bool SubmapCells::NearOccupied(const Eigen::Vector2d& point) const {
   const int offset = Offset(point);
   return offset >= 0 && near_occupied_[offset];
+}
+
+double SubmapCells::Score(const std::vector<Eigen::Vector2d>& points,
+                          const Pose2& local_from_node) const {
+  if (points.empty()) return 0.;
+  double sum = 0.;
+  for (const Eigen::Vector2d& point : points) {
+    const int offset = Offset(local_from_node * point);
+    sum += offset < 0 ? kUnknownProbability : probabilities_[offset] / 255.;
+  }
+  return sum / static_cast<double>(points.size());
 }
 
 std::vector<Eigen::Vector2d> SubmapCells::OccupiedCells() const {
@@ -141,6 +157,25 @@ MapContents ReadMapContents(const io::Pbstream& pbstream,
                              SubmapCells(submap.grid(), options.margin));
   }
   return contents;
+}
+
+std::vector<double> LoopScores(const MapGraph& graph,
+                               const MapContents& contents) {
+  std::vector<double> scores;
+  for (const GraphConstraint& constraint : graph.constraints) {
+    if (!constraint.is_loop) continue;
+    const auto submap = graph.submaps.find(constraint.submap_id);
+    const auto cells = contents.submaps.find(constraint.submap_id);
+    const auto scan = contents.scans.find(constraint.node_id);
+    if (submap == graph.submaps.end() || cells == contents.submaps.end() ||
+        scan == contents.scans.end()) {
+      scores.push_back(-1.);
+      continue;
+    }
+    scores.push_back(cells->second.Score(
+        scan->second, submap->second.local_pose * constraint.relative_pose));
+  }
+  return scores;
 }
 
 Pose2 MapFromLocal(const GraphSubmap& submap) {

@@ -36,6 +36,11 @@ class SubmapCells {
   CellEvidence At(const Eigen::Vector2d& point) const;
   // Occupied, or within the margin of an occupied cell.
   bool NearOccupied(const Eigen::Vector2d& point) const;
+  // Mean probability of occupancy where the points fall, as the loop search
+  // scores a match (unknown cells count 0.1); to a few thousandths. `points` in
+  // the frame of a node, `local_from_node` places them in the local frame.
+  double Score(const std::vector<Eigen::Vector2d>& points,
+               const Pose2& local_from_node) const;
   // Centres of the occupied cells, in the local frame.
   std::vector<Eigen::Vector2d> OccupiedCells() const;
   // Corners of the grid in the local frame.
@@ -50,6 +55,7 @@ class SubmapCells {
   int num_x_, num_y_;
   std::vector<CellEvidence> cells_;
   std::vector<bool> near_occupied_;
+  std::vector<uint8_t> probabilities_;  // of 255
 };
 
 struct MapContents {
@@ -66,6 +72,11 @@ struct MapContentsOptions {
 
 MapContents ReadMapContents(const io::Pbstream& pbstream,
                             const MapContentsOptions& options);
+
+// The score of each loop of the graph at its own pose, in the order of the
+// constraints; -1 where the scan or the grid is missing.
+std::vector<double> LoopScores(const MapGraph& graph,
+                               const MapContents& contents);
 
 // (map <- local frame of the trajectory), as a submap's poses have it.
 Pose2 MapFromLocal(const GraphSubmap& submap);

@@ -110,5 +110,23 @@ absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
   return PaintMap(grids, resolution);
 }
 
+absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
+                                                  const MapGraph& graph,
+                                                  const double resolution) {
+  std::vector<PlacedGrid> grids;
+  for (const auto& record : pbstream.submaps) {
+    const auto submap = graph.submaps.find(ToSubmapId(record.submap_id()));
+    if (submap == graph.submaps.end() || !record.submap_2d().has_grid()) {
+      continue;
+    }
+    PlacedGrid placed;
+    placed.grid = &record.submap_2d().grid();
+    placed.map_from_local =
+        submap->second.global_pose * submap->second.local_pose.Inverse();
+    grids.push_back(placed);
+  }
+  return PaintMap(grids, resolution);
+}
+
 }  // namespace evaluation
 }  // namespace cartographer_ext

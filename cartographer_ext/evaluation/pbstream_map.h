@@ -20,6 +20,12 @@ MapGraph MakeMapGraph(const io::Pbstream& pbstream);
 absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
                                                   double resolution);
 
+// The same with the submaps where `graph` has them; those it lacks are left
+// out.
+absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
+                                                  const MapGraph& graph,
+                                                  double resolution);
+
 }  // namespace evaluation
 }  // namespace cartographer_ext
 

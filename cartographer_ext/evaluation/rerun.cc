@@ -22,6 +22,7 @@
 #include "cartographer_ext/evaluation/pbstream_map.h"
 #include "cartographer_ext/evaluation/replay_plan.h"
 #include "cartographer_ext/evaluation/resource_usage.h"
+#include "cartographer_ext/loop_closure/decision_recorder.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -37,6 +38,10 @@ constexpr char kConstraintsMetric[] =
     "mapping_constraints_constraint_builder_2d_constraints";
 constexpr char kSearchCpuMetric[] =
     "mapping_constraints_constraint_builder_2d_search_cpu_seconds";
+constexpr char kOurSearchesMetric[] = "cartographer_ext_loop_searches";
+constexpr char kOurCpuMetric[] = "cartographer_ext_loop_cpu_seconds";
+// Decision records kept, about 400 bytes each.
+constexpr size_t kMaxDecisions = 500000;
 // Side of the grid of a placeholder, which nobody looks at.
 constexpr int kPlaceholderCells = 10;
 
@@ -223,6 +228,30 @@ MapGraph Translate(const MapGraph& graph, const IdTranslation& ids) {
   return result;
 }
 
+// Pairs of submap and node that either builder has searched, or found.
+double Pairs(const MetricsCollector& metrics, const std::string& matcher) {
+  return metrics.Sum(kConstraintsMetric, {{"matcher", matcher}}) +
+         metrics.Sum(kOurSearchesMetric, {{"matcher", matcher}});
+}
+
+double StageSeconds(const MetricsCollector& metrics, const std::string& stage) {
+  return metrics.Sum(kSearchCpuMetric, {{"stage", stage}}) +
+         metrics.Sum(kOurCpuMetric, {{"stage", stage}});
+}
+
+// From the ids of the pose graph to those of the stored map, where it has them.
+void TranslateDecisions(const IdTranslation& ids,
+                        std::vector<proto::LoopDecision>* const decisions) {
+  for (proto::LoopDecision& decision : *decisions) {
+    const GraphId submap = ids.Submap(
+        {decision.submap_trajectory_id(), decision.submap_index()});
+    const GraphId node =
+        ids.Node({decision.node_trajectory_id(), decision.node_index()});
+    decision.set_submap_index(submap.index);
+    decision.set_node_index(node.index);
+  }
+}
+
 // Feeds all nodes and waits for the final optimisation.
 void Drive(const io::Pbstream& pbstream, const ReplayPlan& plan,
            const MetricsCollector& metrics, const RerunOptions& options,
@@ -272,14 +301,12 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   if (!plan.ok()) return plan.status();
   MetricsCollector* const metrics = MetricsCollector::Global();
   const auto before = metrics->Values();
-  const auto sum = [metrics](const std::string& name,
-                             const MetricsCollector::Labels& labels) {
-    return metrics->Sum(name, labels);
-  };
-  const double searched = sum(kConstraintsMetric, {{"matcher", "searched"}});
-  const double found = sum(kConstraintsMetric, {{"matcher", "found"}});
-  const double search_cpu = sum(kSearchCpuMetric, {{"stage", "search"}});
-  const double build_cpu = sum(kSearchCpuMetric, {{"stage", "build"}});
+  const double before_stage = StageSeconds(*metrics, "search");
+  const double before_build = StageSeconds(*metrics, "build");
+  const double searched = Pairs(*metrics, "searched");
+  const double found = Pairs(*metrics, "found");
+  auto* const recorder = loop_closure::DecisionRecorder::Global();
+  recorder->Start(kMaxDecisions);
   const int64_t memory_before = ResetPeakMemory();
   const double cpu_before = ProcessCpuSeconds();
   const auto wall_before = std::chrono::steady_clock::now();
@@ -305,14 +332,14 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   result.cpu_seconds = ProcessCpuSeconds() - cpu_before;
   result.peak_memory_bytes =
       std::max<int64_t>(0, PeakMemorySinceReset() - memory_before);
-  result.searches = static_cast<int64_t>(
-      sum(kConstraintsMetric, {{"matcher", "searched"}}) - searched);
-  result.matches = static_cast<int64_t>(
-      sum(kConstraintsMetric, {{"matcher", "found"}}) - found);
-  result.search_cpu_seconds =
-      sum(kSearchCpuMetric, {{"stage", "search"}}) - search_cpu;
-  result.build_cpu_seconds =
-      sum(kSearchCpuMetric, {{"stage", "build"}}) - build_cpu;
+  result.decisions = recorder->All();
+  recorder->Stop();
+  TranslateDecisions(IdTranslation(*plan), &result.decisions);
+  result.searches =
+      static_cast<int64_t>(Pairs(*metrics, "searched") - searched);
+  result.matches = static_cast<int64_t>(Pairs(*metrics, "found") - found);
+  result.search_cpu_seconds = StageSeconds(*metrics, "search") - before_stage;
+  result.build_cpu_seconds = StageSeconds(*metrics, "build") - before_build;
   result.metrics = metrics->Values();
   for (const auto& entry : before) result.metrics[entry.first] -= entry.second;
   return result;

@@ -1,24 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation
+// LINK: report
 //
 // cartographer_ext_evaluate: how good is a map?
 #include <iostream>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/evaluation/decision_table.h"
 #include "cartographer_ext/evaluation/evaluation_report.h"
-#include "cartographer_ext/evaluation/loop_statistics.h"
-#include "cartographer_ext/evaluation/map_graph.h"
+#include "cartographer_ext/evaluation/map_evaluation.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
-#include "cartographer_ext/evaluation/relations_metric.h"
-#include "cartographer_ext/evaluation/trajectory_metrics.h"
+#include "cartographer_ext/evaluation/report/map_runs.h"
+#include "cartographer_ext/evaluation/report/report.h"
+#include "cartographer_ext/evaluation/rerun_configuration.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/io/relations_file.h"
 #include "cartographer_ext/io/trajectory_file.h"
@@ -45,6 +50,28 @@ DEFINE_double(rpe_distance, 1.,
               "Length in metres of the stretches of the relative error.");
 DEFINE_double(loop_tolerance, 0.5,
               "Metres that a loop may be off the truth to count as right.");
+DEFINE_bool(self_consistency, true,
+            "Hold the scans, loops and odometry of the map against each other; "
+            "takes some seconds.");
+DEFINE_string(rerun_configuration_directory, "",
+              "Folders with Lua files, comma separated. Given, the pose graph "
+              "of the map is run again, with stock's options and with ours.");
+DEFINE_string(rerun_configuration_basename, "",
+              "Lua file whose pose graph options are used. Stock is the same "
+              "file without blocks of ours; without a file, stock.lua is "
+              "assumed.");
+DEFINE_string(rerun_stock_configuration_basename, "",
+              "Lua file for stock, where that is another one.");
+DEFINE_int32(num_background_threads, 2, "Threads of the run.");
+DEFINE_string(match_records_filename, "",
+              "Records of local SLAM beside the map, for the degeneracy along "
+              "the path.");
+DEFINE_string(report_filename, "",
+              "Output: report as one HTML file; beside it the numbers (.json) "
+              "and the loops with their evidence (.loops.csv).");
+DEFINE_bool(times, true,
+            "Tell times and memory. Without them the same input gives the same "
+            "bytes.");
 DEFINE_string(constraints_filename, "",
               "Output: CSV of all constraints with residuals and, where there "
               "is truth, verdicts.");
@@ -63,24 +90,30 @@ constexpr char kDescription[] =
       -trajectory_filename=run.tum -relations_filename=aces.relations
   cartographer_ext_evaluate -trajectory_filename=run.tum
       -reference_trajectory_filename=truth.tum -json=-
+  cartographer_ext_evaluate -pbstream_filename=map.pbstream
+      -rerun_configuration_directory=configuration_files
+      -rerun_configuration_basename=default.lua -report_filename=map.html
 
-Without truth the loops of the map are held against the optimised map. The
-relations metric is that of Cartographer's compute_relations_metrics; relations
+Without truth the map is held against itself: scans against what other visits
+mapped, loops against each other, local SLAM against odometry. The relations metric is that of Cartographer's compute_relations_metrics; relations
 more than a minute apart close loops and are listed on their own, because a
 folded map looks fine on the others.)";
 
 struct Inputs {
-  absl::optional<evaluation::MapGraph> graph;
+  absl::optional<io::Pbstream> pbstream;
+  evaluation::MapGraph graph;
+  evaluation::MapContents contents;
+  std::map<int, evaluation::Trajectory> odometry;
   absl::optional<evaluation::Trajectory> trajectory;
-  absl::optional<std::vector<evaluation::Relation>> relations;
-  absl::optional<evaluation::Trajectory> reference;
+  evaluation::GroundTruth truth;
 };
 
 absl::Status ReadInputs(Inputs* const inputs) {
   if (!FLAGS_pbstream_filename.empty()) {
-    const auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
+    auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
     if (!pbstream.ok()) return pbstream.status();
-    inputs->graph = evaluation::MakeMapGraph(*pbstream);
+    inputs->pbstream = *std::move(pbstream);
+    inputs->graph = evaluation::MakeMapGraph(*inputs->pbstream);
   }
   if (!FLAGS_trajectory_filename.empty()) {
     auto poses = io::ReadTumTrajectory(FLAGS_trajectory_filename);
@@ -90,59 +123,28 @@ absl::Status ReadInputs(Inputs* const inputs) {
   if (!FLAGS_relations_filename.empty()) {
     auto relations = io::ReadRelations(FLAGS_relations_filename);
     if (!relations.ok()) return relations.status();
-    inputs->relations = *std::move(relations);
+    inputs->truth.relations = *std::move(relations);
+    inputs->truth.relations_name = FLAGS_relations_filename;
   }
   if (!FLAGS_reference_trajectory_filename.empty()) {
     auto poses = io::ReadTumTrajectory(FLAGS_reference_trajectory_filename);
     if (!poses.ok()) return poses.status();
-    inputs->reference = evaluation::Trajectory(*std::move(poses));
+    inputs->truth.reference = evaluation::Trajectory(*std::move(poses));
+    inputs->truth.reference_name = FLAGS_reference_trajectory_filename;
   }
   return absl::OkStatus();
 }
 
-absl::Status Annotate(const absl::Status& status, const std::string& file) {
-  return absl::Status(status.code(),
-                      absl::StrCat(file, ": ", status.message()));
-}
-
-absl::Status EvaluateRelations(const Inputs& inputs,
-                               const evaluation::Trajectory& nodes,
-                               evaluation::Evaluation* const result) {
-  evaluation::RelationsMetricOptions options;
-  options.stamp_tolerance = io::FromSeconds(FLAGS_stamp_tolerance);
-  evaluation::RelationsMetricOptions interpolate = options;
-  interpolate.stamp_tolerance = 0;
-  const bool has_trajectory = inputs.trajectory.has_value();
-  auto metric = has_trajectory
-                    ? evaluation::ComputeRelationsMetric(
-                          *inputs.trajectory, *inputs.relations, options)
-                    : evaluation::ComputeRelationsMetric(
-                          nodes, *inputs.relations, interpolate);
-  if (!metric.ok()) {
-    return Annotate(metric.status(), FLAGS_relations_filename);
-  }
-  result->relations = *std::move(metric);
-  if (has_trajectory && !nodes.empty()) {
-    auto at_nodes = evaluation::ComputeRelationsMetric(nodes, *inputs.relations,
-                                                       interpolate);
-    if (at_nodes.ok()) result->node_relations = *std::move(at_nodes);
-  }
-  return absl::OkStatus();
-}
-
-evaluation::LoopStatistics EvaluateLoops(const Inputs& inputs) {
-  evaluation::LoopStatisticsOptions options;
-  options.correct_translation = FLAGS_loop_tolerance;
-  options.stamp_tolerance = io::FromSeconds(FLAGS_stamp_tolerance);
-  if (inputs.reference.has_value()) {
-    return evaluation::ComputeLoopStatistics(*inputs.graph, *inputs.reference,
-                                             options);
-  }
-  if (inputs.relations.has_value()) {
-    return evaluation::ComputeLoopStatistics(*inputs.graph, *inputs.relations,
-                                             options);
-  }
-  return evaluation::ComputeLoopStatistics(*inputs.graph);
+evaluation::MapEvaluationOptions EvaluationOptions() {
+  evaluation::MapEvaluationOptions options;
+  options.trajectory_id = FLAGS_trajectory_id;
+  const io::TimeNs tolerance = io::FromSeconds(FLAGS_stamp_tolerance);
+  options.relations.stamp_tolerance = tolerance;
+  options.trajectory.stamp_tolerance = tolerance;
+  options.trajectory.rpe_distance = FLAGS_rpe_distance;
+  options.loops.correct_translation = FLAGS_loop_tolerance;
+  options.loops.stamp_tolerance = tolerance;
+  return options;
 }
 
 std::string RelationErrorTable(const evaluation::RelationsMetric& metric) {
@@ -157,61 +159,159 @@ std::string RelationErrorTable(const evaluation::RelationsMetric& metric) {
   return table;
 }
 
+// "map.html" -> "map" + `ending`.
+std::string BesideReport(const std::string& ending) {
+  return absl::StrCat(absl::StripSuffix(FLAGS_report_filename, ".html"),
+                      ending);
+}
+
+absl::Status WriteTables(const Inputs& inputs,
+                         const evaluation::Evaluation& result) {
+  if (!FLAGS_constraints_filename.empty()) {
+    const absl::Status status = WriteFileAtomically(
+        FLAGS_constraints_filename,
+        evaluation::ConstraintTable(inputs.graph, &*result.loops));
+    if (!status.ok()) return status;
+  }
+  if (FLAGS_relation_errors_filename.empty()) return absl::OkStatus();
+  return WriteFileAtomically(FLAGS_relation_errors_filename,
+                             RelationErrorTable(*result.relations));
+}
+
+absl::Status WriteReport(const report::ReportData& data,
+                         const nlohmann::ordered_json& json) {
+  const auto page = report::MakeReport(data);
+  if (!page.ok()) return page.status();
+  absl::Status status = WriteFileAtomically(FLAGS_report_filename, *page);
+  if (status.ok()) {
+    status = WriteFileAtomically(BesideReport(".loops.csv"),
+                                 report::LoopsToCsv(data));
+  }
+  if (status.ok()) status = tools::WriteJson(json, BesideReport(".json"));
+  return status;
+}
+
+// The runs over the map, for the report and the JSON.
+absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data) {
+  report::RunInputs runs;
+  runs.pbstream = &*inputs.pbstream;
+  runs.graph = &inputs.graph;
+  runs.contents = FLAGS_self_consistency ? &inputs.contents : nullptr;
+  runs.odometry = &inputs.odometry;
+  runs.truth = &inputs.truth;
+  runs.evaluation = EvaluationOptions();
+  runs.rerun.num_background_threads = FLAGS_num_background_threads;
+  const auto configuration = evaluation::LoadRerunConfiguration(
+      absl::StrSplit(FLAGS_rerun_configuration_directory, ','),
+      FLAGS_rerun_configuration_basename,
+      FLAGS_rerun_stock_configuration_basename, inputs.graph);
+  if (!configuration.ok()) return configuration.status();
+  Progress progress("running again", 0);
+  runs.rerun.on_progress = [&progress](const int64_t nodes,
+                                       const int64_t total) {
+    progress.Update(nodes, absl::StrCat("of ", total, " nodes"));
+  };
+  const absl::Status status = report::AddReruns(runs, *configuration, data);
+  progress.Finish();
+  return status;
+}
+
+std::string RunsToText(const report::ReportData& data) {
+  std::string text;
+  for (const report::ReportRun& run : data.runs) {
+    if (!run.against_stored.has_value()) continue;
+    const evaluation::LoopComparison& comparison = *run.against_stored;
+    absl::StrAppendFormat(
+        &text,
+        "Run \"%s\"   %d loops, %d of the %d stored ones again (%.1f %%; with "
+        "other nodes of the visit %.1f %%)\n",
+        run.name, comparison.second, comparison.common, comparison.first,
+        100. * comparison.fraction_of_first,
+        comparison.first == 0
+            ? 100.
+            : 100. * (comparison.common + comparison.neighbour_instead) /
+                  comparison.first);
+    absl::StrAppend(&text, evaluation::ToText(run.evaluation));
+  }
+  for (const std::string& assumption : data.assumptions) {
+    absl::StrAppend(&text, "Assumed: ", assumption, "\n");
+  }
+  return text;
+}
+
 absl::Status Run() {
-  const absl::Status writable = tools::CheckWritable(
-      {FLAGS_constraints_filename, FLAGS_relation_errors_filename, FLAGS_json});
+  std::vector<std::string> outputs = {FLAGS_constraints_filename,
+                                      FLAGS_relation_errors_filename,
+                                      FLAGS_json, FLAGS_report_filename};
+  if (!FLAGS_report_filename.empty()) {
+    outputs.push_back(BesideReport(".json"));
+  }
+  const absl::Status writable = tools::CheckWritable(outputs);
   if (!writable.ok()) return writable;
   Inputs inputs;
   const absl::Status read = ReadInputs(&inputs);
   if (!read.ok()) return read;
 
-  evaluation::Evaluation result;
-  evaluation::Trajectory nodes;
-  if (inputs.graph.has_value()) {
-    nodes = inputs.graph->GlobalTrajectory(FLAGS_trajectory_id);
-    if (nodes.empty()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(FLAGS_pbstream_filename, ": trajectory ",
-                       FLAGS_trajectory_id, " has no nodes"));
+  evaluation::MapToEvaluate map;
+  const bool has_map = inputs.pbstream.has_value();
+  if (has_map) {
+    map.graph = &inputs.graph;
+    if (FLAGS_self_consistency || !FLAGS_report_filename.empty()) {
+      inputs.contents = evaluation::ReadMapContents(*inputs.pbstream, {});
+      inputs.odometry = evaluation::ReadOdometry(*inputs.pbstream);
     }
+    if (FLAGS_self_consistency) map.contents = &inputs.contents;
+    map.odometry = &inputs.odometry;
   }
-  const evaluation::Trajectory& estimate =
-      inputs.trajectory.has_value() ? *inputs.trajectory : nodes;
-  result.trajectory_metres = estimate.Length();
-  if (inputs.relations.has_value()) {
-    const absl::Status status = EvaluateRelations(inputs, nodes, &result);
-    if (!status.ok()) return status;
+  if (inputs.trajectory.has_value()) map.scans = &*inputs.trajectory;
+  const auto result =
+      evaluation::EvaluateMap(map, inputs.truth, EvaluationOptions());
+  if (!result.ok()) {
+    return absl::Status(result.status().code(),
+                        absl::StrCat(has_map ? FLAGS_pbstream_filename
+                                             : FLAGS_trajectory_filename,
+                                     ": ", result.status().message()));
   }
-  if (inputs.reference.has_value()) {
-    evaluation::TrajectoryMetricsOptions options;
-    options.stamp_tolerance = io::FromSeconds(FLAGS_stamp_tolerance);
-    options.rpe_distance = FLAGS_rpe_distance;
-    auto errors = evaluation::ComputeTrajectoryErrors(
-        estimate, *inputs.reference, options);
-    if (!errors.ok()) {
-      return Annotate(errors.status(), FLAGS_reference_trajectory_filename);
-    }
-    result.trajectory = *std::move(errors);
-  }
-  if (inputs.graph.has_value()) result.loops = EvaluateLoops(inputs);
+  absl::Status status = WriteTables(inputs, *result);
+  if (!status.ok()) return status;
 
-  if (!FLAGS_constraints_filename.empty()) {
-    const absl::Status status = WriteFileAtomically(
-        FLAGS_constraints_filename,
-        evaluation::ConstraintTable(*inputs.graph, &*result.loops));
+  report::ReportData data;
+  if (has_map) {
+    data.title = tools::BaseName(FLAGS_pbstream_filename);
+    data.command_line = gflags::GetArgv();
+    data.versions = report::Versions();
+    data.pbstream = &*inputs.pbstream;
+    data.contents = &inputs.contents;
+    data.with_times = FLAGS_times;
+    report::RunInputs stored;
+    stored.graph = &inputs.graph;
+    data.runs.push_back(report::StoredRun(stored, *result));
+  }
+  if (!FLAGS_match_records_filename.empty()) {
+    auto samples = report::ReadDegeneracy(FLAGS_match_records_filename);
+    if (!samples.ok()) return samples.status();
+    data.degeneracy = *std::move(samples);
+  }
+  if (!FLAGS_rerun_configuration_directory.empty()) {
+    status = RunAgain(inputs, &data);
     if (!status.ok()) return status;
   }
-  if (!FLAGS_relation_errors_filename.empty()) {
-    const absl::Status status = WriteFileAtomically(
-        FLAGS_relation_errors_filename, RelationErrorTable(*result.relations));
-    if (!status.ok()) return status;
+  if (FLAGS_json != "-") {
+    std::cout << evaluation::ToText(*result) << RunsToText(data);
   }
-  if (FLAGS_json != "-") std::cout << evaluation::ToText(result);
-  if (FLAGS_json.empty()) return absl::OkStatus();
   nlohmann::ordered_json json;
   json["pbstream"] = FLAGS_pbstream_filename;
   json["trajectory"] = FLAGS_trajectory_filename;
-  json.update(evaluation::ToJson(result));
+  json.update(evaluation::ToJson(*result));
+  if (data.runs.size() > 1) {
+    json["runs"] = report::RunsToJson(data);
+    json["assumptions"] = data.assumptions;
+  }
+  if (!FLAGS_report_filename.empty()) {
+    status = WriteReport(data, json);
+    if (!status.ok()) return status;
+  }
+  if (FLAGS_json.empty()) return absl::OkStatus();
   return tools::WriteJson(json, FLAGS_json);
 }
 
@@ -238,6 +338,22 @@ int main(int argc, char** argv) {
       FLAGS_relations_filename.empty()) {
     return tools::UsageError(
         "-relation_errors_filename needs -relations_filename");
+  }
+  if (FLAGS_pbstream_filename.empty() &&
+      (!FLAGS_report_filename.empty() ||
+       !FLAGS_rerun_configuration_directory.empty())) {
+    return tools::UsageError(
+        "-report_filename and -rerun_configuration_directory need "
+        "-pbstream_filename");
+  }
+  if (FLAGS_rerun_configuration_directory.empty() &&
+      (!FLAGS_rerun_configuration_basename.empty() ||
+       !FLAGS_rerun_stock_configuration_basename.empty())) {
+    return tools::UsageError(
+        "-rerun_configuration_basename needs -rerun_configuration_directory");
+  }
+  if (FLAGS_num_background_threads < 1) {
+    return tools::UsageError("-num_background_threads must be above 0");
   }
   if (!(FLAGS_stamp_tolerance >= 0.) || !(FLAGS_rpe_distance > 0.) ||
       !(FLAGS_loop_tolerance > 0.)) {
