@@ -11,6 +11,11 @@
 
 namespace cartographer_ext {
 namespace optimization {
+namespace {
+
+constexpr size_t kManyEdges = 4;  // of one pose
+
+}  // namespace
 
 double MinimizeSwitch(const Eigen::Vector3d& squared_innovation,
                       const Eigen::Vector3d& predicted_variance,
@@ -100,6 +105,12 @@ absl::Status IncrementalSmoother::AddPose(
     return absl::InvalidArgumentError(
         absl::StrCat("pose ", number, " comes without odometry"));
   }
+  // All poses are brought up to date when that is cheaper than one by one, else
+  // only those that the new edges refer to.
+  if (estimate_outdated_ && edges.size() > kManyEdges) UpdateEstimate();
+  for (const PoseGraphEdge& edge : edges) {
+    if (!edge.is_loop) RefreshPose(std::min(edge.from, edge.to));
+  }
   const Pose2 pose =
       odometry->to == number
           ? poses_[odometry->from] * odometry->measurement
@@ -130,8 +141,6 @@ absl::Status IncrementalSmoother::AddPose(
   if (poses_in_epoch_ >= options_.epoch_poses) {
     EndEpoch();
     result.epoch = true;
-  } else if (estimate_outdated_) {
-    UpdateEstimate();
   }
   result.cpu_seconds = ThreadCpuSeconds() - start;
   if (report != nullptr) *report = result;
@@ -152,14 +161,8 @@ double IncrementalSmoother::EstimateSwitch(
 
 bool IncrementalSmoother::TestLoop(const int edge_index) {
   const WhitenedEdge& edge = edges_[edge_index];
-  if (estimate_outdated_) {
-    for (const int pose : {edge.from, edge.to}) {
-      const Eigen::Vector3d offset = factor_.SolveFor(pose - 1);
-      const Pose2& origin = linearization_poses_[pose];
-      poses_[pose] = Pose2(origin.x + offset.x(), origin.y + offset.y(),
-                           NormalizeAngle(origin.theta + offset.z()));
-    }
-  }
+  RefreshPose(edge.from);
+  RefreshPose(edge.to);
   const LinearFactor factor = LinearizeEdge(edge);
   const Eigen::Vector3d residual =
       Residual(edge, poses_[edge.from], poses_[edge.to]);
@@ -171,7 +174,20 @@ bool IncrementalSmoother::TestLoop(const int edge_index) {
   return true;
 }
 
-void IncrementalSmoother::UpdateEstimate() {
+void IncrementalSmoother::RefreshPose(const int pose) {
+  if (!estimate_outdated_) return;
+  const Eigen::Vector3d offset = factor_.SolveFor(pose - 1);
+  const Pose2& origin = linearization_poses_[pose];
+  poses_[pose] = Pose2(origin.x + offset.x(), origin.y + offset.y(),
+                       NormalizeAngle(origin.theta + offset.z()));
+}
+
+const std::vector<Pose2>& IncrementalSmoother::poses() const {
+  if (estimate_outdated_) UpdateEstimate();
+  return poses_;
+}
+
+void IncrementalSmoother::UpdateEstimate() const {
   Eigen::VectorXd offsets;
   factor_.Solve(&offsets);
   for (size_t i = 1; i != poses_.size(); ++i) {

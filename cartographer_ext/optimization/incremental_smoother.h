@@ -102,8 +102,9 @@ class IncrementalSmoother {
   void Finish();
 
   int num_poses() const { return poses_.size(); }
-  // Current estimate of all poses.
-  const std::vector<Pose2>& poses() const { return poses_; }
+  // Current estimate of all poses. Worked out when asked for; the steps
+  // themselves only need the newest pose and the ends of its loops.
+  const std::vector<Pose2>& poses() const;
   // All edges in order of arrival, and which loops are in force.
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
   const std::vector<bool>& accepted() const { return accepted_; }
@@ -128,7 +129,9 @@ class IncrementalSmoother {
   bool TestLoop(int edge_index);
   double EstimateSwitch(const LinearFactor& factor,
                         const Eigen::Vector3d& residual) const;
-  void UpdateEstimate();
+  void UpdateEstimate() const;
+  // Brings one pose up to date.
+  void RefreshPose(int pose);
   SolverOptions EpochSolverOptions() const;
   void DecideLoops();
   void RebuildFactor();
@@ -138,7 +141,7 @@ class IncrementalSmoother {
   // kernel then weakens them and leaves some behind. True when most loops agree
   // and count for less than half on average.
   bool KernelIsNarrow() const;
-  // At the end, if so.
+  // At the end, where rejected loops are within reach.
   void TryWiderKernels();
   // Whether enough loops back `poses` as a hypothesis.
   bool IsSupported(const std::vector<Pose2>& poses) const;
@@ -150,10 +153,10 @@ class IncrementalSmoother {
   std::vector<bool> accepted_;
   std::vector<bool> decided_;  // loops that went through an epoch
   std::deque<int> waiting_;    // loops not yet tested
-  std::vector<Pose2> poses_;
+  mutable std::vector<Pose2> poses_;
   std::vector<Pose2> linearization_poses_;
   IncrementalFactor factor_;
-  bool estimate_outdated_ = false;
+  mutable bool estimate_outdated_ = false;
   int poses_in_epoch_ = 0;
   int first_edge_of_epoch_ = 0;
   int num_late_rejections_ = 0;

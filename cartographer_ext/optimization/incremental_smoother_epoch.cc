@@ -293,22 +293,29 @@ bool IncrementalSmoother::KernelIsNarrow() const {
 }
 
 void IncrementalSmoother::TryWiderKernels() {
-  if (!KernelIsNarrow()) return;
-  double lowest = TruncatedCost(edges_, poses_);
-  const std::vector<Pose2> start = poses_;
-  SolverOptions solver = EpochSolverOptions();
   // Loops far beyond reach would only fill the factor.
   constexpr double kReach = 25.;
-  solver.edge_weights = Chi2OfEdges(edges_, start);
+  SolverOptions solver;
+  solver.kernel = options_.epoch_kernel;
+  solver.cost_tolerance = 1e-5;
+  solver.edge_weights = Chi2OfEdges(edges_, poses_);
+  bool some_in_reach = false;
   for (size_t i = 0; i != edges_.size(); ++i) {
-    solver.edge_weights[i] =
-        !edges_[i].is_loop || solver.edge_weights[i] < kReach * options_.gate
-            ? 1.
-            : 0.;
+    const double chi2 = solver.edge_weights[i];
+    const bool in_reach = chi2 < kReach * options_.gate;
+    solver.edge_weights[i] = !edges_[i].is_loop || in_reach ? 1. : 0.;
+    some_in_reach |= edges_[i].is_loop && in_reach && chi2 >= options_.gate;
   }
-  for (const double width : {1., 4.}) {
+  if (!some_in_reach) return;
+  const std::vector<double> widths =
+      KernelIsNarrow()
+          ? std::vector<double>{options_.gate, 4. * options_.gate}
+          : std::vector<double>{4. * options_.epoch_kernel.parameter};
+  double lowest = TruncatedCost(edges_, poses_);
+  const std::vector<Pose2> start = poses_;
+  for (const double width : widths) {
     std::vector<Pose2> poses = start;
-    solver.kernel.parameter = width * options_.gate;
+    solver.kernel.parameter = width;
     SolveRobust(edges_, solver, &poses);
     PolishTruncated(edges_, options_.gate, kFinalPolishRounds, &poses, nullptr);
     const double cost = TruncatedCost(edges_, poses);

@@ -5,12 +5,15 @@
 // before every optimisation, from the poses of the last one and with all loops,
 // so that a loop judged wrong can come back when the evidence changes.
 //
-//   1. Least squares with all loops. When all agree in the end nothing else
-//      happens; this is the usual case, and how a true loop after a long drift
-//      gets in.
-//   2. Otherwise DCS from the poses as they are and from those of (1) and, when
-//      there are loops it has not seen before, `auto` without its own start;
-//      each polished by the gate. The lowest truncated cost wins.
+//   1. Nothing, where all loops but those left out last time agree with the
+//      poses and none of those left out does; else least squares with all but
+//      those left out. When that settles it nothing else happens; this is how a
+//      true loop after a long drift gets in.
+//   2. Otherwise DCS from the poses as they are and from those of (1), each
+//      polished by the gate, which takes back in whatever agrees. The lowest
+//      truncated cost wins. Where that leaves out more than a quarter of the
+//      loops, and when asked to be thorough, the same from least squares with
+//      all loops and from a replay of the graph (R-iSAM).
 //   3. Odometry check with rollback (improved graph optimisation 2024, section
 //      3.4): where the winner bends the trajectory between neighbouring poses
 //      beyond the gate, the loop to blame is the one with the largest chi2
@@ -36,6 +39,8 @@ struct LoopSelectionOptions {
   int max_rollbacks = 10;
   // Whether (2) may use a replay, which costs more than the rest.
   bool thorough = true;
+  // Empty, or per edge whether the last selection left it out.
+  std::vector<bool> left_out_before;
 };
 
 struct LoopSelection {

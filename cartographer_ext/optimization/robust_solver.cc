@@ -340,8 +340,10 @@ SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
 
 double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
                     const std::vector<Pose2>& poses) {
-  constexpr double kMedian = 2.365973884375338;  // of chi2, 3 dof
-  constexpr double kSafety = 9.;
+  // Quantiles of chi2 with 3 degrees of freedom.
+  constexpr double kMedian = 2.365973884375338;
+  constexpr double k98th = 9.837409311192957;
+  constexpr double kSafety = 4.;
   std::vector<double> inside;
   for (const WhitenedEdge& edge : edges) {
     if (!edge.is_loop) continue;
@@ -350,9 +352,10 @@ double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
   }
   // Too few loops say nothing about their scale.
   if (inside.size() < 20) return kChi2Gate;
-  const auto middle = inside.begin() + inside.size() / 2;
-  std::nth_element(inside.begin(), middle, inside.end());
-  return kChi2Gate * std::min(1., kSafety * *middle / kMedian);
+  std::sort(inside.begin(), inside.end());
+  const double scale = std::max(inside[inside.size() / 2] / kMedian,
+                                inside[inside.size() * 98 / 100] / k98th);
+  return kChi2Gate * std::min(1., kSafety * scale);
 }
 
 double TruncatedCost(const std::vector<WhitenedEdge>& edges,

@@ -87,11 +87,11 @@ SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
                               std::vector<double>* weights);
 
 // A gate made narrower where the information matrices are conservative: chi2 of
-// the loops inside kChi2Gate is compared, by its median, with the 2.366 it
-// should have; the gate is nine times (three standard deviations for one) what
-// that suggests, and never more than kChi2Gate. In the simulated sets true
-// loops have a median of 0.02 instead of 2.4, so that an "accepted" chi2 of 5
-// is an outlier.
+// the loops inside kChi2Gate is compared with what it should be, by its median
+// and, for heavy tails, by its 98th percentile; the gate is four times (two
+// standard deviations for one) what the larger of the two suggests, and never
+// more than kChi2Gate. In the simulated sets true loops have a median of 0.02
+// instead of 2.4, so that an "accepted" chi2 of 1 is an outlier.
 double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
                     const std::vector<Pose2>& poses);
 

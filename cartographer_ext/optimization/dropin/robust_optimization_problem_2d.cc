@@ -4,13 +4,12 @@
 // Only where the swap is selected; see the overlay.
 #include "cartographer_ext/swaps.h"
 #ifdef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
-#include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
-
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
 #include "cartographer_ext/optimization/robust_solver.h"
 #include "glog/logging.h"
 
@@ -54,7 +53,17 @@ double WeightScale(const std::vector<Constraint>& constraints,
   return *middle > 0. ? 1. / (*middle * loop_sigma) : 1.;
 }
 
+// Of the number of nodes until the next thorough selection.
+constexpr double kThoroughGrowth = 2.;
+
 }  // namespace
+
+RobustOptimizationProblem2D::LoopKey RobustOptimizationProblem2D::KeyOf(
+    const Constraint& constraint) {
+  return LoopKey(
+      constraint.submap_id.trajectory_id, constraint.submap_id.submap_index,
+      constraint.node_id.trajectory_id, constraint.node_id.node_index);
+}
 
 RobustOptimizationProblem2D::RobustOptimizationProblem2D(
     const mapping::optimization::proto::OptimizationProblemOptions& options,
@@ -63,7 +72,8 @@ RobustOptimizationProblem2D::RobustOptimizationProblem2D(
       local_slam_translation_weight_(
           options.local_slam_pose_translation_weight()),
       local_slam_rotation_weight_(options.local_slam_pose_rotation_weight()),
-      stock_(options) {}
+      stock_(options),
+      stock_iterations_(options.ceres_solver_options().max_num_iterations()) {}
 
 RobustOptimizationProblem2D::Problem RobustOptimizationProblem2D::MakeProblem(
     const std::vector<Constraint>& constraints,
@@ -199,18 +209,11 @@ RobustOptimizationProblem2D::Select(
     const std::vector<Constraint>& constraints,
     const std::map<int, TrajectoryState>& trajectories_state,
     std::vector<SwitchedLoop>* const off) {
-  bool has_loops = false, new_loops = false;
+  int num_loops = 0;
   for (const Constraint& constraint : constraints) {
-    if (constraint.tag != Constraint::INTER_SUBMAP) continue;
-    has_loops = true;
-    new_loops |= seen_loops_
-                     .emplace(constraint.submap_id.trajectory_id,
-                              constraint.submap_id.submap_index,
-                              constraint.node_id.trajectory_id,
-                              constraint.node_id.node_index)
-                     .second;
+    num_loops += constraint.tag == Constraint::INTER_SUBMAP;
   }
-  if (!has_loops ||
+  if (num_loops == 0 ||
       (!extension_.robust_loops() && !extension_.odometry_check())) {
     return constraints;
   }
@@ -221,14 +224,25 @@ RobustOptimizationProblem2D::Select(
   options.odometry_check = extension_.odometry_check();
   options.odometry_gate = extension_.odometry_gate();
   options.max_rollbacks = extension_.max_rollbacks();
-  options.thorough = new_loops;
+  // Now and then, so that all of these together cost twice the last.
+  const int num_nodes = stock_.node_data().size();
+  options.thorough = num_nodes >= kThoroughGrowth * nodes_when_thorough_;
+  if (options.thorough) nodes_when_thorough_ = num_nodes;
+  options.left_out_before.assign(problem.graph.edges.size(), false);
+  for (size_t i = 0; i != problem.graph.edges.size(); ++i) {
+    const int index = problem.constraint_of_edge[i];
+    options.left_out_before[i] =
+        index >= 0 && left_out_.count(KeyOf(constraints[index])) != 0;
+  }
   const LoopSelection selection =
       SelectLoops(problem.graph, problem.neighbours, options);
+  left_out_.clear();
   std::vector<bool> keep(constraints.size(), true);
   for (size_t i = 0; i != problem.graph.edges.size(); ++i) {
     const int index = problem.constraint_of_edge[i];
     if (index < 0 || selection.accepted[i]) continue;
     keep[index] = false;
+    left_out_.insert(KeyOf(constraints[index]));
     SwitchedLoop loop;
     loop.submap_trajectory = constraints[index].submap_id.trajectory_id;
     loop.submap_index = constraints[index].submap_id.submap_index;

@@ -72,6 +72,9 @@ class RobustOptimizationProblem2D
     stock_.TrimSubmap(submap_id);
   }
   void SetMaxNumIterations(cartographer::int32 max_num_iterations) override {
+    // The host does this before and after its final optimisation.
+    if (max_num_iterations > stock_iterations_) nodes_when_thorough_ = 0;
+    stock_iterations_ = max_num_iterations;
     stock_.SetMaxNumIterations(max_num_iterations);
   }
 
@@ -123,6 +126,7 @@ class RobustOptimizationProblem2D
  private:
   // Submap and node of a loop.
   using LoopKey = std::tuple<int, int, int, int>;
+  static LoopKey KeyOf(const Constraint& constraint);
 
   struct Problem {
     PoseGraph graph;
@@ -143,7 +147,10 @@ class RobustOptimizationProblem2D
   const double local_slam_translation_weight_;
   const double local_slam_rotation_weight_;
   cartographer::mapping::optimization::StockOptimizationProblem2D stock_;
-  std::set<LoopKey> seen_loops_;
+  int stock_iterations_;
+  // Nodes at the last thorough selection.
+  int nodes_when_thorough_ = 0;
+  std::set<LoopKey> left_out_;
 };
 
 }  // namespace optimization
