@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/tuning/configuration_patch.h"
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/tuning/temporary_file.h"
+
+namespace cartographer_ext {
+namespace tuning {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr char kWithBlock[] = R"(
+include "common_2d.lua"
+POSE_GRAPH.optimization_problem.cartographer_ext = { gate = 9. }
+return {
+  map_builder = MAP_BUILDER,
+  trajectory_builder = TRAJECTORY_BUILDER,
+})";
+
+Parameter Range(const std::string& key, const double low, const double high) {
+  Parameter parameter;
+  parameter.key = key;
+  parameter.low = low;
+  parameter.high = high;
+  return parameter;
+}
+
+Parameter Choices(const std::string& key, std::vector<Value> choices) {
+  Parameter parameter;
+  parameter.key = key;
+  parameter.kind = Parameter::Kind::kChoice;
+  parameter.choices = std::move(choices);
+  return parameter;
+}
+
+class BaseConfigurationTest : public testing::Test {
+ protected:
+  BaseConfiguration Stock() const {
+    return *BaseConfiguration::Load({"configuration_files"}, "stock.lua");
+  }
+  BaseConfiguration WithBlock() const {
+    folder_.Write("block.lua", kWithBlock);
+    auto configuration = BaseConfiguration::Load(
+        {folder_.path(), "configuration_files"}, "block.lua");
+    EXPECT_TRUE(configuration.ok()) << configuration.status();
+    return *configuration;
+  }
+  const test::Folder folder_;
+};
+
+TEST_F(BaseConfigurationTest, FindsValues) {
+  const auto values = Stock().Values(
+      {Range("POSE_GRAPH.constraint_builder.min_score", 0., 1.),
+       Range("POSE_GRAPH.optimize_every_n_nodes", 1, 100),
+       Choices("TRAJECTORY_BUILDER_2D.use_imu_data", {true, false})});
+  ASSERT_TRUE(values.ok()) << values.status();
+  EXPECT_THAT(*values, ElementsAre(0.55, 90, false));
+}
+
+TEST_F(BaseConfigurationTest, AssignsWithoutTouchingTheFile) {
+  const BaseConfiguration stock = Stock();
+  const std::string key = "POSE_GRAPH.constraint_builder.min_score";
+  const auto changed = evaluation::ParseSlamConfiguration(
+      stock.directories(), "changed", stock.CodeWith({{key, 0.7}}));
+  ASSERT_TRUE(changed.ok()) << changed.status();
+  EXPECT_EQ(changed->map_builder_options.pose_graph_options()
+                .constraint_builder_options()
+                .min_score(),
+            0.7);
+  EXPECT_EQ(stock.parsed()
+                .map_builder_options.pose_graph_options()
+                .constraint_builder_options()
+                .min_score(),
+            0.55);
+  const auto same = evaluation::ParseSlamConfiguration(
+      stock.directories(), "same", stock.CodeWith(nlohmann::json::object()));
+  ASSERT_TRUE(same.ok());
+  EXPECT_EQ(same->map_builder_options.SerializeAsString(),
+            stock.parsed().map_builder_options.SerializeAsString());
+}
+
+TEST_F(BaseConfigurationTest, KnowsKeysThatABlockLeavesOut) {
+  const BaseConfiguration configuration = WithBlock();
+  const std::string block = "POSE_GRAPH.optimization_problem.cartographer_ext.";
+  const std::vector<Parameter> parameters = {
+      Range(block + "gate", 5., 20.), Range(block + "loop_sigma", 0.05, 0.2),
+      Choices(block + "odometry_check", {true, false}),
+      Range(block + "max_rollbacks", 0., 20.)};
+  const auto values = configuration.Values(parameters);
+  ASSERT_TRUE(values.ok()) << values.status();
+  EXPECT_EQ((*values)[0].get<double>(), 9.);
+  EXPECT_EQ((*values)[1].get<double>(), 0.1);
+  EXPECT_EQ((*values)[2], true);
+  EXPECT_EQ((*values)[3], 10);
+  EXPECT_TRUE(
+      configuration.CheckParameters({parameters[0], parameters[2]}).ok())
+      << configuration.CheckParameters({parameters[0], parameters[2]});
+}
+
+std::string ErrorOf(const BaseConfiguration& configuration,
+                    const Parameter& parameter) {
+  const absl::Status status = configuration.CheckParameters({parameter});
+  EXPECT_FALSE(status.ok()) << parameter.key;
+  return std::string(status.message());
+}
+
+TEST_F(BaseConfigurationTest, BadKeysAreNamed) {
+  const BaseConfiguration stock = Stock();
+  EXPECT_THAT(
+      ErrorOf(stock, Range("POSE_GRAPH.constraint_builder.min_scor", 0., 1.)),
+      HasSubstr("did you mean 'min_score'"));
+  EXPECT_THAT(ErrorOf(stock, Range("POSEGRAPH.x", 0., 1.)),
+              HasSubstr("no key POSEGRAPH.x"));
+  EXPECT_THAT(ErrorOf(stock, Range("POSE_GRAPH.constraint_builder", 0., 1.)),
+              HasSubstr("is a table"));
+  EXPECT_THAT(ErrorOf(stock, Range("TRAJECTORY_BUILDER_2D.use_imu_data", 0, 1)),
+              HasSubstr("give choices"));
+  EXPECT_THAT(
+      ErrorOf(stock,
+              Range("POSE_GRAPH.optimization_problem.cartographer_ext.gate", 1.,
+                    2.)),
+      HasSubstr("does not have the block"));
+  EXPECT_THAT(ErrorOf(WithBlock(),
+                      Range("POSE_GRAPH.optimization_problem.cartographer_ext."
+                            "gat",
+                            1., 2.)),
+              HasSubstr("did you mean 'gate'"));
+}
+
+TEST_F(BaseConfigurationTest, KeysWithoutEffectAreNamed) {
+  EXPECT_THAT(
+      ErrorOf(Stock(), Range("TRAJECTORY_BUILDER_3D.min_range", 1., 2.)),
+      HasSubstr("is not used"));
+}
+
+TEST_F(BaseConfigurationTest, ValuesThatAreNotAllowedAreNamed) {
+  const std::string error = ErrorOf(
+      WithBlock(),
+      Range("POSE_GRAPH.optimization_problem.cartographer_ext.gate", -1., 2.));
+  EXPECT_THAT(error, HasSubstr("gate = -1."));
+  EXPECT_THAT(error, HasSubstr("range"));
+  // A fraction where an integer is wanted.
+  EXPECT_THAT(
+      ErrorOf(Stock(), Range("POSE_GRAPH.optimize_every_n_nodes", 0.5, 20.)),
+      HasSubstr("optimize_every_n_nodes"));
+}
+
+TEST_F(BaseConfigurationTest, BadFilesAreErrors) {
+  EXPECT_FALSE(BaseConfiguration::Load({folder_.path()}, "absent.lua").ok());
+  folder_.Write("bad.lua", "return { map_builder = {} }");
+  EXPECT_FALSE(BaseConfiguration::Load({folder_.path()}, "bad.lua").ok());
+}
+
+TEST_F(BaseConfigurationTest, FingerprintFollowsTheOptions) {
+  EXPECT_EQ(Stock().Fingerprint(), Stock().Fingerprint());
+  EXPECT_NE(Stock().Fingerprint(), WithBlock().Fingerprint());
+  EXPECT_EQ(HashText(""), "cbf29ce484222325");
+  EXPECT_EQ(HashText("a"), "af63dc4c8601ec8c");
+}
+
+}  // namespace
+}  // namespace tuning
+}  // namespace cartographer_ext
