@@ -1,0 +1,12 @@
+-- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+-- SPDX-License-Identifier: Apache-2.0
+--
+-- Local SLAM for long corridors and a robot whose odometry was calibrated:
+-- what the scan does not show comes from odometry sooner, and a sudden change
+-- of its speed is reported as slip. To be included behind the stock files.
+include "front_end_default.lua"
+
+CARTOGRAPHER_EXT.trajectory_builder_2d.odometry.translation_noise = 0.005
+CARTOGRAPHER_EXT.trajectory_builder_2d.odometry.translation_noise_per_metre =
+  0.03
+CARTOGRAPHER_EXT.trajectory_builder_2d.fault_check.max_acceleration = 0.8

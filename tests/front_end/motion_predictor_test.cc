@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/motion_predictor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cartographer_ext/common/random.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+MatchedMotion Matched(const Pose2& motion) {
+  MatchedMotion matched;
+  matched.motion = motion;
+  return matched;
+}
+
+TEST(MotionPredictorTest, NothingBeforeTheFirstScan) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  const MotionPrediction prediction = predictor.Predict(1.);
+  EXPECT_EQ(prediction.source, PredictionSource::kNothing);
+  EXPECT_EQ(prediction.motion.x, 0.);
+}
+
+TEST(MotionPredictorTest, ConstantVelocityAndItsEnd) {
+  MotionPredictorOptions options;
+  options.constant_velocity.max_time = 0.6;
+  MotionPredictor predictor(options);
+  predictor.AddMatch(0., Matched(Pose2()));
+  predictor.AddMatch(0.1, Matched(Pose2(0.05, 0., 0.02)));
+  const MotionPrediction soon = predictor.Predict(0.3);
+  EXPECT_EQ(soon.source, PredictionSource::kConstantVelocity);
+  EXPECT_NEAR(soon.motion.x, 0.1, 1e-9);
+  EXPECT_NEAR(soon.motion.theta, 0.04, 1e-9);
+  EXPECT_FALSE(soon.is_uncertain);
+  // No turn is made up over a long gap.
+  const MotionPrediction late = predictor.Predict(3.1);
+  EXPECT_EQ(late.source, PredictionSource::kNothing);
+  EXPECT_EQ(late.motion.theta, 0.);
+  EXPECT_TRUE(late.is_uncertain);
+  EXPECT_GT(late.covariance(2, 2), soon.covariance(2, 2));
+}
+
+TEST(MotionPredictorTest, OdometryBridgesAGapInTheScans) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  // Turns left before the gap, right within it.
+  const auto heading = [](const double t) {
+    return t < 1. ? 0.5 * t : 0.5 - 0.7 * (t - 1.);
+  };
+  for (int i = 0; i <= 80; ++i) {
+    predictor.AddOdometry(0.05 * i, Pose2(0., 0., heading(0.05 * i)));
+  }
+  predictor.AddMatch(0.9, Matched(Pose2()));
+  predictor.AddMatch(1., Matched(Pose2(0., 0., 0.05)));
+  const MotionPrediction prediction = predictor.Predict(4.);
+  EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
+  EXPECT_NEAR(prediction.motion.theta, -2.1, 1e-9);
+  EXPECT_FALSE(prediction.is_uncertain);
+}
+
+TEST(MotionPredictorTest, AJumpWidensThePredictionAndOffersTheVelocity) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  for (int i = 0; i <= 10; ++i) {
+    predictor.AddOdometry(0.1 * i, Pose2(0.05 * i, 0., 0.));
+    predictor.AddMatch(0.1 * i, Matched(Pose2(i == 0 ? 0. : 0.05, 0., 0.)));
+  }
+  predictor.AddOdometry(1.1, Pose2(1.55, 0., 0.));
+  const MotionPrediction prediction = predictor.Predict(1.1);
+  EXPECT_TRUE(prediction.is_uncertain);
+  ASSERT_EQ(prediction.alternatives.size(), 1);
+  EXPECT_NEAR(prediction.alternatives[0].x, 0.05, 1e-9);
+  EXPECT_GT(prediction.covariance(0, 0), 0.5);
+}
+
+TEST(MotionPredictorTest, TheTurnIsWeighedBetweenOdometryAndImu) {
+  MotionPredictorOptions options;
+  options.imu.yaw_rate_bias_noise = 0.;
+  options.imu.noise.yaw_rate_density = 1e-4;
+  MotionPredictor predictor(options);
+  for (int i = 0; i <= 110; ++i) {
+    PlanarImuReading reading;
+    reading.time = 0.01 * i;
+    reading.yaw_rate = 0.3;
+    predictor.AddImu(reading);
+    predictor.AddOdometry(0.01 * i, Pose2(0., 0., 0.002 * i));
+  }
+  predictor.AddMatch(0.5, Matched(Pose2()));
+  predictor.AddMatch(0.6, Matched(Pose2(0., 0., 0.03)));
+  const MotionPrediction prediction = predictor.Predict(1.1);
+  EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
+  // The gyroscope is far surer than the wheels.
+  EXPECT_NEAR(prediction.motion.theta, 0.15, 1e-3);
+  EXPECT_LT(prediction.covariance(2, 2), 1e-6);
+}
+
+TEST(MotionPredictorTest, ImuAloneWhereThereIsNoOdometry) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  for (int i = 0; i <= 200; ++i) {
+    PlanarImuReading reading;
+    reading.time = 0.01 * i;
+    reading.yaw_rate = 0.2;
+    predictor.AddImu(reading);
+  }
+  predictor.AddMatch(0., Matched(Pose2()));
+  predictor.AddMatch(0.1, Matched(Pose2(0.1, 0., 0.02)));
+  const MotionPrediction prediction = predictor.Predict(0.5);
+  EXPECT_EQ(prediction.source, PredictionSource::kImu);
+  EXPECT_NEAR(prediction.motion.theta, 0.08, 1e-9);
+  EXPECT_NEAR(std::hypot(prediction.motion.x, prediction.motion.y), 0.4, 0.01);
+}
+
+TEST(MotionPredictorTest, OdometryCanBeSwitchedOff) {
+  MotionPredictorOptions options;
+  options.use_odometry = false;
+  MotionPredictor predictor(options);
+  for (int i = 0; i <= 20; ++i) {
+    predictor.AddOdometry(0.1 * i, Pose2(0.1 * i, 0., 0.));
+  }
+  predictor.AddMatch(0.5, Matched(Pose2()));
+  EXPECT_EQ(predictor.AddMatch(0.6, Matched(Pose2())), OdometryState::kAbsent);
+  EXPECT_EQ(predictor.Predict(0.7).motion.x, 0.);
+}
+
+// A drive of 60 s with a scan every 0.1 s and odometry every 0.05 s, on which
+// the matcher is right up to a centimetre and knows nothing of odometry.
+struct DriveResult {
+  int faults_in = 0;   // scans in the span of the fault that were told
+  int scans_in = 0;    // scans in the span
+  int faults_out = 0;  // scans outside, a second of recovery left out
+  int scans_out = 0;
+  double mean_error = 0.;  // of the predicted way between two scans, metres
+};
+
+DriveResult SimulateDrive(
+    const double fault_start, const double fault_end,
+    const std::function<Pose2(double)>& odometry_at) {
+  const auto truth = [](const double t) {
+    return Pose2(3. * std::sin(0.2 * t), 2. * std::sin(0.4 * t),
+                 0.8 * std::sin(0.3 * t));
+  };
+  MotionPredictor predictor((MotionPredictorOptions()));
+  Random random(11);
+  DriveResult result;
+  double next_odometry = 0.;
+  int predictions = 0;
+  for (int i = 0; i < 600; ++i) {
+    const double t = 0.1 * i;
+    while (next_odometry <= t) {
+      predictor.AddOdometry(next_odometry, odometry_at(next_odometry));
+      next_odometry += 0.05;
+    }
+    const Pose2 motion =
+        i == 0 ? Pose2() : Between(truth(t - 0.1), truth(t));
+    if (i > 1) {
+      const MotionPrediction prediction = predictor.Predict(t);
+      result.mean_error += std::hypot(prediction.motion.x - motion.x,
+                                      prediction.motion.y - motion.y);
+      ++predictions;
+    }
+    const Pose2 matched(motion.x + random.Normal(0., 0.003),
+                        motion.y + random.Normal(0., 0.003),
+                        motion.theta + random.Normal(0., 0.001));
+    const OdometryState state = predictor.AddMatch(t, Matched(matched));
+    const bool told = state != OdometryState::kOk;
+    if (t > fault_start + 0.6 && t <= fault_end) {
+      ++result.scans_in;
+      result.faults_in += told;
+    } else if (t <= fault_start || t > fault_end + 1.5) {
+      ++result.scans_out;
+      result.faults_out += told;
+    }
+  }
+  result.mean_error /= predictions;
+  return result;
+}
+
+Pose2 Truth(const double t) {
+  return Pose2(3. * std::sin(0.2 * t), 2. * std::sin(0.4 * t),
+               0.8 * std::sin(0.3 * t));
+}
+
+TEST(MotionPredictorTest, FaultFreeDrive) {
+  const DriveResult result = SimulateDrive(1e9, 1e9, Truth);
+  EXPECT_EQ(result.faults_out, 0);
+  EXPECT_LT(result.mean_error, 0.002);
+}
+
+TEST(MotionPredictorTest, SlipIsToldAndNotBelieved) {
+  // For three seconds odometry runs twice as far.
+  const auto odometry = [](const double t) {
+    if (t < 30.) return Truth(t);
+    const double inside = std::min(t, 33.) - 30.;
+    const Pose2 doubled = Truth(30. + 2. * inside);
+    return t < 33. ? doubled : doubled * Between(Truth(33.), Truth(t));
+  };
+  const DriveResult result = SimulateDrive(30., 33., odometry);
+  EXPECT_GT(result.faults_in, 0.8 * result.scans_in);
+  EXPECT_EQ(result.faults_out, 0);
+  EXPECT_LT(result.mean_error, 0.01);
+}
+
+TEST(MotionPredictorTest, AStaleBurstIsToldAndBridged) {
+  const auto odometry = [](const double t) {
+    return Truth(t > 20. && t < 22. ? 20. : t);
+  };
+  const DriveResult result = SimulateDrive(20., 22., odometry);
+  EXPECT_GT(result.faults_in, 0.9 * result.scans_in);
+  EXPECT_EQ(result.faults_out, 0);
+  EXPECT_LT(result.mean_error, 0.01);
+}
+
+}  // namespace
+}  // namespace front_end
+}  // namespace cartographer_ext

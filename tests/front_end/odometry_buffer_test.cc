@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/odometry_buffer.h"
+
+#include <limits>
+
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+TEST(OdometryBufferTest, NothingWithoutReadings) {
+  OdometryBuffer buffer(10., 100, 0.3);
+  OdometrySample sample;
+  EXPECT_FALSE(buffer.Lookup(1., &sample));
+}
+
+TEST(OdometryBufferTest, InterpolatesTheShortWay) {
+  OdometryBuffer buffer(10., 100, 0.3);
+  EXPECT_TRUE(buffer.Add(1., Pose2(0., 0., 3.)));
+  EXPECT_TRUE(buffer.Add(2., Pose2(4., -2., -3.)));
+  OdometrySample sample;
+  ASSERT_TRUE(buffer.Lookup(1.25, &sample));
+  EXPECT_DOUBLE_EQ(sample.pose.x, 1.);
+  EXPECT_DOUBLE_EQ(sample.pose.y, -0.5);
+  // From 3 to -3 it is 0.2832 rad over pi, not 6 the other way.
+  EXPECT_NEAR(sample.pose.theta, 3. + 0.25 * (2. * kPi - 6.), 1e-12);
+  EXPECT_EQ(sample.extrapolated, 0.);
+  EXPECT_FALSE(sample.frozen);
+}
+
+TEST(OdometryBufferTest, GoesOnWithTheLastVelocityForABoundedTime) {
+  OdometryBuffer buffer(10., 100, 0.3);
+  buffer.Add(0., Pose2(0., 0., 0.));
+  buffer.Add(0.1, Pose2(0.1, 0., 0.));
+  OdometrySample sample;
+  ASSERT_TRUE(buffer.Lookup(0.2, &sample));
+  EXPECT_NEAR(sample.pose.x, 0.2, 1e-12);
+  EXPECT_NEAR(sample.extrapolated, 0.1, 1e-12);
+  ASSERT_TRUE(buffer.Lookup(5., &sample));
+  EXPECT_NEAR(sample.pose.x, 0.4, 1e-12);  // 0.3 s at 1 m/s
+  EXPECT_NEAR(sample.extrapolated, 4.9, 1e-12);
+}
+
+TEST(OdometryBufferTest, TheFirstReadingStandsForTheTimeBefore) {
+  OdometryBuffer buffer(10., 100, 0.3);
+  buffer.Add(3., Pose2(1., 2., 0.5));
+  OdometrySample sample;
+  ASSERT_TRUE(buffer.Lookup(1., &sample));
+  EXPECT_EQ(sample.pose.x, 1.);
+  EXPECT_DOUBLE_EQ(sample.extrapolated, 2.);
+}
+
+TEST(OdometryBufferTest, TellsRepeatedPoses) {
+  OdometryBuffer buffer(10., 100, 0.3);
+  buffer.Add(0., Pose2(0., 0., 0.));
+  buffer.Add(1., Pose2(1., 0., 0.));
+  buffer.Add(2., Pose2(1., 0., 0.));
+  OdometrySample sample;
+  buffer.Lookup(0.5, &sample);
+  EXPECT_FALSE(sample.frozen);
+  buffer.Lookup(1.5, &sample);
+  EXPECT_TRUE(sample.frozen);
+  buffer.Lookup(2.5, &sample);
+  EXPECT_TRUE(sample.frozen);
+}
+
+TEST(OdometryBufferTest, RefusesLateAndBrokenReadings) {
+  OdometryBuffer buffer(10., 100, 0.3);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(buffer.Add(1., Pose2()));
+  EXPECT_FALSE(buffer.Add(1., Pose2(1., 0., 0.)));
+  EXPECT_FALSE(buffer.Add(0.5, Pose2(1., 0., 0.)));
+  EXPECT_FALSE(buffer.Add(2., Pose2(nan, 0., 0.)));
+  EXPECT_FALSE(buffer.Add(nan, Pose2()));
+  EXPECT_EQ(buffer.last_time(), 1.);
+}
+
+TEST(OdometryBufferTest, ForgetsWhatIsOld) {
+  OdometryBuffer by_time(1., 1000, 0.3);
+  OdometryBuffer by_number(1000., 5, 0.3);
+  for (int i = 0; i <= 100; ++i) {
+    by_time.Add(0.1 * i, Pose2(i, 0., 0.));
+    by_number.Add(0.1 * i, Pose2(i, 0., 0.));
+  }
+  // The reading before the last second is kept, so that all of it is known.
+  EXPECT_NEAR(by_time.first_time(), 9., 0.1001);
+  EXPECT_NEAR(by_number.first_time(), 9.6, 1e-9);
+}
+
+}  // namespace
+}  // namespace front_end
+}  // namespace cartographer_ext
