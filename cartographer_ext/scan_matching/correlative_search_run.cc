@@ -21,6 +21,7 @@ constexpr int kPointsPerWord =
 constexpr int kMostPoints = 1 << 22;
 constexpr int64_t kMostCoarseNodes = int64_t{1} << 28;
 constexpr int kLargestHalfGroup = 31;
+constexpr int64_t kLargeWindow = 400 * 400;  // offsets
 
 double Seconds() {
   return std::chrono::duration<double>(
@@ -56,11 +57,22 @@ PreparedGrid::PreparedGrid(const SearchGrid2D& grid, const int depth_in,
   padded_stride = grid.num_x + 2 * kMargin;
   padded.resize(static_cast<size_t>(padded_stride) *
                 (grid.num_y + 2 * kMargin));
+  known = OffsetBounds{grid.num_x, -1, grid.num_y, -1};
   for (int y = 0; y != grid.num_y; ++y) {
     const auto row = grid.values.begin() + static_cast<size_t>(y) * grid.num_x;
     std::copy(row, row + grid.num_x,
               padded.begin() +
                   static_cast<size_t>(y + kMargin) * padded_stride + kMargin);
+    const auto end = row + grid.num_x;
+    const auto not_zero = [](const uint8_t value) { return value != 0; };
+    const auto first = std::find_if(row, end, not_zero);
+    if (first == end) continue;
+    auto last = end - 1;
+    while (*last == 0) --last;
+    known.min_x = std::min(known.min_x, static_cast<int>(first - row));
+    known.max_x = std::max(known.max_x, static_cast<int>(last - row));
+    known.min_y = std::min(known.min_y, y);
+    known.max_y = y;
   }
 }
 
@@ -201,6 +213,7 @@ void CorrelativeSearchRun::ScoreGroup(const int group) {
   const OffsetBounds bounds = GroupBounds();
   const int64_t width = bounds.max_x - bounds.min_x + 1;
   const int64_t height = bounds.max_y - bounds.min_y + 1;
+  if (width <= 0 || height <= 0) return;
   const int num_x = static_cast<int>((width + kBlockSize - 1) / kBlockSize);
   const int num_y = static_cast<int>((height + kBlockSize - 1) / kBlockSize);
   const int64_t num_nodes = static_cast<int64_t>(num_x) * num_y;
@@ -208,7 +221,10 @@ void CorrelativeSearchRun::ScoreGroup(const int group) {
   statistics_.coarse_scored += num_nodes;
   if (statistics_.coarse_scored > kMostCoarseNodes) return;
 
-  const size_t size = (static_cast<size_t>(num_nodes) + 15) / 16 * 16;
+  // Far enough apart that what is written beyond the end of a row does not
+  // touch the next one: reading that right away would make the processor wait.
+  stride_ = (num_x + 30) / 16 * 16;
+  const size_t size = static_cast<size_t>(stride_) * num_y;
   byte_sums_.assign(size + 32, 0);
   word_sums_.assign(size, 0);
   wide_sums_.assign(size, 0);
@@ -235,7 +251,7 @@ void CorrelativeSearchRun::ScoreGroup(const int group) {
 }
 
 // Offsets for any rotation of the group in group_x_, group_y_.
-OffsetBounds CorrelativeSearchRun::GroupBounds() const {
+OffsetBounds CorrelativeSearchRun::GroupBounds() {
   OffsetBounds cells = scans_.CellBounds(group_x_.data(), group_y_.data());
   if (half_group_ != 0) {
     const Reach& reach = kReaches[kNumReaches - 1];
@@ -244,7 +260,40 @@ OffsetBounds CorrelativeSearchRun::GroupBounds() const {
     cells.min_y -= reach.y;
     cells.max_y += reach.y;
   }
-  return scans_.BoundsFor(cells);
+  OffsetBounds bounds = scans_.BoundsFor(cells);
+  RestrictToKnown(&bounds);
+  return bounds;
+}
+
+// A sum above the threshold takes at least m = threshold / 255 + 1 points in
+// cells that are not 0. So the point that is the m-th from the right must be
+// right of the left border of these cells, and so on. May leave nothing.
+void CorrelativeSearchRun::RestrictToKnown(OffsetBounds* const bounds) {
+  const int64_t width = bounds->max_x - bounds->min_x + 1;
+  const int64_t height = bounds->max_y - bounds->min_y + 1;
+  const int needed = threshold_ / 255 + 1;
+  // In a small window, ordering the points would take longer.
+  if (width * height < kLargeWindow || threshold_ < 0 ||
+      needed > scans_.num_points()) {
+    return;
+  }
+  const OffsetBounds& known = grid_.known;
+  const int margin_x = half_group_ == 0 ? 0 : kReaches[kNumReaches - 1].x;
+  const int margin_y = half_group_ == 0 ? 0 : kReaches[kNumReaches - 1].y;
+  const auto nth = [this](const std::vector<int32_t>& cells, const int n) {
+    ordered_ = cells;
+    std::nth_element(ordered_.begin(), ordered_.begin() + n, ordered_.end());
+    return ordered_[n];
+  };
+  const int from_end = scans_.num_points() - needed;
+  bounds->min_x =
+      std::max(bounds->min_x, known.min_x - nth(group_x_, from_end) - margin_x);
+  bounds->max_x = std::min(bounds->max_x,
+                           known.max_x - nth(group_x_, needed - 1) + margin_x);
+  bounds->min_y =
+      std::max(bounds->min_y, known.min_y - nth(group_y_, from_end) - margin_y);
+  bounds->max_y = std::min(bounds->max_y,
+                           known.max_y - nth(group_y_, needed - 1) + margin_y);
 }
 
 // Points [begin, end), to word_sums_.
@@ -282,8 +331,8 @@ void CorrelativeSearchRun::AddCoarse(const OffsetBounds& bounds,
             static_cast<size_t>(y + y_begin) * maxima.num_columns() + x +
             x_begin,
         maxima.num_columns(), x_end - x_begin, y_end - y_begin,
-        byte_sums_.data() + static_cast<size_t>(y_begin) * num_x + x_begin,
-        num_x);
+        byte_sums_.data() + static_cast<size_t>(y_begin) * stride_ + x_begin,
+        stride_);
   }
   grid_.kernels.move_sums(size, byte_sums_.data(), word_sums_.data());
 }
@@ -295,9 +344,9 @@ void CorrelativeSearchRun::CollectCoarse(const int group,
   const int64_t scaled =
       (static_cast<int64_t>(threshold_) + 1) * CoarseMaxima::kMaxValue;
   const int needed = static_cast<int>((scaled + 254) / 255);
-  int k = 0;
   for (int y = 0; y != num_y; ++y) {
-    for (int x = 0; x != num_x; ++x, ++k) {
+    for (int x = 0; x != num_x; ++x) {
+      const int k = y * stride_ + x;
       if (wide_sums_[k] < needed) continue;
       CoarseNode node = {wide_sums_[k],
                          group,
@@ -331,7 +380,7 @@ int CorrelativeSearchRun::CoarseBound() const {
 }
 
 int CorrelativeSearchRun::BlockBound() const {
-  return blocks_.empty() ? -1 : blocks_.front().sum;
+  return block_keys_.empty() ? -1 : static_cast<int>(block_keys_.front() >> 32);
 }
 
 int CorrelativeSearchRun::BestBound() const {
@@ -365,10 +414,10 @@ void CorrelativeSearchRun::Run(const float score, BudgetMeter* const meter) {
       return;
     }
     if (block_bound >= coarse_bound) {
-      const Block block = blocks_.front();
-      std::pop_heap(blocks_.begin(), blocks_.end(), &Worse);
-      blocks_.pop_back();
-      OpenBlock(block);
+      const size_t index = 0xffffffffu - (block_keys_.front() & 0xffffffffu);
+      std::pop_heap(block_keys_.begin(), block_keys_.end());
+      block_keys_.pop_back();
+      OpenBlock(blocks_[index]);
       meter->Spend(kBlockSize * kBlockSize);
     } else {
       OpenCoarse(coarse_[next_coarse_++]);
@@ -414,14 +463,14 @@ void CorrelativeSearchRun::OpenCoarse(const CoarseNode& node) {
       if (block.sum + rest < needed) break;
     }
     if (block.sum + rest < needed) continue;
+    block_keys_.push_back(KeyOf(block.sum, blocks_.size()));
+    std::push_heap(block_keys_.begin(), block_keys_.end());
     blocks_.push_back(block);
-    std::push_heap(blocks_.begin(), blocks_.end(), &Worse);
   }
 }
 
-bool CorrelativeSearchRun::Worse(const Block& a, const Block& b) {
-  if (a.sum != b.sum) return a.sum < b.sum;
-  return std::tie(a.rotation, a.x, a.y) > std::tie(b.rotation, b.x, b.y);
+uint64_t CorrelativeSearchRun::KeyOf(const int sum, const size_t index) {
+  return static_cast<uint64_t>(sum) << 32 | (0xffffffffu - index);
 }
 
 void CorrelativeSearchRun::OpenBlock(const Block& block) {

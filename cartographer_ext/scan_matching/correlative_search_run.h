@@ -49,6 +49,8 @@ struct PreparedGrid {
   std::vector<uint8_t> padded;
   int padded_stride = 0;
   CoarseMaxima coarse[kNumReaches];
+  // The smallest rectangle with all cells that are not 0; empty when max < min.
+  OffsetBounds known;
 
   RectangleMaxima Cells() const;  // a copy without the margin
   size_t MemoryBytes() const;
@@ -113,7 +115,8 @@ class CorrelativeSearchRun {
   int ReachOf(double x, double y) const;
   bool ScoreCoarseNodes();
   void ScoreGroup(int group);
-  OffsetBounds GroupBounds() const;
+  OffsetBounds GroupBounds();
+  void RestrictToKnown(OffsetBounds* bounds);
   void AddCoarse(const OffsetBounds& bounds, int num_x, int num_y, int begin,
                  int end);
   void CollectCoarse(int group, const OffsetBounds& bounds, int num_x,
@@ -126,9 +129,9 @@ class CorrelativeSearchRun {
   // The smallest sum that is of interest.
   int Needed() const;
   void OpenCoarse(const CoarseNode& node);
+  static uint64_t KeyOf(int sum, size_t index);
   void OpenBlock(const Block& block);
   void TakePose(int sum, int rotation, int x, int y);
-  static bool Worse(const Block& a, const Block& b);
 
   const PreparedGrid& grid_;
   RotatedScans scans_;
@@ -144,6 +147,8 @@ class CorrelativeSearchRun {
   double versine_ = 0.;  // 1 - cosine
   std::vector<int32_t> group_x_;
   std::vector<int32_t> group_y_;
+  std::vector<int32_t> ordered_;
+  int stride_ = 0;  // of the rows of sums
   std::vector<uint8_t> byte_sums_;
   std::vector<uint16_t> word_sums_;
   std::vector<int32_t> wide_sums_;
@@ -151,7 +156,9 @@ class CorrelativeSearchRun {
 
   std::vector<CoarseNode> coarse_;  // best first
   size_t next_coarse_ = 0;
-  std::vector<Block> blocks_;  // a heap
+  std::vector<Block> blocks_;  // all so far
+  // A heap of those to be opened: bound, then the earlier one; see KeyOf.
+  std::vector<uint64_t> block_keys_;
   int32_t places_[kPointsPerSquareSum + 8];
   SearchStatistics statistics_;
 };

@@ -68,6 +68,12 @@ RotatedScans::RotatedScans(const PlanarCloud& cloud, const Pose2& initial,
     }
   }
   largest_range_ = largest_range;
+  // In multiples of the vector size, but for the end.
+  for (int part = 0; part != kNumParts; ++part) {
+    part_begin_[part] = static_cast<int>(static_cast<int64_t>(num_points()) *
+                                         part / kNumParts / 8 * 8);
+  }
+  part_begin_[kNumParts] = num_points();
   angular_step_ =
       0.999 * std::acos(1. - resolution * resolution /
                                  (2. * (largest_range * largest_range)));
@@ -174,11 +180,6 @@ OffsetBounds RotatedScans::CellBounds(const int32_t* const x,
     cells.max_y = std::max(cells.max_y, y[i]);
   }
   return cells;
-}
-
-int RotatedScans::PartBegin(const int part) const {
-  const int count = num_points();
-  return part * (count / kNumParts) + std::min(part, count % kNumParts);
 }
 
 OffsetBounds RotatedScans::BoundsFor(const OffsetBounds& cells) const {

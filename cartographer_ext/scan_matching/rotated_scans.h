@@ -89,7 +89,7 @@ class RotatedScans {
   int linear_cells() const { return linear_cells_; }
 
   // Part `part` consists of points PartBegin(part) to PartBegin(part + 1) - 1.
-  int PartBegin(int part) const;
+  int PartBegin(const int part) const { return part_begin_[part]; }
 
   // How many cells the point may move from a rotation to the next, at most.
   double CellsPerStep(int point) const;
@@ -128,6 +128,7 @@ class RotatedScans {
   double angular_step_ = 0.;
   int linear_cells_ = 0;
   double largest_range_ = 0.;
+  int part_begin_[kNumParts + 1];
   std::vector<float> turned_x_;
   std::vector<float> turned_y_;
   std::vector<float> ranges_;
