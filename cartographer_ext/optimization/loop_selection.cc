@@ -191,14 +191,15 @@ class Selector {
         worst = i;
       }
     }
-    const int place = std::max(edges_[worst].from, edges_[worst].to);
+    const WhitenedEdge& place = edges_[worst];
     int blamed = -1;
     double largest = -1.;
     for (size_t i = 0; i != edges_.size(); ++i) {
       const WhitenedEdge& edge = edges_[i];
       if (!edge.is_loop || !accepted[i]) continue;
-      if (std::min(edge.from, edge.to) > place ||
-          std::max(edge.from, edge.to) < place) {
+      // Touching it is enough.
+      if (std::min(edge.from, edge.to) > std::max(place.from, place.to) ||
+          std::max(edge.from, edge.to) < std::min(place.from, place.to)) {
         continue;
       }
       const double chi2 = Chi2(edge, poses[edge.from], poses[edge.to]);
@@ -234,6 +235,7 @@ class Selector {
 
   void CheckOdometry(LoopSelection* const selection) const {
     std::vector<int> violations = Violations(selection->poses);
+    if (violations.empty()) return;
     std::vector<bool> accepted = selection->accepted;
     std::vector<Pose2> bent = selection->poses;
     std::vector<int> blamed;
