@@ -48,6 +48,11 @@ struct GraphNode {
   Pose2 global_pose;  // (map <- node), optimised
   // (map <- node) with the tilt that the planar poses leave out.
   Eigen::Isometry3d global_tracking_pose = Eigen::Isometry3d::Identity();
+  // From the records of local SLAM (MarkMatches); no map stores them. The scan
+  // did not determine the position along this direction (radians, map frame).
+  bool weak_direction_is_known = false;
+  double weak_direction = 0.;
+  bool odometry_fault = false;
 };
 
 struct GraphSubmap {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/evaluation/map_picture.h"
 
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -46,6 +47,31 @@ Eigen::Vector2d Anchor(
              ? graph.submaps.at(submap_id).global_pose.translation()
              : graph.nodes.at(it->second[it->second.size() / 2])
                    .global_pose.translation();
+}
+
+// What local SLAM was not sure of.
+void DrawMarks(const MapGraph& graph, io::Picture* const picture) {
+  constexpr double kDash = 0.3;  // metres, half its length
+  bool has_weak = false, has_fault = false;
+  for (const auto& entry : graph.nodes) {
+    const GraphNode& node = entry.second;
+    const Eigen::Vector2d place = node.global_pose.translation();
+    if (node.weak_direction_is_known) {
+      const Eigen::Vector2d dash(kDash * std::cos(node.weak_direction),
+                                 kDash * std::sin(node.weak_direction));
+      picture->DrawLine(place - dash, place + dash,
+                        {io::palette::kOrange, 3., false});
+      has_weak = true;
+    }
+    if (node.odometry_fault) {
+      picture->DrawDot(place, 4., io::palette::kVermilion);
+      has_fault = true;
+    }
+  }
+  if (has_weak) {
+    picture->AddLegend("not determined by the scan", io::palette::kOrange);
+  }
+  if (has_fault) picture->AddLegend("odometry fault", io::palette::kVermilion);
 }
 
 }  // namespace
@@ -93,6 +119,7 @@ absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
   }
   if (!title.empty()) picture.SetTitle(title);
   picture.AddLegend("path", io::palette::kBlue);
+  DrawMarks(graph, &picture);
   const std::map<LoopKind, const char*> legends = {
       {LoopKind::kAgrees, "loop"},
       {LoopKind::kAgainstTheMap, "loop against the map"},

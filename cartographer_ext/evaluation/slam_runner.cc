@@ -17,6 +17,7 @@
 #include "cartographer_ext/evaluation/resource_usage.h"
 #include "cartographer_ext/evaluation/scan_conversion.h"
 #include "cartographer_ext/evaluation/scan_trajectory.h"
+#include "cartographer_ext/front_end/match_recorder.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 
 namespace cartographer_ext {
@@ -39,6 +40,8 @@ constexpr char kOurSearchesMetric[] = "cartographer_ext_loop_searches";
 constexpr char kOurCpuMetric[] = "cartographer_ext_loop_cpu_seconds";
 // Decision records kept, about 400 bytes each.
 constexpr size_t kMaxDecisions = 2000000;
+// Records of matched scans kept, about 300 bytes each.
+constexpr size_t kMaxMatches = 2000000;
 constexpr char kSearchCpuMetric[] =
     "mapping_constraints_constraint_builder_2d_search_cpu_seconds";
 
@@ -219,6 +222,9 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   loop_closure::DecisionRecorder* const recorder =
       loop_closure::DecisionRecorder::Global();
   recorder->Start(kMaxDecisions);
+  front_end::MatchRecorder* const match_recorder =
+      front_end::MatchRecorder::Global();
+  match_recorder->Start(kMaxMatches);
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = ProcessCpuSeconds();
   const double thread_cpu_start = ThreadCpuSeconds();
@@ -296,6 +302,12 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
 
   run.switched_loops = optimization::LastSwitchedLoops();
 
+  run.matches = match_recorder->All();
+  match_recorder->Stop();
+  if (match_recorder->num_left_out() > 0) {
+    run.warnings.push_back(absl::StrCat(match_recorder->num_left_out(),
+                                        " records of scans left out"));
+  }
   run.decisions = recorder->All();
   recorder->Stop();
   if (recorder->num_left_out() > 0) {

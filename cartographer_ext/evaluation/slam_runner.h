@@ -32,6 +32,7 @@
 #include "cartographer_ext/evaluation/wrong_loops.h"
 #include "cartographer_ext/io/sensor_source.h"
 #include "cartographer_ext/loop_decision.pb.h"
+#include "cartographer_ext/match_record.pb.h"
 #include "cartographer_ext/optimization/switched_loops.h"
 
 namespace cartographer_ext {
@@ -102,6 +103,8 @@ struct SlamRun {
 
   // Why loop candidates were accepted or not, where our loop closure ran.
   std::vector<proto::LoopDecision> decisions;
+  // One a matched scan; empty with the stock local SLAM.
+  std::vector<proto::MatchRecord> matches;
 
   std::vector<std::string> warnings;
 };

@@ -14,6 +14,7 @@
 #include "cartographer_ext/evaluation/decision_table.h"
 #include "cartographer_ext/evaluation/map_graph.h"
 #include "cartographer_ext/evaluation/map_picture.h"
+#include "cartographer_ext/evaluation/match_files.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
 #include "cartographer_ext/evaluation/pbstream_optimization.h"
 #include "cartographer_ext/evaluation/pose_graph_export.h"
@@ -48,6 +49,10 @@ DEFINE_string(map_filestem, "",
               "Output: occupancy map <stem>.pgm and <stem>.yaml, as map_server "
               "and nav2 read it.");
 DEFINE_double(resolution, 0.05, "Metres a cell of that map.");
+DEFINE_string(nodes_filename, "",
+              "Marks in the picture what local SLAM was not sure of: the "
+              ".nodes.pb that cartographer_ext_slam has written. Empty: the "
+              "one beside the map, if there is one.");
 DEFINE_string(picture_filename, "",
               "Output: PNG of the map with path and loops.");
 
@@ -96,6 +101,20 @@ absl::StatusOr<std::vector<int>> MarkLoops(evaluation::MapGraph* const graph) {
   return evaluation::MarkSwitchedOff(*off, graph);
 }
 
+// Marks the nodes by -nodes_filename, or by the file beside the map.
+absl::Status MarkNodes(evaluation::MapGraph* const graph) {
+  const bool is_given = !FLAGS_nodes_filename.empty();
+  const auto records = evaluation::ReadMatches(
+      is_given ? FLAGS_nodes_filename
+               : evaluation::MatchRecordsFilename(FLAGS_pbstream_filename));
+  if (records.ok()) {
+    evaluation::MarkMatches(*records, graph);
+  } else if (is_given || !absl::IsNotFound(records.status())) {
+    return records.status();
+  }
+  return absl::OkStatus();
+}
+
 absl::Status Run() {
   std::vector<std::string> outputs = {
       FLAGS_trajectory_filename, FLAGS_g2o_filename, FLAGS_constraints_filename,
@@ -109,6 +128,10 @@ absl::Status Run() {
   const auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
   if (!pbstream.ok()) return pbstream.status();
   evaluation::MapGraph graph = evaluation::MakeMapGraph(*pbstream);
+  if (!FLAGS_picture_filename.empty()) {
+    const absl::Status status = MarkNodes(&graph);
+    if (!status.ok()) return status;
+  }
   if (!FLAGS_switched_loops_filename.empty()) {
     const auto off = MarkLoops(&graph);
     if (!off.ok()) return off.status();

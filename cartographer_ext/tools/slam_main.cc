@@ -21,6 +21,7 @@
 #include "cartographer_ext/evaluation/decision_table.h"
 #include "cartographer_ext/evaluation/host_map.h"
 #include "cartographer_ext/evaluation/map_picture.h"
+#include "cartographer_ext/evaluation/match_files.h"
 #include "cartographer_ext/evaluation/open_recording.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
 #include "cartographer_ext/evaluation/pbstream_optimization.h"
@@ -180,6 +181,16 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
       {"cpu_seconds", run.loop_search_cpu_seconds},
       // Otherwise all threads of the back end are counted.
       {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured}};
+  if (!run.matches.empty()) {
+    const evaluation::MatchCounts counts =
+        evaluation::CountMatches(run.matches);
+    json["local_slam"] = {{"degenerate_scans", counts.degenerate},
+                          {"searches", counts.searched},
+                          {"relocated", counts.relocated},
+                          {"odometry_faults", counts.odometry_faults},
+                          {"slip_suspected", counts.slip_suspected},
+                          {"time_offset", counts.time_offset}};
+  }
   if (!run.decisions.empty()) {
     const evaluation::DecisionCounts counts =
         evaluation::CountDecisions(run.decisions);
@@ -214,6 +225,9 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
     const absl::Status decisions = evaluation::WriteDecisionsBeside(
         FLAGS_pbstream_filename, run.decisions);
     if (!decisions.ok()) return decisions;
+    const absl::Status matches = evaluation::WriteMatchesBeside(
+        FLAGS_pbstream_filename, run.matches);
+    if (!matches.ok()) return matches;
     if (!FLAGS_keep_switched_loops && !run.switched_loops.off.empty()) {
       const absl::Status removed =
           RemoveSwitchedLoops(run, FLAGS_pbstream_filename);
@@ -240,6 +254,7 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
       !FLAGS_map_filestem.empty() || !FLAGS_picture_filename.empty();
   if (FLAGS_decisions_filename.empty() && !wants_map) return absl::OkStatus();
   evaluation::MapGraph graph = evaluation::MakeMapGraph(pose_graph);
+  evaluation::MarkMatches(run.matches, &graph);
   evaluation::MarkSwitchedOff(run.switched_loops.off, &graph);
   if (!FLAGS_decisions_filename.empty()) {
     const absl::Status status = WriteFileAtomically(

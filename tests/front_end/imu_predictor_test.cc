@@ -33,8 +33,7 @@ TEST(ImuPredictorTest, ConstantAccelerationAndTurn) {
   ImuPredictor turning((ImuPredictorOptions()));
   for (int i = 0; i <= 100; ++i) turning.Add(Reading(0.01 * i, 0., 0.4));
   // Between readings as well.
-  ASSERT_TRUE(
-      turning.Predict(0.205, 0.705, Eigen::Vector2d::Zero(), &motion));
+  ASSERT_TRUE(turning.Predict(0.205, 0.705, Eigen::Vector2d::Zero(), &motion));
   EXPECT_NEAR(motion.motion.theta, 0.2, 1e-9);
 }
 

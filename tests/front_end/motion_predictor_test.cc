@@ -137,9 +137,8 @@ struct DriveResult {
   double mean_error = 0.;  // of the predicted way between two scans, metres
 };
 
-DriveResult SimulateDrive(
-    const double fault_start, const double fault_end,
-    const std::function<Pose2(double)>& odometry_at) {
+DriveResult SimulateDrive(const double fault_start, const double fault_end,
+                          const std::function<Pose2(double)>& odometry_at) {
   const auto truth = [](const double t) {
     return Pose2(3. * std::sin(0.2 * t), 2. * std::sin(0.4 * t),
                  0.8 * std::sin(0.3 * t));
@@ -155,8 +154,7 @@ DriveResult SimulateDrive(
       predictor.AddOdometry(next_odometry, odometry_at(next_odometry));
       next_odometry += 0.05;
     }
-    const Pose2 motion =
-        i == 0 ? Pose2() : Between(truth(t - 0.1), truth(t));
+    const Pose2 motion = i == 0 ? Pose2() : Between(truth(t - 0.1), truth(t));
     if (i > 1) {
       const MotionPrediction prediction = predictor.Predict(t);
       result.mean_error += std::hypot(prediction.motion.x - motion.x,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/front_end/odometry_predictor.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "gtest/gtest.h"
@@ -60,8 +61,7 @@ TEST(OdometryPredictorTest, CovarianceByHand) {
   EXPECT_NEAR(covariance(2, 2), 0.17 * 0.17, 1e-12);
   EXPECT_NEAR(covariance(0, 1), 0., 1e-12);
   // The same way along y.
-  const Eigen::Matrix3d turned =
-      OdometryCovariance(noise, Pose2(0., 1., -0.5));
+  const Eigen::Matrix3d turned = OdometryCovariance(noise, Pose2(0., 1., -0.5));
   EXPECT_NEAR(turned(0, 0), covariance(1, 1), 1e-12);
   EXPECT_NEAR(turned(1, 1), covariance(0, 0), 1e-12);
 }
@@ -89,7 +89,7 @@ TEST(OdometryPredictorTest, AGapInTheScansIsBridged) {
 }
 
 TEST(OdometryPredictorTest, LearnsTheOffsetFromMatches) {
-  OdometryPredictor predictor(OdometryNoiseOptions(), TimeOffsetOptions());
+  OdometryPredictor predictor{OdometryNoiseOptions(), TimeOffsetOptions()};
   const double offset = 0.12;
   const auto heading = [](const double t) { return 0.6 * std::sin(2. * t); };
   double next_odometry = 0.;

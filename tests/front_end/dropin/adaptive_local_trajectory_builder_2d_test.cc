@@ -1,0 +1,328 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/dropin/adaptive_local_trajectory_builder_2d.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/memory/memory.h"
+#include "cartographer/common/configuration_file_resolver.h"
+#include "cartographer/common/lua_parameter_dictionary.h"
+#include "cartographer/mapping/internal/2d/local_trajectory_builder_options_2d.h"
+#include "cartographer/transform/transform.h"
+#include "cartographer_ext/front_end/match_recorder.h"
+#include "cartographer_ext/options/option_description.h"
+#include "gtest/gtest.h"
+#include "tests/front_end/dropin/simulated_room.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+using cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D;
+using proto::MatchRecord;
+using test::Wall;
+
+LocalTrajectoryBuilderOptions2D StockOptions() {
+  cartographer::common::LuaParameterDictionary dictionary(
+      "include 'common_2d.lua' return TRAJECTORY_BUILDER_2D",
+      absl::make_unique<cartographer::common::ConfigurationFileResolver>(
+          std::vector<std::string>{"configuration_files"}));
+  return cartographer::mapping::CreateLocalTrajectoryBuilderOptions2D(
+      &dictionary);
+}
+
+proto::FrontEndOptions OwnOptions() {
+  proto::FrontEndOptions options;
+  options::SetDefaults(&options);
+  return options;
+}
+
+Pose2 ToPose2(const cartographer::transform::Rigid3d& pose) {
+  return Pose2(pose.translation().x(), pose.translation().y(),
+               cartographer::transform::GetYaw(pose.rotation()));
+}
+
+// A loop through the room with turns both ways.
+Pose2 Path(const double t) {
+  return Pose2(1.5 * std::sin(0.25 * t), 1.2 * std::sin(0.5 * t) - 0.5,
+               0.9 * std::sin(0.35 * t));
+}
+
+struct RunResult {
+  int matched = 0;
+  int nodes = 0;
+  double mean_error = 0.;  // metres
+  double max_error = 0.;
+  double max_turn_error = 0.;  // radians
+  Pose2 last;                  // seen from the first pose
+  Pose2 true_last;
+  std::vector<MatchRecord> records;
+};
+
+struct RunOptions {
+  std::vector<Wall> walls = test::Room();
+  std::function<Pose2(double)> path = Path;
+  std::function<Pose2(double)> odometry = Path;
+  std::function<bool(double)> has_scan = [](double) { return true; };
+  bool use_odometry = true;
+  double seconds = 40.;
+  double max_range = 12.;
+  LocalTrajectoryBuilderOptions2D stock = StockOptions();
+  proto::FrontEndOptions own = OwnOptions();
+};
+
+RunResult Run(const RunOptions& options) {
+  MatchRecorder::Global()->Start(100000);
+  AdaptiveLocalTrajectoryBuilder2D builder(options.stock, options.own,
+                                           {"scan"});
+  Random random(5);
+  RunResult result;
+  bool has_first = false;
+  Pose2 first_true, first_found;
+  double next_odometry = 0.;
+  for (int i = 0; i <= static_cast<int>(10. * options.seconds); ++i) {
+    const double t = 0.1 * i;
+    while (options.use_odometry && next_odometry <= t) {
+      builder.AddOdometryData(
+          test::Odometry(next_odometry, options.odometry(next_odometry)));
+      next_odometry += 0.05;
+    }
+    if (!options.has_scan(t)) continue;
+    const auto matched = builder.AddRangeData(
+        "scan", test::Scan(options.walls, t, options.path(t), options.max_range,
+                           &random));
+    if (matched == nullptr) continue;
+    ++result.matched;
+    result.nodes += matched->insertion_result != nullptr;
+    const Pose2 found = ToPose2(matched->local_pose);
+    if (!has_first) {
+      has_first = true;
+      first_true = options.path(t);
+      first_found = found;
+    }
+    result.last = Between(first_found, found);
+    result.true_last = Between(first_true, options.path(t));
+    const Pose2 error = Between(result.true_last, result.last);
+    result.mean_error += std::hypot(error.x, error.y);
+    result.max_error = std::max(result.max_error, std::hypot(error.x, error.y));
+    result.max_turn_error =
+        std::max(result.max_turn_error, std::abs(error.theta));
+  }
+  result.mean_error /= std::max(1, result.matched);
+  result.records = MatchRecorder::Global()->All();
+  MatchRecorder::Global()->Stop();
+  return result;
+}
+
+int Count(const std::vector<MatchRecord>& records,
+          const MatchRecord::OdometryState state) {
+  int count = 0;
+  for (const MatchRecord& record : records) {
+    count += record.odometry() == state;
+  }
+  return count;
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, FollowsARobotWithOdometry) {
+  const RunResult result = Run(RunOptions());
+  EXPECT_EQ(result.matched, 401);
+  EXPECT_GT(result.nodes, 50);
+  EXPECT_LT(result.nodes, 401);
+  EXPECT_LT(result.max_error, 0.05);
+  EXPECT_LT(result.max_turn_error, 0.02);
+  ASSERT_EQ(result.records.size(), 401);
+  EXPECT_EQ(Count(result.records, MatchRecord::OK), 401);
+  int nodes = 0;
+  for (const MatchRecord& record : result.records) nodes += record.is_node();
+  EXPECT_EQ(nodes, result.nodes);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, FollowsARobotWithoutOdometry) {
+  RunOptions options;
+  options.use_odometry = false;
+  const RunResult result = Run(options);
+  EXPECT_LT(result.max_error, 0.06);
+  EXPECT_LT(result.max_turn_error, 0.03);
+  EXPECT_EQ(result.records.back().odometry(), MatchRecord::ABSENT);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedInAGap) {
+  // The robot turns left at 1 rad/s before the gap of 3 s, right within it.
+  const auto path = [](const double t) {
+    return Pose2(0., -0.5, t < 10. ? 0.2 * t : 2. - 0.5 * (t - 10.));
+  };
+  RunOptions options;
+  options.path = path;
+  options.odometry = path;
+  options.seconds = 20.;
+  options.has_scan = [](const double t) { return t < 10. || t > 13.; };
+  const RunResult with_odometry = Run(options);
+  EXPECT_LT(with_odometry.max_turn_error, 0.03);
+  EXPECT_LT(with_odometry.max_error, 0.05);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, StaleOdometryIsBridgedAndTold) {
+  const double clean = Run(RunOptions()).mean_error;
+  RunOptions options;
+  options.odometry = [](const double t) {
+    return Path(t > 20. && t < 21. ? 20. : t);
+  };
+  const RunResult result = Run(options);
+  EXPECT_LT(result.mean_error, 1.5 * clean + 0.002);
+  EXPECT_GT(Count(result.records, MatchRecord::STALE), 3);
+  EXPECT_EQ(result.records.back().odometry(), MatchRecord::OK);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, AJumpIsBridgedAndTold) {
+  const double clean = Run(RunOptions()).mean_error;
+  RunOptions options;
+  options.odometry = [](const double t) {
+    return t < 20. ? Path(t) : Pose2(0.7, 0.5, 0.4) * Path(t);
+  };
+  const RunResult result = Run(options);
+  EXPECT_LT(result.mean_error, 1.5 * clean + 0.002);
+  EXPECT_GE(Count(result.records, MatchRecord::JUMPING), 1);
+  EXPECT_EQ(result.records.back().odometry(), MatchRecord::OK);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, TheClockOffsetIsLearnt) {
+  RunOptions options;
+  options.path = [](const double t) {
+    return Pose2(1.5 * std::sin(0.25 * t), 0.5 * std::sin(0.5 * t) - 0.5,
+                 0.9 * std::sin(1.2 * t));
+  };
+  options.odometry = [&options](const double t) {
+    return options.path(t + 0.15);
+  };
+  options.seconds = 60.;
+  const RunResult result = Run(options);
+  EXPECT_NEAR(result.records.back().time_offset(), 0.15, 0.02);
+  EXPECT_LT(result.max_error, 0.06);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, ACorridorKeepsTheLengthOfOdometry) {
+  RunOptions options;
+  options.walls = test::Corridor();
+  options.path = [](const double t) { return Pose2(0.4 * t, 0.1, 0.); };
+  options.odometry = options.path;
+  options.max_range = 10.;
+  const RunResult result = Run(options);
+  // 16 m along a blank corridor.
+  EXPECT_NEAR(result.last.x, 16., 0.1);
+  EXPECT_NEAR(result.last.y, 0., 0.03);
+  int degenerate = 0;
+  double worst_direction = 0.;
+  for (const MatchRecord& record : result.records) {
+    if (record.degeneracy() != MatchRecord::TRANSLATION) continue;
+    ++degenerate;
+    const double off = std::abs(std::remainder(record.weak_direction(), kPi));
+    worst_direction = std::max(worst_direction, off);
+  }
+  EXPECT_GT(degenerate, 350);
+  EXPECT_LT(worst_direction, DegToRad(5.));
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, FeaturesDoTheJob) {
+  RunOptions options;
+  options.own.mutable_features()->set_enabled(true);
+  const RunResult result = Run(options);
+  EXPECT_LT(result.max_error, 0.1);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, SeveralSweepsMakeAScan) {
+  RunOptions options;
+  options.stock.set_num_accumulated_range_data(2);
+  const RunResult result = Run(options);
+  EXPECT_EQ(result.matched, 200);
+  EXPECT_LT(result.max_error, 0.06);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, RepeatsItselfBitForBit) {
+  const RunResult a = Run(RunOptions()), b = Run(RunOptions());
+  EXPECT_EQ(a.last.x, b.last.x);
+  EXPECT_EQ(a.last.theta, b.last.theta);
+  ASSERT_EQ(a.records.size(), b.records.size());
+  for (size_t i = 0; i < a.records.size(); ++i) {
+    EXPECT_EQ(a.records[i].SerializeAsString(),
+              b.records[i].SerializeAsString());
+  }
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, BadScansAreSurvived) {
+  AdaptiveLocalTrajectoryBuilder2D builder(StockOptions(), OwnOptions(),
+                                           {"scan"});
+  Random random(1);
+  cartographer::sensor::TimedPointCloudData scan =
+      test::Scan(test::Room(), 1., Path(0.), 12., &random);
+  EXPECT_NE(builder.AddRangeData("scan", scan), nullptr);
+  // Not later.
+  EXPECT_EQ(builder.AddRangeData("scan", scan), nullptr);
+  // Without points, with one, with ranges that are not a number.
+  cartographer::sensor::TimedPointCloudData empty = scan;
+  empty.time = test::At(2.);
+  empty.ranges.clear();
+  EXPECT_EQ(builder.AddRangeData("scan", empty), nullptr);
+  cartographer::sensor::TimedPointCloudData one = scan;
+  one.time = test::At(3.);
+  one.ranges.resize(1);
+  const auto matched = builder.AddRangeData("scan", one);
+  ASSERT_NE(matched, nullptr);
+  EXPECT_TRUE(matched->local_pose.translation().allFinite());
+  cartographer::sensor::TimedPointCloudData broken = scan;
+  broken.time = test::At(4.);
+  for (auto& point : broken.ranges) {
+    point.position.setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  EXPECT_EQ(builder.AddRangeData("scan", broken), nullptr);
+  scan.time = test::At(5.);
+  const auto after = builder.AddRangeData("scan", scan);
+  ASSERT_NE(after, nullptr);
+  EXPECT_TRUE(after->local_pose.translation().allFinite());
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, TheImuTurnsTheRobotAndLevelsIt) {
+  LocalTrajectoryBuilderOptions2D stock = StockOptions();
+  stock.set_use_imu_data(true);
+  AdaptiveLocalTrajectoryBuilder2D builder(stock, OwnOptions(), {"scan"});
+  Random random(2);
+  // Turns on the spot at 0.5 rad/s, tilted by 3 degrees.
+  const Eigen::Quaterniond tilt(
+      Eigen::AngleAxisd(DegToRad(3.), Eigen::Vector3d::UnitX()));
+  EXPECT_EQ(builder.AddRangeData(
+                "scan", test::Scan(test::Room(), -1., Pose2(), 12., &random)),
+            nullptr);  // waits for the IMU
+  for (int i = 0; i <= 500; ++i) {
+    const double t = 0.01 * i;
+    cartographer::sensor::ImuData imu;
+    imu.time = test::At(t);
+    imu.linear_acceleration =
+        tilt.conjugate() * Eigen::Vector3d(0., 0., 9.80665);
+    imu.angular_velocity = tilt.conjugate() * Eigen::Vector3d(0., 0., 0.5);
+    builder.AddImuData(imu);
+    if (i % 10 != 0) continue;
+    auto scan =
+        test::Scan(test::Room(), t, Pose2(0., -0.5, 0.5 * t), 12., &random);
+    for (auto& point : scan.ranges) {
+      point.position = tilt.conjugate().cast<float>() * point.position;
+    }
+    const auto matched = builder.AddRangeData("scan", scan);
+    ASSERT_NE(matched, nullptr);
+    EXPECT_NEAR(
+        std::remainder(ToPose2(matched->local_pose).theta - 0.5 * t, 2. * kPi),
+        0., 0.03);
+    if (matched->insertion_result != nullptr) {
+      const Eigen::Quaterniond alignment =
+          matched->insertion_result->constant_data->gravity_alignment;
+      EXPECT_LT(alignment.angularDistance(tilt), 0.02);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace front_end
+}  // namespace cartographer_ext
