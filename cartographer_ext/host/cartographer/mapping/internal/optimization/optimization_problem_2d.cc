@@ -19,6 +19,14 @@ namespace mapping {
 namespace optimization {
 namespace {
 
+// Ceres 2.1 renamed it, 2.2 knows the new name only.
+#if CERES_VERSION_MAJOR > 2 || \
+    (CERES_VERSION_MAJOR == 2 && CERES_VERSION_MINOR >= 1)
+using UnitQuaternion = ceres::QuaternionManifold;
+#else
+using UnitQuaternion = ceres::QuaternionParameterization;
+#endif
+
 using Values2D = std::array<double, 3>;  // x, y, theta
 using TrajectoryData = PoseGraphInterface::TrajectoryData;
 using TrajectoryState = PoseGraphInterface::TrajectoryState;
@@ -295,8 +303,7 @@ class OptimizationProblem2D::Solver {
                           observation.landmark_to_tracking_transform);
       }
       problem_.AddParameterBlock(values.translation.data(), 3);
-      problem_.AddParameterBlock(values.rotation.data(), 4,
-                                 new ceres::QuaternionManifold());
+      problem_.AddParameterBlock(values.rotation.data(), 4, new UnitQuaternion);
       if (landmark.frozen) {
         problem_.SetParameterBlockConstant(values.translation.data());
         problem_.SetParameterBlockConstant(values.rotation.data());
