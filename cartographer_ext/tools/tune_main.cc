@@ -220,7 +220,10 @@ absl::Status Run(const tuning::MpiSession& session) {
   }
   const auto journal = tuning::Journal::Open(
       FLAGS_journal_filename,
-      absl::StrCat(configuration->Fingerprint(), "|", FLAGS_odometry_source));
+      absl::StrCat(configuration->Fingerprint(), "|", FLAGS_odometry_source,
+                   setup->spec.objective.Wants("self_consistency")
+                       ? "|self_consistency"
+                       : ""));
   if (!journal.ok()) return journal.status();
   if ((*journal)->was_torn()) {
     std::cerr << tools::ProgramName() << ": " << FLAGS_journal_filename

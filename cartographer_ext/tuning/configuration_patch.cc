@@ -21,14 +21,20 @@ namespace {
 constexpr char kBlockName[] = "cartographer_ext";
 
 // Makes the tables on the way where they are absent; whether they may be is
-// checked before.
+// checked before. Our blocks may be one table in several places, so they are
+// copied before they are changed.
 constexpr char kAssignFunction[] = R"(
 local function assign(path, value)
   local names = {}
   for name in path:gmatch("[^.]+") do names[#names + 1] = name end
-  local place = _G
+  local place, in_block = _G, false
   for i = 1, #names - 1 do
-    if place[names[i]] == nil then place[names[i]] = {} end
+    in_block = in_block or names[i] == "cartographer_ext"
+    if in_block then
+      local copy = {}
+      for k, v in pairs(place[names[i]] or {}) do copy[k] = v end
+      place[names[i]] = copy
+    end
     place = place[names[i]]
   end
   place[names[#names]] = value

@@ -22,8 +22,9 @@
 // | wall_seconds            | of the run                                     |
 // | cpu_seconds             | of the run, all threads                        |
 // | loop_search_cpu_seconds | of the loop search                             |
-// | self_consistency        | without truth: map entropy and disagreement of |
-// |                         | loops and local SLAM, see self_consistency.h   |
+// | self_consistency        | without truth: shares of nodes, rays and loop  |
+// |                         | cycles that contradict the map, and how much   |
+// |                         | walls thicken when seen again                  |
 //
 // Smaller is better for each.
 #ifndef CARTOGRAPHER_EXT_TUNING_OBJECTIVE_H_

@@ -40,18 +40,27 @@ void WholeTrials(const TuneResult& result, std::vector<Point>* points,
   }
 }
 
-// Tables below a block of ours may be left out in the configuration.
-std::string EnsureTables(const std::string& key,
-                         std::set<std::string>* const ensured) {
+// Our blocks may be one table in several places, and tables in them may be left
+// out, so those on the way to a key are replaced by copies.
+constexpr char kCopyFunction[] = R"(
+local function copied(original)
+  local copy = {}
+  for key, value in pairs(original or {}) do copy[key] = value end
+  return copy
+end
+)";
+
+std::string CopyTables(const std::string& key,
+                       std::set<std::string>* const copied) {
   const std::vector<std::string> parts = absl::StrSplit(key, '.');
   std::string text, path;
   bool in_block = false;
   for (size_t i = 0; i + 1 < parts.size(); ++i) {
     absl::StrAppend(&path, i > 0 ? "." : "", parts[i]);
-    if (in_block && ensured->insert(path).second) {
-      absl::StrAppend(&text, path, " = ", path, " or {}\n");
-    }
     in_block |= parts[i] == kBlockName;
+    if (in_block && copied->insert(path).second) {
+      absl::StrAppend(&text, path, " = copied(", path, ")\n");
+    }
   }
   return text;
 }
@@ -130,15 +139,16 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
     return text +
            "--\n-- Nothing was better than the configuration as it is.\n";
   }
-  std::set<std::string> ensured;
+  std::set<std::string> copied;
+  std::string assignments;
   for (const KeyResult& key : result.keys) {
-    absl::StrAppend(&text, "\n-- Before: ", ToLua(key.before), ". ");
-    absl::StrAppend(&text, Gain(key, result.best, context.inputs.size()),
+    absl::StrAppend(&assignments, "\n-- Before: ", ToLua(key.before), ". ",
+                    Gain(key, result.best, context.inputs.size()),
                     ". Confidence: ", Confidence(key, context.inputs.size()),
-                    ".\n");
-    absl::StrAppend(&text, EnsureTables(key.key, &ensured), key.key, " = ",
+                    ".\n", CopyTables(key.key, &copied), key.key, " = ",
                     ToLua(key.after), "\n");
   }
+  absl::StrAppend(&text, copied.empty() ? "" : kCopyFunction, assignments);
   return text;
 }
 

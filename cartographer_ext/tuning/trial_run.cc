@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/trial_run.h"
 
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -9,11 +15,13 @@
 #include "absl/types/optional.h"
 #include "cartographer_ext/evaluation/host_map.h"
 #include "cartographer_ext/evaluation/loop_statistics.h"
+#include "cartographer_ext/evaluation/map_contents.h"
 #include "cartographer_ext/evaluation/map_graph.h"
+#include "cartographer_ext/evaluation/motion_disagreement.h"
 #include "cartographer_ext/evaluation/open_recording.h"
-#include "cartographer_ext/evaluation/pbstream_map.h"
 #include "cartographer_ext/evaluation/relations_metric.h"
 #include "cartographer_ext/evaluation/rerun.h"
+#include "cartographer_ext/evaluation/self_consistency.h"
 #include "cartographer_ext/evaluation/slam_configuration.h"
 #include "cartographer_ext/evaluation/slam_runner.h"
 #include "cartographer_ext/evaluation/trajectory_metrics.h"
@@ -22,15 +30,12 @@
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/simulation/truth.h"
 #include "cartographer_ext/simulation/world_source.h"
-#include "cartographer_ext/tuning/self_consistency.h"
 
 namespace cartographer_ext {
 namespace tuning {
 namespace {
 
 using Metrics = std::map<std::string, double>;
-
-constexpr double kMapResolution = 0.05;  // metres
 
 // The first part of a recording.
 class FirstPart : public io::SensorSource {
@@ -145,13 +150,40 @@ void AddLoops(const Truth& truth, const evaluation::MapGraph& graph,
   (*metrics)["loop_precision"] = loops.precision.value_or(1.);
 }
 
+// Shares of what contradicts itself, and how much thicker walls are where they
+// were seen in more than one visit.
 void AddSelfConsistency(const evaluation::MapGraph& graph,
-                        const io::OccupancyMap& map, Metrics* const metrics) {
-  const SelfConsistency result = ComputeSelfConsistency(graph, map);
-  (*metrics)["self_consistency"] = result.Total();
-  (*metrics)["map_entropy"] = result.map_entropy;
-  (*metrics)["loop_residual"] = result.loop_residual;
-  (*metrics)["bending"] = result.bending;
+                        const io::Pbstream& pbstream, Metrics* const metrics) {
+  const evaluation::SelfConsistency result = evaluation::AssessSelfConsistency(
+      graph,
+      evaluation::ReadMapContents(pbstream, evaluation::MapContentsOptions()),
+      evaluation::ReadOdometry(pbstream), evaluation::SelfConsistencyOptions());
+  const double doubling = std::max(0., result.sharpness.doubling - 1.);
+  (*metrics)["node_contradiction"] = result.contradictions.node_fraction();
+  (*metrics)["ray_contradiction"] = result.contradictions.ray_fraction();
+  (*metrics)["cycle_contradiction"] = result.cycles.fraction();
+  (*metrics)["wall_doubling"] = doubling;
+  (*metrics)["self_consistency"] = result.contradictions.node_fraction() +
+                                   result.contradictions.ray_fraction() +
+                                   result.cycles.fraction() + doubling;
+}
+
+// The map of a run as a file would have it.
+absl::StatusOr<io::Pbstream> ToPbstream(
+    cartographer::mapping::MapBuilderInterface* const map_builder) {
+  const char* const folder = getenv("TMPDIR");
+  std::string name = absl::StrCat(folder == nullptr ? "/tmp" : folder,
+                                  "/cartographer_ext_tune_XXXXXX");
+  const int descriptor = mkstemp(&name[0]);
+  if (descriptor < 0) {
+    return absl::InternalError(absl::StrCat(name, ": ", strerror(errno)));
+  }
+  close(descriptor);
+  const absl::Status status = evaluation::WritePbstream(map_builder, name);
+  auto pbstream = status.ok() ? io::ReadPbstream(name)
+                              : absl::StatusOr<io::Pbstream>(status);
+  unlink(name.c_str());
+  return pbstream;
 }
 
 absl::StatusOr<Metrics> RunRecording(
@@ -194,9 +226,9 @@ absl::StatusOr<Metrics> RunRecording(
   const evaluation::MapGraph graph = evaluation::MakeMapGraph(pose_graph);
   AddLoops(*truth, graph, &metrics);
   if (request.wants_self_consistency) {
-    const auto map = evaluation::PaintHostMap(pose_graph, kMapResolution);
-    if (!map.ok()) return map.status();
-    AddSelfConsistency(graph, *map, &metrics);
+    const auto pbstream = ToPbstream(run->map_builder.get());
+    if (!pbstream.ok()) return pbstream.status();
+    AddSelfConsistency(graph, *pbstream, &metrics);
   }
   return metrics;
 }
@@ -222,6 +254,9 @@ absl::StatusOr<Metrics> RunPbstream(
       AddAccuracy(*truth, rerun->graph.GlobalTrajectory(), false, &metrics);
   if (!status.ok()) return status;
   AddLoops(*truth, rerun->graph, &metrics);
+  if (request.wants_self_consistency) {
+    AddSelfConsistency(rerun->graph, *pbstream, &metrics);
+  }
   return metrics;
 }
 

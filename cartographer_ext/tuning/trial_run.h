@@ -30,7 +30,7 @@ struct RunRequest {
   // Overrides that of the configuration unless empty.
   std::string odometry_source;
   int num_threads = 1;
-  // Whether self_consistency is wanted; the map has to be painted for it.
+  // Whether self_consistency is wanted; it takes some seconds.
   bool wants_self_consistency = false;
 };
 
@@ -39,8 +39,9 @@ nlohmann::json ToJson(const RunRequest& request);
 absl::StatusOr<RunRequest> RequestFromJson(const nlohmann::json& json);
 
 // Metrics by the names of objective.h, and besides them nodes, submaps, loops,
-// loop_precision, loop_recall, map_entropy, loop_residual, bending. What cannot
-// be known, for example relations without truth, is left out.
+// loop_precision, loop_recall, node_contradiction, ray_contradiction,
+// cycle_contradiction, wall_doubling. What cannot be known, for example
+// relations without truth, is left out.
 absl::StatusOr<std::map<std::string, double>> RunTrial(
     const RunRequest& request);
 

@@ -52,15 +52,15 @@ TEST_F(RunTrialTest, MeasuresAWorldAgainstItsTruth) {
   for (const char* name :
        {"relations", "relations_median", "relations_rotation",
         "broken_fraction", "ate", "rpe", "wall_seconds", "cpu_seconds",
-        "loop_search_cpu_seconds", "self_consistency", "map_entropy", "nodes",
+        "loop_search_cpu_seconds", "self_consistency", "wall_doubling", "nodes",
         "submaps", "loops"}) {
     EXPECT_EQ(metrics->count(name), 1u) << name;
   }
   EXPECT_LT(metrics->at("relations"), 0.1);
   EXPECT_LT(metrics->at("ate"), 0.1);
   EXPECT_EQ(metrics->at("broken_fraction"), 0.);
-  EXPECT_GT(metrics->at("map_entropy"), 0.);
-  EXPECT_LT(metrics->at("map_entropy"), 1.);
+  EXPECT_GE(metrics->at("self_consistency"), 0.);
+  EXPECT_LT(metrics->at("self_consistency"), 0.5);
 }
 
 TEST_F(RunTrialTest, RunsAPartOfTheRecording) {
@@ -77,7 +77,7 @@ TEST_F(RunTrialTest, IsRepeatable) {
   const auto first = RunTrial(Request());
   const auto second = RunTrial(Request());
   ASSERT_TRUE(first.ok() && second.ok());
-  for (const char* name : {"relations", "ate", "nodes", "map_entropy"}) {
+  for (const char* name : {"relations", "ate", "nodes", "self_consistency"}) {
     EXPECT_EQ(first->at(name), second->at(name)) << name;
   }
 }
