@@ -177,12 +177,18 @@ CARTOGRAPHER_EXT.ceres_scan_matcher = {
     mode = "noise_floor",
     -- noise_floor: an axis along which the cost of the scan curves less than
     -- this is taken from the prediction, in squared cost per squared cell.
-    -- Blank walls show up to this much along themselves, and 0.1 across.
     -- Higher takes more from the prediction. [>= 0 and <= 1]
-    floor = 0.005,
+    floor = 0.001,
+    -- noise_floor: the same for a translation, as a share of the curvature
+    -- along the best axis; the larger of the two counts. Blank walls show
+    -- 0.02 along themselves, and 0.08 in one scan of twenty. [>= 0 and <= 1]
+    translation_floor = 0.05,
+    -- noise_floor: the same for a rotation. A round room shows 0.007, and
+    -- 0.02 in one scan of twenty. [>= 0 and <= 1]
+    rotation_floor = 0.015,
     -- noise_floor: a curvature of this many times the floor is believed
     -- fully, in between smoothly. [> 1 and <= 1000000]
-    full_ratio = 4,
+    full_ratio = 3,
     -- paper_literal: ratio of the larger to the smaller eigenvalue of the
     -- covariance beyond which the larger one's direction is taken from the
     -- prediction. It depends on grid and laser: noise along a blank wall
@@ -198,9 +204,9 @@ CARTOGRAPHER_EXT.ceres_scan_matcher = {
     -- point_noise^2 / points) / e squared cells. This part comes from the
     -- map; more points do not reduce it. Higher trusts the scan less. [> 0
     -- and <= 10]
-    map_noise = 0.019,
+    map_noise = 0.018,
     -- The part that comes from the points of the scan. [>= 0 and <= 10]
-    point_noise = 0.17,
+    point_noise = 0.165,
     -- Standard deviation reported along what the scan does not determine,
     -- when the covariance of the prediction is not known. Has no influence on
     -- the pose. [> 0 and <= 1000, m]
@@ -305,9 +311,9 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- text wants the opposite. [one of: as_printed, stricter_when_unstable]
     direction = "stricter_when_unstable",
     -- Lower end of the threshold. [>= 0 and <= 1]
-    low = 0.5,
+    low = 0.4,
     -- Range of the threshold above its lower end. [>= 0 and <= 1]
-    span = 0.2,
+    span = 0.1,
     -- C of equation 1. Variances are 0.001 to 0.01, so tens to hundreds
     -- matter. [>= 0 and <= 1000000]
     sensitivity = 100,
@@ -315,7 +321,7 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- 100000]
     window = 10,
     -- Threshold until there are that many scores. [>= 0 and <= 1]
-    base_threshold = 0.5,
+    base_threshold = 0.4,
   },
   fusion = {
     -- Off: the final score is the grid score.
@@ -331,10 +337,10 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Weight of the grid score in proper_posterior. [>= 0 and <= 1]
     grid_weight = 0.5,
     -- Candidates with a lower final score are rejected. [>= 0 and <= 1]
-    min_final_score = 0.5,
+    min_final_score = 0.01,
     -- Candidates that the prior of the mixture counts as. Stronger is safer
     -- with few candidates. [> 0 and <= 100000]
-    prior_strength = 5,
+    prior_strength = 30,
     -- Candidates the mixture remembers. [>= 1 and <= 1000000]
     capacity = 500,
   },
@@ -353,17 +359,28 @@ CARTOGRAPHER_EXT.constraint_builder = {
   path_noise = {
     -- Standard deviation after one metre; it grows with the square root of
     -- the way. [>= 0 and <= 10, m]
-    translation_per_metre = 0.05,
+    translation_per_metre = 0.03,
     -- Standard deviation after turning one radian. [>= 0 and <= 10, m]
     translation_per_radian = 0.02,
     -- Standard deviation after one metre. [>= 0 and <= 10, rad]
-    rotation_per_metre = 0.01,
+    rotation_per_metre = 0.003,
     -- Standard deviation after turning one radian. [>= 0 and <= 10, rad]
-    rotation_per_radian = 0.03,
+    rotation_per_radian = 0.01,
     -- Standard deviation of a loop itself. [> 0 and <= 10, m]
     loop_translation = 0.05,
     -- Standard deviation of a loop itself. [> 0 and <= 10, rad]
     loop_rotation = 0.01,
+    -- Standard deviation of a turn that is the same all along a run, as of
+    -- unequal wheels. [>= 0 and <= 10, rad/m]
+    heading_drift = 0.0005,
+    -- Standard deviation of the scale of a whole run. [>= 0 and <= 1]
+    scale_error = 0.005,
+    -- Two nodes farther apart tell of a jump or a gap, and the way between
+    -- them is as uncertain as the excess. [> 0 and <= 1000000, m]
+    free_metres = 0.5,
+    -- The same for the turn from one node to the next. [> 0 and <= 1000000,
+    -- rad]
+    free_radians = 0.4,
   },
   compatible_subset = {
     -- Candidates wait until others confirm them. Off: every candidate that
@@ -401,6 +418,16 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Steps after which the search for the largest set takes the best found.
     -- [>= 1 and <= 1e+09]
     max_clique_steps = 100000,
+    -- How well a loop that nothing confirms has to be predicted. One that was
+    -- searched widely may be another place that looks alike. [>= 0 and <=
+    -- 1000, m]
+    single_strong_sigma = 0.5,
+    -- A place predicted worse than this needs doubtful_revisits. [>= 0 and <=
+    -- 1000, m]
+    doubtful_sigma = 1,
+    -- Revisits that have to agree on a place that was predicted badly. [>= 1
+    -- and <= 100]
+    doubtful_revisits = 3,
   },
   innovation_veto = {
     -- Rejects loops that demand more than the uncertainty allows.

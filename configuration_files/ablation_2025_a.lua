@@ -1,0 +1,15 @@
+-- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+-- SPDX-License-Identifier: Apache-2.0
+--
+-- Table 3 of the 2025 paper, A: only the temporal verification with the variable
+-- window and the dynamic threshold.
+include "common_2d.lua"
+include "loop_closure_paper_2025.lua"
+
+POSE_GRAPH.constraint_builder.cartographer_ext.fusion.enabled = false
+POSE_GRAPH.constraint_builder.cartographer_ext.information.enabled = false
+
+return {
+  map_builder = MAP_BUILDER,
+  trajectory_builder = TRAJECTORY_BUILDER,
+}

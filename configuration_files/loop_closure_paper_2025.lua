@@ -1,0 +1,38 @@
+-- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+-- SPDX-License-Identifier: Apache-2.0
+--
+-- Loop closure as the 2025 paper on the optimised Cartographer prints it
+-- (equations 1 to 11), with Cartographer's fixed search window and without what
+-- is not in the paper. To be included behind the stock files.
+include "loop_closure_stages_off.lua"
+
+local loops = POSE_GRAPH.constraint_builder.cartographer_ext
+
+-- Equation 4: 4 to 6 nodes, textbook warping.
+loops.temporal_verification.enabled = true
+loops.temporal_verification.window_base = 4
+loops.temporal_verification.window_span = 2
+loops.temporal_verification.window_gamma = 0.3
+loops.temporal_verification.spacing = 0.
+loops.temporal_verification.minimum_length = 2
+loops.temporal_verification.step = "symmetric"
+
+-- Equations 1 to 3.
+loops.dynamic_threshold.enabled = true
+loops.dynamic_threshold.direction = "as_printed"
+loops.dynamic_threshold.low = 0.5
+loops.dynamic_threshold.span = 0.2
+loops.dynamic_threshold.window = 10
+loops.dynamic_threshold.base_threshold = 0.5
+
+-- Equations 5 to 7.
+loops.fusion.enabled = true
+loops.fusion.mode = "as_printed"
+loops.fusion.window = 10
+loops.fusion.min_final_score = 0.55
+
+-- Equations 8 to 11.
+loops.information.enabled = true
+loops.information.alpha = 1.2
+loops.information.beta = 1.5
+loops.information.reference_score = 1.

@@ -1,0 +1,20 @@
+-- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+-- SPDX-License-Identifier: Apache-2.0
+--
+-- Rows of equal shelves: the neighbouring aisle looks the same for the whole
+-- length of a row, so that only the way there tells them apart. Loops have to be
+-- predicted well, and one that nothing confirms is not believed.
+include "common_2d.lua"
+include "front_end_default.lua"
+include "loop_closure_default.lua"
+
+POSE_GRAPH.constraint_builder.cartographer_ext.compatible_subset.single_strong =
+  false
+POSE_GRAPH.constraint_builder.cartographer_ext.compatible_subset.doubtful_sigma =
+  0.5
+POSE_GRAPH.constraint_builder.cartographer_ext.search.global_search = false
+
+return {
+  map_builder = MAP_BUILDER,
+  trajectory_builder = TRAJECTORY_BUILDER,
+}
