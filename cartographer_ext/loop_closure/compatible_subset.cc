@@ -71,6 +71,7 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
     cluster.undecided.push_back(loop);
     ++cluster.num_loops;
     cluster.best_score = std::max(cluster.best_score, loop.score);
+    cluster.least_sigma = std::min(cluster.least_sigma, loop.prior_sigma);
     return;
   }
   MakeRoom();
@@ -84,6 +85,7 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
   cluster.undecided.push_back(loop);
   cluster.num_loops = 1;
   cluster.best_score = loop.score;
+  cluster.least_sigma = loop.prior_sigma;
   clusters_.push_back(std::move(cluster));
   relations_.push_back(std::move(relations));
 }
@@ -154,11 +156,16 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
     *reason = SubsetReason::kJoinsAccepted;
     return true;
   }
-  if (cluster.support + 1 >= options_.min_revisits) {
+  const int needed =
+      cluster.least_sigma > options_.doubtful_sigma
+          ? std::max(options_.min_revisits, options_.doubtful_revisits)
+          : options_.min_revisits;
+  if (cluster.support + 1 >= needed) {
     *reason = SubsetReason::kSupported;
     return true;
   }
   if (options_.single_strong_enabled && cluster.rival_support < 0 &&
+      cluster.least_sigma <= options_.single_strong_sigma &&
       cluster.best_score >= options_.single_strong_score &&
       cluster.num_loops >= options_.single_strong_loops) {
     *reason = SubsetReason::kSingleStrong;

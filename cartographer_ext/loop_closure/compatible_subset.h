@@ -49,6 +49,9 @@ struct LoopEvidence {
   int64_t id = 0;  // of the caller, unique
   LoopEdge edge;
   double score = 0.;  // the fused score, in [0, 1]
+  // How well the place was predicted before the search, one standard deviation
+  // in metres.
+  double prior_sigma = 0.;
 };
 
 struct CompatibleSubsetOptions {
@@ -67,7 +70,13 @@ struct CompatibleSubsetOptions {
   bool single_strong_enabled = true;
   double single_strong_score = 0.8;
   int single_strong_loops = 3;
-  int max_clusters = 400;  // > 0
+  // It has to be where it was predicted: one that was searched widely may be
+  // another place that looks alike.
+  double single_strong_sigma = 0.5;  // metres
+  // A place predicted worse than this needs more revisits that agree.
+  double doubtful_sigma = 1.;  // metres
+  int doubtful_revisits = 3;   // including the loop itself, >= 1
+  int max_clusters = 400;      // > 0
   MaxCliqueOptions clique;
 };
 
@@ -131,6 +140,7 @@ class CompatibleSubset {
     std::vector<LoopEvidence> undecided;
     int num_loops = 0;  // ever
     double best_score = 0.;
+    double least_sigma = 0.;  // of its loops
     bool accepted = false;
     // Of the last `Solve`.
     bool in_subset = false;

@@ -35,11 +35,11 @@ double Responsibility(const std::array<MixtureComponent, 2>& components,
 std::array<MixtureComponent, 2> LoopMixtureOptions::DefaultPrior() {
   std::array<MixtureComponent, 2> prior;
   prior[0].weight = 0.5;
-  prior[0].mean = Eigen::Vector2d(0.52, 0.60);
-  prior[0].covariance = Eigen::Vector2d(0.06 * 0.06, 0.12 * 0.12).asDiagonal();
+  prior[0].mean = Eigen::Vector2d(0.60, 0.50);
+  prior[0].covariance = Eigen::Vector2d(0.08 * 0.08, 0.20 * 0.20).asDiagonal();
   prior[1].weight = 0.5;
-  prior[1].mean = Eigen::Vector2d(0.68, 0.85);
-  prior[1].covariance = Eigen::Vector2d(0.08 * 0.08, 0.06 * 0.06).asDiagonal();
+  prior[1].mean = Eigen::Vector2d(0.66, 0.82);
+  prior[1].covariance = Eigen::Vector2d(0.09 * 0.09, 0.10 * 0.10).asDiagonal();
   return prior;
 }
 

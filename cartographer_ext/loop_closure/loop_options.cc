@@ -89,6 +89,10 @@ PathNoiseOptions ToPathNoiseOptions(const LoopClosureOptions& options) {
   to.translation_per_radian = from.translation_per_radian();
   to.rotation_per_metre = from.rotation_per_metre();
   to.rotation_per_radian = from.rotation_per_radian();
+  to.heading_drift = from.heading_drift();
+  to.scale_error = from.scale_error();
+  to.free_metres = from.free_metres();
+  to.free_radians = from.free_radians();
   return to;
 }
 
@@ -110,6 +114,9 @@ CompatibleSubsetOptions ToCompatibleSubsetOptions(
   to.single_strong_enabled = from.single_strong();
   to.single_strong_score = from.single_strong_score();
   to.single_strong_loops = from.single_strong_loops();
+  to.single_strong_sigma = from.single_strong_sigma();
+  to.doubtful_sigma = from.doubtful_sigma();
+  to.doubtful_revisits = from.doubtful_revisits();
   to.max_clusters = from.max_clusters();
   to.clique.max_steps = from.max_clique_steps();
   return to;

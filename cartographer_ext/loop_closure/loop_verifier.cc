@@ -264,6 +264,7 @@ void LoopVerifier::Process(const LoopCandidate& candidate) {
   evidence.edge.pose.covariance = LoopCovariance(options_);
   evidence.score = decision.has_fusion() ? decision.fusion().final_score()
                                          : candidate.grid_score;
+  evidence.prior_sigma = candidate.search.prior_translation_sigma();
   waiting_.emplace(number, std::move(outcome));
   tests_waited_[number] = 0;
   subset_.Add(evidence);

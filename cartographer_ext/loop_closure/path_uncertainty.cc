@@ -17,10 +17,14 @@ double Square(const double x) { return x * x; }
 // Covariance of one step, in the frame of its end.
 Eigen::Matrix3d StepCovariance(const PathNoiseOptions& options,
                                const double metres, const double radians) {
+  const double far = std::max(0., metres - options.free_metres);
+  const double round = std::max(0., radians - options.free_radians);
   const double translation = Square(options.translation_per_metre) * metres +
-                             Square(options.translation_per_radian) * radians;
+                             Square(options.translation_per_radian) * radians +
+                             Square(far);
   const double rotation = Square(options.rotation_per_metre) * metres +
-                          Square(options.rotation_per_radian) * radians;
+                          Square(options.rotation_per_radian) * radians +
+                          Square(round);
   return Eigen::Vector3d(translation, translation, rotation).asDiagonal();
 }
 
@@ -65,6 +69,8 @@ const PathUncertainty::Entry* PathUncertainty::Find(const NodeKey& node) const {
     Entry& entry = entries[trajectory.num_valid];
     entry.travelled = 0.;
     entry.sum.setZero();
+    entry.drift.setZero();
+    entry.scale.setZero();
     if (trajectory.num_valid == 0) continue;
     const Entry& before = entries[trajectory.num_valid - 1];
     const Pose2 step =
@@ -76,6 +82,11 @@ const PathUncertainty::Entry* PathUncertainty::Find(const NodeKey& node) const {
                 transport *
                     StepCovariance(options_, metres, std::abs(step.theta)) *
                     transport.transpose();
+    entry.drift = before.drift + transport * Eigen::Vector3d(0., 0., metres);
+    // The step's way in the frame of its end.
+    const Eigen::Vector2d way = -step.Inverse().translation();
+    entry.scale =
+        before.scale + transport * Eigen::Vector3d(way.x(), way.y(), 0.);
   }
   const auto place =
       std::lower_bound(entries.begin(), entries.end(), node.node_index,
@@ -102,8 +113,15 @@ absl::optional<UncertainPose> PathUncertainty::Between(const NodeKey& u,
   UncertainPose result;
   result.pose = cartographer_ext::Between(from->local_pose, to->local_pose);
   const Eigen::Matrix3d transport = Adjoint(to->local_pose.Inverse());
+  const Eigen::Vector3d drift =
+      options_.heading_drift * (to->drift - from->drift);
+  const Eigen::Vector3d scale =
+      options_.scale_error * (to->scale - from->scale);
   const Eigen::Matrix3d covariance =
-      transport * (to->sum - from->sum) * transport.transpose();
+      transport *
+      (to->sum - from->sum + drift * drift.transpose() +
+       scale * scale.transpose()) *
+      transport.transpose();
   result.covariance = 0.5 * (covariance + covariance.transpose());
   return result;
 }

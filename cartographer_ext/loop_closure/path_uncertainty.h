@@ -9,13 +9,22 @@
 //   cov(u <- v) = Ad(X_v^-1) (S_v - S_u) Ad(X_v^-1)^T,
 //   S_n = sum over k <= n of Ad(X_k) Q_k Ad(X_k)^T,
 //
-// so any pair of nodes costs the same, however far apart.
+// so any pair of nodes costs the same, however far apart. Two errors are the
+// same all along a run, a heading that turns away by so many radians a metre
+// and a scale; each adds w w^T times its variance, with w the sum of what it
+// does to the steps, transported as above.
+//
+// Where local SLAM moves farther from one node to the next than nodes are apart
+// it was led astray (a jump of the odometry, a gap in the data), or could have
+// been: what a step exceeds `free_metres` and `free_radians` by counts as its
+// standard deviation.
 //
 // Not thread-safe; nodes may be added in any order.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_PATH_UNCERTAINTY_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_PATH_UNCERTAINTY_H_
 
 #include <deque>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -34,6 +43,12 @@ struct PathNoiseOptions {
   double translation_per_radian = 0.02;  // metres, >= 0
   double rotation_per_metre = 0.01;      // radians, >= 0
   double rotation_per_radian = 0.03;     // radians, >= 0
+  // The same for the whole run.
+  double heading_drift = 0.;  // radians a metre, >= 0
+  double scale_error = 0.;    // >= 0
+  // Steps may be as long, metres and radians, > 0.
+  double free_metres = std::numeric_limits<double>::infinity();
+  double free_radians = std::numeric_limits<double>::infinity();
 };
 
 struct NodeKey {
@@ -79,6 +94,9 @@ class PathUncertainty {
     Pose2 local_pose;
     double travelled = 0.;                          // prefix sum, metres
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();  // S_n
+    // Sums of the steps' errors for a unit of drift and scale error.
+    Eigen::Vector3d drift = Eigen::Vector3d::Zero();
+    Eigen::Vector3d scale = Eigen::Vector3d::Zero();
   };
   struct Trajectory {
     std::deque<Entry> entries;  // by node index

@@ -19,6 +19,8 @@ using proto::LoopDecision;
 // Accepted loops before the node that may offer a more certain way. The newest
 // ones are the nearest along the trajectory, others add little.
 constexpr int kLoopsTried = 20;
+// A whole submap costs a hundred windows.
+constexpr size_t kFullSearchesPerNode = 1;
 // Accepted loops and searched nodes remembered, oldest forgotten first.
 constexpr size_t kMaxLoops = 20000;
 constexpr size_t kMaxNodesPerSubmap = 20000;
@@ -167,7 +169,6 @@ std::vector<SearchPlan> SearchPlanner::Plan(
   const size_t cap = static_cast<size_t>(options_.max_searches_per_node());
   for (auto& entry : of_node) {
     std::vector<size_t>& candidates = entry.second;
-    if (candidates.size() <= cap) continue;
     std::vector<double> promise(candidates.size());
     std::vector<size_t> order(candidates.size());
     std::iota(order.begin(), order.end(), 0);
@@ -178,8 +179,16 @@ std::vector<SearchPlan> SearchPlanner::Plan(
                      [&](const size_t a, const size_t b) {
                        return promise[a] > promise[b];
                      });
-    for (size_t k = cap; k < order.size(); ++k) {
+    size_t num_full = 0;
+    size_t num_taken = 0;
+    for (size_t k = 0; k < order.size(); ++k) {
       const size_t i = candidates[order[k]];
+      if (num_taken < cap &&
+          (!plans[i].full_submap || num_full < kFullSearchesPerNode)) {
+        ++num_taken;
+        if (plans[i].full_submap) ++num_full;
+        continue;
+      }
       plans[i].skipped = LoopDecision::SKIPPED_BUDGET;
       // The next node may try.
       SubmapMemory& memory = submaps_[std::make_pair(
