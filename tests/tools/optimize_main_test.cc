@@ -4,7 +4,10 @@
 // The command cartographer_ext_optimize.
 #include "cartographer_ext/common/random.h"
 #include "cartographer_ext/io/g2o.h"
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream_writer.h"
 #include "gmock/gmock.h"
+#include "tests/evaluation/square_map.h"
 #include "tests/tools/run_command.h"
 
 namespace cartographer_ext {
@@ -44,6 +47,21 @@ io::G2oGraph Square() {
   return graph;
 }
 
+// One unknown cell.
+void FillGrid(cartographer::mapping::proto::Submap* const submap) {
+  auto* const data = submap->mutable_submap_2d();
+  data->set_num_range_data(20);
+  auto* const grid = data->mutable_grid();
+  grid->mutable_limits()->set_resolution(0.05);
+  grid->mutable_limits()->mutable_cell_limits()->set_num_x_cells(1);
+  grid->mutable_limits()->mutable_cell_limits()->set_num_y_cells(1);
+  grid->mutable_limits()->mutable_max();
+  grid->add_cells(0);
+  grid->mutable_probability_grid_2d();
+  grid->set_min_correspondence_cost(0.1f);
+  grid->set_max_correspondence_cost(0.9f);
+}
+
 TEST(OptimizeMainTest, SwitchesOffTheWrongLoops) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(io::WriteG2o(Square(), folder / "in.g2o").ok());
@@ -80,6 +98,125 @@ TEST(OptimizeMainTest, SwitchesOffTheWrongLoops) {
     EXPECT_EQ(output->vertices.size(), 60u);
     EXPECT_EQ(output->edges.size(), Square().edges.size());
     EXPECT_NEAR(output->vertices.at(40).x, 0., 0.5);
+  }
+}
+
+TEST(OptimizeMainTest, FindsAndUndoesLoopsOfAMap) {
+  const test::TemporaryFolder folder;
+  test::SquareMap map;
+  map.AddRightLoops();
+  map.Add(1, 33, Pose2(), true);
+  map.pbstream.header.set_format_version(2);
+  map.pbstream.options.add_options_with_sensor_ids();
+  for (auto& submap : map.pbstream.submaps) FillGrid(&submap);
+  const std::string input = folder / "in.pbstream";
+  ASSERT_TRUE(io::WritePbstream(map.pbstream, input).ok());
+  CommandResult result =
+      RunCommand("optimize", {"-input_filename", input, "-wrong_loops", "5",
+                              "-nokeep_rejected", "-output_filename",
+                              folder / "out.pbstream", "-verdicts_filename",
+                              folder / "loops.csv", "-json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  nlohmann::json json = test::ParseJson(result.out);
+  EXPECT_EQ(json["loops"]["total"], 14);
+  EXPECT_EQ(json["loops"]["rejected"], 6);
+  auto output = io::ReadPbstream(folder / "out.pbstream");
+  ASSERT_TRUE(output.ok()) << output.status();
+  EXPECT_EQ(output->pose_graph.constraint_size(),
+            map.pbstream.pose_graph.constraint_size() - 1);
+
+  result =
+      RunCommand("optimize", {"-input_filename", input, "-kernel", "none",
+                              "-drop_loops", "0:1:0:33", "-output_filename",
+                              folder / "undone.pbstream", "-json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  json = test::ParseJson(result.out);
+  EXPECT_EQ(json["loops"]["total"], 8);
+  EXPECT_EQ(json["loops"]["rejected"], 0);
+  output = io::ReadPbstream(folder / "undone.pbstream");
+  ASSERT_TRUE(output.ok()) << output.status();
+  EXPECT_EQ(output->pose_graph.constraint_size(),
+            map.pbstream.pose_graph.constraint_size() - 1);
+
+  result = RunCommand("optimize",
+                      {"-input_filename", input, "-drop_loops", "0:1:0:34"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("no loop between"));
+
+  // Marked, and left out, by the list that a run has written.
+  test::WriteFile(folder / "off.csv",
+                  "submap_trajectory,submap,node_trajectory,node,chi2,reason\n"
+                  "0,1,0,33,812.5,consensus\n");
+  result = RunCommand(
+      "export",
+      {"-pbstream_filename", input, "-switched_loops_filename",
+       folder / "off.csv", "-constraints_filename", folder / "constraints.csv",
+       "-output_pbstream_filename", folder / "without.pbstream"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const std::string table = test::ReadFile(folder / "constraints.csv");
+  EXPECT_THAT(table, HasSubstr(",residual_rotation,switched_off\n"));
+  EXPECT_EQ(table.substr(table.size() - 3), ",1\n");
+  output = io::ReadPbstream(folder / "without.pbstream");
+  ASSERT_TRUE(output.ok()) << output.status();
+  EXPECT_EQ(output->pose_graph.constraint_size(),
+            map.pbstream.pose_graph.constraint_size() - 1);
+  test::WriteFile(folder / "off.csv", "nonsense\n");
+  result = RunCommand("export", {"-pbstream_filename", input,
+                                 "-switched_loops_filename", folder / "off.csv",
+                                 "-constraints_filename", folder / "c.csv"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("off.csv: line 1"));
+  EXPECT_EQ(RunCommand("export", {"-pbstream_filename", input,
+                                  "-output_pbstream_filename",
+                                  folder / "without.pbstream"})
+                .exit_code,
+            2);
+}
+
+TEST(OptimizeMainTest, CorruptGraphsAreNamed) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "bad.g2o";
+  const std::string head =
+      "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_SE2 2 2 0 0\n"
+      "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n";
+  const struct {
+    const char* lines;
+    const char* message;
+  } cases[] = {
+      {"EDGE_SE2 1 7 1 0 0 1 0 0 1 0 1\n", "7"},  // no such vertex
+      {"EDGE_SE2 1 2 nan 0 0 1 0 0 1 0 1\n", "finite"},
+      {"EDGE_SE2 1 2 1 0 0 -1 0 0 1 0 1\n", "positive definite"},
+      {"EDGE_SE2 1 2 1 0 0 1 5 0 1 0 1\n", "positive definite"},
+      {"EDGE_SE2 1 2 1 0 0 0 0 0 0 0 0\n", "positive definite"},
+      {"", "vertex 2 cannot be reached"},
+      {"VERTEX_SE2 1 4 4 0\n", "1"},  // twice
+      {"EDGE_SE2 1 2 1 0\n", "bad.g2o:5"},
+      {"EDGE_SE2 2 2 0 0 0 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n",
+       "itself"},
+  };
+  for (const auto& bad : cases) {
+    test::WriteFile(file, head + bad.lines);
+    for (const char* kernel : {"auto", "none"}) {
+      const CommandResult result =
+          RunCommand("optimize", {"-input_filename", file, "-kernel", kernel});
+      EXPECT_EQ(result.exit_code, 1) << bad.lines;
+      EXPECT_THAT(result.error, HasSubstr("bad.g2o")) << bad.lines;
+      EXPECT_THAT(result.error, HasSubstr(bad.message)) << bad.lines;
+    }
+  }
+  // Smallest graphs that are none the worse for it.
+  for (const char* lines : {"VERTEX_SE2 0 0 0 0\n",
+                            "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\n"
+                            "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n"}) {
+    test::WriteFile(file, lines);
+    for (const char* kernel : {"auto", "none", "sc", "gnc_tls", "r_isam"}) {
+      EXPECT_EQ(
+          RunCommand("optimize", {"-input_filename", file, "-kernel", kernel})
+              .exit_code,
+          0)
+          << kernel << "\n"
+          << lines;
+    }
   }
 }
 
