@@ -47,25 +47,26 @@ double NotNegative(const double value) { return value > 0. ? value : 0.; }
 RotatedScans::RotatedScans(const PlanarCloud& cloud, const Pose2& initial,
                            const double linear, const double angular,
                            const GridGeometry& geometry,
-                           const SearchKernels& kernels)
+                           const SearchKernels& kernels, const RangeOf range_of)
     : initial_(initial), geometry_(geometry), kernels_(kernels) {
   const double resolution = geometry.resolution;
   float largest_range = 3.f * resolution;
   turned_x_.reserve(cloud.size());
   turned_y_.reserve(cloud.size());
-  ranges_.reserve(cloud.size());
-  for (size_t first = 0; first != kNumParts; ++first) {
+  for (int first = 0; first != kNumParts; ++first) {
+    first_of_turn_[first] = num_points();
     for (size_t i = first; i < cloud.size(); i += kNumParts) {
-      const float x = cloud.x[i];
-      const float y = cloud.y[i];
-      turned_x_.push_back(x);
-      turned_y_.push_back(y);
-      const float range = std::sqrt(x * x + y * y);
-      // A point that is not finite is nowhere, whatever the offset.
-      ranges_.push_back(std::isfinite(range) ? range : -1.f);
-      if (ranges_.back() < 0.f) all_finite_ = false;
-      largest_range = std::max(largest_range, ranges_.back());
+      turned_x_.push_back(cloud.x[i]);
+      turned_y_.push_back(cloud.y[i]);
     }
+  }
+  if (range_of == RangeOf::kCloud) FindRanges();
+  CellFrame turn;
+  SetRotation(static_cast<float>(initial.theta), &turn);
+  Turn(turn, &turned_x_, &turned_y_);
+  if (range_of == RangeOf::kTurnedCloud) FindRanges();
+  for (const float range : ranges_) {
+    largest_range = std::max(largest_range, range);
   }
   largest_range_ = largest_range;
   // In multiples of the vector size, but for the end.
@@ -89,10 +90,6 @@ RotatedScans::RotatedScans(const PlanarCloud& cloud, const Pose2& initial,
   valid_ = true;
   linear_cells_ = static_cast<int>(num_cells);
 
-  CellFrame turn;
-  SetRotation(static_cast<float>(initial.theta), &turn);
-  Turn(turn, &turned_x_, &turned_y_);
-
   const int half = static_cast<int>(num_steps);
   angles_.reserve(2 * half + 1);
   // Summed up, not multiplied: rounding decides between cells.
@@ -102,6 +99,17 @@ RotatedScans::RotatedScans(const PlanarCloud& cloud, const Pose2& initial,
     angle += angular_step_;
   }
   scans_.resize(angles_.size());
+}
+
+void RotatedScans::FindRanges() {
+  ranges_.reserve(turned_x_.size());
+  for (size_t i = 0; i != turned_x_.size(); ++i) {
+    const float range =
+        std::sqrt(turned_x_[i] * turned_x_[i] + turned_y_[i] * turned_y_[i]);
+    // A point that is not finite is nowhere, whatever the offset.
+    ranges_.push_back(std::isfinite(range) ? range : -1.f);
+    if (ranges_.back() < 0.f) all_finite_ = false;
+  }
 }
 
 double RotatedScans::CellsPerStep(const int point) const {

@@ -74,9 +74,13 @@ class RotatedScans {
 
   // Half sizes in metres and radians; `initial` is (grid <- cloud). The cloud
   // must not be empty and its two vectors equally long.
+  // Cartographer's real-time matcher measures ranges after turning the cloud to
+  // the initial angle, the other one before.
+  enum class RangeOf { kCloud, kTurnedCloud };
   RotatedScans(const PlanarCloud& cloud, const Pose2& initial, double linear,
                double angular, const GridGeometry& geometry,
-               const SearchKernels& kernels);
+               const SearchKernels& kernels,
+               RangeOf range_of = RangeOf::kCloud);
 
   // False when the window is too large to be searched: more than 2^24
   // rotations, or offsets of more than 10^8 cells, or 2^31 cells in total.
@@ -90,6 +94,11 @@ class RotatedScans {
 
   // Part `part` consists of points PartBegin(part) to PartBegin(part + 1) - 1.
   int PartBegin(const int part) const { return part_begin_[part]; }
+
+  // Where the cloud's point i is kept.
+  int PlaceOf(const int i) const {
+    return first_of_turn_[i % kNumParts] + i / kNumParts;
+  }
 
   // How many cells the point may move from a rotation to the next, at most.
   double CellsPerStep(int point) const;
@@ -120,6 +129,8 @@ class RotatedScans {
   Pose2 PoseOf(int rotation, int offset_x, int offset_y) const;
 
  private:
+  void FindRanges();
+
   bool valid_ = false;
   bool all_finite_ = true;
   const Pose2 initial_;
@@ -129,6 +140,7 @@ class RotatedScans {
   int linear_cells_ = 0;
   double largest_range_ = 0.;
   int part_begin_[kNumParts + 1];
+  int first_of_turn_[kNumParts];
   std::vector<float> turned_x_;
   std::vector<float> turned_y_;
   std::vector<float> ranges_;
