@@ -125,6 +125,17 @@ Verdict Judge(const Evaluation& evaluation) {
         "the trajectory is %.3f m from the reference (root mean square)",
         rmse));
   }
+  if (evaluation.consistency.has_value()) {
+    const SelfConsistency& consistency = *evaluation.consistency;
+    if (severity == kUnknown) {
+      raise(consistency.word == "broken"     ? kBroken
+            : consistency.word == "doubtful" ? kDoubtful
+            : consistency.word == "sound"    ? kSound
+                                             : kUnknown);
+    }
+    verdict.reasons.insert(verdict.reasons.end(), consistency.reasons.begin(),
+                           consistency.reasons.end());
+  }
   if (evaluation.loops.has_value() && evaluation.loops->accepted > 0) {
     const auto& loops = evaluation.loops->loops;
     const auto num_large = std::count_if(
@@ -147,17 +158,6 @@ Verdict Judge(const Evaluation& evaluation) {
           absl::StrFormat("%d of the %d loops that can be judged are right",
                           evaluation.loops->correct, evaluation.loops->judged));
     }
-  }
-  if (evaluation.consistency.has_value()) {
-    const SelfConsistency& consistency = *evaluation.consistency;
-    if (severity == kUnknown) {
-      raise(consistency.word == "broken"     ? kBroken
-            : consistency.word == "doubtful" ? kDoubtful
-            : consistency.word == "sound"    ? kSound
-                                             : kUnknown);
-    }
-    verdict.reasons.insert(verdict.reasons.end(), consistency.reasons.begin(),
-                           consistency.reasons.end());
   }
   static constexpr const char* kWords[] = {"unknown", "sound", "doubtful",
                                            "broken"};

@@ -63,8 +63,9 @@ SubmapCells::SubmapCells(const cartographer::mapping::proto::Grid2D& grid,
                                                        : probability)));
     }
   }
+  // A little more, so that half a cell is rounded up whatever its rounding.
   const int radius =
-      std::max(0, static_cast<int>(std::lround(margin / resolution_)));
+      std::max(0, static_cast<int>(std::lround(margin / resolution_ + 1e-6)));
   near_occupied_ = Dilate(occupied, num_x_, num_y_, radius);
   const std::vector<bool> near_not_free =
       Dilate(not_free, num_x_, num_y_, radius);

@@ -178,10 +178,22 @@ void SetInitialPoses(const io::Pbstream& pbstream,
   }
 }
 
-// Bounds memory; changes no result.
+// Bounds memory; changes no result. Gives up when nothing moves for long: then
+// the number is not what it is taken for.
 void WaitForBackEnd(const MetricsCollector& metrics, const int max_length) {
-  while (metrics.Sum(kQueueMetric) > max_length) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  constexpr auto kPause = std::chrono::milliseconds(2);
+  constexpr auto kPatience = std::chrono::seconds(2);
+  double length = metrics.Sum(kQueueMetric);
+  auto last_change = std::chrono::steady_clock::now();
+  while (length > max_length) {
+    std::this_thread::sleep_for(kPause);
+    const double now = metrics.Sum(kQueueMetric);
+    if (now != length) {
+      length = now;
+      last_change = std::chrono::steady_clock::now();
+    } else if (std::chrono::steady_clock::now() - last_change > kPatience) {
+      return;
+    }
   }
 }
 

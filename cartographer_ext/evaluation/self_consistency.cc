@@ -40,15 +40,47 @@ std::string Submaps(const std::vector<GraphId>& ids) {
           : "");
 }
 
+std::string Place(const Eigen::Vector2d& place) {
+  return absl::StrFormat("x = %.1f m, y = %.1f m", place.x(), place.y());
+}
+
+// The verdict in a sentence.
+std::string Headline(const MapGraph& graph, const SelfConsistency& result) {
+  const io::TimeNs start = StartTime(graph);
+  if (result.word == "unknown") {
+    return "no scan sees a place that was mapped at another time, so nothing "
+           "can contradict the map";
+  }
+  if (result.word == "sound") {
+    return "nothing speaks against the map: what was seen again lies where it "
+           "lay before";
+  }
+  std::string sentence;
+  if (!result.severe.empty()) {
+    sentence = absl::StrCat(
+        result.word == "broken"
+            ? "the map is broken: parts of it lie across each other, most at "
+            : "parts of the map lie across each other at ",
+        Place(result.severe.front().center));
+  }
+  if (!result.wrong_turns.empty()) {
+    const MotionStep& step = result.wrong_turns.front();
+    absl::StrAppendFormat(
+        &sentence, "%slocal SLAM %s %.1f s after the start (stamp %.1f), at %s",
+        sentence.empty() ? "" : "; ",
+        sentence.empty() ? "may have lost its way" : "probably lost its way",
+        io::ToSeconds(step.time - start), io::ToSeconds(step.time),
+        Place(graph.nodes.at(step.node_id).global_pose.translation()));
+  }
+  return sentence;
+}
+
 // What is wrong, in order of weight.
 void Explain(const MapGraph& graph, SelfConsistency* const result) {
   const io::TimeNs start = StartTime(graph);
+  result->reasons.push_back(Headline(graph, *result));
   const Contradictions& contradictions = result->contradictions;
-  if (contradictions.judged_nodes == 0) {
-    result->reasons.push_back(
-        "no scan sees a place that was mapped at another time, so nothing can "
-        "contradict the map");
-  } else {
+  if (contradictions.judged_nodes > 0) {
     result->reasons.push_back(absl::StrFormat(
         "%.1f %% of the %d nodes that see a place again have most of their "
         "scan in free space or behind walls of what was mapped there at "
@@ -96,6 +128,25 @@ void Explain(const MapGraph& graph, SelfConsistency* const result) {
   }
 }
 
+// Of steps within this time of each other, in order of time, the largest one.
+void KeepWorstOfEach(const io::TimeNs span, std::vector<MotionStep>* steps) {
+  std::vector<MotionStep> kept;
+  io::TimeNs last = std::numeric_limits<io::TimeNs>::min();
+  for (const MotionStep& step : *steps) {
+    const bool same =
+        !kept.empty() &&
+        kept.back().node_id.trajectory_id == step.node_id.trajectory_id &&
+        step.time - last <= span;
+    last = step.time;
+    if (!same) {
+      kept.push_back(step);
+    } else if (step.odometry_rotation > kept.back().odometry_rotation) {
+      kept.back() = step;
+    }
+  }
+  steps->swap(kept);
+}
+
 }  // namespace
 
 SelfConsistency AssessSelfConsistency(const MapGraph& graph,
@@ -126,6 +177,7 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
       result.wrong_turns.push_back(step);
     }
   }
+  KeepWorstOfEach(options.same_turn, &result.wrong_turns);
   std::stable_sort(result.wrong_turns.begin(), result.wrong_turns.end(),
                    [](const MotionStep& a, const MotionStep& b) {
                      return a.odometry_rotation > b.odometry_rotation;

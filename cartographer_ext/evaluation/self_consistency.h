@@ -40,7 +40,8 @@ struct SelfConsistencyOptions {
   LoopCycleOptions cycles;
   double severe_fraction = 0.6;
   int min_severe_nodes = 8;
-  double wrong_turn = DegToRad(30.);  // radians
+  double wrong_turn = DegToRad(30.);          // radians
+  io::TimeNs same_turn = 5LL * 1000000000LL;  // steps nearer are one event
   double broken_share = 0.05;
   double doubtful_share = 0.01;
 };

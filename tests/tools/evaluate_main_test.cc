@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "absl/strings/str_cat.h"
 #include "cartographer_ext/evaluation/trajectory.h"
 #include "cartographer_ext/io/relations_file.h"
 #include "cartographer_ext/io/trajectory_file.h"
@@ -91,6 +94,78 @@ TEST_F(EvaluateMainTest, WritesTables) {
   EXPECT_THAT(ReadFile(File("constraints.csv")), HasSubstr(",intra,"));
   const std::string errors = ReadFile(File("errors.csv"));
   EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 9);
+}
+
+TEST_F(EvaluateMainTest, RunsAgainAndReports) {
+  const CommandResult result = RunCommand(
+      "evaluate", {"-pbstream_filename", File("room.pbstream"),
+                   "-rerun_configuration_directory", "configuration_files",
+                   "-rerun_configuration_basename", "default.lua",
+                   "-report_filename", File("room.html"), "-json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto json = ParseJson(result.out);
+  ASSERT_TRUE(json.is_object()) << result.out;
+  EXPECT_TRUE(json.contains("consistency"));
+  ASSERT_EQ(json["runs"].size(), 3u);
+  EXPECT_EQ(json["runs"][1]["name"], "stock again");
+  EXPECT_EQ(json["runs"][2]["name"], "ours");
+  EXPECT_GE(json["runs"][1]["against_stored"]["fraction_of_stored"], 0.9);
+  EXPECT_GT(json["assumptions"].size(), 0u);
+  EXPECT_THAT(ReadFile(File("room.html")), HasSubstr("<!DOCTYPE html>"));
+  EXPECT_EQ(ParseJson(ReadFile(File("room.json")))["verdict"], json["verdict"]);
+  EXPECT_THAT(ReadFile(File("room.loops.csv")), HasSubstr("run,submap"));
+}
+
+TEST_F(EvaluateMainTest, SameReportForAnyNumberOfThreads) {
+  std::string pages[2];
+  for (const int threads : {1, 2}) {
+    const CommandResult result = RunCommand(
+        "evaluate",
+        {"-pbstream_filename", File("room.pbstream"),
+         "-rerun_configuration_directory", "configuration_files", "-notimes",
+         absl::StrCat("-num_background_threads=", threads), "-report_filename",
+         File("same.html")});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    pages[threads - 1] = ReadFile(File("same.html"));
+    const std::string flag = absl::StrCat("num_background_threads=", threads);
+    ASSERT_NE(pages[threads - 1].find(flag), std::string::npos);
+    pages[threads - 1].replace(pages[threads - 1].find(flag), flag.size(), "");
+  }
+  EXPECT_TRUE(pages[0] == pages[1]);
+}
+
+TEST_F(EvaluateMainTest, BadConfigurationIsNamed) {
+  WriteFile(File("bad.lua"),
+            "include \"common_2d.lua\"\n"
+            "POSE_GRAPH.constraint_builder.min_scor = 0.6\n"
+            "return { map_builder = MAP_BUILDER, trajectory_builder = "
+            "TRAJECTORY_BUILDER }\n");
+  const CommandResult result =
+      RunCommand("evaluate", {"-pbstream_filename", File("room.pbstream"),
+                              "-rerun_configuration_directory",
+                              absl::StrCat(File("."), ",configuration_files"),
+                              "-rerun_configuration_basename", "bad.lua"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("bad.lua"));
+  EXPECT_THAT(result.error, HasSubstr("min_scor"));
+}
+
+TEST_F(EvaluateMainTest, ReportsNeedAMap) {
+  EXPECT_EQ(
+      RunCommand("evaluate", {"-trajectory_filename", File("room.tum"),
+                              "-relations_filename", File("room.relations"),
+                              "-report_filename", File("x.html")})
+          .exit_code,
+      2);
+  EXPECT_EQ(
+      RunCommand("evaluate", {"-pbstream_filename", File("room.pbstream"),
+                              "-rerun_configuration_basename", "default.lua"})
+          .exit_code,
+      2);
+  EXPECT_EQ(RunCommand("evaluate", {"-pbstream_filename", File("room.pbstream"),
+                                    "-report_filename", "/nowhere/x.html"})
+                .exit_code,
+            1);
 }
 
 TEST_F(EvaluateMainTest, WrongUsage) {

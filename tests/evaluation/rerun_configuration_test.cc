@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/evaluation/rerun_configuration.h"
+
+#include "cartographer_ext/options/extension_field.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using cartographer::mapping::proto::PoseGraphOptions;
+using testing::Contains;
+using testing::HasSubstr;
+
+MapGraph GraphWithWeights(const std::vector<double>& loop_weights) {
+  MapGraph graph;
+  GraphConstraint insertion;
+  insertion.translation_weight = 7.;
+  insertion.rotation_weight = 8.;
+  graph.constraints.push_back(insertion);
+  for (const double weight : loop_weights) {
+    GraphConstraint loop;
+    loop.is_loop = true;
+    loop.translation_weight = weight;
+    loop.rotation_weight = 2. * weight;
+    graph.constraints.push_back(loop);
+  }
+  return graph;
+}
+
+TEST(RerunConfigurationTest, StockIsAssumedAndWeightsAreTheMaps) {
+  const auto configuration = LoadRerunConfiguration(
+      {"configuration_files"}, "", "", GraphWithWeights({5., 5.}));
+  ASSERT_TRUE(configuration.ok()) << configuration.status();
+  EXPECT_EQ(configuration->stock_name, "stock.lua");
+  EXPECT_FALSE(configuration->ours.has_value());
+  const auto& builder = configuration->stock.constraint_builder_options();
+  EXPECT_EQ(builder.loop_closure_translation_weight(), 5.);
+  EXPECT_EQ(builder.loop_closure_rotation_weight(), 10.);
+  EXPECT_EQ(configuration->stock.matcher_translation_weight(), 7.);
+  EXPECT_EQ(configuration->stock.matcher_rotation_weight(), 8.);
+  EXPECT_THAT(configuration->assumptions,
+              Contains(HasSubstr("stock's defaults (stock.lua) are assumed")));
+}
+
+TEST(RerunConfigurationTest, VariousWeightsAreLeftAlone) {
+  const auto configuration = LoadRerunConfiguration(
+      {"configuration_files"}, "stock.lua", "", GraphWithWeights({5., 6.}));
+  ASSERT_TRUE(configuration.ok()) << configuration.status();
+  EXPECT_EQ(configuration->stock.constraint_builder_options()
+                .loop_closure_translation_weight(),
+            1.1e4);
+  EXPECT_THAT(configuration->assumptions, Contains(HasSubstr("various")));
+}
+
+TEST(RerunConfigurationTest, StockIsOursWithoutTheBlocks) {
+  const auto configuration = LoadRerunConfiguration(
+      {"configuration_files"}, "default.lua", "", MapGraph());
+  ASSERT_TRUE(configuration.ok()) << configuration.status();
+  ASSERT_TRUE(configuration->ours.has_value());
+  PoseGraphOptions without = *configuration->ours;
+  EXPECT_TRUE(RemoveExtensions(&without));
+  EXPECT_FALSE(RemoveExtensions(&without));
+  EXPECT_EQ(without.SerializeAsString(),
+            configuration->stock.SerializeAsString());
+  EXPECT_NE(configuration->ours->SerializeAsString(),
+            configuration->stock.SerializeAsString());
+  EXPECT_THAT(DescribeDifferences(configuration->stock, *configuration->ours),
+              Contains(HasSubstr("cartographer_ext: absent -> ")));
+}
+
+TEST(RerunConfigurationTest, DescribesDifferences) {
+  PoseGraphOptions first, second;
+  first.mutable_constraint_builder_options()->set_min_score(0.5);
+  second.mutable_constraint_builder_options()->set_min_score(0.75);
+  EXPECT_THAT(DescribeDifferences(first, second),
+              testing::ElementsAre(
+                  "constraint_builder_options.min_score: 0.5 -> 0.75"));
+  EXPECT_TRUE(DescribeDifferences(first, first).empty());
+}
+
+TEST(RerunConfigurationTest, MissingFileIsNamed) {
+  const auto configuration = LoadRerunConfiguration(
+      {"configuration_files"}, "no_such.lua", "", MapGraph());
+  ASSERT_FALSE(configuration.ok());
+  EXPECT_THAT(std::string(configuration.status().message()),
+              HasSubstr("no_such.lua"));
+}
+
+}  // namespace
+}  // namespace evaluation
+}  // namespace cartographer_ext
