@@ -268,8 +268,7 @@ void IncrementalSmoother::Finish() {
   std::vector<double> weights;
   PolishTruncated(edges_, options_.gate, kFinalPolishRounds, &poses_, &weights);
   if (options_.adaptive_gate) {
-    PolishTruncated(edges_, AdaptiveGate(edges_, poses_), kFinalPolishRounds,
-                    &poses_, &weights);
+    PolishAdapted(edges_, kFinalPolishRounds, &poses_, &weights);
   }
   for (size_t i = 0; i != edges_.size(); ++i) accepted_[i] = weights[i] > 0.5;
   RebuildFactor();

@@ -3,6 +3,7 @@
 #include "cartographer_ext/optimization/optimize.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -15,6 +16,8 @@ namespace optimization {
 namespace {
 
 constexpr int kPolishRounds = 30;
+// A map that has lost fewer loops than this is not folded.
+constexpr int kUnfolded = 20;
 
 void AddSummary(const SolverSummary& summary, OptimizeResult* const result) {
   result->iterations += summary.iterations;
@@ -164,14 +167,31 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     add("gnc_tls", std::move(poses));
   }
   const auto best = std::min_element(members.begin(), members.end(), lower);
-  result->poses = best->poses;
-  result->member = best->name;
   result->member_truncated_chi2 = best->truncated_cost;
+  // Where the adapted gate is narrower it also judges better between those that
+  // are not folded.
   const double gate =
-      options.adaptive_gate ? AdaptiveGate(edges, result->poses) : kChi2Gate;
-  AddSummary(PolishTruncated(edges, gate, kPolishRounds, &result->poses,
-                             &result->weights),
-             result);
+      options.adaptive_gate ? AdaptiveGate(edges, best->poses) : kChi2Gate;
+  const double limit = best->truncated_cost + kUnfolded * kChi2Gate;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Member& member : members) {
+    if (member.truncated_cost > limit) continue;
+    std::vector<Pose2> poses = member.poses;
+    std::vector<double> weights;
+    AddSummary(PolishTruncated(edges, gate, kPolishRounds, &poses, &weights),
+               result);
+    const double cost = TruncatedCost(edges, poses, gate);
+    if (cost >= lowest) continue;
+    lowest = cost;
+    result->poses = std::move(poses);
+    result->weights = std::move(weights);
+    result->member = member.name;
+  }
+  if (options.adaptive_gate) {
+    AddSummary(
+        PolishAdapted(edges, kPolishRounds, &result->poses, &result->weights),
+        result);
+  }
   result->accepted.assign(edges.size(), true);
   for (size_t i = 0; i != edges.size(); ++i) {
     result->accepted[i] = result->weights[i] > 0.5;

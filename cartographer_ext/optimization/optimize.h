@@ -10,10 +10,10 @@
 //   2. DCS, GM and ACS from the graph's own poses, and DCS again from the
 //   replay;
 //   3. each result polished by deciding and solving in turn (re-admission);
-//   4. the one with the lowest truncated cost is taken. Each true loop lost
-//   costs
-//      the gate, so a folded map loses this comparison by a wide margin;
-//   5. a last polish with the gate adapted to the scale of the accepted loops.
+//   4. those near the lowest truncated cost stay. Each true loop lost costs the
+//      gate, so a folded map loses this comparison by a wide margin;
+//   5. these are polished with the gate adapted to the scale of the accepted
+//      loops, and the one with the lowest cost truncated there is taken.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OPTIMIZE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OPTIMIZE_H_
 
@@ -59,7 +59,8 @@ struct OptimizeResult {
   double odometry_chi2 = 0.;
   double accepted_loops_chi2 = 0.;
   double truncated_chi2 = 0.;  // TruncatedCost at the poses
-  // auto: the member chosen and its truncated cost before the last polish.
+  // auto: the member chosen, and the lowest truncated cost of all before the
+  // last polish.
   std::string member;
   double member_truncated_chi2 = 0.;
   std::vector<double> step_seconds;  // r_isam

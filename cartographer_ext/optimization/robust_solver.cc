@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "glog/logging.h"
 
@@ -358,12 +359,36 @@ double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
   return kChi2Gate * std::min(1., kSafety * scale);
 }
 
+SolverSummary PolishAdapted(const std::vector<WhitenedEdge>& edges,
+                            const int max_rounds,
+                            std::vector<Pose2>* const poses,
+                            std::vector<double>* const weights) {
+  constexpr int kMaxGates = 5;
+  const double start = ThreadCpuSeconds();
+  SolverSummary total;
+  double gate = std::numeric_limits<double>::infinity();
+  for (int k = 0; k != kMaxGates; ++k) {
+    const double next = AdaptiveGate(edges, *poses);
+    if (next >= 0.99 * gate) break;
+    gate = next;
+    const SolverSummary summary =
+        PolishTruncated(edges, gate, max_rounds, poses, weights);
+    total.iterations += summary.iterations;
+    total.analyses += summary.analyses;
+    total.factor_blocks = summary.factor_blocks;
+    total.converged = summary.converged;
+    total.final_cost = summary.final_cost;
+  }
+  total.cpu_seconds = ThreadCpuSeconds() - start;
+  return total;
+}
+
 double TruncatedCost(const std::vector<WhitenedEdge>& edges,
-                     const std::vector<Pose2>& poses) {
+                     const std::vector<Pose2>& poses, const double gate) {
   double cost = 0.;
   for (const WhitenedEdge& edge : edges) {
     const double chi2 = Chi2(edge, poses[edge.from], poses[edge.to]);
-    cost += edge.is_loop ? std::min(chi2, kChi2Gate) : chi2;
+    cost += edge.is_loop ? std::min(chi2, gate) : chi2;
   }
   return cost;
 }

@@ -95,11 +95,17 @@ SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
 double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
                     const std::vector<Pose2>& poses);
 
+// PolishTruncated with the adapted gate, again as long as what it leaves out
+// narrows the gate.
+SolverSummary PolishAdapted(const std::vector<WhitenedEdge>& edges,
+                            int max_rounds, std::vector<Pose2>* poses,
+                            std::vector<double>* weights);
+
 // Truncated cost: chi2 of the odometry plus sum over loops of min(chi2, gate).
 // Comparable between kernels, and the criterion that tells a folded map from a
 // right one: every true loop lost costs the gate.
 double TruncatedCost(const std::vector<WhitenedEdge>& edges,
-                     const std::vector<Pose2>& poses);
+                     const std::vector<Pose2>& poses, double gate = kChi2Gate);
 
 // Processor time of the calling thread in seconds.
 double ThreadCpuSeconds();
