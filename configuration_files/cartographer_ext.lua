@@ -161,6 +161,18 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- The same of the rotation. [> 0 and <= 10, rad]
     reference_rotation = 0.005,
   },
+  wall_filling = {
+    -- Before a scan is inserted, fill the gaps between its points where four
+    -- in a row lie on one line. Walls of dots would hold the next scan back,
+    -- whose dots lie at the same angles. Only the grid gets these points, no
+    -- node and no match.
+    enabled = true,
+    -- Wider gaps stay open. [>= 0 and <= 100, m]
+    max_gap = 1,
+    -- How far the points beside a gap may be off the line. About twice the
+    -- noise of the laser. [>= 0 and <= 10, m]
+    tolerance = 0.04,
+  },
 }
 
 -- Scan matching that knows which directions the scan determines.
@@ -359,13 +371,13 @@ CARTOGRAPHER_EXT.constraint_builder = {
   path_noise = {
     -- Standard deviation after one metre; it grows with the square root of
     -- the way. [>= 0 and <= 10, m]
-    translation_per_metre = 0.03,
+    translation_per_metre = 0.05,
     -- Standard deviation after turning one radian. [>= 0 and <= 10, m]
     translation_per_radian = 0.02,
     -- Standard deviation after one metre. [>= 0 and <= 10, rad]
-    rotation_per_metre = 0.003,
+    rotation_per_metre = 0.005,
     -- Standard deviation after turning one radian. [>= 0 and <= 10, rad]
-    rotation_per_radian = 0.01,
+    rotation_per_radian = 0.015,
     -- Standard deviation of a loop itself. [> 0 and <= 10, m]
     loop_translation = 0.05,
     -- Standard deviation of a loop itself. [> 0 and <= 10, rad]

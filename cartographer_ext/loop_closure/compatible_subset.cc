@@ -278,6 +278,20 @@ void CompatibleSubset::MakeRoom() {
   Erase(oldest);
 }
 
+std::vector<SubsetDecision> CompatibleSubset::Undecided() const {
+  std::vector<SubsetDecision> decisions;
+  for (const Cluster& cluster : clusters_) {
+    SubsetReason reason;
+    MayAccept(cluster, &reason);
+    Emit(cluster, false, reason, &decisions);
+  }
+  std::stable_sort(decisions.begin(), decisions.end(),
+                   [](const SubsetDecision& a, const SubsetDecision& b) {
+                     return a.id < b.id;
+                   });
+  return decisions;
+}
+
 int CompatibleSubset::num_undecided() const {
   int count = 0;
   for (const Cluster& cluster : clusters_) {

@@ -118,6 +118,8 @@ class CompatibleSubset {
   std::vector<int64_t> Withdraw(
       const std::function<bool(const LoopEvidence&)>& condition);
 
+  // What waits and why, as of the last `Decide`, in the order of adding.
+  std::vector<SubsetDecision> Undecided() const;
   int num_undecided() const;
   int num_clusters() const { return static_cast<int>(clusters_.size()); }
   // Accepted clusters that the last `Decide` found outside the subset: later

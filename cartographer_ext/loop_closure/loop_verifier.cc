@@ -3,8 +3,10 @@
 #include "cartographer_ext/loop_closure/loop_verifier.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "Eigen/LU"
 #include "cartographer_ext/loop_closure/dtw.h"
 #include "cartographer_ext/loop_closure/innovation_veto.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
@@ -62,6 +64,45 @@ LoopDecision::Reason ToProto(const SubsetReason reason) {
       break;
   }
   return LoopDecision::UNSUPPORTED;
+}
+
+// Neighbouring points of a scan and neighbouring cells of a grid err together:
+// a match knows about as much as so much fewer points would.
+constexpr double kCorrelatedPoints = 100.;
+// Nothing is less certain than the search itself, metres and radians.
+constexpr double kLeastCertainTranslation = 1.;
+constexpr double kLeastCertainRotation = 0.2;
+
+// Of the loop itself, frame of the node: the constant part of the options, and
+// what the match leaves open, such as the way along a corridor.
+Eigen::Matrix3d MatchCovariance(const Eigen::Matrix3d& constant,
+                                const LoopCandidate& candidate) {
+  if (candidate.information.isZero(0.) || !candidate.information.allFinite()) {
+    return constant;
+  }
+  const Eigen::Vector3d least(
+      1. / (kLeastCertainTranslation * kLeastCertainTranslation),
+      1. / (kLeastCertainTranslation * kLeastCertainTranslation),
+      1. / (kLeastCertainRotation * kLeastCertainRotation));
+  Eigen::Matrix3d information = candidate.information / kCorrelatedPoints;
+  information.diagonal() += least;
+  Eigen::Matrix3d to_node = Eigen::Matrix3d::Identity();
+  const double c = std::cos(candidate.refined.theta);
+  const double s = std::sin(candidate.refined.theta);
+  to_node.topLeftCorner<2, 2>() << c, s, -s, c;
+  return constant + to_node * information.inverse() * to_node.transpose();
+}
+
+// How well the search knew where to look: by the uncertainty of the way, or
+// because it found the place right there.
+double PriorSigma(const LoopCandidate& candidate) {
+  const LoopDecision::Search& search = candidate.search;
+  if (!search.has_predicted()) return search.prior_translation_sigma();
+  const double offset =
+      (Eigen::Vector2d(search.predicted().x(), search.predicted().y()) -
+       candidate.refined.translation())
+          .norm();
+  return std::min(search.prior_translation_sigma(), offset);
 }
 
 bool Reject(const LoopDecision::Reason reason, LoopOutcome* const outcome) {
@@ -191,7 +232,7 @@ bool LoopVerifier::PassesVeto(const LoopCandidate& candidate,
   UncertainPose loop;
   loop.pose = Between(*paths_.LocalPose(*anchor), candidate.submap_local_pose) *
               candidate.refined;
-  loop.covariance = LoopCovariance(options_);
+  loop.covariance = MatchCovariance(LoopCovariance(options_), candidate);
   const InnovationResult result =
       TestInnovation(ToInnovationOptions(options_), *prior, loop);
   LoopDecision::Innovation& record = *outcome->decision.mutable_innovation();
@@ -261,10 +302,11 @@ void LoopVerifier::Process(const LoopCandidate& candidate) {
   evidence.edge.a = PathKey(candidate.submap);
   evidence.edge.b = candidate.node;
   evidence.edge.pose.pose = candidate.refined;
-  evidence.edge.pose.covariance = LoopCovariance(options_);
+  evidence.edge.pose.covariance =
+      MatchCovariance(LoopCovariance(options_), candidate);
   evidence.score = decision.has_fusion() ? decision.fusion().final_score()
                                          : candidate.grid_score;
-  evidence.prior_sigma = candidate.search.prior_translation_sigma();
+  evidence.prior_sigma = PriorSigma(candidate);
   waiting_.emplace(number, std::move(outcome));
   tests_waited_[number] = 0;
   subset_.Add(evidence);
@@ -303,9 +345,17 @@ std::vector<LoopOutcome> LoopVerifier::TakeSettled() {
 
 std::vector<LoopDecision> LoopVerifier::Undecided() const {
   std::vector<LoopDecision> decisions;
-  for (const auto& entry : waiting_) {
-    decisions.push_back(entry.second.decision);
-    decisions.back().set_verdict(LoopDecision::UNDECIDED);
+  for (const SubsetDecision& from : subset_.Undecided()) {
+    decisions.push_back(waiting_.at(from.id).decision);
+    LoopDecision& decision = decisions.back();
+    decision.set_verdict(LoopDecision::UNDECIDED);
+    decision.set_reason(ToProto(from.reason));
+    LoopDecision::Subset& record = *decision.mutable_subset();
+    record.set_support(from.support);
+    record.set_contradictions(from.contradictions);
+    record.set_subset_size(from.subset_size);
+    record.set_num_tests(tests_waited_.at(from.id));
+    record.set_exact(subset_.exact());
   }
   return decisions;
 }
