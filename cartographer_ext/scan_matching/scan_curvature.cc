@@ -55,6 +55,7 @@ void Sort(ScanCurvature* const curvature) {
   for (const int k : {0, 1, 0}) {
     if (curvature->values(k) <= curvature->values(k + 1)) continue;
     std::swap(curvature->values(k), curvature->values(k + 1));
+    std::swap(curvature->rises(k), curvature->rises(k + 1));
     curvature->axes.col(k).swap(curvature->axes.col(k + 1));
   }
 }

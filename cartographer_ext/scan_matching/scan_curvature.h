@@ -31,6 +31,7 @@
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_CURVATURE_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_CURVATURE_H_
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -67,6 +68,10 @@ struct ScanCurvature {
   // Ascending; squared cost per squared cell, mean over the points. Below zero
   // where the match is not at a minimum.
   Eigen::Vector3d values = Eigen::Vector3d::Zero();
+  // 2 (F(s v) - F(0)) / s^2 to the side where F rises more: the curvature at a
+  // minimum. Where a prior holds the scan on the slope beside the minimum the
+  // curvature may vanish, the rise does not; along a blank wall both do.
+  Eigen::Vector3d rises = Eigen::Vector3d::Zero();
   // Unit vectors of scaled motion, as columns.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
 };
@@ -120,9 +125,11 @@ ScanCurvature MeasureCurvature(const Function& half_mean_squares,
   }
   curvature.axes = curvature.axes * internal::Axes(matrix);
   for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d axis = curvature.axes.col(k);
-    curvature.values(k) =
-        internal::SecondDifference(half_mean_squares, at_zero, step * axis);
+    const Eigen::Vector3d motion = step * curvature.axes.col(k);
+    const double ahead = half_mean_squares(motion) - at_zero;
+    const double behind = half_mean_squares(-motion) - at_zero;
+    curvature.values(k) = (ahead + behind) / (step * step);
+    curvature.rises(k) = 2. * std::max(ahead, behind) / (step * step);
   }
   internal::Sort(&curvature);
   return curvature;

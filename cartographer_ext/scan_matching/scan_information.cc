@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "Eigen/Cholesky"
+#include "Eigen/Eigenvalues"
 #include "Eigen/LU"
 
 namespace cartographer_ext {
@@ -26,6 +27,14 @@ Pose2 Add(const Pose2& pose, const Eigen::Vector3d& difference) {
                NormalizeAngle(pose.theta + difference.z()));
 }
 
+// `turn` is the share of rotation in an axis, 0 to 1.
+double Floor(const ScanInformationOptions& options,
+             const double largest_curvature, const double turn) {
+  const double share =
+      (1. - turn) * options.translation_floor + turn * options.rotation_floor;
+  return std::max(options.floor, share * largest_curvature);
+}
+
 }  // namespace
 
 ScanInformation AnalyzeScan(const ScanInformationOptions& options,
@@ -34,7 +43,8 @@ ScanInformation AnalyzeScan(const ScanInformationOptions& options,
                             const int num_points,
                             const Eigen::Matrix3d& gauss_newton) {
   if (num_points <= 0 || !curvature.values.allFinite() ||
-      !motion.ToPose().allFinite() || !motion.FromPose().allFinite()) {
+      !curvature.rises.allFinite() || !motion.ToPose().allFinite() ||
+      !motion.FromPose().allFinite()) {
     return NoInformation();
   }
   ScanInformation scan;
@@ -43,10 +53,13 @@ ScanInformation AnalyzeScan(const ScanInformationOptions& options,
   scan.curvature = curvature.values.cwiseMax(0.);
   const double noise = options.map_noise * options.map_noise +
                        options.point_noise * options.point_noise / num_points;
+  const Eigen::Vector3d rises = curvature.rises.cwiseMax(0.);
+  const double largest = rises.maxCoeff();
   Eigen::Vector3d information;  // per squared cell, whether believed or not
   for (int k = 0; k < 3; ++k) {
-    scan.weights(k) =
-        Belief(scan.curvature(k), options.floor, options.full_ratio);
+    const double turn = curvature.axes(2, k) * curvature.axes(2, k);
+    const double floor = Floor(options, largest, turn);
+    scan.weights(k) = Belief(rises(k), floor, options.full_ratio);
     information(k) = scan.curvature(k) / noise;
     scan.variances(k) = information(k) > 0.
                             ? 1. / information(k)
@@ -63,13 +76,22 @@ ScanInformation AnalyzeScan(const ScanInformationOptions& options,
   degeneracy.full_ratio = options.full_ratio;
   degeneracy.paper_ratio = options.paper_ratio;
   const Eigen::Matrix3d& from_pose = motion.FromPose();
-  const double floor = options.floor / noise;
-  degeneracy.translation_floor = floor * from_pose(0, 0) * from_pose(0, 0);
-  degeneracy.rotation_floor = floor * from_pose(2, 2) * from_pose(2, 2);
+  degeneracy.translation_floor =
+      Floor(options, largest, 0.) / noise * from_pose(0, 0) * from_pose(0, 0);
+  degeneracy.rotation_floor =
+      Floor(options, largest, 1.) / noise * from_pose(2, 2) * from_pose(2, 2);
+  const Eigen::Matrix3d by_rises = in_pose(rises / noise);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> given_heading(
+      Eigen::Matrix2d(by_rises.topLeftCorner<2, 2>()));
+  scan.directions = given_heading.eigenvectors();
+  for (int i = 0; i < 2; ++i) {
+    scan.direction_weights(i) =
+        Belief(given_heading.eigenvalues()(i), degeneracy.translation_floor,
+               options.full_ratio);
+  }
   scan.degeneracy = AnalyzeDegeneracy(
-      degeneracy, options.mode == DegeneracyMode::kPaperLiteral
-                      ? gauss_newton
-                      : in_pose(information));
+      degeneracy,
+      options.mode == DegeneracyMode::kPaperLiteral ? gauss_newton : by_rises);
   return scan;
 }
 
@@ -107,11 +129,14 @@ Pose2 Remap(const ScanInformation& scan, const DegeneracyMode mode,
   if (mode == DegeneracyMode::kPaperLiteral) {
     return RemapSolution(scan.degeneracy, prediction, match);
   }
-  if (scan.weights.minCoeff() >= 1.) return match;
-  if (scan.weights.maxCoeff() <= 0.) return prediction;
-  const Eigen::Vector3d along =
-      scan.inverse_axes * Difference(match, prediction);
-  return Add(prediction, scan.axes * scan.weights.cwiseProduct(along));
+  if (scan.direction_weights.minCoeff() >= 1.) return match;
+  const Eigen::Vector2d difference =
+      match.translation() - prediction.translation();
+  const Eigen::Vector2d accepted =
+      scan.directions * scan.direction_weights.cwiseProduct(
+                            scan.directions.transpose() * difference);
+  return Pose2(prediction.x + accepted.x(), prediction.y + accepted.y(),
+               match.theta);
 }
 
 Pose2 Fuse(const ScanInformation& scan, const Pose2& prediction,

@@ -16,19 +16,24 @@
 // third_party_notes/paper_improved_graph_optimisation_2024.md, the test that
 // holds them is tests/scan_matching/covariance_honesty_test.cc.
 //
-// The floor is the curvature that blank walls, straight and round, show along
-// themselves: below it an axis counts as not determined.
+// The floor is the curvature that blank walls, straight (translation) and round
+// (rotation), show along themselves: below it an axis counts as not determined.
+// All curvatures grow with the contrast of the map, which a young submap has
+// little of, and so does the noise along a wall: the floor is a share of the
+// largest curvature.
 //
 // Scan match X_s and prediction X_0 with covariance P become
 //
 //   X_f = X_0 + (L + P^-1)^-1 L (X_s - X_0),   L = sum w_k e_k / (a^2 + b^2/n)
 //   b_k b_k^T
 //
-// over the axes b_k (as covectors of the pose), w_k in [0, 1] the belief. Where
-// P is not known, G eq. 19 with smooth weights:
+// over the axes b_k (as covectors of the pose), w_k in [0, 1] the belief.
 //
-//   X_f = X_0 + B diag(w) B^-1 (X_s - X_0),   B the axes as motions of the
-//   pose.
+// Where P is not known, G eq. 19 with smooth weights over the directions of
+// translation. The heading is then that of the match, which has the prior of
+// the stock matcher in it: a scan in a round room that knows little of its
+// heading is treated no worse than there, and the directions are judged with
+// the heading given (no Schur complement), since that is how they are used.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_INFORMATION_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_INFORMATION_H_
 
@@ -43,11 +48,16 @@ namespace scan_matching {
 
 struct ScanInformationOptions {
   DegeneracyMode mode = DegeneracyMode::kNoiseFloor;
-  double floor = 0.005;       // squared cost per squared cell, >= 0
-  double full_ratio = 4.;     // > 1
-  double paper_ratio = 30.;   // kPaperLiteral, > 1
-  double map_noise = 0.019;   // a above, > 0
-  double point_noise = 0.17;  // b above, >= 0
+  // The floor of an axis: absolute (squared cost per squared cell), and as a
+  // share of the largest curvature for pure translation and pure rotation, in
+  // between by the squares of the axis; all >= 0, the larger counts.
+  double floor = 0.001;
+  double translation_floor = 0.05;
+  double rotation_floor = 0.015;
+  double full_ratio = 3.;      // > 1
+  double paper_ratio = 30.;    // kPaperLiteral, > 1
+  double map_noise = 0.018;    // a above, > 0
+  double point_noise = 0.165;  // b above, >= 0
 };
 
 struct ScanInformation {
@@ -60,6 +70,10 @@ struct ScanInformation {
   Eigen::Vector3d curvature = Eigen::Vector3d::Zero();  // never negative
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();    // belief in each axis
   Eigen::Vector3d variances = Eigen::Vector3d::Zero();  // cells^2, or infinity
+  // Directions of translation while the heading stays that of the match, as
+  // columns, and the belief in them.
+  Eigen::Matrix2d directions = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d direction_weights = Eigen::Vector2d::Zero();
   // L above, about (x, y, theta).
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
 };

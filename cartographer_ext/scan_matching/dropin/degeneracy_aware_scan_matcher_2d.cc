@@ -66,6 +66,8 @@ ScanMatchOptions ToOptions(const StockOptions& stock,
           ? DegeneracyMode::kPaperLiteral
           : DegeneracyMode::kNoiseFloor;
   options.information.floor = degeneracy.floor();
+  options.information.translation_floor = degeneracy.translation_floor();
+  options.information.rotation_floor = degeneracy.rotation_floor();
   options.information.full_ratio = degeneracy.full_ratio();
   options.information.paper_ratio = degeneracy.paper_ratio();
   const auto& covariance = extension.covariance();

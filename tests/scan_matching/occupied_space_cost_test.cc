@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/scan_matching/occupied_space_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ceres/cubic_interpolation.h"
+#include "gtest/gtest.h"
+#include "tests/scan_matching/test_cells.h"
+
+namespace cartographer_ext {
+namespace scan_matching {
+namespace {
+
+using Cost = OccupiedSpaceCost<TestCells>;
+
+// What Ceres' interpolator asks for; outside as the stock matcher has it.
+struct CeresGrid {
+  enum { DATA_DIMENSION = 1 };
+  explicit CeresGrid(const TestCells* const cells_in) : cells(cells_in) {}
+  void GetValue(const int row, const int column, double* const value) const {
+    const bool inside = row >= 0 && column >= 0 && row < cells->num_rows() &&
+                        column < cells->num_columns();
+    *value = inside ? cells->Cost(row, column) : 0.9f;
+  }
+  const TestCells* cells;
+};
+
+TestCells RandomCells() {
+  TestCells cells(0.05, 1., 0.7, 30, 20, 0.9f);
+  Random random(7);
+  for (int row = 0; row < 30; ++row) {
+    for (int column = 0; column < 20; ++column) {
+      cells.Set(row, column, static_cast<float>(random.Uniform(0.1, 0.9)));
+    }
+  }
+  return cells;
+}
+
+TEST(OccupiedSpaceCostTest, CellCentresHaveTheCostOfTheCell) {
+  const TestCells cells = RandomCells();
+  const Cost cost(&cells, {});
+  for (int row = 2; row < 28; row += 5) {
+    for (int column = 2; column < 18; column += 3) {
+      double value, per_x, per_y;
+      cost.CostAt(cells.CenterX(row), cells.CenterY(column), &value, &per_x,
+                  &per_y);
+      EXPECT_NEAR(value, cells.Cost(row, column), 1e-12);
+      // Central difference of the spline at a knot.
+      EXPECT_NEAR(
+          per_x,
+          (cells.Cost(row - 1, column) - cells.Cost(row + 1, column)) / 0.1,
+          1e-6);
+    }
+  }
+}
+
+// Inside, at the border, and outside.
+TEST(OccupiedSpaceCostTest, SameAsTheInterpolatorOfCeres) {
+  const TestCells cells = RandomCells();
+  const Cost cost(&cells, {});
+  const CeresGrid grid(&cells);
+  const ceres::BiCubicInterpolator<CeresGrid> interpolator(grid);
+  Random random(3);
+  for (int i = 0; i < 5000; ++i) {
+    const double x = random.Uniform(-0.8, 1.3), y = random.Uniform(-0.6, 1.);
+    double value, per_x, per_y, expected, per_row, per_column;
+    cost.CostAt(x, y, &value, &per_x, &per_y);
+    interpolator.Evaluate((1. - x) / 0.05 - 0.5, (0.7 - y) / 0.05 - 0.5,
+                          &expected, &per_row, &per_column);
+    ASSERT_NEAR(value, expected, 1e-9) << x << " " << y;
+    ASSERT_NEAR(per_x, -per_row / 0.05, 1e-7);
+    ASSERT_NEAR(per_y, -per_column / 0.05, 1e-7);
+  }
+}
+
+TEST(OccupiedSpaceCostTest, DerivativesAgreeWithDifferences) {
+  const TestCells cells = RandomCells();
+  Random random(5);
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < 40; ++i) {
+    points.emplace_back(random.Uniform(-0.5, 0.9), random.Uniform(-0.3, 0.7));
+  }
+  Cost cost(&cells, points);
+  const Pose2 pose(0.02, -0.01, 0.3);
+  const OccupiedSpaceSums sums = cost.Evaluate(pose);
+  const double step = 1e-7;
+  Eigen::Matrix3d outer = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector2d& point : points) {
+    Cost one(&cells, {point});
+    Eigen::Vector3d gradient;
+    for (int k = 0; k < 3; ++k) {
+      const auto value = [&](const double by) {
+        const Pose2 moved(pose.x + (k == 0 ? by : 0.),
+                          pose.y + (k == 1 ? by : 0.),
+                          pose.theta + (k == 2 ? by : 0.));
+        return std::sqrt(one.Evaluate(moved).squares);
+      };
+      gradient(k) = (value(step) - value(-step)) / (2. * step);
+    }
+    // Costs of the spline may be below zero in random cells; c grad c and
+    // grad c grad c^T do not mind the sign.
+    outer += gradient * gradient.transpose();
+  }
+  EXPECT_NEAR((sums.hessian - outer).norm() / outer.norm(), 0., 1e-5);
+  for (int k = 0; k < 3; ++k) {
+    const auto value = [&](const double by) {
+      return 0.5 * cost.Evaluate(Pose2(pose.x + (k == 0 ? by : 0.),
+                                       pose.y + (k == 1 ? by : 0.),
+                                       pose.theta + (k == 2 ? by : 0.)))
+                       .squares;
+    };
+    EXPECT_NEAR(sums.gradient(k), (value(step) - value(-step)) / (2. * step),
+                1e-5 * sums.gradient.norm());
+  }
+}
+
+// The kept patches make no difference.
+TEST(OccupiedSpaceCostTest, RepeatsWhateverWasAskedBefore) {
+  const TestCells cells = RandomCells();
+  const std::vector<Eigen::Vector2d> points = {
+      {0.1, 0.2}, {-0.3, 0.4}, {0.91, 0.6}, {5., 5.}};
+  Cost kept(&cells, points);
+  Random random(11);
+  for (int i = 0; i < 200; ++i) {
+    const Pose2 pose(random.Uniform(-0.2, 0.2), random.Uniform(-0.2, 0.2),
+                     random.Uniform(-1., 1.));
+    Cost fresh(&cells, points);
+    const OccupiedSpaceSums a = kept.Evaluate(pose);
+    const OccupiedSpaceSums b = fresh.Evaluate(pose);
+    ASSERT_EQ(a.squares, b.squares);
+    ASSERT_EQ(a.gradient, b.gradient);
+    ASSERT_EQ(a.hessian, b.hessian);
+  }
+}
+
+TEST(OccupiedSpaceCostTest, OutsideAndNonsenseCostTheMostAndPullNowhere) {
+  const TestCells cells = RandomCells();
+  const Cost cost(&cells, {});
+  const double inf = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double x : {10., -10., 1e30, -1e30, inf, -inf, nan}) {
+    double value, per_x, per_y;
+    cost.CostAt(x, 0., &value, &per_x, &per_y);
+    EXPECT_EQ(value, 0.9f);
+    EXPECT_EQ(per_x, 0.);
+    EXPECT_EQ(per_y, 0.);
+  }
+}
+
+TEST(OccupiedSpaceCostTest, LinearSquaresInterpolateBetweenCentres) {
+  TestCells cells(1., 4., 4., 4, 4, 0.5f);
+  cells.Set(1, 1, 0.1f);  // centre (2.5, 2.5)
+  const Cost cost(&cells, {{0., 0.}});
+  EXPECT_NEAR(cost.LinearSquares(Pose2(2.5, 2.5, 0.)), 0.01, 1e-6);
+  EXPECT_NEAR(cost.LinearSquares(Pose2(2., 2.5, 0.)), 0.09, 1e-6);
+  // A quarter of the way in both: 9/16 of 0.1, 7/16 of 0.5.
+  EXPECT_NEAR(cost.LinearSquares(Pose2(2.25, 2.75, 0.)), 0.275 * 0.275, 1e-6);
+  EXPECT_NEAR(cost.LinearSquares(Pose2(0.2, 0.2, 0.)), 0.81, 1e-6);
+  EXPECT_NEAR(cost.LinearSquares(Pose2(1e9, 0., 0.)), 0.81, 1e-6);
+}
+
+}  // namespace
+}  // namespace scan_matching
+}  // namespace cartographer_ext
