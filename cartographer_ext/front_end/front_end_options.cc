@@ -75,5 +75,15 @@ AdaptiveFeatureOptions ToAdaptiveFeatureOptions(
   return to;
 }
 
+WallFillingOptions ToWallFillingOptions(const proto::FrontEndOptions& options,
+                                        const double resolution) {
+  WallFillingOptions to;
+  to.spacing = resolution;
+  to.max_gap =
+      options.wall_filling().enabled() ? options.wall_filling().max_gap() : 0.;
+  to.tolerance = options.wall_filling().tolerance();
+  return to;
+}
+
 }  // namespace front_end
 }  // namespace cartographer_ext

@@ -143,7 +143,15 @@ bool OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
   return excess_speed_ != 0.;
 }
 
-OdometryState OdometryMonitor::Add(const MotionComparison& comparison) {
+OdometryState OdometryMonitor::Add(const MotionComparison& given) {
+  MotionComparison comparison = given;
+  Pose2& match = comparison.match;
+  if (!comparison.way_is_determined) {
+    // The way of the match is that of a prediction; whatever that was, it says
+    // nothing against odometry.
+    match.x = comparison.odometry.x;
+    match.y = comparison.odometry.y;
+  }
   if (!options_.enabled) {
     state_ =
         comparison.has_odometry ? OdometryState::kOk : OdometryState::kAbsent;
@@ -159,7 +167,7 @@ OdometryState OdometryMonitor::Add(const MotionComparison& comparison) {
   Entry entry;
   entry.time = comparison.time;
   entry.odometry = window_.back().odometry * comparison.odometry;
-  entry.match = window_.back().match * comparison.match;
+  entry.match = window_.back().match * match;
   window_.push_back(entry);
   while (window_.size() > 2 &&
          (window_[1].time <= comparison.time - options_.window ||

@@ -15,8 +15,8 @@
 // A fault that goes on ends when the window agrees again; a jump or a burst of
 // stale poses ends with the interval, and the window starts anew.
 //
-// Where the scan cannot tell the way, its match is the prediction itself and
-// never disagrees. There a speed that changes faster than the robot can
+// Where the scan cannot tell the way, its match is the prediction itself, and
+// only turns are compared. There a speed that changes faster than the robot can
 // (wheels that lose or find their grip) is all that is left to see; it is
 // reported as a suspicion and changes nothing.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_MONITOR_H_
@@ -77,7 +77,7 @@ class OdometryMonitor {
                  const Pose2& expected) const;
 
   // After the match. Returns the state of the interval.
-  OdometryState Add(const MotionComparison& comparison);
+  OdometryState Add(const MotionComparison& given);
 
   OdometryState state() const { return state_; }
   // Whether a prediction should rest on odometry. A jump is over when it is

@@ -63,7 +63,10 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
       active_submaps_(options.submaps_options()),
       motion_filter_(options.motion_filter_options()),
       range_data_collator_(expected_range_sensor_ids),
-      assembler_(options),
+      assembler_(options,
+                 ToWallFillingOptions(
+                     extension,
+                     options.submaps_options().grid_options_2d().resolution())),
       predictor_(ToMotionPredictorOptions(extension)),
       matcher_(extension, options.ceres_scan_matcher_options()) {}
 
@@ -168,8 +171,8 @@ PointCloud AdaptiveLocalTrajectoryBuilder2D::SelectFeatures(
 std::unique_ptr<AdaptiveLocalTrajectoryBuilder2D::MatchingResult>
 AdaptiveLocalTrajectoryBuilder2D::MatchAndInsert(
     const cartographer::common::Time time, const MotionPrediction& prediction,
-    const RangeData& gravity_aligned_range_data,
-    const Eigen::Quaterniond& alignment) {
+    const AssembledScan& scan, const Eigen::Quaterniond& alignment) {
+  const RangeData& gravity_aligned_range_data = scan.range_data;
   if (gravity_aligned_range_data.returns.empty()) {
     LOG_EVERY_N(WARNING, 100) << "a scan without returns is dropped";
     return nullptr;
@@ -187,11 +190,13 @@ AdaptiveLocalTrajectoryBuilder2D::MatchAndInsert(
   const Rigid2d pose(Eigen::Vector2d(pose_.x, pose_.y), pose_.theta);
   const Rigid3d local_pose =
       cartographer::transform::Embed3D(pose) * Rigid3d::Rotation(alignment);
+  const auto pose_3d = cartographer::transform::Embed3D(pose.cast<float>());
   RangeData range_data_in_local = cartographer::sensor::TransformRangeData(
-      gravity_aligned_range_data,
-      cartographer::transform::Embed3D(pose.cast<float>()));
-  auto insertion_result =
-      MaybeInsert(time, range_data_in_local, cloud, local_pose, alignment);
+      gravity_aligned_range_data, pose_3d);
+  auto insertion_result = MaybeInsert(
+      time, range_data_in_local,
+      cartographer::sensor::TransformPointCloud(scan.filling, pose_3d), cloud,
+      local_pose, alignment);
   record.set_is_node(insertion_result != nullptr);
   MatchRecorder::Global()->Record(record);
   CountMatch(record);
@@ -238,11 +243,13 @@ void AdaptiveLocalTrajectoryBuilder2D::MatchScan(
 std::unique_ptr<AdaptiveLocalTrajectoryBuilder2D::InsertionResult>
 AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
     const cartographer::common::Time time, const RangeData& range_data_in_local,
-    const PointCloud& cloud, const Rigid3d& local_pose,
-    const Eigen::Quaterniond& alignment) {
+    const PointCloud& filling_in_local, const PointCloud& cloud,
+    const Rigid3d& local_pose, const Eigen::Quaterniond& alignment) {
   if (motion_filter_.IsSimilar(time, local_pose)) return nullptr;
+  RangeData completed = range_data_in_local;
+  for (const auto& point : filling_in_local) completed.returns.push_back(point);
   auto result = absl::make_unique<InsertionResult>();
-  for (auto& submap : active_submaps_.InsertRangeData(range_data_in_local)) {
+  for (auto& submap : active_submaps_.InsertRangeData(completed)) {
     result->insertion_submaps.push_back(submap);
   }
   auto data = std::make_shared<mapping::TrajectoryNode::Data>();

@@ -86,8 +86,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
 
   std::unique_ptr<MatchingResult> MatchAndInsert(
       cartographer::common::Time time, const MotionPrediction& prediction,
-      const cartographer::sensor::RangeData& gravity_aligned_range_data,
-      const Eigen::Quaterniond& alignment);
+      const AssembledScan& scan, const Eigen::Quaterniond& alignment);
   // Moves the pose, learns from the match, fills in the record.
   void MatchScan(double seconds, const MotionPrediction& prediction,
                  const cartographer::sensor::PointCloud& cloud,
@@ -95,6 +94,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   std::unique_ptr<InsertionResult> MaybeInsert(
       cartographer::common::Time time,
       const cartographer::sensor::RangeData& range_data_in_local,
+      const cartographer::sensor::PointCloud& filling_in_local,
       const cartographer::sensor::PointCloud& cloud,
       const cartographer::transform::Rigid3d& local_pose,
       const Eigen::Quaterniond& alignment);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/transform/rigid_transform.h"
@@ -27,8 +28,9 @@ Rigid3f ToRigid3f(const Pose2& pose) {
 
 ScanAssembler::ScanAssembler(
     const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
-        options)
-    : options_(options) {}
+        options,
+    const WallFillingOptions& filling)
+    : options_(options), filling_(filling) {}
 
 void ScanAssembler::Add(
     const cartographer::sensor::TimedPointCloudOriginData& sweep,
@@ -69,18 +71,27 @@ void ScanAssembler::Add(
                        : Eigen::Vector3f::Zero().eval();
 }
 
-RangeData ScanAssembler::Take() {
+AssembledScan ScanAssembler::Take() {
   num_sweeps_ = 0;
   accumulated_.origin = ToRigid3f(newest_motion_) * newest_origin_;
   const RangeData cropped = cartographer::sensor::CropRangeData(
       cartographer::sensor::TransformRangeData(
           accumulated_, ToRigid3f(newest_motion_).inverse()),
       options_.min_z(), options_.max_z());
-  return RangeData{cropped.origin,
-                   cartographer::sensor::VoxelFilter(
-                       cropped.returns, options_.voxel_filter_size()),
-                   cartographer::sensor::VoxelFilter(
-                       cropped.misses, options_.voxel_filter_size())};
+  AssembledScan scan;
+  scan.range_data =
+      RangeData{cropped.origin,
+                cartographer::sensor::VoxelFilter(cropped.returns,
+                                                  options_.voxel_filter_size()),
+                cartographer::sensor::VoxelFilter(
+                    cropped.misses, options_.voxel_filter_size())};
+  std::vector<Eigen::Vector3f> returns;
+  returns.reserve(cropped.returns.size());
+  for (const auto& point : cropped.returns) returns.push_back(point.position);
+  for (const Eigen::Vector3f& position : FillWalls(filling_, returns)) {
+    scan.filling.push_back({position});
+  }
+  return scan;
 }
 
 }  // namespace front_end

@@ -12,15 +12,23 @@
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/wall_filling.h"
 
 namespace cartographer_ext {
 namespace front_end {
 
+struct AssembledScan {
+  cartographer::sensor::RangeData range_data;
+  // Returns that complete the walls, for the grid only.
+  cartographer::sensor::PointCloud filling;
+};
+
 class ScanAssembler {
  public:
-  explicit ScanAssembler(
+  ScanAssembler(
       const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
-          options);
+          options,
+      const WallFillingOptions& filling);
 
   // Adds a sweep. Points are stamped relative to its end. `interval` is the
   // time since the last match (seconds, positive) and `motion` what the robot
@@ -36,10 +44,11 @@ class ScanAssembler {
   // All sweeps since the last call, in the gravity-aligned frame at the end of
   // the last one. Rays start at the laser (the stock builder's at the robot's
   // origin), or at the robot's origin where there are several lasers.
-  cartographer::sensor::RangeData Take();
+  AssembledScan Take();
 
  private:
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
+  const WallFillingOptions filling_;
   int num_sweeps_ = 0;
   // In the gravity-aligned frame of the last match.
   cartographer::sensor::RangeData accumulated_;

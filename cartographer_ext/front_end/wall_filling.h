@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Points between the points of a straight wall.
+//
+// A laser with a beam every degree sees a wall ten metres ahead, or one that it
+// looks along, as dots further apart than the cells of the grid. The next scan
+// has its dots at the same angles; matched with the dots of the first it fits
+// best where the robot has not moved at all. A grid with whole walls has no
+// such place. So before a scan is inserted, the gaps between successive points
+// are filled where the wall is known to go on: four points in a row on one
+// line.
+#ifndef CARTOGRAPHER_EXT_FRONT_END_WALL_FILLING_H_
+#define CARTOGRAPHER_EXT_FRONT_END_WALL_FILLING_H_
+
+#include <vector>
+
+#include "Eigen/Core"
+
+namespace cartographer_ext {
+namespace front_end {
+
+struct WallFillingOptions {
+  double spacing = 0.05;    // metres between the points of a filled wall, > 0
+  double max_gap = 1.;      // metres; wider gaps are left open
+  double tolerance = 0.04;  // metres that a point may be off the line
+};
+
+// New points only, in order. `points` in the order of the beams, metres.
+// Points that are not finite interrupt a wall.
+std::vector<Eigen::Vector3f> FillWalls(
+    const WallFillingOptions& options,
+    const std::vector<Eigen::Vector3f>& points);
+
+}  // namespace front_end
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_FRONT_END_WALL_FILLING_H_
