@@ -222,6 +222,44 @@ TEST(FastCorrelativeSearchTest, MemoryIsThatOfAFewGrids) {
   EXPECT_LE(search.MemoryBytes(), stock);
 }
 
+// Any size of grid, scan and window, with every set of instructions.
+TEST(FastCorrelativeSearchTest, RandomInputIsTheSameForAllKernels) {
+  Random random(23);
+  for (int i = 0; i != 60; ++i) {
+    SearchGrid2D grid;
+    grid.num_x = static_cast<int>(random.UniformInt(1, 70));
+    grid.num_y = static_cast<int>(random.UniformInt(1, 70));
+    grid.resolution = 0.1;
+    grid.max_x = random.Uniform(-5., 5.);
+    grid.max_y = random.Uniform(-5., 5.);
+    const int64_t sparse = random.UniformInt(1, 20);
+    for (int k = 0; k != grid.num_x * grid.num_y; ++k) {
+      grid.values.push_back(static_cast<uint8_t>(
+          random.UniformInt(1, sparse) == 1 ? random.UniformInt(0, 255) : 0));
+    }
+    PlanarCloud cloud;
+    const int64_t num_points = random.UniformInt(1, i % 12 == 0 ? 2500 : 60);
+    for (int64_t k = 0; k != num_points; ++k) {
+      cloud.x.push_back(static_cast<float>(random.Uniform(-6., 6.)));
+      cloud.y.push_back(static_cast<float>(random.Uniform(-6., 6.)));
+    }
+    const Pose2 initial(random.Uniform(-6., 6.), random.Uniform(-6., 6.),
+                        random.Uniform(-4., 4.));
+    const SearchWindow window =
+        Window(random.Uniform(0., 1.), random.Uniform(0., 0.1));
+    const float expected = BestScore(grid, cloud, initial, window);
+    for (const SearchKernels* const kernels : AllSearchKernels()) {
+      FastCorrelativeSearchOptions options;
+      options.kernels = kernels;
+      const FastCorrelativeSearch2D search(grid, options);
+      const SearchResult result =
+          search.Match(initial, cloud, window, -1.f, SearchBudget());
+      ASSERT_TRUE(result.found) << i << " " << kernels->name;
+      ASSERT_EQ(result.score, expected) << i << " " << kernels->name;
+    }
+  }
+}
+
 class MatchBestFewTest : public ::testing::Test {
  protected:
   MatchBestFewTest() : cloud_(Scan(Grid(0), kTruth, 60)) {
