@@ -41,7 +41,7 @@ struct LoopMixtureOptions {
   // Pseudo-observations per component, > 0. Strong priors are safer with few
   // candidates, but bias the tails: with 20 and 4000 candidates the middle
   // probabilities came out 0.1 too high in simulation, with 2 within 0.05.
-  double prior_strength = 5.;
+  double prior_strength = 30.;
   int capacity = 500;       // candidates remembered, > 0
   int max_iterations = 50;  // of EM per fit
   double tolerance = 1e-6;  // change of the mean log-posterior that stops EM

@@ -302,6 +302,17 @@ void LoopVerifier::Process(const LoopCandidate& candidate) {
   evidence.edge.a = PathKey(candidate.submap);
   evidence.edge.b = candidate.node;
   evidence.edge.pose.pose = candidate.refined;
+  // Within a trajectory the way runs along the nodes, which know about jumps.
+  if (candidate.anchor.has_value() &&
+      candidate.anchor->trajectory_id == candidate.node.trajectory_id) {
+    const auto anchor_pose = paths_.LocalPose(*candidate.anchor);
+    if (anchor_pose.has_value()) {
+      evidence.edge.a = *candidate.anchor;
+      evidence.edge.pose.pose =
+          Between(*anchor_pose, candidate.submap_local_pose) *
+          candidate.refined;
+    }
+  }
   evidence.edge.pose.covariance =
       MatchCovariance(LoopCovariance(options_), candidate);
   evidence.score = decision.has_fusion() ? decision.fusion().final_score()

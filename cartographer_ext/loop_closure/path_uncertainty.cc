@@ -16,9 +16,12 @@ double Square(const double x) { return x * x; }
 
 // Covariance of one step, in the frame of its end.
 Eigen::Matrix3d StepCovariance(const PathNoiseOptions& options,
-                               const double metres, const double radians) {
-  const double far = std::max(0., metres - options.free_metres);
-  const double round = std::max(0., radians - options.free_radians);
+                               const bool has_jumps, const double metres,
+                               const double radians) {
+  const double far =
+      has_jumps ? std::max(0., metres - options.free_metres) : 0.;
+  const double round =
+      has_jumps ? std::max(0., radians - options.free_radians) : 0.;
   const double translation = Square(options.translation_per_metre) * metres +
                              Square(options.translation_per_radian) * radians +
                              Square(far);
@@ -78,10 +81,11 @@ const PathUncertainty::Entry* PathUncertainty::Find(const NodeKey& node) const {
     const double metres = step.translation().norm();
     const Eigen::Matrix3d transport = Adjoint(entry.local_pose);
     entry.travelled = before.travelled + metres;
-    entry.sum = before.sum +
-                transport *
-                    StepCovariance(options_, metres, std::abs(step.theta)) *
-                    transport.transpose();
+    entry.sum =
+        before.sum + transport *
+                         StepCovariance(options_, node.trajectory_id >= 0,
+                                        metres, std::abs(step.theta)) *
+                         transport.transpose();
     entry.drift = before.drift + transport * Eigen::Vector3d(0., 0., metres);
     // The step's way in the frame of its end.
     const Eigen::Vector2d way = -step.Inverse().translation();

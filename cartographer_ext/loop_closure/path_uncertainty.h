@@ -41,8 +41,8 @@ namespace loop_closure {
 struct PathNoiseOptions {
   double translation_per_metre = 0.05;   // metres, >= 0
   double translation_per_radian = 0.02;  // metres, >= 0
-  double rotation_per_metre = 0.01;      // radians, >= 0
-  double rotation_per_radian = 0.03;     // radians, >= 0
+  double rotation_per_metre = 0.005;     // radians, >= 0
+  double rotation_per_radian = 0.015;    // radians, >= 0
   // The same for the whole run.
   double heading_drift = 0.;  // radians a metre, >= 0
   double scale_error = 0.;    // >= 0

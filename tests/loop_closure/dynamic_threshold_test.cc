@@ -25,6 +25,9 @@ TEST(ScoreWindowTest, MeanAndPopulationVarianceOfTheLastK) {
 
 TEST(DynamicThresholdTest, EquationOneAsPrinted) {
   DynamicThresholdOptions options;
+  options.low = 0.5;
+  options.span = 0.2;
+  options.base_threshold = 0.5;
   options.direction = ThresholdDirection::kAsPrinted;
   options.sensitivity = 100.;
   EXPECT_DOUBLE_EQ(ThresholdFromVariance(options, 0.), 0.7);
@@ -35,6 +38,9 @@ TEST(DynamicThresholdTest, EquationOneAsPrinted) {
 
 TEST(DynamicThresholdTest, StricterWhenUnstable) {
   DynamicThresholdOptions options;
+  options.low = 0.5;
+  options.span = 0.2;
+  options.base_threshold = 0.5;
   options.direction = ThresholdDirection::kStricterWhenUnstable;
   options.sensitivity = 100.;
   EXPECT_DOUBLE_EQ(ThresholdFromVariance(options, 0.), 0.5);
@@ -50,6 +56,9 @@ TEST(DynamicThresholdTest, StricterWhenUnstable) {
 
 TEST(DynamicThresholdTest, BaseHoldsUntilKScoresExist) {
   DynamicThresholdOptions options;
+  options.low = 0.5;
+  options.span = 0.2;
+  options.base_threshold = 0.5;
   options.window = 2;
   options.base_threshold = 0.61;
   options.direction = ThresholdDirection::kAsPrinted;

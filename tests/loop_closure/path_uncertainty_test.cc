@@ -133,6 +133,50 @@ TEST(PathUncertaintyTest, ALoopMakesTheWayShort) {
   EXPECT_TRUE(MostCertainWay(paths, {loop}, Key(1), NodeKey{1, 0}).has_value());
 }
 
+TEST(PathUncertaintyTest, DriftAndScaleAreTheSameAllAlong) {
+  PathNoiseOptions options;
+  options.translation_per_metre = 0.;
+  options.rotation_per_metre = 0.;
+  options.heading_drift = 0.01;
+  options.scale_error = 0.02;
+  PathUncertainty paths(options, 100);
+  for (int i = 0; i <= 10; ++i) paths.Add(Key(i), Pose2(3., 2. + i, 0.5 * kPi));
+  const auto way = paths.Between(Key(2), Key(6));
+  ASSERT_TRUE(way.has_value());
+  // Four metres: the heading is off by 0.04, every metre turns those before it,
+  // 0.01 (3 + 2 + 1) m to the side; the length by 0.08 m.
+  EXPECT_NEAR(way->covariance(0, 0), 0.08 * 0.08, 1e-12);
+  EXPECT_NEAR(way->covariance(1, 1), 0.06 * 0.06, 1e-12);
+  EXPECT_NEAR(way->covariance(2, 2), 0.04 * 0.04, 1e-12);
+}
+
+TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
+  PathNoiseOptions options;
+  options.translation_per_metre = 0.;
+  options.rotation_per_metre = 0.;
+  options.translation_per_radian = 0.;
+  options.rotation_per_radian = 0.;
+  options.free_metres = 0.5;
+  options.free_radians = 0.4;
+  PathUncertainty paths(options, 100);
+  paths.Add(Key(0), Pose2(0., 0., 0.));
+  paths.Add(Key(1), Pose2(0.5, 0., 0.4));
+  paths.Add(Key(2), Pose2(1.8, 0., 0.9));
+  EXPECT_TRUE(paths.Between(Key(0), Key(1))->covariance.isZero(1e-12));
+  const auto way = paths.Between(Key(1), Key(2));
+  EXPECT_NEAR(way->covariance(0, 0), 0.8 * 0.8, 1e-12);
+  EXPECT_NEAR(way->covariance(1, 1), 0.8 * 0.8, 1e-12);
+  EXPECT_NEAR(way->covariance(2, 2), 0.1 * 0.1, 1e-12);
+}
+
+TEST(PathUncertaintyTest, NearestAmongSomeNodes) {
+  PathUncertainty paths(Noise(), 100);
+  for (int i = 0; i <= 10; ++i) paths.Add(Key(i), Pose2(i, 0., 0.));
+  EXPECT_EQ(paths.Nearest(0, Eigen::Vector2d(7.2, 0.), 0, 5)->node_index, 5);
+  EXPECT_EQ(paths.Nearest(0, Eigen::Vector2d(7.2, 0.), 8, 20)->node_index, 8);
+  EXPECT_FALSE(paths.Nearest(0, Eigen::Vector2d(7.2, 0.), 11, 20).has_value());
+}
+
 }  // namespace
 }  // namespace loop_closure
 }  // namespace cartographer_ext

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/decision_recorder.h"
+
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+DecisionRecorder::Decisions Some(const int first, const int count) {
+  DecisionRecorder::Decisions decisions(count);
+  for (int i = 0; i < count; ++i) decisions[i].set_candidate(first + i);
+  return decisions;
+}
+
+TEST(DecisionRecorderTest, KeepsNothingBeforeTheStart) {
+  DecisionRecorder recorder;
+  EXPECT_FALSE(recorder.started());
+  recorder.Record(Some(0, 3));
+  EXPECT_TRUE(recorder.All().empty());
+  recorder.Start(10);
+  EXPECT_TRUE(recorder.started());
+  recorder.Record(Some(3, 2));
+  recorder.Stop();
+  recorder.Record(Some(5, 2));
+  ASSERT_EQ(recorder.All().size(), 2u);
+  EXPECT_EQ(recorder.All()[0].candidate(), 3);
+  recorder.Start(10);
+  EXPECT_TRUE(recorder.All().empty());
+}
+
+TEST(DecisionRecorderTest, CountsBeyondItsCapacity) {
+  DecisionRecorder recorder;
+  recorder.Start(4);
+  recorder.Record(Some(0, 3));
+  recorder.Record(Some(3, 3));
+  recorder.Record(Some(6, 1));
+  EXPECT_EQ(recorder.All().size(), 4u);
+  EXPECT_EQ(recorder.All().back().candidate(), 3);
+  EXPECT_EQ(recorder.num_left_out(), 3);
+}
+
+TEST(DecisionRecorderTest, AsksForWhatIsPending) {
+  DecisionRecorder recorder;
+  recorder.Start(10);
+  recorder.Record(Some(0, 1));
+  const int64_t first = recorder.AddPending([]() { return Some(10, 2); });
+  recorder.AddPending([]() { return Some(20, 1); });
+  ASSERT_EQ(recorder.All().size(), 4u);
+  EXPECT_EQ(recorder.All()[1].candidate(), 10);
+  EXPECT_EQ(recorder.All()[3].candidate(), 20);
+  recorder.RemovePending(first);
+  EXPECT_EQ(recorder.All().size(), 2u);
+}
+
+}  // namespace
+}  // namespace loop_closure
+}  // namespace cartographer_ext

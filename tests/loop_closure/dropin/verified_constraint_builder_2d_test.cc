@@ -1,0 +1,388 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/dropin/verified_constraint_builder_2d.h"
+
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "absl/memory/memory.h"
+#include "absl/synchronization/notification.h"
+#include "cartographer/common/internal/testing/thread_pool_for_testing.h"
+#include "cartographer/common/thread_pool.h"
+#include "cartographer/mapping/2d/probability_grid.h"
+#include "cartographer/mapping/internal/constraints/constraint_builder_2d.h"
+#include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/random.h"
+#include "cartographer_ext/loop_closure/decision_recorder.h"
+#include "cartographer_ext/options/option_description.h"
+#include "gtest/gtest.h"
+#include "tests/host/mapping_test_helpers.h"
+#include "tests/host/slam_test_helpers.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+namespace host = cartographer::mapping;
+using cartographer::transform::Rigid2d;
+using cartographer::transform::Rigid3d;
+using host::NodeId;
+using host::Submap2D;
+using host::SubmapId;
+using proto::LoopDecision;
+using Builder = VerifiedConstraintBuilder2D;
+
+host::constraints::proto::ConstraintBuilderOptions StockOptions() {
+  auto options = host::test::LoadSlamOptions("")
+                     .map_builder.pose_graph_options()
+                     .constraint_builder_options();
+  options.set_log_matches(false);
+  return options;
+}
+
+proto::LoopClosureOptions Defaults() {
+  proto::LoopClosureOptions options;
+  options::SetDefaults(&options);
+  return options;
+}
+
+// Nothing but Cartographer's search.
+proto::LoopClosureOptions StagesOff() {
+  proto::LoopClosureOptions options = Defaults();
+  options.mutable_search()->set_enabled(false);
+  options.mutable_temporal_verification()->set_enabled(false);
+  options.mutable_dynamic_threshold()->set_enabled(false);
+  options.mutable_fusion()->set_enabled(false);
+  options.mutable_information()->set_enabled(false);
+  options.mutable_compatible_subset()->set_enabled(false);
+  options.mutable_innovation_veto()->set_enabled(false);
+  return options;
+}
+
+Builder::Result Collect(Builder* const builder) {
+  Builder::Result result;
+  absl::Notification done;
+  builder->WhenDone([&result, &done](const Builder::Result& found) {
+    result = found;
+    done.Notify();
+  });
+  done.WaitForNotification();
+  return result;
+}
+
+// A room, seen by submaps whose origins are a little apart, and a robot that
+// goes round and round in it.
+class VerifiedConstraintBuilder2DTest : public testing::Test {
+ protected:
+  static constexpr int kNumNodes = 60;
+
+  VerifiedConstraintBuilder2DTest() {
+    for (int s = 0; s < 3; ++s) {
+      submaps_.push_back(absl::make_unique<Submap2D>(
+          Eigen::Vector2f(0.1f * s, 0.f),
+          host::test::RoomGrid(&tables_, 0.05, 5), &tables_));
+      submaps_.back()->Finish();
+    }
+    for (int i = 0; i < kNumNodes; ++i) {
+      const Rigid2d pose = Truth(i);
+      Builder::NodeData node;
+      node.time = cartographer::common::FromUniversal(10000000LL * i);
+      node.local_pose = cartographer::transform::Embed3D(pose);
+      // Turned against the robot, as the host's gravity alignment may be.
+      const double turn = 0.3 * i;
+      node.gravity_alignment =
+          Eigen::Quaterniond(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+      node.filtered_gravity_aligned_point_cloud = host::test::Moved(
+          host::test::Room(), (pose * Rigid2d::Rotation(-turn)).inverse());
+      nodes_.push_back(node);
+    }
+  }
+
+  ~VerifiedConstraintBuilder2DTest() override {
+    DecisionRecorder::Global()->Stop();
+  }
+
+  static Rigid2d Truth(const int i) {
+    const double angle = 0.2 * i;
+    return Rigid2d({std::cos(angle), 0.5 * std::sin(angle)}, angle);
+  }
+
+  // (submap <- gravity-aligned node)
+  Rigid2d Relative(const int s, const int i) const {
+    return host::constraints::ComputeSubmapPose(*submaps_[s]).inverse() *
+           Truth(i) * Rigid2d::Rotation(-0.3 * i);
+  }
+
+  void Offer(Builder* const builder, const int s, const int i) {
+    builder->MaybeAddConstraint(SubmapId{0, s}, submaps_[s].get(), NodeId{0, i},
+                                &nodes_[i], Relative(s, i));
+  }
+
+  // As the pose graph does: each node against all submaps, a callback now and
+  // then.
+  std::vector<Builder::Result> Drive(Builder* const builder) {
+    std::vector<Builder::Result> results;
+    for (int i = 0; i < kNumNodes; ++i) {
+      for (int s = 0; s < 3; ++s) Offer(builder, s, i);
+      builder->NotifyEndOfNode();
+      if (i % 10 == 9) results.push_back(Collect(builder));
+    }
+    return results;
+  }
+
+  host::ValueConversionTables tables_;
+  std::vector<std::unique_ptr<Submap2D>> submaps_;
+  std::vector<Builder::NodeData> nodes_;
+};
+
+constexpr int VerifiedConstraintBuilder2DTest::kNumNodes;
+
+TEST_F(VerifiedConstraintBuilder2DTest, CallsBackWithoutPairs) {
+  cartographer::common::ThreadPool pool(1);
+  Builder builder(StockOptions(), Defaults(), &pool);
+  EXPECT_EQ(builder.GetNumFinishedNodes(), 0);
+  EXPECT_TRUE(Collect(&builder).empty());
+  builder.NotifyEndOfNode();
+  EXPECT_TRUE(Collect(&builder).empty());
+  EXPECT_EQ(builder.GetNumFinishedNodes(), 1);
+}
+
+// What Cartographer's own test asks of its builder.
+TEST_F(VerifiedConstraintBuilder2DTest, StagesOffLetDegenerateDataThrough) {
+  cartographer::common::testing::ThreadPoolForTesting pool;
+  auto options = StockOptions();
+  options.set_min_score(0.);
+  options.set_global_localization_min_score(0.);
+  options.set_sampling_ratio(1.);
+  Builder builder(options, StagesOff(), &pool);
+  Builder::NodeData node;
+  node.filtered_gravity_aligned_point_cloud = host::test::Cloud({{0.1f, 0.2f}});
+  node.gravity_alignment = Eigen::Quaterniond::Identity();
+  const Submap2D submap(Eigen::Vector2f(4.f, 5.f),
+                        absl::make_unique<host::ProbabilityGrid>(
+                            host::MapLimits(1., Eigen::Vector2d(2., 3.),
+                                            host::CellLimits(100, 110)),
+                            &tables_),
+                        &tables_);
+  for (int round = 1; round <= 2; ++round) {
+    for (int i = 0; i < 2; ++i) {
+      builder.MaybeAddConstraint(SubmapId{0, 1}, &submap, NodeId{0, 0}, &node,
+                                 Rigid2d::Identity());
+    }
+    builder.MaybeAddGlobalConstraint(SubmapId{0, 1}, &submap, NodeId{0, 0},
+                                     &node);
+    builder.NotifyEndOfNode();
+    builder.NotifyEndOfNode();
+    const Builder::Result result = Collect(&builder);
+    EXPECT_EQ(builder.GetNumFinishedNodes(), 2 * round);
+    ASSERT_EQ(result.size(), 3u);
+    for (const Builder::Constraint& constraint : result) {
+      EXPECT_EQ(constraint.tag, Builder::Constraint::INTER_SUBMAP);
+      EXPECT_EQ(constraint.pose.translation_weight, 1.1e4);
+      EXPECT_EQ(constraint.pose.rotation_weight, 1e5);
+    }
+    builder.DeleteScanMatcher(SubmapId{0, 1});
+  }
+  pool.WaitUntilIdle();
+}
+
+TEST_F(VerifiedConstraintBuilder2DTest, FindsThePoseOfTheGravityAlignedNode) {
+  cartographer::common::ThreadPool pool(2);
+  Builder builder(StockOptions(), StagesOff(), &pool);
+  for (int i = 0; i < 20; ++i) {
+    Offer(&builder, 0, i);
+    builder.NotifyEndOfNode();
+  }
+  const Builder::Result result = Collect(&builder);
+  ASSERT_GE(result.size(), 5u);
+  for (const Builder::Constraint& constraint : result) {
+    const Rigid2d error =
+        cartographer::transform::Project2D(constraint.pose.zbar_ij).inverse() *
+        Relative(0, constraint.node_id.node_index);
+    EXPECT_LT(error.translation().norm(), 0.03);
+    EXPECT_LT(std::abs(error.normalized_angle()), 0.02);
+  }
+}
+
+TEST_F(VerifiedConstraintBuilder2DTest, EveryCandidateHasOneRecord) {
+  DecisionRecorder::Global()->Start(100000);
+  int64_t accepted = 0;
+  {
+    cartographer::common::ThreadPool pool(2);
+    Builder builder(StockOptions(), Defaults(), &pool);
+    for (const Builder::Result& result : Drive(&builder)) {
+      accepted += static_cast<int64_t>(result.size());
+    }
+  }
+  std::vector<int> seen;
+  int64_t recorded = 0;
+  for (const LoopDecision& decision : DecisionRecorder::Global()->All()) {
+    const size_t number = static_cast<size_t>(decision.candidate());
+    if (seen.size() <= number) seen.resize(number + 1, 0);
+    ++seen[number];
+    EXPECT_NE(decision.verdict(), LoopDecision::UNDECIDED);
+    EXPECT_NE(decision.reason(), LoopDecision::NONE);
+    recorded += decision.verdict() == LoopDecision::ACCEPTED;
+    if (decision.verdict() == LoopDecision::ACCEPTED) {
+      // In the robot's frame, whatever the gravity alignment.
+      EXPECT_NEAR(
+          NormalizeAngle(decision.search().refined().theta() -
+                         Truth(decision.node_index()).normalized_angle()),
+          0., 0.02);
+      EXPECT_EQ(decision.information().matrix_size(), 6);
+    }
+  }
+  EXPECT_GT(accepted, 0);
+  EXPECT_EQ(recorded, accepted);
+  EXPECT_GT(seen.size(), 20u);
+  for (const int count : seen) EXPECT_EQ(count, 1);
+}
+
+TEST_F(VerifiedConstraintBuilder2DTest, TheSameForAnyNumberOfThreads) {
+  std::vector<std::vector<Builder::Result>> runs;
+  std::vector<DecisionRecorder::Decisions> records;
+  for (const int num_threads : {1, 2, 8}) {
+    DecisionRecorder::Global()->Start(100000);
+    {
+      cartographer::common::ThreadPool pool(num_threads);
+      Builder builder(StockOptions(), Defaults(), &pool);
+      runs.push_back(Drive(&builder));
+    }
+    records.push_back(DecisionRecorder::Global()->All());
+  }
+  for (size_t k = 1; k < runs.size(); ++k) {
+    ASSERT_EQ(records[k].size(), records[0].size());
+    for (size_t i = 0; i < records[0].size(); ++i) {
+      EXPECT_EQ(records[k][i].SerializeAsString(),
+                records[0][i].SerializeAsString());
+    }
+    ASSERT_EQ(runs[k].size(), runs[0].size());
+    for (size_t r = 0; r < runs[0].size(); ++r) {
+      ASSERT_EQ(runs[k][r].size(), runs[0][r].size());
+      for (size_t i = 0; i < runs[0][r].size(); ++i) {
+        EXPECT_EQ(runs[k][r][i].pose.zbar_ij.translation(),
+                  runs[0][r][i].pose.zbar_ij.translation());
+        EXPECT_EQ(runs[k][r][i].node_id, runs[0][r][i].node_id);
+      }
+    }
+  }
+}
+
+TEST_F(VerifiedConstraintBuilder2DTest, DeletedSubmapsTakeTheirNodesAlong) {
+  DecisionRecorder::Global()->Start(100000);
+  proto::LoopClosureOptions options = Defaults();
+  // Nothing is ever confirmed, so everything waits.
+  options.mutable_compatible_subset()->set_min_revisits(50);
+  options.mutable_compatible_subset()->set_single_strong(false);
+  options.mutable_search()->set_informative_sigma(0.);
+  cartographer::common::ThreadPool pool(2);
+  Builder builder(StockOptions(), options, &pool);
+  EXPECT_TRUE(Drive(&builder).back().empty());
+  const auto undecided = []() {
+    int count = 0;
+    for (const LoopDecision& decision : DecisionRecorder::Global()->All()) {
+      count += decision.verdict() == LoopDecision::UNDECIDED;
+    }
+    return count;
+  };
+  const int before = undecided();
+  EXPECT_GT(before, 0);
+  builder.DeleteScanMatcher(SubmapId{0, 0});
+  const int after = undecided();
+  EXPECT_LT(after, before);
+  Collect(&builder);
+  int deleted_submap = 0;
+  for (const LoopDecision& decision : DecisionRecorder::Global()->All()) {
+    if (decision.verdict() == LoopDecision::UNDECIDED) {
+      EXPECT_NE(decision.submap_index(), 0);
+      // First offered with node 0, met again with node 1.
+      EXPECT_GT(decision.node_index(), 1);
+    }
+    deleted_submap += decision.reason() == LoopDecision::SUBMAP_DELETED;
+  }
+  EXPECT_GT(deleted_submap, 0);
+}
+
+// A submap of a trajectory of which no node was ever offered: any node may
+// have been part of it.
+TEST_F(VerifiedConstraintBuilder2DTest, UnknownNodesAreAllGivenUp) {
+  DecisionRecorder::Global()->Start(100000);
+  proto::LoopClosureOptions options = Defaults();
+  options.mutable_compatible_subset()->set_min_revisits(50);
+  options.mutable_compatible_subset()->set_single_strong(false);
+  cartographer::common::ThreadPool pool(1);
+  Builder builder(StockOptions(), options, &pool);
+  for (int i = 0; i < 10; ++i) {
+    builder.MaybeAddGlobalConstraint(SubmapId{5, 0}, submaps_[0].get(),
+                                     NodeId{1, i}, &nodes_[i]);
+    builder.MaybeAddGlobalConstraint(SubmapId{1, 0}, submaps_[0].get(),
+                                     NodeId{5, i}, &nodes_[i]);
+    builder.NotifyEndOfNode();
+  }
+  Collect(&builder);
+  builder.DeleteScanMatcher(SubmapId{5, 0});
+  Collect(&builder);
+  for (const LoopDecision& decision : DecisionRecorder::Global()->All()) {
+    EXPECT_NE(decision.verdict(), LoopDecision::UNDECIDED);
+  }
+}
+
+// The callback uses the builder again, from the pool.
+TEST_F(VerifiedConstraintBuilder2DTest, CallbacksMayReenter) {
+  for (const int num_threads : {1, 4}) {
+    cartographer::common::ThreadPool pool(num_threads);
+    Builder builder(StockOptions(), Defaults(), &pool);
+    absl::Notification done;
+    int next = 0;
+    std::function<void(const Builder::Result&)> callback =
+        [&](const Builder::Result&) {
+          if (next == kNumNodes) {
+            builder.DeleteScanMatcher(SubmapId{0, 1});
+            done.Notify();
+            return;
+          }
+          for (int k = 0; k < 6; ++k, ++next) {
+            for (int s = 0; s < 3; ++s) Offer(&builder, s, next);
+            builder.NotifyEndOfNode();
+          }
+          builder.WhenDone(callback);
+        };
+    builder.WhenDone(callback);
+    done.WaitForNotification();
+    EXPECT_EQ(builder.GetNumFinishedNodes(), kNumNodes);
+  }
+}
+
+// All calls from several threads at once; nothing is asked but that everything
+// is called back and counted.
+TEST_F(VerifiedConstraintBuilder2DTest, SurvivesCallsFromManyThreads) {
+  cartographer::common::ThreadPool pool(3);
+  Builder builder(StockOptions(), Defaults(), &pool);
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([this, &builder, t]() {
+      Random random(t);
+      for (int k = 0; k < 25; ++k) {
+        const int i = static_cast<int>(random.Uniform() * kNumNodes);
+        const int s = static_cast<int>(random.Uniform() * 3);
+        if (random.Uniform() < 0.2) {
+          builder.MaybeAddGlobalConstraint(SubmapId{1, s}, submaps_[s].get(),
+                                           NodeId{0, i}, &nodes_[i]);
+        } else {
+          Offer(&builder, s, i);
+        }
+        builder.NotifyEndOfNode();
+        builder.GetNumFinishedNodes();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  Collect(&builder);
+  EXPECT_EQ(builder.GetNumFinishedNodes(), 100);
+  for (int s = 0; s < 3; ++s) builder.DeleteScanMatcher(SubmapId{0, s});
+}
+
+}  // namespace
+}  // namespace loop_closure
+}  // namespace cartographer_ext
