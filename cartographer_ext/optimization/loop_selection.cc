@@ -3,6 +3,7 @@
 #include "cartographer_ext/optimization/loop_selection.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -14,6 +15,10 @@ namespace optimization {
 namespace {
 
 constexpr int kPolishRounds = 10;
+// Tolerances of the relative decrease of the cost: for starts and decisions by
+// a wide margin, and for what is final.
+constexpr double kRough = 1e-3;
+constexpr double kFine = 1e-5;
 
 // The graph with one trusted edge a vertex to what came before it, the
 // strongest, and all loops. Of a vertex that holds others, as a submap its
@@ -77,7 +82,7 @@ class Selector {
     }
     selection.poses = graph_.poses;
     if (!IsConsistent(selection)) {
-      SolveAccepted(selection.accepted, &selection.poses);
+      SolveAccepted(selection.accepted, kRough, &selection.poses);
     }
     if (options_.robust_loops) {
       if (!IsConsistent(selection)) {
@@ -118,10 +123,11 @@ class Selector {
 
   // Solves with these edges alone, those out of force at weight 0.
   void SolveAccepted(const std::vector<bool>& accepted,
+                     const double cost_tolerance,
                      std::vector<Pose2>* const poses) const {
     SolverOptions solver;
     solver.max_iterations = 20;
-    solver.cost_tolerance = 1e-4;
+    solver.cost_tolerance = cost_tolerance;
     solver.edge_weights.assign(edges_.size(), 1.);
     for (size_t i = 0; i != edges_.size(); ++i) {
       if (!accepted[i]) solver.edge_weights[i] = 0.;
@@ -131,7 +137,8 @@ class Selector {
 
   std::vector<std::vector<Pose2>> ThoroughStarts() const {
     std::vector<std::vector<Pose2>> starts = {graph_.poses};
-    SolveAccepted(std::vector<bool>(edges_.size(), true), &starts.back());
+    SolveAccepted(std::vector<bool>(edges_.size(), true), kRough,
+                  &starts.back());
     ReplayResult replay;
     if (Replay(Skeleton(graph_), SmootherOptions(), &replay).ok()) {
       starts.push_back(std::move(replay.poses));
@@ -146,13 +153,21 @@ class Selector {
     double lowest = IsConsistent(*selection)
                         ? TruncatedCost(edges_, selection->poses)
                         : std::numeric_limits<double>::infinity();
+    std::vector<double> seen;
     for (const std::vector<Pose2>& start : starts) {
       std::vector<Pose2> poses = start;
       SolverOptions solver;
       solver.kernel = DefaultKernel(KernelType::kDcs);
       solver.kernel.parameter = 0.5 * options_.gate;
-      solver.cost_tolerance = 1e-4;
+      solver.cost_tolerance = kRough;
       SolveRobust(edges_, solver, &poses);
+      // Different starts often end at the same place.
+      const double rough_cost = TruncatedCost(edges_, poses);
+      const auto is_near = [&](const double other) {
+        return std::abs(rough_cost - other) < 1e-3 * other;
+      };
+      if (std::any_of(seen.begin(), seen.end(), is_near)) continue;
+      seen.push_back(rough_cost);
       std::vector<double> weights;
       PolishTruncated(edges_, options_.gate, kPolishRounds, &poses, &weights);
       const double cost = TruncatedCost(edges_, poses);
@@ -220,7 +235,7 @@ class Selector {
       std::vector<bool> accepted = selection->accepted;
       accepted[loop] = true;
       std::vector<Pose2> poses = graph_.poses;
-      SolveAccepted(accepted, &poses);
+      SolveAccepted(accepted, kFine, &poses);
       const WhitenedEdge& edge = edges_[loop];
       if (Violations(poses).size() > num_violations ||
           Chi2(edge, poses[edge.from], poses[edge.to]) >= options_.gate) {
@@ -246,7 +261,7 @@ class Selector {
       accepted[loop] = false;
       blamed.push_back(loop);
       bent = graph_.poses;  // rolled back
-      SolveAccepted(accepted, &bent);
+      SolveAccepted(accepted, kFine, &bent);
       remaining = Violations(bent);
       if (remaining.size() < violations.size()) {
         violations = remaining;
