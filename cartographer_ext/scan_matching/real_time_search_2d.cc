@@ -20,6 +20,19 @@ constexpr int kLargestHalfGroup = 31;
 constexpr int kMargin = kBlockSize - 1;
 constexpr int kPointsPerSquareSum = 257;
 
+// Memory of a thread that is used again for the next scan: getting it anew from
+// the system would take longer than the search. As large as the part of the
+// grid that a scan touches, a few bytes per cell.
+struct Scratch {
+  std::vector<uint8_t> padded;
+  RectangleMaxima maxima[3];
+};
+
+Scratch* ThreadScratch() {
+  static thread_local Scratch scratch;
+  return &scratch;
+}
+
 class RealTimeRun {
  public:
   RealTimeRun(const RealTimeSearchOptions& options, const ProbabilityView& grid,
@@ -29,8 +42,9 @@ class RealTimeRun {
         kernels_(options.kernels == nullptr ? BestSearchKernels()
                                             : *options.kernels),
         scans_(cloud, initial, options.window.linear, options.window.angular,
-               grid.Geometry(), kernels_, RotatedScans::RangeOf::kTurnedCloud) {
-  }
+               grid.Geometry(), kernels_, RotatedScans::RangeOf::kTurnedCloud),
+        scratch_(ThreadScratch()),
+        padded_(scratch_->padded) {}
 
   bool valid() const { return scans_.valid(); }
   RealTimeSearchResult Run();
@@ -54,6 +68,7 @@ class RealTimeRun {
 
   void ChooseGroups();
   void CopyCells();
+  int WidenTo(int width, int from, int keep);
   int First(const int group) const { return group * (2 * half_group_ + 1); }
   int Last(const int group) const {
     return std::min(First(group) + 2 * half_group_, scans_.num_rotations() - 1);
@@ -77,9 +92,10 @@ class RealTimeRun {
   // Cells of the grid from (min_x_, min_y_) on.
   int min_x_ = 0;
   int min_y_ = 0;
-  RectangleMaxima blocks_;
-  RectangleMaxima coarse_;
-  std::vector<uint8_t> padded_;
+  Scratch* const scratch_;
+  const RectangleMaxima* blocks_ = nullptr;
+  const RectangleMaxima* coarse_ = nullptr;
+  std::vector<uint8_t>& padded_;
   int padded_stride_ = 0;
   std::priority_queue<Node> nodes_;
   int32_t places_[kPointsPerSquareSum + 8];
@@ -131,12 +147,17 @@ void RealTimeRun::CopyCells() {
   const int num_y = empty ? 1 : bounds.max_y - bounds.min_y + 1;
   min_x_ = bounds.min_x;
   min_y_ = bounds.min_y;
-  std::vector<uint8_t> cells(static_cast<size_t>(num_x) * num_y, 0);
+  RectangleMaxima& cells = scratch_->maxima[0];
+  cells.width = cells.height = 1;
+  cells.num_x = num_x;
+  cells.num_y = num_y;
+  cells.values.resize(static_cast<size_t>(num_x) * num_y);
+  if (empty) cells.values[0] = 0;
   padded_stride_ = num_x + 2 * kMargin;
   padded_.assign(static_cast<size_t>(padded_stride_) * (num_y + 2 * kMargin),
                  0);
   for (int y = 0; !empty && y != num_y; ++y) {
-    uint8_t* const row = cells.data() + static_cast<size_t>(y) * num_x;
+    uint8_t* const row = cells.values.data() + static_cast<size_t>(y) * num_x;
     grid_.CopyRow(min_y_ + y, min_x_, min_x_ + num_x, row);
     std::copy(row, row + num_x,
               padded_.begin() +
@@ -144,19 +165,30 @@ void RealTimeRun::CopyCells() {
   }
   // Blocks no larger than the window give closer bounds.
   const int size = std::min(2 * scans_.linear_cells() + 1, int{kBlockSize});
-  blocks_ = CellMaxima(cells, num_x, num_y);
-  while (blocks_.width != size) {
-    const int more = std::min(blocks_.width, size - blocks_.width);
-    blocks_ = Widen(blocks_, more, more);
+  int last = 0;
+  while (scratch_->maxima[last].width != size) last = WidenTo(size, last, -1);
+  const int blocks = last;
+  while (scratch_->maxima[last].width != size + 2 * kReach) {
+    last = WidenTo(size + 2 * kReach, last, blocks);
   }
-  coarse_ = blocks_;
-  while (coarse_.width != size + 2 * kReach) {
-    const int more = std::min(coarse_.width, size + 2 * kReach - coarse_.width);
-    coarse_ = Widen(coarse_, more, more);
-  }
+  blocks_ = &scratch_->maxima[blocks];
+  coarse_ = &scratch_->maxima[last];
   // The instructions that gather bytes read three more.
-  blocks_.values.resize(blocks_.values.size() + 3);
-  coarse_.values.resize(coarse_.values.size() + 3);
+  for (const int i : {blocks, last}) {
+    std::vector<uint8_t>& values = scratch_->maxima[i].values;
+    values.resize(values.size() + 3);
+  }
+}
+
+// Widens number `from` of the maxima as far as possible in one step; returns
+// the number of the result, which is not `keep`.
+int RealTimeRun::WidenTo(const int width, const int from, const int keep) {
+  int to = 0;
+  while (to == from || to == keep) ++to;
+  const RectangleMaxima& maxima = scratch_->maxima[from];
+  const int more = std::min(maxima.width, width - maxima.width);
+  WidenInto(maxima, more, more, &scratch_->maxima[to]);
+  return to;
 }
 
 double RealTimeRun::Factor(const int rotation, const int x, const int y) const {
@@ -197,10 +229,10 @@ RealTimeSearchResult RealTimeRun::Run() {
     for (int x = -linear; x <= linear; x += kBlockSize) {
       for (int y = -linear; y <= linear; y += kBlockSize) {
         const int sum = kernels_.sum_values(
-            coarse_.values.data(), coarse_.num_x, coarse_.num_y,
+            coarse_->values.data(), coarse_->num_x, coarse_->num_y,
             group_x_[group].data(), group_y_[group].data(),
-            x - kReach - min_x_ + coarse_.width - 1,
-            y - kReach - min_y_ + coarse_.height - 1, scans_.num_points());
+            x - kReach - min_x_ + coarse_->width - 1,
+            y - kReach - min_y_ + coarse_->height - 1, scans_.num_points());
         nodes_.push(
             Node{UpperMean(sum) * LargestFactor(First(group), Last(group)),
                  group, -1, x, y});
@@ -230,9 +262,9 @@ void RealTimeRun::OpenGroup(const Node& node) {
        ++rotation) {
     const RotatedScan& scan = scans_.Get(rotation);
     const int sum = kernels_.sum_values(
-        blocks_.values.data(), blocks_.num_x, blocks_.num_y, scan.x, scan.y,
-        node.x - min_x_ + blocks_.width - 1,
-        node.y - min_y_ + blocks_.height - 1, scans_.num_points());
+        blocks_->values.data(), blocks_->num_x, blocks_->num_y, scan.x, scan.y,
+        node.x - min_x_ + blocks_->width - 1,
+        node.y - min_y_ + blocks_->height - 1, scans_.num_points());
     const double bound = UpperMean(sum) * LargestFactor(rotation, rotation);
     if (bound < best_score_) continue;
     nodes_.push(Node{bound, node.group, rotation, node.x, node.y});

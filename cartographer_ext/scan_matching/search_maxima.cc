@@ -28,12 +28,21 @@ RectangleMaxima CellMaxima(const std::vector<uint8_t>& cells, const int num_x,
 RectangleMaxima Widen(const RectangleMaxima& maxima, const int more_x,
                       const int more_y) {
   RectangleMaxima wide;
+  WidenInto(maxima, more_x, more_y, &wide);
+  return wide;
+}
+
+void WidenInto(const RectangleMaxima& maxima, const int more_x,
+               const int more_y, RectangleMaxima* const result) {
+  RectangleMaxima& wide = *result;
   wide.width = maxima.width + more_x;
   wide.height = maxima.height + more_y;
   wide.num_x = maxima.num_x + more_x;
   wide.num_y = maxima.num_y + more_y;
   const int num_x = maxima.num_x;
   wide.values.resize(static_cast<size_t>(wide.num_x) * wide.num_y);
+  std::fill_n(wide.values.begin(), static_cast<size_t>(wide.num_x) * more_y,
+              uint8_t{0});
   // A wide rectangle is two narrow ones, the second `more_x` cells on; in
   // memory the first of them is `more_x` places behind, as the wide picture
   // begins earlier. No picture is narrower than its rectangles.
@@ -54,7 +63,6 @@ RectangleMaxima Widen(const RectangleMaxima& maxima, const int more_x,
     Larger(target, target + static_cast<size_t>(more_y) * wide.num_x,
            wide.num_x, target);
   }
-  return wide;
 }
 
 RectangleMaxima ToCoarse(const RectangleMaxima& maxima) {

@@ -46,6 +46,10 @@ RectangleMaxima CellMaxima(const std::vector<uint8_t>& cells, int num_x,
 
 // Rectangles larger by `more_x` <= width and `more_y` <= height cells.
 RectangleMaxima Widen(const RectangleMaxima& maxima, int more_x, int more_y);
+// The same, in memory that is there already where it suffices. `*wide` must be
+// another object.
+void WidenInto(const RectangleMaxima& maxima, int more_x, int more_y,
+               RectangleMaxima* wide);
 
 // The values in steps of 255 / 31, rounded up.
 RectangleMaxima ToCoarse(const RectangleMaxima& maxima);
