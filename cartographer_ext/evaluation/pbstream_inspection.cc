@@ -13,8 +13,8 @@
 #include "cartographer_ext/evaluation/host_types.h"
 #include "cartographer_ext/evaluation/map_graph.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
+#include "cartographer_ext/evaluation/stored_options.h"
 #include "cartographer_ext/io/pbstream_validation.h"
-#include "google/protobuf/unknown_field_set.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -25,8 +25,8 @@ using nlohmann::ordered_json;
 constexpr double kLocalTolerance = 1e-3;  // metres, radians
 // What comparing a pose with itself may give.
 constexpr double kRounding = 1e-9;  // metres, radians
-// Where our own options travel in the host's messages.
-constexpr int kExtensionField = 51966;
+// Options named in a comparison.
+constexpr size_t kMaxNamedOptions = 40;
 
 template <typename Records>
 std::map<int, int64_t> CountByTrajectory(const Records& records) {
@@ -38,26 +38,6 @@ std::map<int, int64_t> CountByTrajectory(const Records& records) {
 int64_t CountOf(const std::map<int, int64_t>& counts, const int id) {
   const auto it = counts.find(id);
   return it == counts.end() ? 0 : it->second;
-}
-
-// True where the message or one of its parts carries options of ours.
-bool HasExtension(const google::protobuf::Message& message) {
-  const auto* const reflection = message.GetReflection();
-  const auto& unknown = reflection->GetUnknownFields(message);
-  for (int i = 0; i < unknown.field_count(); ++i) {
-    if (unknown.field(i).number() == kExtensionField) return true;
-  }
-  std::vector<const google::protobuf::FieldDescriptor*> fields;
-  reflection->ListFields(message, &fields);
-  for (const auto* field : fields) {
-    if (field->cpp_type() !=
-            google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE ||
-        field->is_repeated()) {
-      continue;
-    }
-    if (HasExtension(reflection->GetMessage(message, field))) return true;
-  }
-  return false;
 }
 
 ordered_json SensorNames(
@@ -114,8 +94,10 @@ ordered_json SummariseTrajectory(const io::Pbstream& pbstream,
   if (position < pbstream.options.options_with_sensor_ids_size()) {
     const auto& options = pbstream.options.options_with_sensor_ids(position);
     json["sensors"] = SensorNames(options);
-    json["has_extension_options"] =
-        HasExtension(options.trajectory_builder_options());
+    const std::vector<std::string> blocks =
+        DescribeBlocks(options.trajectory_builder_options());
+    json["has_extension_options"] = !blocks.empty();
+    json["extension_options"] = blocks;
   }
   return json;
 }
@@ -187,6 +169,10 @@ class Comparison {
     if (first_.options.SerializeAsString() !=
         second_.options.SerializeAsString()) {
       Differ("the trajectory builder options differ");
+      const auto lines = DescribeOptionDifferences(
+          first_.options, second_.options, kMaxNamedOptions);
+      for (const std::string& line : lines) Differ(line);
+      result_.numbers["options"] = lines;
     }
     CompareCount("odometry readings", first_.odometry_data.size(),
                  second_.odometry_data.size());
@@ -334,6 +320,22 @@ ordered_json Summarise(const io::Pbstream& pbstream) {
       {"inter", graph.num_loops()},
       {"intra",
        static_cast<int64_t>(graph.constraints.size()) - graph.num_loops()}};
+  int64_t between_trajectories = 0;
+  std::set<GraphId> inserted;
+  for (const GraphConstraint& constraint : graph.constraints) {
+    if (!constraint.is_loop) {
+      inserted.insert(constraint.node_id);
+    } else if (constraint.submap_id.trajectory_id !=
+               constraint.node_id.trajectory_id) {
+      ++between_trajectories;
+    }
+  }
+  json["constraints"]["between_trajectories"] = between_trajectories;
+  int64_t in_no_submap = 0;
+  for (const auto& node : graph.nodes) {
+    in_no_submap += inserted.count(node.first) == 0 ? 1 : 0;
+  }
+  json["nodes_in_no_submap"] = in_no_submap;
   json["landmarks"] = pbstream.pose_graph.landmark_poses_size();
   json["unknown_records"] = pbstream.num_unknown_records;
   json["trajectories"] = ordered_json::array();
@@ -350,6 +352,17 @@ std::string SummaryToText(const ordered_json& summary) {
       summary["submaps"].get<int64_t>(),
       summary["constraints"]["inter"].get<int64_t>(),
       summary["constraints"]["intra"].get<int64_t>());
+  if (summary["nodes_in_no_submap"].get<int64_t>() > 0) {
+    absl::StrAppendFormat(&text,
+                          "%d nodes lie in no stored submap (unfinished ones "
+                          "may have been left out)\n",
+                          summary["nodes_in_no_submap"].get<int64_t>());
+  }
+  if (summary["constraints"]["between_trajectories"].get<int64_t>() > 0) {
+    absl::StrAppendFormat(
+        &text, "%d loops between trajectories\n",
+        summary["constraints"]["between_trajectories"].get<int64_t>());
+  }
   for (const ordered_json& trajectory : summary["trajectories"]) {
     absl::StrAppendFormat(
         &text,
@@ -377,6 +390,9 @@ std::string SummaryToText(const ordered_json& summary) {
       absl::StrAppend(&text, trajectory["has_extension_options"].get<bool>()
                                  ? "; options of cartographer_ext\n"
                                  : "\n");
+      for (const ordered_json& block : trajectory["extension_options"]) {
+        absl::StrAppend(&text, "  ", block.get<std::string>(), "\n");
+      }
     }
   }
   return text;

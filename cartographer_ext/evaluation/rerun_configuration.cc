@@ -107,6 +107,27 @@ bool RemoveExtensions(Message* const message) {
   return removed;
 }
 
+void CopyExtensions(const Message& source, Message* const target) {
+  const auto& fields = source.GetReflection()->GetUnknownFields(source);
+  auto* const unknown = target->GetReflection()->MutableUnknownFields(target);
+  for (int i = 0; i < fields.field_count(); ++i) {
+    if (fields.field(i).number() == options::kExtensionFieldNumber) {
+      unknown->AddField(fields.field(i));
+    }
+  }
+  std::vector<const FieldDescriptor*> parts;
+  source.GetReflection()->ListFields(source, &parts);
+  for (const FieldDescriptor* const part : parts) {
+    if (part->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE ||
+        part->is_repeated() ||
+        !target->GetReflection()->HasField(*target, part)) {
+      continue;
+    }
+    CopyExtensions(source.GetReflection()->GetMessage(source, part),
+                   target->GetReflection()->MutableMessage(target, part));
+  }
+}
+
 std::vector<std::string> DescribeDifferences(const Message& first,
                                              const Message& second) {
   std::map<std::string, std::string> a, b;
@@ -161,6 +182,13 @@ absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
     TakeWeights(graph, &result.stock);
     RemoveExtensions(&result.stock);
     result.stock_name = stock_name;
+    if (result.ours.has_value()) {
+      PoseGraphOptions ours = result.stock;
+      CopyExtensions(*result.ours, &ours);
+      result.ours = std::move(ours);
+      result.ours_name = absl::StrCat(stock_name, " with blocks of ", basename);
+      result.assumptions.push_back(absl::StrCat("ours is ", result.ours_name));
+    }
     if (assumed) {
       result.assumptions.push_back(absl::StrCat(
           "no configuration was given, so stock's defaults (", stock_name,

@@ -30,9 +30,11 @@ struct RerunConfiguration {
   std::vector<std::string> assumptions;
 };
 
-// `basename`: the file whose blocks of ours are tried; without them it is
-// stock's, unless `stock_basename` names another. With neither, stock.lua is
-// assumed. Errors are those of LoadSlamConfiguration.
+// `basename`: the file whose blocks of ours are tried; stock is the same file
+// without them. With `stock_basename`, stock is that file, and ours is that
+// file with the blocks of `basename` put in, so that nothing but the blocks
+// differs. With neither, stock.lua is assumed. Errors are those of
+// LoadSlamConfiguration.
 absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
     const std::vector<std::string>& directories, const std::string& basename,
     const std::string& stock_basename, const MapGraph& graph);
@@ -40,6 +42,11 @@ absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
 // Removes the options of ours from a message and its parts. True when there
 // were any.
 bool RemoveExtensions(google::protobuf::Message* message);
+
+// Copies the options of ours from `source` and its parts to the same places of
+// `target`. Parts that only `source` has are left out.
+void CopyExtensions(const google::protobuf::Message& source,
+                    google::protobuf::Message* target);
 
 // Keys by which two messages of options differ, a line each:
 // "constraint_builder_options.min_score: 0.55 -> 0.6".

@@ -71,6 +71,19 @@ TEST(RerunConfigurationTest, StockIsOursWithoutTheBlocks) {
               Contains(HasSubstr("cartographer_ext: absent -> ")));
 }
 
+TEST(RerunConfigurationTest, BlocksGoIntoTheFileOfStock) {
+  const auto configuration = LoadRerunConfiguration(
+      {"configuration_files"}, "default.lua", "stock.lua", MapGraph());
+  ASSERT_TRUE(configuration.ok()) << configuration.status();
+  EXPECT_EQ(configuration->stock_name, "stock.lua");
+  EXPECT_EQ(configuration->ours_name, "stock.lua with blocks of default.lua");
+  ASSERT_TRUE(configuration->ours.has_value());
+  for (const std::string& line :
+       DescribeDifferences(configuration->stock, *configuration->ours)) {
+    EXPECT_THAT(line, HasSubstr("cartographer_ext: absent -> "));
+  }
+}
+
 TEST(RerunConfigurationTest, DescribesDifferences) {
   PoseGraphOptions first, second;
   first.mutable_constraint_builder_options()->set_min_score(0.5);

@@ -42,7 +42,7 @@ io::Pbstream* RerunTest::pbstream_ = nullptr;
 MapGraph* RerunTest::graph_ = nullptr;
 
 TEST_F(RerunTest, FindsTheStoredLoopsAgain) {
-  ASSERT_GT(graph_->num_loops(), 20);
+  ASSERT_GT(graph_->num_loops(), 10);
   const auto rerun = RerunPoseGraph(*pbstream_, Options(), {});
   ASSERT_TRUE(rerun.ok()) << rerun.status();
   EXPECT_EQ(rerun->nodes, graph_->nodes.size());

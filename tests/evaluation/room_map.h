@@ -22,7 +22,7 @@ inline std::string RoomLua(const std::string& more = "") {
   return "include \"common_2d.lua\"\n"
          "TRAJECTORY_BUILDER_2D.submaps.num_range_data = 15\n"
          "POSE_GRAPH.optimize_every_n_nodes = 30\n"
-         "POSE_GRAPH.constraint_builder.sampling_ratio = 0.5\n" +
+         "POSE_GRAPH.constraint_builder.sampling_ratio = 0.3\n" +
          more +
          "\nreturn { map_builder = MAP_BUILDER, trajectory_builder = "
          "TRAJECTORY_BUILDER }\n";
@@ -38,7 +38,7 @@ inline evaluation::SlamConfiguration RoomConfiguration(
 
 // `filename` is written and left.
 inline io::Pbstream MakeRoomMap(const std::string& filename,
-                                const int num_scans = 600) {
+                                const int num_scans = 520) {
   RoomSource source(num_scans);
   const auto run = evaluation::RunSlam(RoomConfiguration(), &source, {});
   CHECK(run.ok()) << run.status();

@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
+#include "cartographer_ext/evaluation/report/loop_evidence.h"
 #include "cartographer_ext/evaluation/report/map_runs.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "gmock/gmock.h"
@@ -35,7 +36,7 @@ class ReportTest : public testing::Test {
         evaluation::ReadOdometry(*pbstream_));
     truth_ = new evaluation::GroundTruth;
     std::vector<evaluation::StampedPose> poses;
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 520; ++i) {
       poses.push_back(io::MakeStampedPose(
           test::RoomSource::kStart + i * test::RoomSource::kStep,
           test::RoomSource::TruePose(i)));
