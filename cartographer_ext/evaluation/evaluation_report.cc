@@ -50,9 +50,9 @@ ordered_json OrNull(const absl::optional<double>& value) {
 ordered_json ToJson(const LoopStatistics& loops) {
   ordered_json json;
   json["accepted"] = loops.accepted;
-  // Which candidates were refused is not kept in a map.
-  json["rejected"] = 0;
-  json["rejected_is_known"] = false;
+  // Which candidates were refused is not kept in a map, but beside it.
+  json["rejected"] = loops.rejected.value_or(0);
+  json["rejected_is_known"] = loops.rejected.has_value();
   json["judged"] = loops.judged;
   json["correct"] = loops.correct;
   json["precision"] = OrNull(loops.precision);

@@ -61,6 +61,9 @@ struct LoopJudgement {
 
 struct LoopStatistics {
   int64_t accepted = 0;
+  // Candidates that were found and not accepted, from the decision records;
+  // absent where there are none.
+  absl::optional<int64_t> rejected;
   int64_t judged = 0;
   int64_t correct = 0;
   int64_t revisits = 0;

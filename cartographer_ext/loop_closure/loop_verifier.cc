@@ -68,10 +68,11 @@ LoopDecision::Reason ToProto(const SubsetReason reason) {
 
 // Neighbouring points of a scan and neighbouring cells of a grid err together:
 // a match knows about as much as so much fewer points would.
-constexpr double kCorrelatedPoints = 100.;
-// Nothing is less certain than the search itself, metres and radians.
-constexpr double kLeastCertainTranslation = 1.;
-constexpr double kLeastCertainRotation = 0.2;
+constexpr double kCorrelatedPoints = 25.;
+// No match is less certain than this, metres and radians: one along a corridor
+// still sees doors go by.
+constexpr double kLeastCertainTranslation = 0.3;
+constexpr double kLeastCertainRotation = 0.1;
 
 // Of the loop itself, frame of the node: the constant part of the options, and
 // what the match leaves open, such as the way along a corridor.

@@ -17,6 +17,7 @@
 #include "absl/strings/strip.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/evaluation/decision_files.h"
 #include "cartographer_ext/evaluation/decision_table.h"
 #include "cartographer_ext/evaluation/evaluation_report.h"
 #include "cartographer_ext/evaluation/map_evaluation.h"
@@ -264,13 +265,24 @@ absl::Status Run() {
     map.odometry = &inputs.odometry;
   }
   if (inputs.trajectory.has_value()) map.scans = &*inputs.trajectory;
-  const auto result =
+  auto result =
       evaluation::EvaluateMap(map, inputs.truth, EvaluationOptions());
   if (!result.ok()) {
     return absl::Status(result.status().code(),
                         absl::StrCat(has_map ? FLAGS_pbstream_filename
                                              : FLAGS_trajectory_filename,
                                      ": ", result.status().message()));
+  }
+  if (has_map && result->loops.has_value()) {
+    const auto decisions = evaluation::ReadDecisions(
+        evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename));
+    if (decisions.ok()) {
+      const evaluation::DecisionCounts counts =
+          evaluation::CountDecisions(*decisions);
+      result->loops->rejected = counts.rejected + counts.undecided;
+    } else if (!absl::IsNotFound(decisions.status())) {
+      return decisions.status();
+    }
   }
   absl::Status status = WriteTables(inputs, *result);
   if (!status.ok()) return status;

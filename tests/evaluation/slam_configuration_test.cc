@@ -34,6 +34,16 @@ void ExpectError(const absl::StatusOr<SlamConfiguration>& configuration,
   EXPECT_THAT(std::string(configuration.status().message()), HasSubstr(hint));
 }
 
+TEST(SlamConfigurationTest, PresetsOfLoopClosureLoad) {
+  for (const char* const name :
+       {"default.lua", "corridor.lua", "warehouse.lua", "paper_2025.lua",
+        "ablation_2025_a.lua", "ablation_2025_b.lua", "ablation_2025_c.lua"}) {
+    const auto configuration =
+        LoadSlamConfiguration({"configuration_files"}, name);
+    EXPECT_TRUE(configuration.ok()) << configuration.status();
+  }
+}
+
 TEST(SlamConfigurationTest, StockIsStock) {
   const auto configuration =
       LoadSlamConfiguration({"configuration_files"}, "stock.lua");
