@@ -58,7 +58,7 @@ TEST(WallFillingTest, DenseWallsStayAsTheyAre) {
 TEST(WallFillingTest, NoiseWithinTheToleranceIsAWall) {
   WallFillingOptions options;
   options.tolerance = 0.04;
-  EXPECT_FALSE(FillWalls(options, {{0.f, 0.02f, 0.f},
+  EXPECT_FALSE(FillWalls(options, {{0.f, 0.f, 0.f},
                                    {0.3f, -0.01f, 0.f},
                                    {0.6f, 0.01f, 0.f},
                                    {0.9f, 0.f, 0.f}})

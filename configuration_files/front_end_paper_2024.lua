@@ -1,0 +1,23 @@
+-- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+-- SPDX-License-Identifier: Apache-2.0
+--
+-- Local SLAM of the 2024 paper on improved graph optimisation, literally:
+-- adaptive feature points (eq. 1 to 4), preintegration where there is an IMU
+-- (eq. 5 to 13; set use_imu_data), eigenvalue ratio of the match covariance (eq.
+-- 17 to 19), and nothing that the paper does not have. To be included behind the
+-- stock files.
+if CARTOGRAPHER_EXT == nil then
+  include "cartographer_ext.lua"
+end
+
+TRAJECTORY_BUILDER_2D.cartographer_ext = CARTOGRAPHER_EXT.trajectory_builder_2d
+TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext =
+  CARTOGRAPHER_EXT.ceres_scan_matcher
+
+TRAJECTORY_BUILDER_2D.cartographer_ext.features.enabled = true
+TRAJECTORY_BUILDER_2D.cartographer_ext.time_offset.estimate = false
+TRAJECTORY_BUILDER_2D.cartographer_ext.fault_check.enabled = false
+TRAJECTORY_BUILDER_2D.cartographer_ext.search.enabled = false
+TRAJECTORY_BUILDER_2D.cartographer_ext.wall_filling.enabled = false
+TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext.degeneracy.mode =
+  "paper_literal"
