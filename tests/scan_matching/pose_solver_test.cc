@@ -118,8 +118,7 @@ PoseCost Valley(const Pose2& pose) {
 TEST(SolvePoseTest, FollowsACurvedValleyAsCeresDoes) {
   PoseSolverOptions options;
   options.max_iterations = 100;
-  const PoseSolution solution =
-      SolvePose(options, Pose2(-1.2, 1., 0.), Valley);
+  const PoseSolution solution = SolvePose(options, Pose2(-1.2, 1., 0.), Valley);
   EXPECT_NEAR(solution.pose.x, 1., 1e-3);
   EXPECT_NEAR(solution.pose.y, 1., 1e-3);
   EXPECT_NEAR(solution.pose.theta, 1., 1e-3);
