@@ -292,6 +292,10 @@ int main(int argc, char** argv) {
   tools::CommandLine(kDescription).Parse(argc, argv);
   const int usage = CheckUsage();
   if (usage != tools::kExitSuccess) return usage;
+  if (tuning::IsMpiJob() && !tuning::HasMpi()) {
+    return tools::UsageError(
+        "built without MPI, so mpirun would do the same search several times");
+  }
   tuning::MpiSession session(&argc, &argv);
   if (session.rank() > 0) {
     session.Serve(FLAGS_max_run_cpu_seconds);

@@ -24,6 +24,8 @@ bool IsMpiJob() {
 }
 
 #ifdef CARTOGRAPHER_EXT_HAS_MPI
+bool HasMpi() { return true; }
+
 namespace {
 
 enum Tag { kRequest = 1, kAnswer = 2, kCancel = 3, kEnd = 4 };
@@ -167,6 +169,8 @@ std::unique_ptr<WorkerPool> CreateMpiWorkerPool(const MpiSession& session) {
 }
 
 #else
+
+bool HasMpi() { return false; }
 
 MpiSession::MpiSession(int* /*argc*/, char*** /*argv*/) {}
 MpiSession::~MpiSession() = default;

@@ -22,6 +22,9 @@ namespace tuning {
 // times over.
 bool IsMpiJob();
 
+// Whether the program was built with MPI.
+bool HasMpi();
+
 // Starts and ends MPI. `rank()` is 0 and `size()` 1 outside MPI jobs and
 // without MPI.
 class MpiSession {

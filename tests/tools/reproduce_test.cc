@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// scripts/reproduce: usage, errors, and the arithmetic behind its tables.
+#include <stdlib.h>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/tools/run_command.h"
+
+namespace cartographer_ext {
+namespace test {
+namespace {
+
+using testing::HasSubstr;
+
+struct ShellResult {
+  int exit_code = -1;
+  std::string out;
+};
+
+// Standard output and error together.
+ShellResult Shell(const std::string& command) {
+  const TemporaryFolder folder;
+  const int state =
+      std::system((command + " > " + folder / "out" + " 2>&1").c_str());
+  ShellResult result;
+  if (WIFEXITED(state)) result.exit_code = WEXITSTATUS(state);
+  result.out = ReadFile(folder / "out");
+  return result;
+}
+
+TEST(ReproduceTest, ListsEveryTable) {
+  const ShellResult result = Shell("python3 scripts/reproduce list");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  for (const char* name :
+       {"a_table_2", "r_table_2", "g_table_2", "g_table_3", "c_table_1",
+        "c_table_3", "c_table_4", "c_table_5", "c_gamma", "c_alpha_beta"}) {
+    EXPECT_THAT(result.out, HasSubstr(name));
+  }
+}
+
+TEST(ReproduceTest, SaysWhatIsWrong) {
+  const TemporaryFolder folder;
+  const ShellResult unknown = Shell("python3 scripts/reproduce z_table_1");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.out, HasSubstr("unknown experiment z_table_1"));
+  EXPECT_EQ(Shell("python3 scripts/reproduce a_table_2 --seeds -1").exit_code,
+            2);
+  const ShellResult not_built =
+      Shell("python3 scripts/reproduce r_table_2 --out " + folder.path() +
+            "/out --build " + folder.path());
+  EXPECT_EQ(not_built.exit_code, 1);
+  EXPECT_THAT(not_built.out, HasSubstr("cartographer_ext_robustness is not"));
+}
+
+TEST(ReproduceTest, ClosingErrorsAndDistances) {
+  const TemporaryFolder folder;
+  // The estimate puts the second visit 0.3 m too far to the left of the first,
+  // whose heading is 90 degrees in the map and 0 in the world.
+  WriteFile(folder / "run.tum",
+            "10.000 5 5 0 0 0 0.70710678 0.70710678\n"
+            "20.000 4.7 6 0 0 0 0.70710678 0.70710678\n");
+  WriteFile(folder / "places.csv",
+            "place,visit,time,x,y,theta,distance\n"
+            "p1,1,10.0,1,1,0,0\n"
+            "p1,2,20.0,2,1,0,0\n"
+            "p2,1,10.0,1,1,0,0\n");
+  // a is 1 m ahead at the first scan, b 3 m ahead at the second.
+  WriteFile(folder / "distances.csv",
+            "name,length,ax,ay,bx,by,seen,time_a,a_robot_x,a_robot_y,time_b,"
+            "b_robot_x,b_robot_y\n"
+            "a,3,0,0,0,0,1,10.0,1,0,20.0,3,0\n"
+            "b,9,0,0,0,0,0,10.0,1,0,20.0,3,0\n");
+  WriteFile(folder / "check.py",
+            "import importlib.machinery, math, sys\n"
+            "sys.dont_write_bytecode = True\n"
+            "r = importlib.machinery.SourceFileLoader('r', "
+            "'scripts/reproduce').load_module()\n"
+            "folder = sys.argv[1]\n"
+            "t = r.Trajectory(folder + '/run.tum')\n"
+            "errors = r.closing_errors(folder + '/places.csv', t)\n"
+            "assert list(errors) == ['p1'], errors\n"
+            "assert abs(errors['p1'] - 0.3) < 1e-6, errors\n"
+            "d = r.measured_distances(folder + '/distances.csv', t)\n"
+            "assert list(d) == ['a'], d\n"
+            "assert abs(d['a'][1] - math.hypot(0.3, 3)) < 1e-6, d\n"
+            "assert r.median([3, None, 1]) == 2 and r.median([]) is None\n"
+            "assert r.change(2., 1.) == '-50.0 %'\n"
+            "assert r.table(['a', 'b'], [[1, 2]]) == "
+            "'| a | b |\\n|---|---|\\n| 1 | 2 |\\n'\n");
+  const ShellResult result =
+      Shell("python3 " + folder / "check.py" + " " + folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace cartographer_ext
