@@ -15,8 +15,9 @@
 // How. Three kinds of nodes, each with an upper bound of all poses below it:
 //  * coarse: neighbouring rotations x 8 x 8 offsets. For a point the bound is
 //    the largest value of all cells it can meet: between two rotations it moves
-//    by less than one cell, in proportion to its range. Bounds of all coarse
-//    nodes are computed at once: cells eight apart are kept next to each other,
+//    by less than one cell, in proportion to its range and across its ray, so
+//    that one of five rectangles of cells is enough. Bounds of all coarse nodes
+//    are computed at once: cells eight apart are kept next to each other,
 //    so that one vector addition serves 32 nodes. Values have 5 bits there,
 //    rounded up, so that eight points fit one byte.
 //  * block: one rotation x 8 x 8 offsets.
@@ -78,7 +79,8 @@ struct FastCorrelativeSearchOptions {
 struct SearchBudget {
   // Nodes and poses scored after the coarse bounds; deterministic.
   int64_t max_candidates = 0;
-  // Wall time, looked at now and then; makes results depend on the machine.
+  // Wall time after the coarse bounds, looked at now and then; makes results
+  // depend on the machine.
   double max_seconds = 0.;
 };
 
