@@ -44,8 +44,9 @@ std::vector<double> RoundTicks(const double low, const double high,
       break;
     }
   }
-  for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step;
-       ++i) {
+  // Adding 0 turns -0 into 0.
+  for (double i = std::ceil(low / step - 1e-9) + 0.;
+       i * step <= high + 1e-9 * step; ++i) {
     ticks.push_back(i * step);
   }
   return ticks;

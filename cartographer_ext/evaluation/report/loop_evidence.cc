@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/string_view.h"
 
 namespace cartographer_ext {
 namespace report {
@@ -108,6 +110,22 @@ std::string ReasonInWords(const proto::LoopDecision::Reason reason) {
   return absl::StrReplaceAll(absl::AsciiStrToLower(name), {{"_", " "}});
 }
 
+std::string VerdictInWords(const proto::LoopDecision& decision) {
+  constexpr absl::string_view kSkipped = "skipped ";
+  const std::string reason = ReasonInWords(decision.reason());
+  if (absl::StartsWith(reason, kSkipped)) {
+    return absl::StrCat("not searched: ", reason.substr(kSkipped.size()));
+  }
+  switch (decision.verdict()) {
+    case proto::LoopDecision::ACCEPTED:
+      return absl::StrCat("accepted: ", reason);
+    case proto::LoopDecision::REJECTED:
+      return absl::StrCat("refused: ", reason);
+    default:
+      return "undecided at the end";
+  }
+}
+
 std::string Describe(const LoopEvidence& evidence) {
   std::string text =
       absl::StrCat("submap ", evaluation::ToString(evidence.submap_id),
@@ -152,7 +170,7 @@ std::string Describe(const LoopEvidence& evidence) {
                           decision.subset().support(),
                           decision.subset().contradictions());
   }
-  absl::StrAppend(&text, "\n", ReasonInWords(decision.reason()));
+  absl::StrAppend(&text, "\n", VerdictInWords(decision));
   return text;
 }
 

@@ -49,6 +49,9 @@ std::string Describe(const LoopEvidence& evidence);
 // "low temporal score", of the enumeration.
 std::string ReasonInWords(proto::LoopDecision::Reason reason);
 
+// "refused: low temporal score", "not searched: budget", "undecided".
+std::string VerdictInWords(const proto::LoopDecision& decision);
+
 }  // namespace report
 }  // namespace cartographer_ext
 

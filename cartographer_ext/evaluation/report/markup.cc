@@ -13,9 +13,10 @@ namespace cartographer_ext {
 namespace report {
 namespace {
 
-// Figures, with what may stand around them.
+// Figures, with the little that may stand around them.
 bool LooksLikeNumber(const std::string& text) {
-  if (text.empty()) return false;
+  constexpr size_t kMaxLength = 24;
+  if (text.empty() || text.size() > kMaxLength) return false;
   const char first = text[0];
   return absl::ascii_isdigit(static_cast<unsigned char>(first)) ||
          ((first == '-' || first == '+') && text.size() > 1 &&

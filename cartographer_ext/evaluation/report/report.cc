@@ -113,9 +113,7 @@ ordered_json RerunToJson(const evaluation::Rerun& rerun,
   json["matches"] = rerun.matches;
   std::map<std::string, int> reasons;
   for (const auto& decision : rerun.decisions) {
-    ++reasons[absl::StrCat(
-        proto::LoopDecision::Verdict_Name(decision.verdict()), ": ",
-        ReasonInWords(decision.reason()))];
+    ++reasons[VerdictInWords(decision)];
   }
   json["decisions"] = reasons;
   if (!with_times) return json;
@@ -197,8 +195,7 @@ std::string LoopsToCsv(const ReportData& data) {
           : loop.truth == evaluation::LoopVerdict::kWrong ? "wrong"
                                                           : "unknown",
           loop.truth_translation,
-          loop.decision == nullptr ? ""
-                                   : ReasonInWords(loop.decision->reason()));
+          loop.decision == nullptr ? "" : VerdictInWords(*loop.decision));
     }
   }
   return csv;

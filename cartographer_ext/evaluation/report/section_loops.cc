@@ -73,8 +73,8 @@ void AddLoopFigure(const ReportRun& run, const std::string& image_id,
   page->Open("figure");
   page->Raw(figure.ToHtml());
   page->Element("figcaption", {},
-                absl::StrCat("Loops of the map ", run.name,
-                             ", from the submap's origin to the node. Point at "
+                absl::StrCat("Loops, ", run.name,
+                             ": from the submap's origin to the node. Point at "
                              "a line for its evidence.",
                              step > 1 ? absl::StrCat(" Of the good ones every ",
                                                      step, "th is drawn.")
@@ -111,22 +111,20 @@ void AddFates(const ReportRun& run, const ReportRun& other,
       continue;
     }
     const auto decision = decisions.find(pair);
-    ++fates[decision == decisions.end()
-                ? "not a candidate there"
-                : absl::StrCat("refused: ",
-                               ReasonInWords(decision->second->reason()))];
+    ++fates[decision == decisions.end() ? "not a candidate there"
+                                        : VerdictInWords(*decision->second)];
   }
   int only_other = 0;
   const auto own = LoopPairs(run.graph);
   for (const auto& pair : others) only_other += own.count(pair) == 0 ? 1 : 0;
-  Table table({absl::StrCat("loops of ", run.name), "count"});
+  Table table({absl::StrCat("loops, ", run.name), "count"});
   for (const auto& fate : fates) {
     table.AddRow({fate.first, absl::StrCat(fate.second)});
   }
   table.AddRow({absl::StrCat("accepted by ", other.name, " only"),
                 absl::StrCat(only_other)});
-  page->Raw(table.ToHtml(absl::StrCat("What became of the loops of ", run.name,
-                                      " in the run ", other.name)));
+  page->Raw(table.ToHtml(absl::StrCat("What became of the loops \"", run.name,
+                                      "\" in the run \"", other.name, "\"")));
 }
 
 }  // namespace
@@ -161,14 +159,9 @@ void AddComparison(const ReportData& data, Markup* const page) {
     if (!run.rerun.has_value() || run.rerun->decisions.empty()) continue;
     std::map<std::string, int> reasons;
     for (const auto& decision : run.rerun->decisions) {
-      const std::string verdict =
-          proto::LoopDecision::Verdict_Name(decision.verdict());
-      ++reasons[absl::StrCat(verdict == "ACCEPTED"   ? "accepted: "
-                             : verdict == "REJECTED" ? "refused: "
-                                                     : "undecided: ",
-                             ReasonInWords(decision.reason()))];
+      ++reasons[VerdictInWords(decision)];
     }
-    Table verdicts({absl::StrCat("candidates of ", run.name), "count"});
+    Table verdicts({absl::StrCat("candidates, ", run.name), "count"});
     for (const auto& reason : reasons) {
       verdicts.AddRow({reason.first, absl::StrCat(reason.second)});
     }

@@ -113,18 +113,16 @@ void AddScatter(const ReportRun& run, Markup* const page) {
       continue;
     }
     const bool accepted = decision.verdict() == proto::LoopDecision::ACCEPTED;
-    chart.Point(
-        {decision.search().grid_score(), decision.temporal().score()},
-        accepted ? "s1" : "s2",
-        absl::StrFormat(
-            "submap (%d, %d) - node (%d, %d)\nS_g %.3f, "
-            "S_t %.3f, fused %.3f\n%s: %s",
-            decision.submap_trajectory_id(), decision.submap_index(),
-            decision.node_trajectory_id(), decision.node_index(),
-            decision.search().grid_score(), decision.temporal().score(),
-            decision.fusion().final_score(), accepted ? "accepted" : "refused",
-            ReasonInWords(decision.reason())),
-        accepted ? 2.2 : 2.8);
+    chart.Point({decision.search().grid_score(), decision.temporal().score()},
+                accepted ? "s1" : "s2",
+                absl::StrFormat(
+                    "submap (%d, %d) - node (%d, %d)\nS_g %.3f, "
+                    "S_t %.3f, fused %.3f\n%s",
+                    decision.submap_trajectory_id(), decision.submap_index(),
+                    decision.node_trajectory_id(), decision.node_index(),
+                    decision.search().grid_score(), decision.temporal().score(),
+                    decision.fusion().final_score(), VerdictInWords(decision)),
+                accepted ? 2.2 : 2.8);
   }
   if (mixture != nullptr) {
     const auto draw = [&chart](
