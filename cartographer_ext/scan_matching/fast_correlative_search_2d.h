@@ -25,7 +25,7 @@
 //    cells are eight neighbouring bytes; ended early when the rest of the block
 //    cannot reach the best pose so far.
 // The node with the largest bound comes next, until no bound exceeds the best
-// score. Where nothing is above the minimum, the coarse bounds often say so
+// score. Where nothing is above the minimum, the coarse bounds sometimes say so
 // alone, and the search is over before it began ("rejected").
 //
 // Ties: of poses with equal sums the one is returned that Cartographer's
