@@ -88,8 +88,9 @@ class Selector {
       if (!IsConsistent(selection)) {
         Improve({graph_.poses, selection.poses}, &selection);
       }
-      if (options_.thorough && LeavesOutMany(selection)) {
+      if (options_.thorough && LeavesOutMany(0.25, selection)) {
         Improve(ThoroughStarts(), &selection);
+        if (LeavesOutMany(0.5, selection)) Improve(Replayed(), &selection);
       }
     }
     if (options_.odometry_check) CheckOdometry(&selection);
@@ -111,14 +112,13 @@ class Selector {
   }
 
   // A folded map loses many loops, a right one only those that are wrong.
-  bool LeavesOutMany(const LoopSelection& selection) const {
-    constexpr double kMany = 0.25;
+  bool LeavesOutMany(const double share, const LoopSelection& selection) const {
     int loops = 0, left_out = 0;
     for (size_t i = 0; i != edges_.size(); ++i) {
       loops += edges_[i].is_loop;
       left_out += !selection.accepted[i];
     }
-    return left_out > kMany * loops;
+    return left_out > share * loops;
   }
 
   // Solves with these edges alone, those out of force at weight 0.
@@ -139,11 +139,17 @@ class Selector {
     std::vector<std::vector<Pose2>> starts = {graph_.poses};
     SolveAccepted(std::vector<bool>(edges_.size(), true), kRough,
                   &starts.back());
-    ReplayResult replay;
-    if (Replay(Skeleton(graph_), SmootherOptions(), &replay).ok()) {
-      starts.push_back(std::move(replay.poses));
-    }
+    starts.push_back(graph_.poses);
+    GncOptions gnc;
+    gnc.truncation = options_.gate;
+    SolveGnc(edges_, gnc, &starts.back(), nullptr);
     return starts;
+  }
+
+  std::vector<std::vector<Pose2>> Replayed() const {
+    ReplayResult replay;
+    if (!Replay(Skeleton(graph_), SmootherOptions(), &replay).ok()) return {};
+    return {replay.poses};
   }
 
   // Takes the best that DCS finds from `starts`, if it is better than

@@ -13,7 +13,8 @@
 //      polished by the gate, which takes back in whatever agrees. The lowest
 //      truncated cost wins. Where that leaves out more than a quarter of the
 //      loops, and when asked to be thorough, the same from least squares with
-//      all loops and from a replay of the graph (R-iSAM).
+//      all loops and from graduated non-convexity; where more than half of them
+//      still stay out, also from a replay of the graph (R-iSAM).
 //   3. Odometry check with rollback (improved graph optimisation 2024, section
 //      3.4): where the winner bends the trajectory between neighbouring poses
 //      beyond the gate, the loop to blame is the one with the largest chi2
@@ -37,7 +38,7 @@ struct LoopSelectionOptions {
   bool odometry_check = true;
   double odometry_gate = 30.;
   int max_rollbacks = 10;
-  // Whether (2) may use a replay, which costs more than the rest.
+  // Whether (2) may go on to the starts which cost more than the rest.
   bool thorough = true;
   // Empty, or per edge whether the last selection left it out.
   std::vector<bool> left_out_before;
