@@ -418,7 +418,7 @@ CARTOGRAPHER_EXT.constraint_builder = {
     min_revisits = 2,
     -- Share of contradictions that is forgiven. 0: exactly the maximum
     -- clique. [>= 0 and <= 0.5]
-    tolerance = 0.1,
+    tolerance = 0.04,
     -- Whether a loop that nothing confirms may be accepted by stricter rules.
     single_strong = true,
     -- Final score it needs. [>= 0 and <= 1]

@@ -142,8 +142,9 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
                                  SubsetReason* const reason) const {
   if (!cluster.in_subset) {
     // A few failed tests among many that agree are forgiven.
-    if (cluster.contradictions >
-        options_.tolerance * (cluster.support + cluster.contradictions)) {
+    if (cluster.best_score < options_.forgiven_score ||
+        cluster.contradictions >
+            options_.tolerance * (cluster.support + cluster.contradictions)) {
       *reason = SubsetReason::kContradicted;
       return false;
     }

@@ -64,7 +64,10 @@ struct CompatibleSubsetOptions {
   int min_revisits = 2;           // that agree, including the loop itself, >= 1
   // Share of contradictions among the informative relations to the clique that
   // is forgiven, in [0, 1).
-  double tolerance = 0.1;
+  double tolerance = 0.04;
+  // Only of clusters with a loop of at least this score: one about which
+  // nothing is known has to fit.
+  double forgiven_score = 0.6;
   double accepted_weight = 1.5;  // of a cluster accepted before, >= 1
   // Single strong loop: best score and number of loops in its cluster.
   bool single_strong_enabled = true;

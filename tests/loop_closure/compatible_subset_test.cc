@@ -96,6 +96,31 @@ TEST_F(CompatibleSubsetTest, NeighbouringNodesAreOnePieceOfEvidence) {
   EXPECT_EQ(subset.num_clusters(), 0);
 }
 
+TEST_F(CompatibleSubsetTest, BadlyPredictedPlacesNeedMore) {
+  options_.single_strong_enabled = true;
+  CompatibleSubset subset(options_, &paths_);
+  const auto doubtful = [this](const int64_t id, const int i) {
+    LoopEvidence loop = Loop(id, i, 0., 0.9);
+    loop.prior_sigma = 2.;
+    return loop;
+  };
+  // Three strong loops of one revisit, but nobody knew where to look.
+  for (int i = 0; i < 3; ++i) subset.Add(doubtful(i, 10 + i));
+  EXPECT_THAT(subset.Decide(), IsEmpty());
+  // Two revisits are not enough, either, and it says what it waits for.
+  subset.Add(doubtful(3, 30));
+  EXPECT_THAT(subset.Decide(), IsEmpty());
+  const auto waiting = subset.Undecided();
+  ASSERT_EQ(waiting.size(), 4u);
+  EXPECT_EQ(waiting[3].id, 3);
+  EXPECT_EQ(waiting[3].reason, SubsetReason::kUnsupported);
+  EXPECT_EQ(waiting[3].support, 1);
+  EXPECT_EQ(subset.num_undecided(), 4);
+  subset.Add(doubtful(4, 50));
+  EXPECT_THAT(Accepted(subset.Decide()), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(subset.Undecided(), IsEmpty());
+}
+
 TEST_F(CompatibleSubsetTest, SingleStrongLoopHasItsOwnRule) {
   options_.single_strong_enabled = true;
   CompatibleSubset subset(options_, &paths_);
