@@ -162,6 +162,33 @@ TEST_F(RobustSolverTest, AdaptiveGateFollowsTheScaleOfTheLoops) {
   EXPECT_LT(gate, 0.1 * kChi2Gate);
 }
 
+TEST_F(RobustSolverTest, PolishAdaptedNeverRaisesTheCostAtItsGate) {
+  // Loops a hundred times more exact than they say, a few of them wrong by
+  // little.
+  std::vector<PoseGraphEdge> shy = world_.graph.edges;
+  for (PoseGraphEdge& edge : shy) edge.information *= 0.01;
+  int shifted = 0;
+  std::vector<size_t> wrong;
+  for (size_t i = 0; i != shy.size() && shifted != 3; i += 7) {
+    if (!shy[i].is_loop) continue;
+    const double sigma = 1. / std::sqrt(shy[i].information(0, 0));
+    shy[i].measurement = shy[i].measurement * Pose2(3. * sigma, 0., 0.);
+    wrong.push_back(i);
+    ++shifted;
+  }
+  const std::vector<WhitenedEdge> edges = Whiten(shy);
+  std::vector<Pose2> poses = optimum_;
+  std::vector<double> weights;
+  PolishTruncated(edges, kChi2Gate, 30, &poses, &weights);
+  const std::vector<Pose2> before = poses;
+  PolishAdapted(edges, 30, &poses, &weights);
+  const double gate = AdaptiveGate(edges, poses);
+  EXPECT_LT(gate, 0.2 * kChi2Gate);
+  EXPECT_LE(TruncatedCost(edges, poses, gate),
+            TruncatedCost(edges, before, gate));
+  for (const size_t i : wrong) EXPECT_EQ(weights[i], 0.);
+}
+
 TEST_F(RobustSolverTest, GncFindsTheInliers) {
   std::vector<Pose2> poses = world_.graph.poses;
   std::vector<double> weights;
