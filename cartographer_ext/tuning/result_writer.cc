@@ -142,10 +142,10 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
   std::set<std::string> copied;
   std::string assignments;
   for (const KeyResult& key : result.keys) {
-    absl::StrAppend(&assignments, "\n-- Before: ", ToLua(key.before), ". ",
+    absl::StrAppend(&assignments, "\n-- Before: ", ToLua(key.before), "; ",
                     Gain(key, result.best, context.inputs.size()),
-                    ". Confidence: ", Confidence(key, context.inputs.size()),
-                    ".\n", CopyTables(key.key, &copied), key.key, " = ",
+                    "; confidence: ", Confidence(key, context.inputs.size()),
+                    "\n", CopyTables(key.key, &copied), key.key, " = ",
                     ToLua(key.after), "\n");
   }
   absl::StrAppend(&text, copied.empty() ? "" : kCopyFunction, assignments);
@@ -209,11 +209,10 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
   std::vector<Point> points;
   std::vector<double> objectives;
   WholeTrials(result, &points, &objectives);
-  absl::StrAppendFormat(
-      &text,
-      "\nSensitivity, from %d trials on whole recordings:\n  %-72s  "
-      "effect  trend\n",
-      points.size(), "key");
+  absl::StrAppendFormat(&text,
+                        "\nSensitivity, from %d trials on whole recordings:\n"
+                        "  effect  trend  key\n",
+                        points.size());
   auto sensitivities =
       ComputeSensitivity(context.parameters, points, objectives);
   std::stable_sort(sensitivities.begin(), sensitivities.end(),
@@ -221,8 +220,8 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
                      return a.effect > b.effect;
                    });
   for (const Sensitivity& sensitivity : sensitivities) {
-    absl::StrAppendFormat(&text, "  %-72s  %6.2f  %+5.2f\n", sensitivity.key,
-                          sensitivity.effect, sensitivity.trend);
+    absl::StrAppendFormat(&text, "  %6.2f  %+5.2f  %s\n", sensitivity.effect,
+                          sensitivity.trend, sensitivity.key);
   }
   return text;
 }

@@ -67,10 +67,10 @@ TEST(ResultWriterTest, TheLuaFileSetsTheKeys) {
   const std::string text = ToLuaFile(Result(), Context());
   EXPECT_THAT(text, HasSubstr("relations, 2 -> 0.5 (-75.0 %)"));
   EXPECT_THAT(text, HasSubstr("Held out: 8 -> 6"));
-  EXPECT_THAT(text, HasSubstr("Before: 0.5. gain 0.25 (50.0 % of the result), "
-                              "better on 2 of 2 recordings. Confidence: "
-                              "medium."));
-  EXPECT_THAT(text, HasSubstr("Confidence: not measured"));
+  EXPECT_THAT(text, HasSubstr("Before: 0.5; gain 0.25 (50.0 % of the result), "
+                              "better on 2 of 2 recordings; confidence: "
+                              "medium"));
+  EXPECT_THAT(text, HasSubstr("confidence: not measured"));
   // Tables of the block that the configuration leaves out are made.
   const auto value =
       EvaluateLua("A = { score = 0.5, cartographer_ext = { other = 3 } }\n" +
