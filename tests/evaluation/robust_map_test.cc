@@ -11,8 +11,10 @@
 #include "cartographer/mapping/map_builder.h"
 #include "cartographer_ext/evaluation/host_map.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
+#include "cartographer_ext/evaluation/pbstream_optimization.h"
 #include "cartographer_ext/evaluation/relations_metric.h"
 #include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/evaluation/switched_constraints.h"
 #include "cartographer_ext/evaluation/wrong_loops.h"
 #include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/io/relations_file.h"
@@ -37,7 +39,10 @@ class RobustMapTest : public ::testing::Test {
     relations_ = test::SharedData("relations/aces.relations");
   }
 
-  Outcome Optimize(const std::string& block, const int wrong_loops) {
+  // Without the loops in `dropped`.
+  Outcome Optimize(
+      const std::string& block, const int wrong_loops,
+      const std::vector<optimization::SwitchedLoop>& dropped = {}) {
     Outcome outcome;
     auto configuration = ParseSlamConfiguration(
         {"configuration_files"}, "test.lua",
@@ -49,6 +54,8 @@ class RobustMapTest : public ::testing::Test {
     auto pbstream = io::ReadPbstream(map_);
     EXPECT_TRUE(pbstream.ok()) << pbstream.status();
     if (!pbstream.ok()) return outcome;
+    MapGraph map = MakeMapGraph(*pbstream);
+    DropConstraints(MarkSwitchedOff(dropped, &map), &*pbstream);
     WrongLoopOptions options;
     options.count = wrong_loops;
     const auto indices = AddWrongLoops(options, &*pbstream);
@@ -112,6 +119,19 @@ TEST_F(RobustMapTest, AcesSurvivesTwentyWrongLoops) {
   EXPECT_LE(robust_wrong.relations, 1.05 * robust.relations);
   EXPECT_EQ(robust_wrong.wrong_loops_off, 20);
   EXPECT_LE(robust_wrong.relations, stock_wrong.relations);
+}
+
+TEST_F(RobustMapTest, RightLoopsAloneCostNextToNothing) {
+  CARTOGRAPHER_EXT_SKIP_WITHOUT(map_);
+  const std::vector<optimization::SwitchedLoop> off =
+      Optimize(kBlock, 0).switched.off;
+  const Outcome passive = Optimize(kPassive, 0, off);
+  const Outcome robust = Optimize(kBlock, 0, off);
+  EXPECT_EQ(passive.switched.loops + off.size(), 730u);
+  EXPECT_TRUE(robust.switched.off.empty());
+  EXPECT_DOUBLE_EQ(robust.relations, passive.relations);
+  EXPECT_LT(robust.switched.selection_cpu_seconds,
+            0.5 * passive.switched.solution_cpu_seconds);
 }
 
 }  // namespace
