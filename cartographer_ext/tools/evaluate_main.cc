@@ -13,6 +13,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "cartographer_ext/common/atomic_file.h"
@@ -240,7 +241,7 @@ std::string RunsToText(const report::ReportData& data) {
   return text;
 }
 
-absl::Status Run() {
+absl::Status Run(const std::string& command_line) {
   std::vector<std::string> outputs = {FLAGS_constraints_filename,
                                       FLAGS_relation_errors_filename,
                                       FLAGS_json, FLAGS_report_filename};
@@ -265,8 +266,7 @@ absl::Status Run() {
     map.odometry = &inputs.odometry;
   }
   if (inputs.trajectory.has_value()) map.scans = &*inputs.trajectory;
-  auto result =
-      evaluation::EvaluateMap(map, inputs.truth, EvaluationOptions());
+  auto result = evaluation::EvaluateMap(map, inputs.truth, EvaluationOptions());
   if (!result.ok()) {
     return absl::Status(result.status().code(),
                         absl::StrCat(has_map ? FLAGS_pbstream_filename
@@ -290,7 +290,7 @@ absl::Status Run() {
   report::ReportData data;
   if (has_map) {
     data.title = tools::BaseName(FLAGS_pbstream_filename);
-    data.command_line = gflags::GetArgv();
+    data.command_line = command_line;
     data.versions = report::Versions();
     data.pbstream = &*inputs.pbstream;
     data.contents = &inputs.contents;
@@ -332,6 +332,7 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
+  const std::string command_line = absl::StrJoin(argv, argv + argc, " ");
   tools::CommandLine(kDescription).Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty() && FLAGS_trajectory_filename.empty()) {
     return tools::UsageError(
@@ -373,5 +374,5 @@ int main(int argc, char** argv) {
         "-stamp_tolerance must not be negative, -rpe_distance and "
         "-loop_tolerance must be above 0");
   }
-  return tools::ExitCode(Run());
+  return tools::ExitCode(Run(command_line));
 }

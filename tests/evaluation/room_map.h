@@ -22,7 +22,9 @@ inline std::string RoomLua(const std::string& more = "") {
   return "include \"common_2d.lua\"\n"
          "TRAJECTORY_BUILDER_2D.submaps.num_range_data = 15\n"
          "POSE_GRAPH.optimize_every_n_nodes = 30\n"
-         "POSE_GRAPH.constraint_builder.sampling_ratio = 0.3\n" +
+         "POSE_GRAPH.constraint_builder.sampling_ratio = 0.3\n"
+         "POSE_GRAPH.constraint_builder.fast_correlative_scan_matcher."
+         "linear_search_window = 1.\n" +
          more +
          "\nreturn { map_builder = MAP_BUILDER, trajectory_builder = "
          "TRAJECTORY_BUILDER }\n";
