@@ -14,7 +14,7 @@
 // reduce, comes from the map (cells, and the noise of the scans it is made of),
 // the part b from the points. The figures behind it and behind the floor are in
 // third_party_notes/paper_improved_graph_optimisation_2024.md, the test that
-// holds them is tests/scan_matching/covariance_honesty_test.cc.
+// holds them is tests/scan_matching/dropin/covariance_honesty_test.cc.
 //
 // The floor is the curvature that blank walls, straight (translation) and round
 // (rotation), show along themselves: below it an axis counts as not determined.
