@@ -150,17 +150,6 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- the match never starves. [>= 0 and <= 100000]
     min_points = 80,
   },
-  node_weights = {
-    -- Keep the covariance of every node's match for the weights of its
-    -- constraints within submaps.
-    enabled = false,
-    -- Standard deviation at which a node gets the stock translation weight;
-    -- the weight falls with the inverse of the deviation, down to a tenth. [>
-    -- 0 and <= 100, m]
-    reference_translation = 0.01,
-    -- The same of the rotation. [> 0 and <= 10, rad]
-    reference_rotation = 0.005,
-  },
   wall_filling = {
     -- Before a scan is inserted, fill the gaps between its points where four
     -- in a row lie on one line. Walls of dots would hold the next scan back,

@@ -69,6 +69,10 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   prediction.motion = VelocityMotion(interval);
   prediction.covariance = VelocityCovariance(interval);
   prediction.is_uncertain = prediction.source == PredictionSource::kNothing;
+  if (prediction.is_uncertain) {
+    prediction.unknown_turn = std::min(
+        kPi, 2. * options_.constant_velocity.turn_rate_noise * interval);
+  }
 
   ImuMotion imu;
   const bool has_imu = imu_.Predict(
@@ -83,6 +87,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
     prediction.covariance(0, 0) += Squared(way);
     prediction.covariance(1, 1) += Squared(way);
     prediction.is_uncertain = interval > options_.constant_velocity.max_time;
+    prediction.unknown_turn = 0.;
   }
 
   OdometryMotion odometry;
@@ -102,11 +107,20 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
     prediction.is_uncertain = prediction.is_uncertain || is_suspect;
     return prediction;
   }
+  prediction.unknown_turn = 0.;
   const Eigen::Matrix3d covariance_without = prediction.covariance;
   prediction.source = PredictionSource::kOdometry;
   prediction.motion = odometry.motion;
   prediction.covariance = odometry.covariance;
   prediction.is_uncertain = is_suspect;
+  OdometryMotion since_anchor;
+  if (monitor_.state() == OdometryState::kAbsent && has_anchor_ &&
+      odometry_.Predict(anchor_time_, time, &since_anchor)) {
+    // Odometry is back: it knows what happened in between, too.
+    prediction.is_uncertain = true;
+    prediction.alternatives.push_back(since_anchor_.Inverse() *
+                                      since_anchor.motion);
+  }
   if (is_suspect) {
     prediction.alternatives.push_back(without);
     prediction.covariance += covariance_without;
@@ -135,6 +149,8 @@ OdometryState MotionPredictor::AddMatch(const double time,
   if (!has_match_) {
     has_match_ = true;
     last_time_ = time;
+    has_anchor_ = true;
+    anchor_time_ = time;
     return monitor_.state();
   }
   if (!(interval > 0.)) return monitor_.state();
@@ -153,6 +169,13 @@ OdometryState MotionPredictor::AddMatch(const double time,
                    &imu)) {
     comparison.has_inertial = imu_.bias_is_known();
     comparison.inertial_speed_change = imu.speed_change;
+  }
+  if (comparison.has_odometry) {
+    has_anchor_ = true;
+    anchor_time_ = time;
+    since_anchor_ = Pose2();
+  } else {
+    since_anchor_ = since_anchor_ * matched.motion;
   }
   const OdometryState state = monitor_.Add(comparison);
   if (state == OdometryState::kOk && matched.turn_is_determined) {

@@ -53,6 +53,9 @@ struct MotionPrediction {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   // Not to be relied on: search.
   bool is_uncertain = false;
+  // How far the robot may have turned from the motions on trial, where nothing
+  // tells, radians.
+  double unknown_turn = 0.;
   // Other motions worth a try then.
   std::vector<Pose2> alternatives;
 };
@@ -96,6 +99,10 @@ class MotionPredictor {
   bool has_match_ = false;
   double last_time_ = 0.;
   Pose2 velocity_;
+  // The last scan that had odometry, and the matched motion since then.
+  bool has_anchor_ = false;
+  double anchor_time_ = 0.;
+  Pose2 since_anchor_;
 };
 
 }  // namespace front_end

@@ -117,14 +117,16 @@ bool LocalMatcher::IsDoubtful(const LocalMatch& match,
 }
 
 Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
-                           const PointCloud& cloud, const Grid2D& grid) const {
+                           const double unknown_turn, const PointCloud& cloud,
+                           const Grid2D& grid) const {
   stock_proto::RealTimeCorrelativeScanMatcherOptions options;
   options.set_linear_search_window(std::min(
       options_.max_linear_window(),
       options_.linear_window() + 0.5 * std::hypot(motion.x, motion.y)));
   options.set_angular_search_window(
-      std::min(options_.max_angular_window(),
-               options_.angular_window() + std::abs(motion.theta)));
+      std::max(unknown_turn,
+               std::min(options_.max_angular_window(),
+                        options_.angular_window() + std::abs(motion.theta))));
   options.set_translation_delta_cost_weight(kSearchPenalty);
   options.set_rotation_delta_cost_weight(kSearchPenalty);
   const cartographer::mapping::scan_matching::RealTimeCorrelativeScanMatcher2D
@@ -155,7 +157,9 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
       const Prediction start = ToPrediction(
           last_pose, motion, kSearchSpread * prediction.covariance);
       const LocalMatch match = MatchFrom(
-          start, Search(start.pose, motion, cloud, grid), cloud, grid);
+          start,
+          Search(start.pose, motion, prediction.unknown_turn, cloud, grid),
+          cloud, grid);
       if (match.score <= to_beat) continue;
       to_beat = match.score;
       best = match;

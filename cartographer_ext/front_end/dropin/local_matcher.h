@@ -55,7 +55,8 @@ class LocalMatcher {
                        const cartographer::mapping::Grid2D& grid) const;
   bool IsDoubtful(const LocalMatch& match,
                   const MotionPrediction& prediction) const;
-  Pose2 Search(const Pose2& center, const Pose2& motion,
+  // `unknown_turn` as in MotionPrediction.
+  Pose2 Search(const Pose2& center, const Pose2& motion, double unknown_turn,
                const cartographer::sensor::PointCloud& cloud,
                const cartographer::mapping::Grid2D& grid) const;
 
