@@ -39,6 +39,8 @@ MatchRecord::Degeneracy ToProto(const DegeneracyState state) {
       return MatchRecord::POSITION;
     case DegeneracyState::kRotation:
       return MatchRecord::ROTATION;
+    case DegeneracyState::kTranslationAndRotation:
+      return MatchRecord::TRANSLATION_AND_ROTATION;
     case DegeneracyState::kEverything:
       return MatchRecord::EVERYTHING;
   }
