@@ -34,6 +34,7 @@ bool IsFault(const MatchRecord& record) {
 
 bool PositionIsDegenerate(const MatchRecord& record) {
   return record.degeneracy() == MatchRecord::TRANSLATION ||
+         record.degeneracy() == MatchRecord::TRANSLATION_AND_ROTATION ||
          record.degeneracy() == MatchRecord::POSITION ||
          record.degeneracy() == MatchRecord::EVERYTHING;
 }
