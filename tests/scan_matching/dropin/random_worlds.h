@@ -52,7 +52,7 @@ inline std::unique_ptr<Grid2D> RandomGrid(
     if (random->Uniform() < noise) probability = random->Uniform(0.1, 0.9);
     grid->SetProbability(cell, static_cast<float>(probability));
   }
-  return std::move(grid);
+  return grid;
 }
 
 inline std::unique_ptr<Grid2D> RandomTsdf(
@@ -65,7 +65,7 @@ inline std::unique_ptr<Grid2D> RandomTsdf(
     grid->SetCell(cell, static_cast<float>(random->Uniform(-0.3, 0.3)), 1.f);
   }
   grid->FinishUpdate();
-  return std::move(grid);
+  return grid;
 }
 
 // Points at high scores, seen from `pose`, and some anywhere.
