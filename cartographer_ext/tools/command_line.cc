@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tools/command_line.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <numeric>
@@ -22,6 +25,22 @@ namespace {
 std::string* MutableProgramName() {
   static std::string* const name = new std::string("cartographer_ext");
   return name;
+}
+
+// Where standard output went before it was kept for the result, or -1.
+int* KeptStandardOutput() {
+  static int descriptor = -1;
+  return &descriptor;
+}
+
+// Whatever is printed goes to standard error from now on, also by a real
+// Cartographer library, which shows its progress on standard output. Without
+// effect where there is no descriptor left.
+void KeepStandardOutput() {
+  std::cout.flush();
+  std::fflush(stdout);
+  if (*KeptStandardOutput() < 0) *KeptStandardOutput() = dup(STDOUT_FILENO);
+  if (*KeptStandardOutput() >= 0) dup2(STDERR_FILENO, STDOUT_FILENO);
 }
 
 [[noreturn]] void ExitWithUsageError(const std::string& message) {
@@ -159,6 +178,10 @@ void CommandLine::Parse(const int argc, char** const argv) {
       SetFlag(name, argv[++i]);
     }
   }
+  std::string json;
+  if (gflags::GetCommandLineOption("json", &json) && json == "-") {
+    KeepStandardOutput();
+  }
   google::InitGoogleLogging(ProgramName().c_str());
 }
 
@@ -192,10 +215,19 @@ absl::Status CheckWritable(const std::vector<std::string>& filenames) {
 
 absl::Status WriteJson(const nlohmann::ordered_json& json,
                        const std::string& filename) {
-  return WriteFileAtomically(
-      filename, json.dump(2, ' ', false,
-                          nlohmann::ordered_json::error_handler_t::replace) +
-                    "\n");
+  const std::string text =
+      json.dump(2, ' ', false,
+                nlohmann::ordered_json::error_handler_t::replace) +
+      "\n";
+  if (filename != "-" || *KeptStandardOutput() < 0) {
+    return WriteFileAtomically(filename, text);
+  }
+  std::cout.flush();
+  std::fflush(stdout);
+  dup2(*KeptStandardOutput(), STDOUT_FILENO);
+  const absl::Status status = WriteFileAtomically(filename, text);
+  KeepStandardOutput();
+  return status;
 }
 
 }  // namespace tools

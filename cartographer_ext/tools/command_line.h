@@ -33,7 +33,8 @@ constexpr int kExitUsage = 2;
 // dashes, `-flag` and `-noflag` for booleans. Unknown flags, bad values and
 // other arguments end the program with exit code 2 and a hint; -help prints the
 // description and the command's own flags and ends it with 0. Starts the log,
-// which shows errors only unless -minloglevel is given.
+// which shows errors only unless -minloglevel is given. With `-json -` nothing
+// but the JSON of WriteJson reaches standard output.
 class CommandLine {
  public:
   // `description` is what -help prints above the flags.
