@@ -52,6 +52,15 @@ ConstraintBits BitsOf(const ConstraintPose& pose) {
   return bits;
 }
 
+// What the two weights of a constraint stand for, in the order x, y, theta.
+inline Eigen::Matrix3d InformationOfWeights(const double translation_weight,
+                                            const double rotation_weight) {
+  return Eigen::Vector3d(translation_weight * translation_weight,
+                         translation_weight * translation_weight,
+                         rotation_weight * rotation_weight)
+      .asDiagonal();
+}
+
 // Remembers the information (1/m^2, 1/(m rad), 1/rad^2; symmetric, positive
 // semi-definite) for constraints of these bits, in place of what was there.
 // Returns false and remembers nothing where the matrix is neither or not

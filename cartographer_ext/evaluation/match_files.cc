@@ -2,17 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/evaluation/match_files.h"
 
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <map>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/strip.h"
 #include "cartographer/common/time.h"
-#include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/evaluation/host_types.h"
+#include "cartographer_ext/evaluation/side_files.h"
 #include "cartographer_ext/front_end/match_record.h"
 
 namespace cartographer_ext {
@@ -20,10 +15,6 @@ namespace evaluation {
 namespace {
 
 using proto::MatchRecord;
-
-std::string Stem(const std::string& pbstream_filename) {
-  return std::string(absl::StripSuffix(pbstream_filename, ".pbstream"));
-}
 
 bool IsFault(const MatchRecord& record) {
   return record.odometry() == MatchRecord::STALE ||
@@ -54,44 +45,27 @@ GraphNode* Nearest(const std::map<io::TimeNs, GraphNode*>& nodes,
 }  // namespace
 
 std::string MatchRecordsFilename(const std::string& pbstream_filename) {
-  return absl::StrCat(Stem(pbstream_filename), ".nodes.pb");
+  return SideFilename(pbstream_filename, ".nodes.pb");
 }
 
 std::string MatchCsvFilename(const std::string& pbstream_filename) {
-  return absl::StrCat(Stem(pbstream_filename), ".nodes.csv");
+  return SideFilename(pbstream_filename, ".nodes.csv");
 }
 
 absl::Status WriteMatchesBeside(const std::string& pbstream_filename,
                                 const std::vector<MatchRecord>& records) {
-  const std::string file = MatchRecordsFilename(pbstream_filename);
-  const std::string csv = MatchCsvFilename(pbstream_filename);
-  if (records.empty()) {
-    std::remove(file.c_str());
-    std::remove(csv.c_str());
-    return absl::OkStatus();
-  }
   std::string bytes;
   for (const MatchRecord& record : records) {
     front_end::AppendRecord(record, &bytes);
   }
-  const absl::Status status = WriteFileAtomically(file, bytes);
-  if (!status.ok()) return status;
-  return WriteFileAtomically(csv, front_end::RecordCsv(records));
+  return WriteSideFiles(MatchRecordsFilename(pbstream_filename), bytes,
+                        MatchCsvFilename(pbstream_filename),
+                        front_end::RecordCsv(records));
 }
 
 absl::StatusOr<std::vector<MatchRecord>> ReadMatches(
     const std::string& records_filename) {
-  std::ifstream file(records_filename, std::ios::binary);
-  if (!file) {
-    return absl::NotFoundError(absl::StrCat("cannot read ", records_filename));
-  }
-  const std::string bytes((std::istreambuf_iterator<char>(file)),
-                          std::istreambuf_iterator<char>());
-  auto records = front_end::ParseRecords(bytes);
-  if (records.ok()) return records;
-  return absl::Status(
-      records.status().code(),
-      absl::StrCat(records_filename, ": ", records.status().message()));
+  return ReadSideFile(records_filename, front_end::ParseRecords);
 }
 
 void MarkMatches(const std::vector<MatchRecord>& records,

@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/full_information.h"
 #include "cartographer_ext/evaluation/host_types.h"
 #include "cartographer_ext/evaluation/pose_graph_export.h"
 
@@ -38,14 +39,6 @@ double WeightScale(const MapGraph& map, const double loop_sigma) {
     weight = weights[weights.size() / 2];
   }
   return 1. / (weight * loop_sigma);
-}
-
-Eigen::Matrix3d Information(const double translation_weight,
-                            const double rotation_weight) {
-  return Eigen::Vector3d(translation_weight * translation_weight,
-                         translation_weight * translation_weight,
-                         rotation_weight * rotation_weight)
-      .asDiagonal();
 }
 
 // before <- after, in the plane, applied to a pose in space.
@@ -112,8 +105,9 @@ absl::StatusOr<MapPoseGraph> MakeMapPoseGraph(
     edge.from = submap->second;
     edge.to = node->second;
     edge.measurement = constraint.relative_pose;
-    edge.information = Information(scale * constraint.translation_weight,
-                                   scale * constraint.rotation_weight);
+    edge.information =
+        InformationOfWeights(scale * constraint.translation_weight,
+                             scale * constraint.rotation_weight);
     edge.is_loop = constraint.is_loop;
     result.graph.edges.push_back(edge);
     result.constraint_of_edge.push_back(i);
@@ -131,8 +125,8 @@ absl::StatusOr<MapPoseGraph> MakeMapPoseGraph(
     edge.measurement =
         Between(first->second.local_pose, next->second.local_pose);
     edge.information =
-        Information(scale * options.local_slam_translation_weight,
-                    scale * options.local_slam_rotation_weight);
+        InformationOfWeights(scale * options.local_slam_translation_weight,
+                             scale * options.local_slam_rotation_weight);
     result.graph.edges.push_back(edge);
     result.constraint_of_edge.push_back(-1);
   }

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <limits>
 #include <memory>
-#include <thread>
 #include <utility>
 
 #include "cartographer/common/thread_pool.h"
@@ -16,6 +15,7 @@
 #include "cartographer/sensor/imu_data.h"
 #include "cartographer/sensor/landmark_data.h"
 #include "cartographer/sensor/odometry_data.h"
+#include "cartographer_ext/evaluation/back_end_metrics.h"
 #include "cartographer_ext/evaluation/host_map.h"
 #include "cartographer_ext/evaluation/host_types.h"
 #include "cartographer_ext/evaluation/metrics_collector.h"
@@ -33,13 +33,8 @@ using cartographer::mapping::Submap2D;
 using cartographer::mapping::TrajectoryNode;
 namespace mapping_proto = cartographer::mapping::proto;
 
-constexpr char kQueueMetric[] = "mapping_2d_pose_graph_work_queue_size";
-constexpr char kConstraintsMetric[] =
-    "mapping_constraints_constraint_builder_2d_constraints";
-constexpr char kSearchCpuMetric[] =
-    "mapping_constraints_constraint_builder_2d_search_cpu_seconds";
-constexpr char kOurSearchesMetric[] = "cartographer_ext_loop_searches";
-constexpr char kOurCpuMetric[] = "cartographer_ext_loop_cpu_seconds";
+// Longest wait for a queue that does not move.
+constexpr std::chrono::seconds kPatience(2);
 // Decision records kept, about 400 bytes each.
 constexpr size_t kMaxDecisions = 500000;
 // Side of the grid of a placeholder, which nobody looks at.
@@ -178,25 +173,6 @@ void SetInitialPoses(const io::Pbstream& pbstream,
   }
 }
 
-// Bounds memory; changes no result. Gives up when nothing moves for long: then
-// the number is not what it is taken for.
-void WaitForBackEnd(const MetricsCollector& metrics, const int max_length) {
-  constexpr auto kPause = std::chrono::milliseconds(2);
-  constexpr auto kPatience = std::chrono::seconds(2);
-  double length = metrics.Sum(kQueueMetric);
-  auto last_change = std::chrono::steady_clock::now();
-  while (length > max_length) {
-    std::this_thread::sleep_for(kPause);
-    const double now = metrics.Sum(kQueueMetric);
-    if (now != length) {
-      length = now;
-      last_change = std::chrono::steady_clock::now();
-    } else if (std::chrono::steady_clock::now() - last_change > kPatience) {
-      return;
-    }
-  }
-}
-
 // From the ids that the pose graph gave to those of the stored map.
 class IdTranslation {
  public:
@@ -240,12 +216,6 @@ MapGraph Translate(const MapGraph& graph, const IdTranslation& ids) {
   return result;
 }
 
-// Pairs of submap and node that either builder has searched, or found.
-double Pairs(const MetricsCollector& metrics, const std::string& matcher) {
-  return metrics.Sum(kConstraintsMetric, {{"matcher", matcher}}) +
-         metrics.Sum(kOurSearchesMetric, {{"matcher", matcher}});
-}
-
 double StageSeconds(const MetricsCollector& metrics, const std::string& stage) {
   return metrics.Sum(kSearchCpuMetric, {{"stage", stage}}) +
          metrics.Sum(kOurCpuMetric, {{"stage", stage}});
@@ -255,8 +225,8 @@ double StageSeconds(const MetricsCollector& metrics, const std::string& stage) {
 void TranslateDecisions(const IdTranslation& ids,
                         std::vector<proto::LoopDecision>* const decisions) {
   for (proto::LoopDecision& decision : *decisions) {
-    const GraphId submap = ids.Submap(
-        {decision.submap_trajectory_id(), decision.submap_index()});
+    const GraphId submap =
+        ids.Submap({decision.submap_trajectory_id(), decision.submap_index()});
     const GraphId node =
         ids.Node({decision.node_trajectory_id(), decision.node_index()});
     decision.set_submap_index(submap.index);
@@ -289,7 +259,7 @@ void Drive(const io::Pbstream& pbstream, const ReplayPlan& plan,
     pose_graph->AddNode(std::make_shared<const TrajectoryNode::Data>(
                             cartographer::mapping::FromProto(data)),
                         step.node_id.trajectory_id, insertion_submaps);
-    WaitForBackEnd(metrics, options.max_queue_length);
+    WaitForBackEnd(metrics, options.max_queue_length, kPatience);
     if (options.on_progress) {
       options.on_progress(static_cast<int64_t>(i) + 1,
                           static_cast<int64_t>(plan.steps.size()));
@@ -315,8 +285,8 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   const auto before = metrics->Values();
   const double before_stage = StageSeconds(*metrics, "search");
   const double before_build = StageSeconds(*metrics, "build");
-  const double searched = Pairs(*metrics, "searched");
-  const double found = Pairs(*metrics, "found");
+  const double searched = CountPairs(*metrics, "searched");
+  const double found = CountPairs(*metrics, "found");
   auto* const recorder = loop_closure::DecisionRecorder::Global();
   recorder->Start(kMaxDecisions);
   const int64_t memory_before = ResetPeakMemory();
@@ -348,8 +318,8 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   recorder->Stop();
   TranslateDecisions(IdTranslation(*plan), &result.decisions);
   result.searches =
-      static_cast<int64_t>(Pairs(*metrics, "searched") - searched);
-  result.matches = static_cast<int64_t>(Pairs(*metrics, "found") - found);
+      static_cast<int64_t>(CountPairs(*metrics, "searched") - searched);
+  result.matches = static_cast<int64_t>(CountPairs(*metrics, "found") - found);
   result.search_cpu_seconds = StageSeconds(*metrics, "search") - before_stage;
   result.build_cpu_seconds = StageSeconds(*metrics, "build") - before_build;
   result.metrics = metrics->Values();

@@ -6,12 +6,12 @@
 #include <chrono>
 #include <limits>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "cartographer/mapping/map_builder.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/evaluation/back_end_metrics.h"
 #include "cartographer_ext/evaluation/host_types.h"
 #include "cartographer_ext/evaluation/metrics_collector.h"
 #include "cartographer_ext/evaluation/resource_usage.h"
@@ -33,17 +33,12 @@ constexpr char kScanId[] = "scan";
 constexpr char kOdometryId[] = "odom";
 constexpr char kImuId[] = "imu";
 
-constexpr char kQueueMetric[] = "mapping_2d_pose_graph_work_queue_size";
-constexpr char kConstraintsMetric[] =
-    "mapping_constraints_constraint_builder_2d_constraints";
-constexpr char kOurSearchesMetric[] = "cartographer_ext_loop_searches";
-constexpr char kOurCpuMetric[] = "cartographer_ext_loop_cpu_seconds";
 // Decision records kept, about 400 bytes each.
 constexpr size_t kMaxDecisions = 2000000;
 // Records of matched scans kept, about 300 bytes each.
 constexpr size_t kMaxMatches = 2000000;
-constexpr char kSearchCpuMetric[] =
-    "mapping_constraints_constraint_builder_2d_search_cpu_seconds";
+// Longest wait for a queue that does not move.
+constexpr std::chrono::seconds kPatience(30);
 
 double SecondsSince(const std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
@@ -127,25 +122,6 @@ class Feeder {
   cartographer::common::Time last_imu_ = cartographer::common::Time::min();
 };
 
-// Waits until the queue is short again. Gives up when nothing moves for long:
-// then the number is not what it is taken for.
-void WaitForBackEnd(const MetricsCollector& metrics, const int max_length) {
-  constexpr auto kPause = std::chrono::milliseconds(2);
-  constexpr auto kPatience = std::chrono::seconds(30);
-  double length = metrics.Sum(kQueueMetric);
-  auto last_change = std::chrono::steady_clock::now();
-  while (length > max_length) {
-    std::this_thread::sleep_for(kPause);
-    const double now = metrics.Sum(kQueueMetric);
-    if (now != length) {
-      length = now;
-      last_change = std::chrono::steady_clock::now();
-    } else if (std::chrono::steady_clock::now() - last_change > kPatience) {
-      return;
-    }
-  }
-}
-
 std::vector<NodePoses> CollectNodePoses(const PoseGraphInterface& pose_graph,
                                         const int trajectory_id) {
   std::vector<NodePoses> result;
@@ -208,16 +184,12 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   optimization::ResetSwitchedLoops();
   MetricsCollector* const metrics = MetricsCollector::Global();
   const auto metrics_before = metrics->Values();
-  const auto sum_both = [metrics](const MetricsCollector::Labels& labels) {
-    return metrics->Sum(kConstraintsMetric, labels) +
-           metrics->Sum(kOurSearchesMetric, labels);
-  };
   const auto search_cpu = [metrics]() {
     return metrics->Sum(kSearchCpuMetric) +
            metrics->Sum(kOurCpuMetric, {{"stage", "search"}});
   };
-  const double searched_before = sum_both({{"matcher", "searched"}});
-  const double found_before = sum_both({{"matcher", "found"}});
+  const double searched_before = CountPairs(*metrics, "searched");
+  const double found_before = CountPairs(*metrics, "found");
   const double search_cpu_before = search_cpu();
   loop_closure::DecisionRecorder* const recorder =
       loop_closure::DecisionRecorder::Global();
@@ -280,7 +252,7 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
     if (!absl::holds_alternative<io::LaserScan>(event)) continue;
     injector.AfterScan(run.scans + run.scans_left_out, info.num_scans,
                        run.map_builder.get());
-    WaitForBackEnd(*metrics, options.max_queue_length);
+    WaitForBackEnd(*metrics, options.max_queue_length, kPatience);
     if (options.on_progress) {
       progress.scans = run.scans + run.scans_left_out;
       progress.queue_length = static_cast<int64_t>(metrics->Sum(kQueueMetric));
@@ -323,10 +295,10 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   run.cpu_seconds = ProcessCpuSeconds() - cpu_start;
   run.peak_memory_bytes = PeakMemoryBytes();
   run.metrics = Difference(metrics->Values(), metrics_before);
-  run.loop_searches = static_cast<int64_t>(sum_both({{"matcher", "searched"}}) -
-                                           searched_before);
+  run.loop_searches =
+      static_cast<int64_t>(CountPairs(*metrics, "searched") - searched_before);
   run.loops_found =
-      static_cast<int64_t>(sum_both({{"matcher", "found"}}) - found_before);
+      static_cast<int64_t>(CountPairs(*metrics, "found") - found_before);
   run.loop_search_cpu_is_measured = metrics->Has(kSearchCpuMetric);
   run.loop_search_cpu_seconds =
       run.loop_search_cpu_is_measured

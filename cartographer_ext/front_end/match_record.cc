@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
-#include "absl/status/status.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "google/protobuf/io/coded_stream.h"
+#include "cartographer_ext/common/delimited_messages.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -144,44 +142,12 @@ Eigen::Matrix3d Covariance(const MatchRecord& record) {
 }
 
 void AppendRecord(const MatchRecord& record, std::string* const bytes) {
-  const std::string message = record.SerializeAsString();
-  uint64_t length = message.size();
-  while (length >= 0x80) {
-    bytes->push_back(static_cast<char>(length | 0x80));
-    length >>= 7;
-  }
-  bytes->push_back(static_cast<char>(length));
-  bytes->append(message);
+  AppendDelimited(record, bytes);
 }
 
 absl::StatusOr<std::vector<MatchRecord>> ParseRecords(
     const absl::string_view bytes) {
-  const auto error = [](const size_t offset) {
-    return absl::DataLossError(
-        absl::StrCat("the record at byte ", offset, " is damaged"));
-  };
-  if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
-    return absl::DataLossError("more than 2 GiB of records");
-  }
-  std::vector<MatchRecord> records;
-  size_t offset = 0;
-  while (offset < bytes.size()) {
-    const absl::string_view rest = bytes.substr(offset);
-    google::protobuf::io::CodedInputStream stream(
-        reinterpret_cast<const uint8_t*>(rest.data()),
-        static_cast<int>(rest.size()));
-    uint32_t length = 0;
-    if (!stream.ReadVarint32(&length)) return error(offset);
-    const size_t head = static_cast<size_t>(stream.CurrentPosition());
-    if (length > rest.size() - head) return error(offset);
-    MatchRecord record;
-    if (!record.ParseFromArray(rest.data() + head, static_cast<int>(length))) {
-      return error(offset);
-    }
-    records.push_back(record);
-    offset += head + length;
-  }
-  return records;
+  return ParseDelimited<MatchRecord>(bytes, "match record");
 }
 
 std::string RecordCsv(const std::vector<MatchRecord>& records) {

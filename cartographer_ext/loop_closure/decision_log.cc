@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/decision_log.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "google/protobuf/io/coded_stream.h"
+#include "cartographer_ext/common/delimited_messages.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -140,44 +138,12 @@ std::string CsvLine(const LoopDecision& decision) {
 }  // namespace
 
 void AppendDecision(const LoopDecision& decision, std::string* const bytes) {
-  const std::string message = decision.SerializeAsString();
-  uint64_t length = message.size();
-  while (length >= 0x80) {
-    bytes->push_back(static_cast<char>(0x80 | (length & 0x7f)));
-    length >>= 7;
-  }
-  bytes->push_back(static_cast<char>(length));
-  bytes->append(message);
+  AppendDelimited(decision, bytes);
 }
 
 absl::StatusOr<std::vector<LoopDecision>> ParseDecisions(
     const absl::string_view bytes) {
-  std::vector<LoopDecision> decisions;
-  size_t offset = 0;
-  while (offset < bytes.size()) {
-    const absl::string_view rest = bytes.substr(offset);
-    // A varint has at most ten bytes.
-    google::protobuf::io::CodedInputStream stream(
-        reinterpret_cast<const uint8_t*>(rest.data()),
-        static_cast<int>(std::min<size_t>(rest.size(), 10)));
-    uint64_t length = 0;
-    const bool has_length = stream.ReadVarint64(&length);
-    const size_t begin = static_cast<size_t>(stream.CurrentPosition());
-    if (!has_length || length > rest.size() - begin ||
-        length > static_cast<uint64_t>(std::numeric_limits<int>::max())) {
-      return absl::DataLossError(
-          absl::StrCat("decision record cut off at byte ", offset));
-    }
-    LoopDecision decision;
-    if (!decision.ParseFromArray(rest.data() + begin,
-                                 static_cast<int>(length))) {
-      return absl::DataLossError(
-          absl::StrCat("decision record at byte ", offset, " does not decode"));
-    }
-    decisions.push_back(decision);
-    offset += begin + static_cast<size_t>(length);
-  }
-  return decisions;
+  return ParseDelimited<LoopDecision>(bytes, "decision record");
 }
 
 std::string DecisionCsv(const std::vector<LoopDecision>& decisions) {

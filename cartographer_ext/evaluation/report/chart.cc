@@ -94,31 +94,30 @@ void Chart::Point(const Eigen::Vector2d& point, const std::string& style,
   body_.Close();
 }
 
-void Chart::Bar(const double left, const double right, const double height,
-                const std::string& style, const std::string& hover) {
-  if (!(height > y_.low)) return;
+void Chart::Rectangle(const double left, const double right,
+                      const double height, const double min_width,
+                      const std::string& style, const std::string& hover) {
   const Eigen::Vector2d low = ToPixels({left, y_.low});
   const Eigen::Vector2d high = ToPixels({right, height});
-  body_.Open("rect", {{"class", absl::StrCat("bar ", style)},
-                      {"x", Number(low.x(), 1)},
-                      {"y", Number(high.y(), 1)},
-                      {"width", Number(std::max(0.5, high.x() - low.x()), 1)},
-                      {"height", Number(low.y() - high.y(), 1)}});
+  body_.Open("rect",
+             {{"class", style},
+              {"x", Number(low.x(), 1)},
+              {"y", Number(high.y(), 1)},
+              {"width", Number(std::max(min_width, high.x() - low.x()), 1)},
+              {"height", Number(low.y() - high.y(), 1)}});
   if (!hover.empty()) body_.Element("title", {}, hover);
   body_.Close();
 }
 
+void Chart::Bar(const double left, const double right, const double height,
+                const std::string& style, const std::string& hover) {
+  if (!(height > y_.low)) return;
+  Rectangle(left, right, height, 0.5, absl::StrCat("bar ", style), hover);
+}
+
 void Chart::Band(const double left, const double right,
                  const std::string& style, const std::string& hover) {
-  const Eigen::Vector2d low = ToPixels({left, y_.low});
-  const Eigen::Vector2d high = ToPixels({right, y_.high});
-  body_.Open("rect", {{"class", absl::StrCat("band ", style)},
-                      {"x", Number(low.x(), 1)},
-                      {"y", Number(high.y(), 1)},
-                      {"width", Number(std::max(1.5, high.x() - low.x()), 1)},
-                      {"height", Number(low.y() - high.y(), 1)}});
-  if (!hover.empty()) body_.Element("title", {}, hover);
-  body_.Close();
+  Rectangle(left, right, y_.high, 1.5, absl::StrCat("band ", style), hover);
 }
 
 void Chart::VerticalMark(const double x, const std::string& label) {

@@ -57,6 +57,9 @@ class Chart {
 
  private:
   Eigen::Vector2d ToPixels(const Eigen::Vector2d& point) const;
+  // From the axis up to `height`; at least `min_width` pixels wide.
+  void Rectangle(double left, double right, double height, double min_width,
+                 const std::string& style, const std::string& hover);
 
   const std::string title_;
   const Axis x_, y_;

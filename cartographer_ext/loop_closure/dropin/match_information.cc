@@ -7,33 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "cartographer/mapping/2d/map_limits.h"
+#include "cartographer_ext/scan_matching/dropin/grid_cells.h"
 #include "cartographer_ext/scan_matching/occupied_space_cost.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
-namespace {
 
 using cartographer::mapping::Grid2D;
-
-// A Grid2D as OccupiedSpaceCost wants it.
-class GridCells {
- public:
-  explicit GridCells(const Grid2D& grid) : grid_(grid) {}
-  double resolution() const { return grid_.limits().resolution(); }
-  double max_x() const { return grid_.limits().max().x(); }
-  double max_y() const { return grid_.limits().max().y(); }
-  int num_rows() const { return grid_.limits().cell_limits().num_y_cells; }
-  int num_columns() const { return grid_.limits().cell_limits().num_x_cells; }
-  float Cost(const int row, const int column) const {
-    return grid_.GetCorrespondenceCost(Eigen::Array2i(column, row));
-  }
-
- private:
-  const Grid2D& grid_;
-};
-
-}  // namespace
+using scan_matching::GridCells;
 
 Eigen::Matrix3d MatchInformation(const Grid2D& grid,
                                  const cartographer::sensor::PointCloud& cloud,
@@ -47,7 +28,7 @@ Eigen::Matrix3d MatchInformation(const Grid2D& grid,
   for (const auto& point : cloud) {
     points.emplace_back(point.position.x(), point.position.y());
   }
-  const GridCells cells(grid);
+  const GridCells cells(&grid);
   scan_matching::OccupiedSpaceCost<GridCells> cost(&cells, std::move(points));
   const scan_matching::OccupiedSpaceSums sums = cost.Evaluate(pose);
   const double variance = sums.squares / static_cast<double>(cloud.size());

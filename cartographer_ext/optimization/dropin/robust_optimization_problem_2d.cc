@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/full_information.h"
 #include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
 #include "cartographer_ext/optimization/robust_solver.h"
 #include "glog/logging.h"
@@ -28,14 +29,6 @@ constexpr double kFrozenSigma = 1e-4;
 Pose2 ToPose2(const transform::Rigid2d& pose) {
   return Pose2(pose.translation().x(), pose.translation().y(),
                pose.normalized_angle());
-}
-
-Eigen::Matrix3d Information(const double translation_weight,
-                            const double rotation_weight) {
-  return Eigen::Vector3d(translation_weight * translation_weight,
-                         translation_weight * translation_weight,
-                         rotation_weight * rotation_weight)
-      .asDiagonal();
 }
 
 // Factor from the relative weights of the problem to real ones: the median loop
@@ -142,8 +135,9 @@ RobustOptimizationProblem2D::Problem RobustOptimizationProblem2D::MakeProblem(
     edge.from = submap->second;
     edge.to = node->second;
     edge.measurement = ToPose2(transform::Project2D(constraint.pose.zbar_ij));
-    edge.information = Information(scale * constraint.pose.translation_weight,
-                                   scale * constraint.pose.rotation_weight);
+    edge.information =
+        InformationOfWeights(scale * constraint.pose.translation_weight,
+                             scale * constraint.pose.rotation_weight);
     edge.is_loop = constraint.tag == Constraint::INTER_SUBMAP;
     graph.edges.push_back(edge);
     problem.constraint_of_edge.push_back(i);
@@ -165,8 +159,9 @@ RobustOptimizationProblem2D::Problem RobustOptimizationProblem2D::MakeProblem(
       edge.to = vertex_of_node.at(second.id);
       edge.measurement = ToPose2(first.data.local_pose_2d.inverse() *
                                  second.data.local_pose_2d);
-      edge.information = Information(scale * local_slam_translation_weight_,
-                                     scale * local_slam_rotation_weight_);
+      edge.information =
+          InformationOfWeights(scale * local_slam_translation_weight_,
+                               scale * local_slam_rotation_weight_);
       problem.neighbours.push_back(graph.edges.size());
       graph.edges.push_back(edge);
       problem.constraint_of_edge.push_back(-1);
@@ -177,7 +172,8 @@ RobustOptimizationProblem2D::Problem RobustOptimizationProblem2D::MakeProblem(
     edge.from = 0;
     edge.to = vertex;
     edge.measurement = Between(graph.poses[0], graph.poses[vertex]);
-    edge.information = Information(1. / kFrozenSigma, 1. / kFrozenSigma);
+    edge.information =
+        InformationOfWeights(1. / kFrozenSigma, 1. / kFrozenSigma);
     graph.edges.push_back(edge);
     problem.constraint_of_edge.push_back(-1);
   }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "cartographer_ext/scan_matching/dropin/grid_cells.h"
 #include "cartographer_ext/scan_matching/scan_match.h"
 #include "glog/logging.h"
 
@@ -16,25 +17,6 @@ namespace mapping = cartographer::mapping;
 namespace sensor = cartographer::sensor;
 namespace transform = cartographer::transform;
 using StockOptions = mapping::scan_matching::proto::CeresScanMatcherOptions2D;
-
-// A probability grid as the cost functions want it. Host indices are (column,
-// row).
-class GridCells {
- public:
-  explicit GridCells(const mapping::Grid2D* const grid) : grid_(*grid) {}
-
-  double resolution() const { return grid_.limits().resolution(); }
-  double max_x() const { return grid_.limits().max().x(); }
-  double max_y() const { return grid_.limits().max().y(); }
-  int num_rows() const { return grid_.limits().cell_limits().num_y_cells; }
-  int num_columns() const { return grid_.limits().cell_limits().num_x_cells; }
-  float Cost(const int row, const int column) const {
-    return grid_.GetCorrespondenceCost(Eigen::Array2i(column, row));
-  }
-
- private:
-  const mapping::Grid2D& grid_;
-};
 
 Pose2 ToPose2(const transform::Rigid2d& pose) {
   return Pose2(pose.translation().x(), pose.translation().y(),
