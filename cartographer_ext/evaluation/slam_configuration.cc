@@ -16,6 +16,8 @@
 #include "cartographer/mapping/map_builder_interface.h"
 #include "cartographer/mapping/trajectory_builder_interface.h"
 #include "cartographer_ext/evaluation/fatal_guard.h"
+#include "cartographer_ext/evaluation/lua_value.h"
+#include "cartographer_ext/evaluation/option_types.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -134,6 +136,27 @@ void ConstructOrDie(const SlamConfiguration& configuration) {
   _exit(0);
 }
 
+// What the host's reader may pass over or end the program for without a name.
+// Whatever else is wrong with the code, the host says better.
+absl::Status CheckTypes(const std::vector<std::string>& directories,
+                        const std::string& name, const std::string& code) {
+  const auto table = EvaluateLua(code, name, directories);
+  if (!table.ok() || !table->is_object()) return absl::OkStatus();
+  using cartographer::mapping::proto::MapBuilderOptions;
+  using cartographer::mapping::proto::TrajectoryBuilderOptions;
+  const std::pair<const char*, const google::protobuf::Descriptor*> parts[] = {
+      {"map_builder", MapBuilderOptions::descriptor()},
+      {"trajectory_builder", TrajectoryBuilderOptions::descriptor()}};
+  for (const auto& part : parts) {
+    const auto found = table->find(part.first);
+    if (found == table->end() || !found->is_object()) continue;
+    const absl::Status good =
+        CheckOptionTypes(*found, *part.second, part.first);
+    if (!good.ok()) return good;
+  }
+  return absl::OkStatus();
+}
+
 absl::Status Explain(const absl::Status& status, const std::string& name,
                      const std::vector<std::string>& directories) {
   return absl::Status(
@@ -156,8 +179,9 @@ absl::StatusOr<SlamConfiguration> LoadSlamConfiguration(
 absl::StatusOr<SlamConfiguration> ParseSlamConfiguration(
     const std::vector<std::string>& directories, const std::string& name,
     const std::string& code) {
-  const absl::Status valid = TryInChildProcess(
-      [&] { ConstructOrDie(ParseOrDie(directories, name, code)); });
+  absl::Status valid = CheckTypes(directories, name, code);
+  valid.Update(TryInChildProcess(
+      [&] { ConstructOrDie(ParseOrDie(directories, name, code)); }));
   if (!valid.ok()) return Explain(valid, name, directories);
   return ParseOrDie(directories, name, code);
 }

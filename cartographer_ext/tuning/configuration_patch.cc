@@ -10,9 +10,9 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 #include "cartographer_ext/evaluation/option_blocks.h"
 #include "cartographer_ext/options/option_description.h"
-#include "cartographer_ext/tuning/lua_value.h"
 
 namespace cartographer_ext {
 namespace tuning {
@@ -137,7 +137,7 @@ absl::StatusOr<BaseConfiguration> BaseConfiguration::Load(
   BaseConfiguration result;
   result.name_ = basename;
   result.directories_ = directories;
-  auto code = ReadFromDirectories(basename, directories);
+  auto code = evaluation::ReadFromDirectories(basename, directories);
   if (!code.ok()) return code.status();
   result.code_ = *std::move(code);
   auto parsed =
@@ -157,7 +157,8 @@ absl::StatusOr<Point> BaseConfiguration::Values(
   for (const std::string& root : roots) {
     absl::StrAppend(&code, root, " = ", root, ",\n");
   }
-  const auto tables = EvaluateLua(code + "}\n", name_, directories_);
+  const auto tables =
+      evaluation::EvaluateLua(code + "}\n", name_, directories_);
   if (!tables.ok()) return tables.status();
   Point point;
   for (const Parameter& parameter : parameters) {
@@ -229,7 +230,7 @@ absl::Status BaseConfiguration::CheckParameters(
     const bool wants_number = parameter.kind != Parameter::Kind::kChoice;
     if (wants_number && !value.is_number()) {
       return absl::InvalidArgumentError(
-          absl::StrCat(parameter.key, " is ", ToLua(value),
+          absl::StrCat(parameter.key, " is ", evaluation::ToLua(value),
                        " in the configuration; give choices, not a range"));
     }
     bool changes = false;
@@ -238,7 +239,7 @@ absl::Status BaseConfiguration::CheckParameters(
           directories_, name_, CodeWith({{parameter.key, probe}}));
       if (!configuration.ok()) {
         return absl::InvalidArgumentError(
-            absl::StrCat(parameter.key, " = ", ToLua(probe), ": ",
+            absl::StrCat(parameter.key, " = ", evaluation::ToLua(probe), ": ",
                          configuration.status().message()));
       }
       changes |= Bytes(*configuration) != base_bytes;
@@ -256,8 +257,8 @@ std::string BaseConfiguration::CodeWith(
     const nlohmann::json& assignment) const {
   std::string code = AsFunction(code_) + kAssignFunction;
   for (const auto& item : assignment.items()) {
-    absl::StrAppend(&code, "assign(\"", item.key(), "\", ", ToLua(item.value()),
-                    ")\n");
+    absl::StrAppend(&code, "assign(\"", item.key(), "\", ",
+                    evaluation::ToLua(item.value()), ")\n");
   }
   return code + "return configuration\n";
 }

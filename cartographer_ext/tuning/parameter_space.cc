@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 
 namespace cartographer_ext {
 namespace tuning {
@@ -89,7 +89,8 @@ class EntryParser {
       }
       if (std::find(parameter_.choices.begin(), parameter_.choices.end(),
                     choice) != parameter_.choices.end()) {
-        return Error(absl::StrCat("has the choice ", ToLua(choice), " twice"));
+        return Error(absl::StrCat("has the choice ", evaluation::ToLua(choice),
+                                  " twice"));
       }
       parameter_.choices.push_back(choice);
     }

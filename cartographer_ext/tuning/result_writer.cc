@@ -10,7 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "absl/types/optional.h"
-#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 #include "cartographer_ext/tuning/sensitivity.h"
 
 namespace cartographer_ext {
@@ -142,11 +142,12 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
   std::set<std::string> copied;
   std::string assignments;
   for (const KeyResult& key : result.keys) {
-    absl::StrAppend(&assignments, "\n-- Before: ", ToLua(key.before), "; ",
+    absl::StrAppend(&assignments,
+                    "\n-- Before: ", evaluation::ToLua(key.before), "; ",
                     Gain(key, result.best, context.inputs.size()),
                     "; confidence: ", Confidence(key, context.inputs.size()),
                     "\n", CopyTables(key.key, &copied), key.key, " = ",
-                    ToLua(key.after), "\n");
+                    evaluation::ToLua(key.after), "\n");
   }
   absl::StrAppend(&text, copied.empty() ? "" : kCopyFunction, assignments);
   return text;
@@ -201,10 +202,11 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
                     "Nothing was better than the configuration as it is.\n");
   }
   for (const KeyResult& key : result.keys) {
-    absl::StrAppend(
-        &text, "\n", key.key, "\n  ", ToLua(key.before), " -> ",
-        ToLua(key.after), ", ", Gain(key, result.best, context.inputs.size()),
-        ", confidence: ", Confidence(key, context.inputs.size()), "\n");
+    absl::StrAppend(&text, "\n", key.key, "\n  ", evaluation::ToLua(key.before),
+                    " -> ", evaluation::ToLua(key.after), ", ",
+                    Gain(key, result.best, context.inputs.size()),
+                    ", confidence: ", Confidence(key, context.inputs.size()),
+                    "\n");
   }
   std::vector<Point> points;
   std::vector<double> objectives;

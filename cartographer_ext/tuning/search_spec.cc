@@ -14,7 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
-#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 
 namespace cartographer_ext {
 namespace tuning {
@@ -137,9 +137,11 @@ absl::StatusOr<SearchSpec> ReadSearchSpec(const std::string& filename) {
   const size_t slash = filename.find_last_of('/');
   const std::string directory =
       slash == std::string::npos ? "." : filename.substr(0, slash + 1);
-  const auto code = ReadFromDirectories(BaseName(filename), {directory});
+  const auto code =
+      evaluation::ReadFromDirectories(BaseName(filename), {directory});
   if (!code.ok()) return InFile(filename, code.status());
-  const auto table = EvaluateLua(*code, BaseName(filename), {directory});
+  const auto table =
+      evaluation::EvaluateLua(*code, BaseName(filename), {directory});
   if (!table.ok()) return table.status();
   SearchSpec spec;
   const absl::Status status = ParseInto(*table, &spec);

@@ -13,8 +13,8 @@
 #include "cairo-svg.h"
 #include "cairo.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 #include "cartographer_ext/io/picture.h"
-#include "cartographer_ext/tuning/lua_value.h"
 #include "cartographer_ext/tuning/sensitivity.h"
 
 namespace cartographer_ext {
@@ -131,7 +131,8 @@ class Cell {
     const double bottom = kTop + Height() + 14.;
     if (parameter_.kind == Parameter::Kind::kChoice) {
       for (const Value& choice : parameter_.choices) {
-        Text(X(choice) - 12., bottom, ToLua(choice).substr(0, 12), 10.);
+        Text(X(choice) - 12., bottom, evaluation::ToLua(choice).substr(0, 12),
+             10.);
       }
     } else {
       Text(kLeft, bottom, absl::StrFormat("%.4g", parameter_.low), 10.);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/objective.h"
 
-#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -16,8 +16,8 @@ TEST(ObjectiveTest, ReadsWeights) {
   const auto name = ParseWeights(nlohmann::json("ate"));
   ASSERT_TRUE(name.ok());
   EXPECT_EQ(name->at("ate"), 1.);
-  const auto table = ParseWeights(
-      *EvaluateLua("return { relations = 1, cpu_seconds = 0.01 }", "t", {}));
+  const auto table = ParseWeights(*evaluation::EvaluateLua(
+      "return { relations = 1, cpu_seconds = 0.01 }", "t", {}));
   ASSERT_TRUE(table.ok());
   EXPECT_EQ(table->at("cpu_seconds"), 0.01);
   const auto flag = ParseWeights(std::string("relations:2,wall_seconds"));

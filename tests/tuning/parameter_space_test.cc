@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/parameter_space.h"
 
-#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -14,7 +14,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 absl::StatusOr<std::vector<Parameter>> Parse(const std::string& lua) {
-  return ParseParameters(*EvaluateLua("return { " + lua + " }", "t", {}));
+  return ParseParameters(
+      *evaluation::EvaluateLua("return { " + lua + " }", "t", {}));
 }
 
 Parameter One(const std::string& lua) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/result_writer.h"
 
-#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 #include "cartographer_ext/tuning/sensitivity_plot.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -72,10 +72,10 @@ TEST(ResultWriterTest, TheLuaFileSetsTheKeys) {
                               "medium"));
   EXPECT_THAT(text, HasSubstr("confidence: not measured"));
   // Tables of the block that the configuration leaves out are made.
-  const auto value =
-      EvaluateLua("A = { score = 0.5, cartographer_ext = { other = 3 } }\n" +
-                      text + "return A\n",
-                  "t", {});
+  const auto value = evaluation::EvaluateLua(
+      "A = { score = 0.5, cartographer_ext = { other = 3 } }\n" + text +
+          "return A\n",
+      "t", {});
   ASSERT_TRUE(value.ok()) << value.status();
   EXPECT_EQ((*value)["score"], 0.625);
   EXPECT_EQ((*value)["cartographer_ext"]["fusion"]["window"], 20);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 
 #include <limits>
 
@@ -9,7 +9,7 @@
 #include "tests/tuning/temporary_file.h"
 
 namespace cartographer_ext {
-namespace tuning {
+namespace evaluation {
 namespace {
 
 using testing::HasSubstr;
@@ -94,5 +94,5 @@ TEST(LuaValueTest, WritesScalarsThatReadBack) {
 }
 
 }  // namespace
-}  // namespace tuning
+}  // namespace evaluation
 }  // namespace cartographer_ext

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/tuning/lua_value.h"
+#include "cartographer_ext/evaluation/lua_value.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@
 #include "lua.hpp"
 
 namespace cartographer_ext {
-namespace tuning {
+namespace evaluation {
 namespace {
 
 constexpr int kInstructionsBetweenChecks = 1000000;
@@ -243,5 +243,5 @@ std::string ToLua(const nlohmann::json& value) {
   return "nil";
 }
 
-}  // namespace tuning
+}  // namespace evaluation
 }  // namespace cartographer_ext

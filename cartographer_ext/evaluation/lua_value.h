@@ -4,8 +4,8 @@
 // Lua code to plain values. The host's parameter dictionary ends the program
 // when something is wrong and wants every key read once; a search wants to look
 // at a configuration and to tell the user what is wrong with his search file.
-#ifndef CARTOGRAPHER_EXT_TUNING_LUA_VALUE_H_
-#define CARTOGRAPHER_EXT_TUNING_LUA_VALUE_H_
+#ifndef CARTOGRAPHER_EXT_EVALUATION_LUA_VALUE_H_
+#define CARTOGRAPHER_EXT_EVALUATION_LUA_VALUE_H_
 
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@
 #include "nlohmann/json.hpp"
 
 namespace cartographer_ext {
-namespace tuning {
+namespace evaluation {
 
 // Runs `code`, which is called `name` in messages, and returns the value that
 // it returns: a table with keys 1 to n as an array, one with string keys as an
@@ -37,7 +37,7 @@ absl::StatusOr<std::string> ReadFromDirectories(
 // "auto".
 std::string ToLua(const nlohmann::json& value);
 
-}  // namespace tuning
+}  // namespace evaluation
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_TUNING_LUA_VALUE_H_
+#endif  // CARTOGRAPHER_EXT_EVALUATION_LUA_VALUE_H_
