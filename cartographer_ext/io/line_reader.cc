@@ -103,7 +103,10 @@ absl::Status LineReader::Fill() {
       ReadSome(content_.get(), buffer_.data() + end_, kReadSize, filename_);
   if (!size.ok()) return size.status();
   end_ += *size;
-  if (*size == 0) at_end_ = true;
+  if (*size == 0) {
+    at_end_ = true;
+    content_.reset();  // xz may hold a dictionary of 64 MiB.
+  }
   return absl::OkStatus();
 }
 
