@@ -14,6 +14,7 @@
 #include "cartographer_ext/evaluation/back_end_metrics.h"
 #include "cartographer_ext/evaluation/host_types.h"
 #include "cartographer_ext/evaluation/metrics_collector.h"
+#include "cartographer_ext/evaluation/online_poses.h"
 #include "cartographer_ext/evaluation/resource_usage.h"
 #include "cartographer_ext/evaluation/scan_conversion.h"
 #include "cartographer_ext/evaluation/scan_trajectory.h"
@@ -27,6 +28,7 @@ namespace {
 using cartographer::mapping::MapBuilderInterface;
 using cartographer::mapping::PoseGraphInterface;
 using cartographer::mapping::TrajectoryBuilderInterface;
+using cartographer::mapping::proto::TrajectoryBuilderOptions;
 using SensorId = TrajectoryBuilderInterface::SensorId;
 
 constexpr char kScanId[] = "scan";
@@ -140,12 +142,31 @@ std::vector<NodePoses> CollectNodePoses(const PoseGraphInterface& pose_graph,
   return result;
 }
 
+// Loads the map to start from and makes the run begin in it.
+absl::Status StartFrom(const StartingState& state, SlamRun* const run,
+                       TrajectoryBuilderOptions* const options) {
+  const auto ids = LoadStartingState(state, run->map_builder.get());
+  if (!ids.ok()) return ids.status();
+  const PoseGraphInterface& pose_graph = *run->map_builder->pose_graph();
+  const auto nodes = pose_graph.GetTrajectoryNodePoses();
+  run->loaded_nodes = static_cast<int64_t>(nodes.size());
+  run->loaded_submaps =
+      static_cast<int64_t>(pose_graph.GetAllSubmapPoses().size());
+  if (!state.initial_pose.has_value()) return absl::OkStatus();
+  return SetInitialPose(*state.initial_pose, (*nodes.begin()).id.trajectory_id,
+                        pose_graph, options);
+}
+
 void CountResults(const PoseGraphInterface& pose_graph, SlamRun* const run) {
   run->nodes = pose_graph.GetTrajectoryNodes().size();
   run->submaps = pose_graph.GetAllSubmapPoses().size();
   for (const auto& constraint : pose_graph.constraints()) {
     if (constraint.tag == PoseGraphInterface::Constraint::INTER_SUBMAP) {
       ++run->inter_constraints;
+      if (constraint.submap_id.trajectory_id !=
+          constraint.node_id.trajectory_id) {
+        ++run->constraints_to_loaded;
+      }
     } else {
       ++run->intra_constraints;
     }
@@ -208,6 +229,13 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   }
   run.map_builder =
       cartographer::mapping::CreateMapBuilder(map_builder_options);
+  TrajectoryBuilderOptions trajectory_options =
+      configuration.trajectory_builder_options;
+  if (!options.state.filename.empty()) {
+    const absl::Status started =
+        StartFrom(options.state, &run, &trajectory_options);
+    if (!started.ok()) return started;
+  }
   std::set<SensorId> sensor_ids = {{SensorId::SensorType::RANGE, kScanId}};
   if (use_odometry) {
     sensor_ids.insert({SensorId::SensorType::ODOMETRY, kOdometryId});
@@ -215,16 +243,35 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   if (use_imu) sensor_ids.insert({SensorId::SensorType::IMU, kImuId});
   // Called from within AddSensorData, that is in this thread.
   auto* const local_scan_poses = &run.local_scan_poses;
+  // Outlives the run in the callbacks.
+  const auto online = std::make_shared<OnlinePoses>();
   run.trajectory_id = run.map_builder->AddTrajectoryBuilder(
-      sensor_ids, configuration.trajectory_builder_options,
-      [local_scan_poses](
+      sensor_ids, trajectory_options,
+      [local_scan_poses, online](
           int /*trajectory_id*/, const cartographer::common::Time time,
           const cartographer::transform::Rigid3d& local_pose,
           const cartographer::sensor::RangeData& /*range_data_in_local*/,
-          std::unique_ptr<
-              const TrajectoryBuilderInterface::InsertionResult> /*inserted*/) {
+          std::unique_ptr<const TrajectoryBuilderInterface::InsertionResult>
+              inserted) {
         local_scan_poses->push_back(
             {FromHostTime(time), FromHostPose(local_pose)});
+        if (inserted != nullptr) {
+          online->AddNode(inserted->node_id.node_index, FromHostTime(time));
+        }
+      });
+  PoseGraphInterface* const pose_graph = run.map_builder->pose_graph();
+  const int trajectory_id = run.trajectory_id;
+  online->Start(
+      FromHostPose(pose_graph->GetLocalToGlobalTransform(trajectory_id)));
+  pose_graph->SetGlobalSlamOptimizationCallback(
+      [online, pose_graph, trajectory_id](
+          const std::map<int, cartographer::mapping::SubmapId>& /*submaps*/,
+          const std::map<int, cartographer::mapping::NodeId>& nodes) {
+        const auto newest = nodes.find(trajectory_id);
+        if (newest == nodes.end()) return;
+        online->AddOptimization(
+            newest->second.node_index,
+            FromHostPose(pose_graph->GetLocalToGlobalTransform(trajectory_id)));
       });
   Feeder feeder(configuration.sensors, use_odometry, use_imu,
                 run.map_builder->GetTrajectoryBuilder(run.trajectory_id), &run);
@@ -269,7 +316,7 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   if (options.on_progress) options.on_progress(progress);
   run.front_end_cpu_seconds = ThreadCpuSeconds() - thread_cpu_start;
   const auto optimization_start = std::chrono::steady_clock::now();
-  run.map_builder->pose_graph()->RunFinalOptimization();
+  pose_graph->RunFinalOptimization();
   run.final_optimization_wall_seconds = SecondsSince(optimization_start);
 
   run.switched_loops = optimization::LastSwitchedLoops();
@@ -286,10 +333,13 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
     run.warnings.push_back(
         absl::StrCat(recorder->num_left_out(), " decision records left out"));
   }
-  CountResults(*run.map_builder->pose_graph(), &run);
+  CountResults(*pose_graph, &run);
+  run.online_scan_poses = online->At(run.local_scan_poses);
   run.global_scan_poses = GlobalScanPoses(
-      run.local_scan_poses,
-      CollectNodePoses(*run.map_builder->pose_graph(), run.trajectory_id));
+      run.local_scan_poses, CollectNodePoses(*pose_graph, run.trajectory_id));
+  if (run.global_scan_poses.empty()) {
+    run.global_scan_poses = run.online_scan_poses;
+  }
 
   run.wall_seconds = SecondsSince(wall_start);
   run.cpu_seconds = ProcessCpuSeconds() - cpu_start;

@@ -28,6 +28,7 @@
 #include "absl/status/statusor.h"
 #include "cartographer/mapping/map_builder_interface.h"
 #include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/evaluation/starting_state.h"
 #include "cartographer_ext/evaluation/trajectory.h"
 #include "cartographer_ext/evaluation/wrong_loops.h"
 #include "cartographer_ext/io/sensor_source.h"
@@ -50,6 +51,8 @@ struct SlamProgress {
 struct SlamRunOptions {
   // Overrides the configuration when positive.
   int num_background_threads = 0;
+  // The map to start from, if any.
+  StartingState state;
   // Feeding waits while the back end's queue is longer.
   int max_queue_length = 1000;
   // Wrong loops injected on the way, to test the back end; none by default.
@@ -72,19 +75,28 @@ struct SlamRun {
   int64_t other_readings_left_out = 0;
   double sensor_seconds = 0.;  // first to last scan
 
-  // What came out.
+  // What it started from.
+  int64_t loaded_nodes = 0;
+  int64_t loaded_submaps = 0;
+
+  // What came out, with what was loaded.
   int64_t nodes = 0;
   int64_t submaps = 0;
   int64_t inter_constraints = 0;
   int64_t intra_constraints = 0;
+  // Of the inter constraints those between the recording and what was loaded.
+  int64_t constraints_to_loaded = 0;
   std::vector<GraphConstraint> wrong_loops;  // injected
   // Verdicts of the robust optimisation problem in the last optimisation and
   // what it took in all of them; `optimizations` is 0 without it.
   optimization::SwitchedLoops switched_loops;
   // (local <- tracking) and (map <- tracking) at every scan that local SLAM
-  // matched.
+  // matched. Where the configuration trims nodes (pure localisation) nothing is
+  // left to optimise in the end, and the global ones are the online ones.
   std::vector<StampedPose> local_scan_poses;
   std::vector<StampedPose> global_scan_poses;
+  // (map <- tracking) as it was known when the scan came, see online_poses.h.
+  std::vector<StampedPose> online_scan_poses;
 
   // What it took. CPU seconds count all threads.
   double wall_seconds = 0.;
@@ -109,7 +121,8 @@ struct SlamRun {
   std::vector<std::string> warnings;
 };
 
-// Errors: the source's own, a recording without scans, IMU wanted but absent.
+// Errors: the source's own, a recording without scans, IMU wanted but absent, a
+// map to start from that cannot be read.
 absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
                                 io::SensorSource* source,
                                 const SlamRunOptions& options);

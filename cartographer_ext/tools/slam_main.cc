@@ -5,13 +5,16 @@
 // cartographer_ext_slam: a recording in, a map and numbers out.
 #include <malloc.h>
 
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
@@ -57,6 +60,17 @@ DEFINE_string(trajectory_filename, "",
 DEFINE_string(local_trajectory_filename, "",
               "Output: pose at every scan as local SLAM found it, without loop "
               "closure (TUM).");
+DEFINE_string(online_trajectory_filename, "",
+              "Output: pose at every scan as it was known when the scan came "
+              "(TUM), with the jumps that the optimisation made.");
+DEFINE_string(load_state_filename, "",
+              "Map (.pbstream) to start from: to localise in it, or to go on "
+              "mapping.");
+DEFINE_bool(load_frozen_state, true, "Nothing of that map moves any more.");
+DEFINE_string(
+    initial_pose, "",
+    "Where the robot is in that map at the first scan, as X,Y,DEGREES "
+    "(metres). Without it the place is searched in the whole map.");
 DEFINE_string(decisions_filename, "",
               "Output: CSV of the loop closures that were accepted, and which "
               "of them the optimisation has switched off.");
@@ -101,7 +115,34 @@ constexpr char kDescription[] =
 
 The configuration is Cartographer's Lua (-configuration_directory,
 -configuration_basename); stock.lua holds Cartographer's own values. Judge the
-result with cartographer_ext_evaluate.)";
+result with cartographer_ext_evaluate.
+
+Localise in a map that is finished (the pose of every scan as it was known then,
+judged by cartographer_ext_evaluate_localization):
+  cartographer_ext_slam -input_filename=later.clf -load_state_filename=run.pbstream
+      -configuration_basename=localization.lua
+      -online_trajectory_filename=later.tum [-initial_pose=12.5,3,90])";
+
+absl::StatusOr<evaluation::StartingState> ReadStartingState() {
+  evaluation::StartingState state;
+  state.filename = FLAGS_load_state_filename;
+  state.frozen = FLAGS_load_frozen_state;
+  if (FLAGS_initial_pose.empty()) return state;
+  const std::vector<std::string> words =
+      absl::StrSplit(FLAGS_initial_pose, ',');
+  double values[3];
+  bool valid = words.size() == 3;
+  for (size_t i = 0; valid && i < 3; ++i) {
+    valid = absl::SimpleAtod(words[i], &values[i]) && std::isfinite(values[i]);
+  }
+  if (!valid) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "-initial_pose \"", FLAGS_initial_pose, "\" is not X,Y,DEGREES"));
+  }
+  state.initial_pose =
+      Pose2(values[0], values[1], NormalizeAngle(DegToRad(values[2])));
+  return state;
+}
 
 absl::Status ApplyFlags(evaluation::SensorSettings* const sensors) {
   if (!FLAGS_odometry_source.empty()) {
@@ -166,6 +207,13 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
   json["odometry_readings"] = run.odometry_readings;
   json["imu_readings"] = run.imu_readings;
   json["sensor_seconds"] = run.sensor_seconds;
+  if (!FLAGS_load_state_filename.empty()) {
+    json["loaded"] = {{"filename", FLAGS_load_state_filename},
+                      {"frozen", FLAGS_load_frozen_state},
+                      {"nodes", run.loaded_nodes},
+                      {"submaps", run.loaded_submaps},
+                      {"constraints", run.constraints_to_loaded}};
+  }
   json["nodes"] = run.nodes;
   json["submaps"] = run.submaps;
   json["constraints"] = {{"inter", run.inter_constraints},
@@ -225,8 +273,8 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
     const absl::Status decisions = evaluation::WriteDecisionsBeside(
         FLAGS_pbstream_filename, run.decisions);
     if (!decisions.ok()) return decisions;
-    const absl::Status matches = evaluation::WriteMatchesBeside(
-        FLAGS_pbstream_filename, run.matches);
+    const absl::Status matches =
+        evaluation::WriteMatchesBeside(FLAGS_pbstream_filename, run.matches);
     if (!matches.ok()) return matches;
     if (!FLAGS_keep_switched_loops && !run.switched_loops.off.empty()) {
       const absl::Status removed =
@@ -248,6 +296,11 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
   if (!FLAGS_local_trajectory_filename.empty()) {
     const absl::Status status = io::WriteTumTrajectory(
         run.local_scan_poses, FLAGS_local_trajectory_filename);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_online_trajectory_filename.empty()) {
+    const absl::Status status = io::WriteTumTrajectory(
+        run.online_scan_poses, FLAGS_online_trajectory_filename);
     if (!status.ok()) return status;
   }
   const bool wants_map =
@@ -279,13 +332,11 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
 }
 
 absl::Status Run() {
-  std::vector<std::string> outputs = {FLAGS_pbstream_filename,
-                                      FLAGS_picture_filename,
-                                      FLAGS_trajectory_filename,
-                                      FLAGS_local_trajectory_filename,
-                                      FLAGS_decisions_filename,
-                                      FLAGS_switched_loops_filename,
-                                      FLAGS_json};
+  std::vector<std::string> outputs = {
+      FLAGS_pbstream_filename,          FLAGS_picture_filename,
+      FLAGS_trajectory_filename,        FLAGS_local_trajectory_filename,
+      FLAGS_online_trajectory_filename, FLAGS_decisions_filename,
+      FLAGS_switched_loops_filename,    FLAGS_json};
   if (!FLAGS_map_filestem.empty()) {
     outputs.push_back(FLAGS_map_filestem + ".pgm");
     outputs.push_back(FLAGS_map_filestem + ".yaml");
@@ -300,6 +351,9 @@ absl::Status Run() {
   if (!configuration.ok()) return configuration.status();
   const absl::Status applied = ApplyFlags(&configuration->sensors);
   if (!applied.ok()) return applied;
+
+  auto state = ReadStartingState();
+  if (!state.ok()) return state.status();
 
   io::SensorSourceOptions source_options =
       evaluation::ToSourceOptions(configuration->sensors);
@@ -319,6 +373,7 @@ absl::Status Run() {
   auto progress =
       std::make_unique<Progress>("mapping", (*source)->info().num_scans);
   evaluation::SlamRunOptions run_options;
+  run_options.state = *std::move(state);
   run_options.num_background_threads = FLAGS_num_background_threads;
   run_options.wrong_loops.count = FLAGS_wrong_loops;
   run_options.wrong_loops.seed = FLAGS_wrong_loops_seed;
@@ -366,6 +421,9 @@ int main(int argc, char** argv) {
   if (FLAGS_num_background_threads < 0 || FLAGS_wrong_loops < 0) {
     return tools::UsageError(
         "-num_background_threads and -wrong_loops must not be negative");
+  }
+  if (!FLAGS_initial_pose.empty() && FLAGS_load_state_filename.empty()) {
+    return tools::UsageError("-initial_pose needs -load_state_filename");
   }
   return tools::ExitCode(Run());
 }

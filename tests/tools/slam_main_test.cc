@@ -50,6 +50,48 @@ TEST(SlamMainTest, WritesMapTrajectoriesAndNumbers) {
   EXPECT_GE(std::count(trajectory.begin(), trajectory.end(), '\n'), 249);
 }
 
+TEST(SlamMainTest, LocalizesInAMap) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 300);
+  ASSERT_EQ(RunCommand("slam", {"-input_filename", folder / "room.clf",
+                                "-pbstream_filename", folder / "map.pbstream"})
+                .exit_code,
+            0);
+  const CommandResult result = RunCommand(
+      "slam",
+      {"-input_filename", folder / "room.clf", "-configuration_basename",
+       "localization.lua", "-load_state_filename", folder / "map.pbstream",
+       "-initial_pose", "0,0,0", "-trajectory_filename", folder / "all.tum",
+       "-online_trajectory_filename", folder / "online.tum", "-json",
+       folder / "slam.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto json = ParseJson(ReadFile(folder / "slam.json"));
+  ASSERT_TRUE(json.is_object());
+  EXPECT_EQ(json["loaded"]["frozen"], true);
+  EXPECT_GT(json["loaded"]["nodes"], 50);
+  EXPECT_GE(json["loaded"]["submaps"], 1);
+  const std::string online = ReadFile(folder / "online.tum");
+  EXPECT_GE(std::count(online.begin(), online.end(), '\n'), 299);
+  EXPECT_EQ(online, ReadFile(folder / "all.tum"));
+
+  for (const char* pose : {"1,2", "1,2,x", "1,2,3,4", "nan,0,0"}) {
+    const CommandResult wrong = RunCommand(
+        "slam", {"-input_filename", folder / "room.clf", "-load_state_filename",
+                 folder / "map.pbstream", "-initial_pose", pose});
+    EXPECT_EQ(wrong.exit_code, 1);
+    EXPECT_THAT(wrong.error, HasSubstr("is not X,Y,DEGREES"));
+  }
+  EXPECT_EQ(RunCommand("slam", {"-input_filename", folder / "room.clf",
+                                "-initial_pose", "0,0,0"})
+                .exit_code,
+            2);
+  const CommandResult missing =
+      RunCommand("slam", {"-input_filename", folder / "room.clf",
+                          "-load_state_filename", folder / "no.pbstream"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.error, HasSubstr("no.pbstream"));
+}
+
 TEST(SlamMainTest, JsonOnStandardOutputStandsAlone) {
   const TemporaryFolder folder;
   WriteRoomLog(folder / "room.clf", 30);
