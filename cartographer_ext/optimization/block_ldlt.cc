@@ -175,6 +175,28 @@ void BlockLdlt::Analyze(const int size,
   diagonal_.resize(size);
 }
 
+bool BlockLdlt::Extend(const std::vector<std::pair<int, int>>& pairs) {
+  std::vector<Slot> slots;
+  for (const std::pair<int, int>& pair : pairs) {
+    const int a = position_[pair.first], b = position_[pair.second];
+    const auto begin = rows_.begin() + starts_[std::min(a, b)];
+    const auto end = rows_.begin() + starts_[std::min(a, b) + 1];
+    const auto it = std::lower_bound(begin, end, std::max(a, b));
+    if (it == end || *it != std::max(a, b)) return false;
+    Slot slot;
+    slot.index = it - rows_.begin();
+    slot.transpose = a < b;
+    slots.push_back(slot);
+  }
+  for (const Slot& slot : slots) {
+    matrix_of_pair_.push_back(slot_of_matrix_.size());
+    slot_of_matrix_.push_back(slot.index);
+    slots_.push_back(slot);
+  }
+  matrix_.resize(slot_of_matrix_.size());
+  return true;
+}
+
 void BlockLdlt::SetZero() {
   for (Eigen::Matrix3d& block : matrix_) block.setZero();
   for (Eigen::Matrix3d& block : diagonal_) block.setZero();
@@ -196,7 +218,7 @@ bool BlockLdlt::Factorize(const double lambda) {
   const int n = size();
   for (Eigen::Matrix3d& block : blocks_) block.setZero();
   for (size_t k = 0; k != matrix_.size(); ++k) {
-    blocks_[slot_of_matrix_[k]] = matrix_[k];
+    blocks_[slot_of_matrix_[k]] += matrix_[k];
   }
   // Left-looking by columns. A finished column waits in the list of the row it
   // reaches next.

@@ -53,6 +53,9 @@ class BlockLdlt {
  public:
   void Analyze(int size, const std::vector<std::pair<int, int>>& pairs,
                const std::vector<int>& groups);
+  // Appends pairs if the fill has room for all of them; false, and nothing has
+  // changed, if it has not.
+  bool Extend(const std::vector<std::pair<int, int>>& pairs);
 
   void SetZero();
   void AddDiagonal(int variable, const Eigen::Matrix3d& block);
@@ -94,7 +97,7 @@ class BlockLdlt {
   std::vector<Eigen::Matrix3d> pivots_;
   std::vector<Eigen::Matrix3d> pivot_inverses_;
   std::vector<Slot> slots_;              // per pair
-  std::vector<int> slot_of_matrix_;      // distinct slots of H
+  std::vector<int> slot_of_matrix_;      // slots of H, repeated by Extend
   std::vector<Eigen::Matrix3d> matrix_;  // their values
   std::vector<int> matrix_of_pair_;
   std::vector<Eigen::Matrix3d> diagonal_;  // by position

@@ -24,6 +24,8 @@ void IncrementalFactor::Reset(const BlockLdlt& factor,
   columns_.resize(n);
   work_.assign(n, Eigen::Matrix3d::Zero());
   work_solution_.assign(n, Eigen::Vector3d::Zero());
+  solution_version_.assign(n, -1);
+  ++version_;
   std::vector<Eigen::Vector3d> y(n);
   for (int j = 0; j != n; ++j) y[j] = rhs.segment<3>(3 * variable_[j]);
   for (int j = 0; j != n; ++j) {
@@ -50,6 +52,7 @@ int IncrementalFactor::Append() {
   columns_.push_back(std::move(column));
   work_.push_back(Eigen::Matrix3d::Zero());
   work_solution_.push_back(Eigen::Vector3d::Zero());
+  solution_version_.push_back(-1);
   const int variable = position_.size();
   position_.push_back(columns_.size() - 1);
   variable_.push_back(variable);
@@ -60,6 +63,7 @@ bool IncrementalFactor::Update(const LinearFactor& factor,
                                const double weight) {
   last_update_blocks_ = 0;
   if (weight == 0. || (factor.a < 0 && factor.b < 0)) return true;
+  ++version_;
   // W holds J' by blocks; the pattern of W below the current column is kept
   // sorted in `pattern`.
   std::vector<int> pattern;
@@ -162,9 +166,10 @@ Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
 
 Eigen::Vector3d IncrementalFactor::SolveFor(const int variable) const {
   if (variable < 0) return Eigen::Vector3d::Zero();
-  // The path to the root holds all rows of its columns.
+  // The path to the root holds all rows of its columns, and so does the part of
+  // it that is known already.
   std::vector<int> path;
-  for (int j = position_[variable];;) {
+  for (int j = position_[variable]; solution_version_[j] != version_;) {
     path.push_back(j);
     if (columns_[j].rows.empty()) break;
     j = columns_[j].rows.front();
@@ -177,8 +182,9 @@ Eigen::Vector3d IncrementalFactor::SolveFor(const int variable) const {
           column.blocks[k].transpose() * work_solution_[column.rows[k]];
     }
     work_solution_[*it] = value;
+    solution_version_[*it] = version_;
   }
-  return work_solution_[path.front()];
+  return work_solution_[position_[variable]];
 }
 
 void IncrementalFactor::Solve(Eigen::VectorXd* const solution) const {

@@ -16,6 +16,7 @@
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_INCREMENTAL_FACTOR_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_INCREMENTAL_FACTOR_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "Eigen/Core"
@@ -51,7 +52,8 @@ class IncrementalFactor {
   // J H^-1 J' (3 x 3): covariance of the measurement's prediction.
   Eigen::Matrix3d PredictedCovariance(const LinearFactor& factor) const;
 
-  // Solution of H x = b for the one variable, 0 for -1.
+  // Solution of H x = b for the one variable, 0 for -1. What is worked out on
+  // the way serves later calls until the factor changes.
   Eigen::Vector3d SolveFor(int variable) const;
   // For all, 3 values per variable.
   void Solve(Eigen::VectorXd* solution) const;
@@ -80,7 +82,10 @@ class IncrementalFactor {
   std::vector<int> variable_;    // position -> variable
   // Dense work space by position, zero between calls.
   mutable std::vector<Eigen::Matrix3d> work_;
+  // Solution by position, of use where its version is that of the factor.
   mutable std::vector<Eigen::Vector3d> work_solution_;
+  mutable std::vector<int64_t> solution_version_;
+  int64_t version_ = 0;
   size_t last_update_blocks_ = 0;
 };
 

@@ -11,11 +11,6 @@
 
 namespace cartographer_ext {
 namespace optimization {
-namespace {
-
-constexpr size_t kManyEdges = 4;  // of one pose
-
-}  // namespace
 
 double MinimizeSwitch(const Eigen::Vector3d& squared_innovation,
                       const Eigen::Vector3d& predicted_variance,
@@ -105,9 +100,6 @@ absl::Status IncrementalSmoother::AddPose(
     return absl::InvalidArgumentError(
         absl::StrCat("pose ", number, " comes without odometry"));
   }
-  // All poses are brought up to date when that is cheaper than one by one, else
-  // only those that the new edges refer to.
-  if (estimate_outdated_ && edges.size() > kManyEdges) UpdateEstimate();
   for (const PoseGraphEdge& edge : edges) {
     if (!edge.is_loop) RefreshPose(std::min(edge.from, edge.to));
   }

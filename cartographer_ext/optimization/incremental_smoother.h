@@ -134,7 +134,7 @@ class IncrementalSmoother {
   void RefreshPose(int pose);
   SolverOptions EpochSolverOptions() const;
   void DecideLoops();
-  void RebuildFactor();
+  void RebuildFactor(RobustSolver* batch);
   std::vector<Candidate> FindCandidates(int first_edge) const;
   std::vector<int> ChooseSeeds(std::vector<Candidate> candidates) const;
   // Where the information is honest, true loops have chi2 around 3: the epochs'
@@ -142,11 +142,11 @@ class IncrementalSmoother {
   // and count for less than half on average.
   bool KernelIsNarrow() const;
   // At the end, where rejected loops are within reach.
-  void TryWiderKernels();
+  void TryWiderKernels(RobustSolver* solver);
   // Whether enough loops back `poses` as a hypothesis.
   bool IsSupported(const std::vector<Pose2>& poses) const;
   // True when a hypothesis was taken over into the poses.
-  bool TryHypotheses(int first_edge);
+  bool TryHypotheses(int first_edge, RobustSolver* solver);
 
   const SmootherOptions options_;
   std::vector<WhitenedEdge> edges_;

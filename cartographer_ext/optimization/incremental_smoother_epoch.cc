@@ -74,17 +74,18 @@ void IncrementalSmoother::EndEpoch() {
       }
     }
   }
-  SolveRobust(edges_, solver, &poses_);
+  RobustSolver batch(edges_, RobustSolver::LastPoseLast());
+  batch.Solve(solver, &poses_);
   if (options_.late_rejection && options_.readmission && KernelIsNarrow()) {
-    PolishTruncated(edges_, options_.gate, options_.polish_rounds, &poses_,
+    PolishTruncated(options_.gate, options_.polish_rounds, &batch, &poses_,
                     nullptr);
   }
   DecideLoops();
-  RebuildFactor();
+  RebuildFactor(&batch);
   UpdateEstimate();
-  if (TryHypotheses(first_edge_of_epoch_)) {
+  if (TryHypotheses(first_edge_of_epoch_, &batch)) {
     DecideLoops();
-    RebuildFactor();
+    RebuildFactor(&batch);
     UpdateEstimate();
   }
   first_edge_of_epoch_ = edges_.size();
@@ -226,7 +227,8 @@ bool IncrementalSmoother::IsSupported(const std::vector<Pose2>& poses) const {
          LoopsAgree(edges_, poses, options_.gate, kNearlyAll);
 }
 
-bool IncrementalSmoother::TryHypotheses(const int first_edge) {
+bool IncrementalSmoother::TryHypotheses(const int first_edge,
+                                        RobustSolver* const batch) {
   if (options_.max_hypotheses <= 0) return false;
   const std::vector<Candidate> candidates = FindCandidates(first_edge);
   if (candidates.empty()) return false;
@@ -238,10 +240,10 @@ bool IncrementalSmoother::TryHypotheses(const int first_edge) {
   for (const int seed : ChooseSeeds(candidates)) {
     std::vector<Pose2> poses = poses_;
     edges_[seed].is_loop = false;  // in force whatever its error
-    SolveRobust(edges_, solver, &poses);
+    batch->Solve(solver, &poses);
     edges_[seed].is_loop = true;
-    SolveRobust(edges_, solver, &poses);
-    PolishTruncated(edges_, options_.gate, options_.polish_rounds, &poses,
+    batch->Solve(solver, &poses);
+    PolishTruncated(options_.gate, options_.polish_rounds, batch, &poses,
                     nullptr);
     const double cost = TruncatedCost(edges_, poses);
     if (cost < lowest && IsSupported(poses)) {
@@ -259,19 +261,21 @@ void IncrementalSmoother::Finish() {
   if (num_poses() < 2 || !(options_.late_rejection && options_.readmission)) {
     return;
   }
-  for (int round = 0; round != kMaxFinalRounds && TryHypotheses(0); ++round) {
+  RobustSolver batch(edges_, RobustSolver::LastPoseLast());
+  for (int round = 0; round != kMaxFinalRounds && TryHypotheses(0, &batch);
+       ++round) {
     DecideLoops();
-    RebuildFactor();
+    RebuildFactor(&batch);
     UpdateEstimate();
   }
-  TryWiderKernels();
+  TryWiderKernels(&batch);
   std::vector<double> weights;
-  PolishTruncated(edges_, options_.gate, kFinalPolishRounds, &poses_, &weights);
+  PolishTruncated(options_.gate, kFinalPolishRounds, &batch, &poses_, &weights);
   if (options_.adaptive_gate) {
-    PolishAdapted(edges_, kFinalPolishRounds, &poses_, &weights);
+    PolishAdapted(kFinalPolishRounds, &batch, &poses_, &weights);
   }
   for (size_t i = 0; i != edges_.size(); ++i) accepted_[i] = weights[i] > 0.5;
-  RebuildFactor();
+  RebuildFactor(&batch);
   estimate_outdated_ = false;
 }
 
@@ -291,7 +295,7 @@ bool IncrementalSmoother::KernelIsNarrow() const {
   return weights < 0.5 * agreeing;
 }
 
-void IncrementalSmoother::TryWiderKernels() {
+void IncrementalSmoother::TryWiderKernels(RobustSolver* const batch) {
   // Loops far beyond reach would only fill the factor.
   constexpr double kReach = 25.;
   SolverOptions solver;
@@ -315,8 +319,8 @@ void IncrementalSmoother::TryWiderKernels() {
   for (const double width : widths) {
     std::vector<Pose2> poses = start;
     solver.kernel.parameter = width;
-    SolveRobust(edges_, solver, &poses);
-    PolishTruncated(edges_, options_.gate, kFinalPolishRounds, &poses, nullptr);
+    batch->Solve(solver, &poses);
+    PolishTruncated(options_.gate, kFinalPolishRounds, batch, &poses, nullptr);
     const double cost = TruncatedCost(edges_, poses);
     if (cost < lowest) {
       lowest = cost;
@@ -325,45 +329,12 @@ void IncrementalSmoother::TryWiderKernels() {
   }
 }
 
-void IncrementalSmoother::RebuildFactor() {
+void IncrementalSmoother::RebuildFactor(RobustSolver* const batch) {
   linearization_poses_ = poses_;
-  const int size = num_poses() - 1;
-  std::vector<std::pair<int, int>> pairs;
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    if (accepted_[i] && edges_[i].from > 0 && edges_[i].to > 0) {
-      pairs.push_back({edges_[i].from - 1, edges_[i].to - 1});
-    }
-  }
-  // The newest pose goes last: the next one attaches there.
-  std::vector<int> groups(size, 0);
-  if (size > 1) groups.back() = 1;
-  BlockLdlt batch;
-  batch.Analyze(size, pairs, groups);
-  batch.SetZero();
-  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * size);
-  int pair = 0;
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    if (!accepted_[i]) continue;
-    const LinearFactor factor = LinearizeEdge(edges_[i]);
-    if (factor.a >= 0) {
-      batch.AddDiagonal(factor.a,
-                        factor.jacobian_a.transpose() * factor.jacobian_a);
-      rhs.segment<3>(3 * factor.a) +=
-          factor.jacobian_a.transpose() * factor.target;
-    }
-    if (factor.b >= 0) {
-      batch.AddDiagonal(factor.b,
-                        factor.jacobian_b.transpose() * factor.jacobian_b);
-      rhs.segment<3>(3 * factor.b) +=
-          factor.jacobian_b.transpose() * factor.target;
-    }
-    if (factor.a >= 0 && factor.b >= 0) {
-      batch.AddOffDiagonal(pair++,
-                           factor.jacobian_a.transpose() * factor.jacobian_b);
-    }
-  }
-  CHECK(batch.Factorize(0.));
-  factor_.Reset(batch, rhs);
+  const std::vector<double> weights(accepted_.begin(), accepted_.end());
+  Eigen::VectorXd rhs;
+  const BlockLdlt& factor = batch->Factor(poses_, weights, &rhs);
+  factor_.Reset(factor, rhs);
 }
 
 }  // namespace optimization

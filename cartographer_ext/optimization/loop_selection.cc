@@ -132,7 +132,7 @@ class Selector {
     for (size_t i = 0; i != edges_.size(); ++i) {
       if (!accepted[i]) solver.edge_weights[i] = 0.;
     }
-    SolveRobust(edges_, solver, poses);
+    solver_.Solve(solver, poses);
   }
 
   std::vector<std::vector<Pose2>> ThoroughStarts() const {
@@ -142,7 +142,7 @@ class Selector {
     starts.push_back(graph_.poses);
     GncOptions gnc;
     gnc.truncation = options_.gate;
-    SolveGnc(edges_, gnc, &starts.back(), nullptr);
+    SolveGnc(gnc, &solver_, &starts.back(), nullptr);
     return starts;
   }
 
@@ -166,7 +166,7 @@ class Selector {
       solver.kernel = DefaultKernel(KernelType::kDcs);
       solver.kernel.parameter = 0.5 * options_.gate;
       solver.cost_tolerance = kRough;
-      SolveRobust(edges_, solver, &poses);
+      solver_.Solve(solver, &poses);
       // Different starts often end at the same place.
       const double rough_cost = TruncatedCost(edges_, poses);
       const auto is_near = [&](const double other) {
@@ -175,7 +175,7 @@ class Selector {
       if (std::any_of(seen.begin(), seen.end(), is_near)) continue;
       seen.push_back(rough_cost);
       std::vector<double> weights;
-      PolishTruncated(edges_, options_.gate, kPolishRounds, &poses, &weights);
+      PolishTruncated(options_.gate, kPolishRounds, &solver_, &poses, &weights);
       const double cost = TruncatedCost(edges_, poses);
       if (cost >= lowest) continue;
       lowest = cost;
@@ -284,6 +284,7 @@ class Selector {
   const std::vector<int>& neighbours_;
   const LoopSelectionOptions& options_;
   const std::vector<WhitenedEdge> edges_;
+  mutable RobustSolver solver_{edges_};
 };
 
 }  // namespace

@@ -122,11 +122,12 @@ bool RejectsSome(const std::vector<WhitenedEdge>& edges,
 void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
              const OptimizeOptions& options, OptimizeResult* const result) {
   std::vector<Member> members;
+  RobustSolver solver(edges);
   const auto add = [&](const std::string& name, std::vector<Pose2> poses) {
     Member member;
     member.name = name;
     member.poses = std::move(poses);
-    AddSummary(PolishTruncated(edges, kChi2Gate, kPolishRounds, &member.poses,
+    AddSummary(PolishTruncated(kChi2Gate, kPolishRounds, &solver, &member.poses,
                                nullptr),
                result);
     member.truncated_cost = TruncatedCost(edges, member.poses);
@@ -134,11 +135,11 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
   };
   const auto add_kernel = [&](const std::string& name, const KernelType type,
                               const std::vector<Pose2>& start) {
-    SolverOptions solver;
-    solver.kernel = DefaultKernel(type);
-    solver.max_iterations = options.max_iterations;
+    SolverOptions solver_options;
+    solver_options.kernel = DefaultKernel(type);
+    solver_options.max_iterations = options.max_iterations;
     std::vector<Pose2> poses = start;
-    AddSummary(SolveRobust(edges, solver, &poses), result);
+    AddSummary(solver.Solve(solver_options, &poses), result);
     add(name, std::move(poses));
   };
   ReplayResult replay;
@@ -163,7 +164,7 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
           edges,
           std::min_element(members.begin(), members.end(), lower)->poses)) {
     std::vector<Pose2> poses = graph.poses;
-    AddSummary(SolveGnc(edges, GncOptions(), &poses, nullptr), result);
+    AddSummary(SolveGnc(GncOptions(), &solver, &poses, nullptr), result);
     add("gnc_tls", std::move(poses));
   }
   const auto best = std::min_element(members.begin(), members.end(), lower);
@@ -178,7 +179,7 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     if (member.truncated_cost > limit) continue;
     std::vector<Pose2> poses = member.poses;
     std::vector<double> weights;
-    AddSummary(PolishTruncated(edges, gate, kPolishRounds, &poses, &weights),
+    AddSummary(PolishTruncated(gate, kPolishRounds, &solver, &poses, &weights),
                result);
     const double cost = TruncatedCost(edges, poses, gate);
     if (cost >= lowest) continue;
@@ -189,7 +190,7 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
   }
   if (options.adaptive_gate) {
     AddSummary(
-        PolishAdapted(edges, kPolishRounds, &result->poses, &result->weights),
+        PolishAdapted(kPolishRounds, &solver, &result->poses, &result->weights),
         result);
   }
   result->accepted.assign(edges.size(), true);

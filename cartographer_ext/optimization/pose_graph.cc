@@ -171,13 +171,7 @@ std::vector<WhitenedEdge> Whiten(const std::vector<PoseGraphEdge>& edges) {
 
 Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,
                          const Pose2& to) {
-  const double c = std::cos(from.theta), s = std::sin(from.theta);
-  const double dx = to.x - from.x, dy = to.y - from.y;
-  const Eigen::Vector3d error(
-      c * dx + s * dy - edge.measurement.x(),
-      -s * dx + c * dy - edge.measurement.y(),
-      NormalizeAngle(to.theta - from.theta - edge.measurement.z()));
-  return edge.whitening * error;
+  return Residual(edge, from, to, std::cos(from.theta), std::sin(from.theta));
 }
 
 Eigen::Vector3d Linearize(const WhitenedEdge& edge, const Pose2& from,

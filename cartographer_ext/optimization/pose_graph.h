@@ -70,7 +70,18 @@ struct WhitenedEdge {
 WhitenedEdge Whiten(const PoseGraphEdge& edge);
 std::vector<WhitenedEdge> Whiten(const std::vector<PoseGraphEdge>& edges);
 
-// Whitened residual r of the edge at the poses of its ends.
+// Whitened residual r of the edge at the poses of its ends; `cos_from` and
+// `sin_from` are of the angle of `from`.
+inline Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,
+                                const Pose2& to, const double cos_from,
+                                const double sin_from) {
+  const double dx = to.x - from.x, dy = to.y - from.y;
+  const Eigen::Vector3d error(
+      cos_from * dx + sin_from * dy - edge.measurement.x(),
+      -sin_from * dx + cos_from * dy - edge.measurement.y(),
+      NormalizeAngle(to.theta - from.theta - edge.measurement.z()));
+  return edge.whitening * error;
+}
 Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,
                          const Pose2& to);
 

@@ -16,7 +16,8 @@
 // the factor. Loops whose weight is below `prune_weight` leave the pattern; all
 // loops are weighed anew in each iteration and come back as soon as their
 // weight allows (measured: 10 to 20 times faster at 1000 outliers, same
-// optimum).
+// optimum). What comes back often finds room in the fill of the factor; only
+// where it does not is the order of elimination worked out anew.
 //
 // The first pose is held.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_ROBUST_SOLVER_H_
@@ -41,7 +42,7 @@ struct SolverOptions {
   double step_tolerance = 1e-7;
   // Larger values slow the long waves of a trajectory down: their curvature is
   // far below the diagonal.
-  double initial_lambda = 3e-6;
+  double initial_lambda = 1e-9;
   bool prune = true;
   double prune_weight = 1e-4;
   // Empty, or one factor for each edge on top of the kernel's weight.
@@ -58,7 +59,64 @@ struct SolverSummary {
   double cpu_seconds = 0.;
 };
 
-// Improves `poses` in place. The edges must refer to poses that exist.
+// Solves the same graph time and again, from other poses, with other kernels or
+// edge weights, and keeps the factor's pattern as long as it serves.
+class RobustSolver {
+ public:
+  // The edges must refer to poses that exist and outlive the solver. Which of
+  // them are loops may change between solutions.
+  struct LastPoseLast {};
+
+  explicit RobustSolver(const std::vector<WhitenedEdge>& edges)
+      : edges_(edges) {}
+  // The same with the last pose last in the order of elimination, where the
+  // next one attaches.
+  RobustSolver(const std::vector<WhitenedEdge>& edges, LastPoseLast)
+      : edges_(edges), last_pose_last_(true) {}
+
+  // Improves `poses` in place; their number is the same in all calls.
+  SolverSummary Solve(const SolverOptions& options, std::vector<Pose2>* poses);
+
+  // The factorised system of the edges at these poses with these weights, one
+  // per edge, and its right hand side.
+  const BlockLdlt& Factor(const std::vector<Pose2>& poses,
+                          const std::vector<double>& weights,
+                          Eigen::VectorXd* rhs);
+
+  const std::vector<WhitenedEdge>& edges() const { return edges_; }
+
+ private:
+  // Weights and shapes of all edges at given poses.
+  struct Evaluation {
+    double cost = 0.;
+    std::vector<double> weights;
+    std::vector<double> shapes;  // of the literal ACS kernel only
+  };
+
+  void SetPoses(const std::vector<Pose2>& poses);
+  void Evaluate(const std::vector<double>* held_shapes, Evaluation* result);
+  bool UpdatePattern(const std::vector<double>& weights);
+  void AddToPattern(const std::vector<int>& edges,
+                    std::vector<std::pair<int, int>>* pairs);
+  void Assemble(const std::vector<double>& weights);
+  double PredictedDecrease(const Eigen::VectorXd& step, double lambda) const;
+
+  const std::vector<WhitenedEdge>& edges_;
+  const bool last_pose_last_ = false;
+  SolverOptions options_;
+  std::vector<Pose2> poses_;
+  std::vector<Eigen::Vector2d> rotations_;  // cosine and sine of each pose
+  std::vector<double> covariance_norms_;    // per edge, literal ACS
+  bool analysed_ = false;
+  std::vector<bool> in_pattern_;
+  std::vector<std::pair<int, int>> pattern_;  // (edge, pair of factor_ or -1)
+  int num_pairs_ = 0;
+  BlockLdlt factor_;
+  Eigen::VectorXd gradient_;
+  Eigen::VectorXd diagonal_;
+};
+
+// One solution.
 SolverSummary SolveRobust(const std::vector<WhitenedEdge>& edges,
                           const SolverOptions& options,
                           std::vector<Pose2>* poses);
@@ -75,6 +133,8 @@ struct GncOptions {
 SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
                        const GncOptions& options, std::vector<Pose2>* poses,
                        std::vector<double>* weights);
+SolverSummary SolveGnc(const GncOptions& options, RobustSolver* solver,
+                       std::vector<Pose2>* poses, std::vector<double>* weights);
 
 // Alternates between deciding each loop by `gate` on chi2 (weight 1 inside, 0
 // outside) and solving with those weights, until the decisions stand. Each half
@@ -83,6 +143,9 @@ SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
 // per edge.
 SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
                               double gate, int max_rounds,
+                              std::vector<Pose2>* poses,
+                              std::vector<double>* weights);
+SolverSummary PolishTruncated(double gate, int max_rounds, RobustSolver* solver,
                               std::vector<Pose2>* poses,
                               std::vector<double>* weights);
 
@@ -99,6 +162,9 @@ double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
 // narrows the gate.
 SolverSummary PolishAdapted(const std::vector<WhitenedEdge>& edges,
                             int max_rounds, std::vector<Pose2>* poses,
+                            std::vector<double>* weights);
+SolverSummary PolishAdapted(int max_rounds, RobustSolver* solver,
+                            std::vector<Pose2>* poses,
                             std::vector<double>* weights);
 
 // Truncated cost: chi2 of the odometry plus sum over loops of min(chi2, gate).

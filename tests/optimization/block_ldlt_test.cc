@@ -92,6 +92,41 @@ TEST(BlockLdltTest, RefusesAnIndefiniteMatrix) {
   EXPECT_FALSE(factor.Factorize(0.));
 }
 
+TEST(BlockLdltTest, ExtendsWhereTheFillHasRoom) {
+  // Eliminating the middle of a star joins all its ends.
+  BlockLdlt factor;
+  factor.Analyze(4, {{0, 3}, {1, 3}, {2, 3}}, {1, 1, 1, 0});
+  const size_t fill = factor.num_blocks();
+  EXPECT_EQ(fill, 6u);
+  ASSERT_TRUE(factor.Extend({{0, 1}, {2, 1}, {0, 1}}));
+  EXPECT_EQ(factor.num_blocks(), fill);
+  Random random(3);
+  const std::vector<std::pair<int, int>> pairs = {{0, 3}, {1, 3}, {2, 3},
+                                                  {0, 1}, {2, 1}, {0, 1}};
+  factor.SetZero();
+  Eigen::MatrixXd dense = 50. * Eigen::MatrixXd::Identity(12, 12);
+  for (int i = 0; i != 4; ++i) {
+    factor.AddDiagonal(i, 50. * Eigen::Matrix3d::Identity());
+  }
+  for (size_t p = 0; p != pairs.size(); ++p) {
+    const Eigen::Matrix3d block = RandomBlock(&random);
+    const int i = pairs[p].first, j = pairs[p].second;
+    dense.block<3, 3>(3 * i, 3 * j) += block;
+    dense.block<3, 3>(3 * j, 3 * i) += block.transpose();
+    factor.AddOffDiagonal(p, block);
+  }
+  ASSERT_TRUE(factor.Factorize(0.));
+  Eigen::VectorXd solution = Eigen::VectorXd::LinSpaced(12, -1., 1.);
+  const Eigen::VectorXd expected = dense.ldlt().solve(solution);
+  factor.Solve(&solution);
+  EXPECT_LT((solution - expected).norm(), 1e-12);
+
+  BlockLdlt chain;
+  chain.Analyze(3, {{0, 1}, {1, 2}}, {0, 1, 2});
+  EXPECT_FALSE(chain.Extend({{0, 1}, {0, 2}}));
+  EXPECT_EQ(chain.num_blocks(), 2u);
+}
+
 TEST(BlockLdltTest, OrderIsAPermutationAndKeepsGroups) {
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i + 1 < 30; ++i) pairs.push_back({i, i + 1});

@@ -162,6 +162,47 @@ TEST_F(RobustSolverTest, AdaptiveGateFollowsTheScaleOfTheLoops) {
   EXPECT_LT(gate, 0.1 * kChi2Gate);
 }
 
+TEST_F(RobustSolverTest, KeepsItsPatternBetweenSolutions) {
+  RobustSolver solver(dirty_);
+  for (const KernelType type : {KernelType::kDcs, KernelType::kAcs,
+                                KernelType::kGemanMcClure, KernelType::kDcs}) {
+    SolverOptions options = WithKernel(type);
+    options.cost_tolerance = 1e-10;
+    std::vector<Pose2> fresh = world_.graph.poses, again = fresh;
+    const SolverSummary expected = SolveRobust(dirty_, options, &fresh);
+    const SolverSummary summary = solver.Solve(options, &again);
+    EXPECT_NEAR(summary.final_cost, expected.final_cost,
+                1e-6 * expected.final_cost);
+    EXPECT_LT(AbsoluteTrajectoryError(again, fresh), 1e-4);
+    EXPECT_LE(summary.analyses, expected.analyses);
+  }
+  SolverOptions options = WithKernel(KernelType::kDcs);
+  std::vector<Pose2> poses = world_.graph.poses;
+  solver.Solve(options, &poses);
+  EXPECT_EQ(solver.Solve(options, &poses).analyses, 0);
+}
+
+TEST_F(RobustSolverTest, FactorIsThatOfTheWeightedEdges) {
+  std::vector<double> weights(dirty_.size(), 0.);
+  for (size_t i = 0; i != clean_.size(); ++i) weights[i] = 1.;
+  RobustSolver solver(dirty_, RobustSolver::LastPoseLast());
+  const std::vector<Pose2>& start = world_.graph.poses;
+  Eigen::VectorXd step;
+  const BlockLdlt& factor = solver.Factor(start, weights, &step);
+  EXPECT_EQ(factor.order().back(), static_cast<int>(start.size()) - 2);
+  factor.Solve(&step);
+  // One undamped step of least squares without the outliers.
+  SolverOptions options;
+  options.max_iterations = 1;
+  options.initial_lambda = 0.;
+  std::vector<Pose2> expected = start;
+  SolveRobust(clean_, options, &expected);
+  for (size_t i = 1; i != expected.size(); ++i) {
+    EXPECT_NEAR(start[i].x + step[3 * i - 3], expected[i].x, 1e-6);
+    EXPECT_NEAR(start[i].y + step[3 * i - 2], expected[i].y, 1e-6);
+  }
+}
+
 TEST_F(RobustSolverTest, PolishAdaptedNeverRaisesTheCostAtItsGate) {
   // Loops a hundred times more exact than they say, a few of them wrong by
   // little.
