@@ -26,7 +26,7 @@ endfunction()
 # Our warnings on one of our targets.
 function(cartographer_ext_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter -Wno-sign-compare
-                         -Wno-maybe-uninitialized)
+                         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   if(CARTOGRAPHER_EXT_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
@@ -93,7 +93,9 @@ function(cartographer_ext_tests)
     target_link_libraries(${target} PRIVATE ${ARG_LINK} cartographer_ext_test_main)
     cartographer_ext_warnings(${target})
     # GCC 12 guesses the target of virtual calls in Ceres and then warns about the guess.
-    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
+    endif()
     add_test(NAME ${prefix}/${stem} COMMAND ${target} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
     # The suppressions are for commands that a test starts; tests have them built in.
     set_tests_properties(${prefix}/${stem} PROPERTIES TIMEOUT 600
