@@ -72,13 +72,20 @@ void ExpectSame(const Found& ours, const Found& stock) {
 }
 
 #ifdef CARTOGRAPHER_EXT_TIES_DEPEND_ON_SORTING
-// The score of one pose, by the host.
-float HostScore(const Grid2D& grid, const PointCloud& cloud,
-                const Rigid2d& pose) {
+// Whether the pose has the score, by the host's account. Points on the border
+// of two cells fall into one or the other by the rounding of the search, which
+// a search of this pose alone does not repeat: it may be moved a little.
+bool HasScore(const Grid2D& grid, const PointCloud& cloud, const Rigid2d& pose,
+              const float score) {
   const FastCorrelativeScanMatcher2D host(grid, MakeOptions(0., 0., 1));
-  const Found found = Search(host, false, pose, cloud, -1.f);
-  EXPECT_TRUE(found.found);
-  return found.score;
+  for (const double x : {0., -1e-5, 1e-5}) {
+    for (const double y : {0., -1e-5, 1e-5}) {
+      const Rigid2d moved(pose.translation() + Eigen::Vector2d(x, y),
+                          pose.rotation());
+      if (Search(host, false, moved, cloud, -1.f).score == score) return true;
+    }
+  }
+  return false;
 }
 
 // Both poses are best ones.
@@ -87,8 +94,8 @@ void ExpectSameUpToTies(const Grid2D& grid, const PointCloud& cloud,
   ASSERT_EQ(ours.found, stock.found);
   EXPECT_EQ(ours.score, stock.score);
   if (!ours.found) return;
-  EXPECT_EQ(HostScore(grid, cloud, ours.pose), stock.score);
-  EXPECT_EQ(HostScore(grid, cloud, stock.pose), stock.score);
+  EXPECT_TRUE(HasScore(grid, cloud, ours.pose, stock.score));
+  EXPECT_TRUE(HasScore(grid, cloud, stock.pose, stock.score));
 }
 #else
 void ExpectSameUpToTies(const Grid2D& /*grid*/, const PointCloud& /*cloud*/,
