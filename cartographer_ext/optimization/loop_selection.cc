@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "cartographer_ext/optimization/condensed_graph.h"
 #include "cartographer_ext/optimization/incremental_smoother.h"
 #include "cartographer_ext/optimization/robust_solver.h"
 
@@ -15,6 +16,11 @@ namespace optimization {
 namespace {
 
 constexpr int kPolishRounds = 10;
+// Share of the loops left out that calls for more starts.
+constexpr double kMany = 0.25;
+constexpr double kMost = 0.5;
+// Longest stretch of the condensed chain.
+constexpr int kMaxSteps = 10;
 // Tolerances of the relative decrease of the cost: for starts and decisions by
 // a wide margin, and for what is final.
 constexpr double kRough = 1e-3;
@@ -62,63 +68,69 @@ PoseGraph Skeleton(const PoseGraph& graph) {
   return skeleton;
 }
 
+// A folded map loses many loops, a right one only those that are wrong.
+bool LeavesOut(const double share, const PoseGraph& graph,
+               const std::vector<bool>& accepted) {
+  int loops = 0, left_out = 0;
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    loops += graph.edges[i].is_loop;
+    left_out += !accepted[i];
+  }
+  return left_out > share * loops;
+}
+
+// What the selection finds on the way.
+struct State {
+  std::vector<bool> accepted;  // per edge
+  std::vector<Pose2> poses;
+  std::vector<int> blamed;
+  int violations = 0;
+};
+
 class Selector {
  public:
-  Selector(const PoseGraph& graph, const std::vector<int>& neighbours,
-           const LoopSelectionOptions& options)
-      : graph_(graph),
-        neighbours_(neighbours),
+  Selector(const CondensedGraph& condensed, const LoopSelectionOptions& options)
+      : condensed_(condensed),
+        graph_(condensed.graph),
         options_(options),
-        edges_(Whiten(graph.edges)) {}
+        edges_(Whiten(condensed.graph.edges)) {}
 
-  LoopSelection Run() {
-    LoopSelection selection;
-    selection.accepted.assign(edges_.size(), true);
-    if (options_.robust_loops && !options_.left_out_before.empty()) {
-      for (size_t i = 0; i != edges_.size(); ++i) {
-        selection.accepted[i] =
-            !edges_[i].is_loop || !options_.left_out_before[i];
-      }
-    }
-    selection.poses = graph_.poses;
-    if (!IsConsistent(selection)) {
-      SolveAccepted(selection.accepted, kRough, &selection.poses);
+  // Begins with these edges in force.
+  State Run(const std::vector<bool>& accepted) {
+    State state;
+    state.accepted = accepted;
+    state.poses = graph_.poses;
+    if (!IsConsistent(state)) {
+      SolveAccepted(state.accepted, kRough, &state.poses);
     }
     if (options_.robust_loops) {
-      if (!IsConsistent(selection)) {
-        Improve({graph_.poses, selection.poses}, &selection);
-      }
-      if (options_.thorough && LeavesOutMany(0.25, selection)) {
-        Improve(ThoroughStarts(), &selection);
-        if (LeavesOutMany(0.5, selection)) Improve(Replayed(), &selection);
+      if (!IsConsistent(state)) Improve({graph_.poses, state.poses}, &state);
+      if (options_.thorough && LeavesOutMany(kMany, state)) {
+        Improve(ThoroughStarts(), &state);
+        if (LeavesOutMany(kMost, state)) Improve(Replayed(), &state);
       }
     }
-    if (options_.odometry_check) CheckOdometry(&selection);
-    selection.chi2 = Chi2OfEdges(edges_, selection.poses);
-    return selection;
+    if (options_.odometry_check) CheckOdometry(&state);
+    return state;
   }
+
+  const std::vector<WhitenedEdge>& edges() const { return edges_; }
 
  private:
   // Whether the loops in force agree with the poses and the others do not.
-  bool IsConsistent(const LoopSelection& selection) const {
+  bool IsConsistent(const State& state) const {
     for (size_t i = 0; i != edges_.size(); ++i) {
       const WhitenedEdge& edge = edges_[i];
       if (!edge.is_loop) continue;
-      const bool agrees = Chi2(edge, selection.poses[edge.from],
-                               selection.poses[edge.to]) < options_.gate;
-      if (agrees != selection.accepted[i]) return false;
+      const bool agrees = Chi2(edge, state.poses[edge.from],
+                               state.poses[edge.to]) < options_.gate;
+      if (agrees != state.accepted[i]) return false;
     }
     return true;
   }
 
-  // A folded map loses many loops, a right one only those that are wrong.
-  bool LeavesOutMany(const double share, const LoopSelection& selection) const {
-    int loops = 0, left_out = 0;
-    for (size_t i = 0; i != edges_.size(); ++i) {
-      loops += edges_[i].is_loop;
-      left_out += !selection.accepted[i];
-    }
-    return left_out > share * loops;
+  bool LeavesOutMany(const double share, const State& state) const {
+    return LeavesOut(share, graph_, state.accepted);
   }
 
   // Solves with these edges alone, those out of force at weight 0.
@@ -153,11 +165,11 @@ class Selector {
   }
 
   // Takes the best that DCS finds from `starts`, if it is better than
-  // `selection` or that is no decision of the gate.
+  // `state` or that is no decision of the gate.
   void Improve(const std::vector<std::vector<Pose2>>& starts,
-               LoopSelection* const selection) const {
-    double lowest = IsConsistent(*selection)
-                        ? TruncatedCost(edges_, selection->poses)
+               State* const state) const {
+    double lowest = IsConsistent(*state)
+                        ? TruncatedCost(edges_, state->poses)
                         : std::numeric_limits<double>::infinity();
     std::vector<double> seen;
     for (const std::vector<Pose2>& start : starts) {
@@ -179,20 +191,20 @@ class Selector {
       const double cost = TruncatedCost(edges_, poses);
       if (cost >= lowest) continue;
       lowest = cost;
-      selection->poses = std::move(poses);
+      state->poses = std::move(poses);
       for (size_t i = 0; i != edges_.size(); ++i) {
-        selection->accepted[i] = weights[i] > 0.5;
+        state->accepted[i] = weights[i] > 0.5;
       }
     }
   }
 
   std::vector<int> Violations(const std::vector<Pose2>& poses) const {
     std::vector<int> result;
-    for (const int i : neighbours_) {
-      const WhitenedEdge& edge = edges_[i];
+    for (size_t k = 0; k != condensed_.chain.size(); ++k) {
+      const WhitenedEdge& edge = edges_[condensed_.chain[k]];
       if (Chi2(edge, poses[edge.from], poses[edge.to]) >
-          options_.odometry_gate) {
-        result.push_back(i);
+          options_.odometry_gate * condensed_.chain_steps[k]) {
+        result.push_back(condensed_.chain[k]);
       }
     }
     return result;
@@ -233,12 +245,11 @@ class Selector {
   }
 
   // Takes back loops blamed before the culprit was found.
-  void Acquit(const size_t num_violations,
-              LoopSelection* const selection) const {
-    std::vector<int> guilty = selection->blamed;
-    for (const int loop : selection->blamed) {
+  void Acquit(const size_t num_violations, State* const state) const {
+    std::vector<int> guilty = state->blamed;
+    for (const int loop : state->blamed) {
       if (guilty.size() < 2) break;
-      std::vector<bool> accepted = selection->accepted;
+      std::vector<bool> accepted = state->accepted;
       accepted[loop] = true;
       std::vector<Pose2> poses = graph_.poses;
       SolveAccepted(accepted, kFine, &poses);
@@ -247,18 +258,18 @@ class Selector {
           Chi2(edge, poses[edge.from], poses[edge.to]) >= options_.gate) {
         continue;
       }
-      selection->accepted = accepted;
-      selection->poses = poses;
+      state->accepted = accepted;
+      state->poses = poses;
       guilty.erase(std::find(guilty.begin(), guilty.end(), loop));
     }
-    selection->blamed = guilty;
+    state->blamed = guilty;
   }
 
-  void CheckOdometry(LoopSelection* const selection) const {
-    std::vector<int> violations = Violations(selection->poses);
+  void CheckOdometry(State* const state) const {
+    std::vector<int> violations = Violations(state->poses);
     if (violations.empty()) return;
-    std::vector<bool> accepted = selection->accepted;
-    std::vector<Pose2> bent = selection->poses;
+    std::vector<bool> accepted = state->accepted;
+    std::vector<Pose2> bent = state->poses;
     std::vector<int> blamed;
     std::vector<int> remaining = violations;
     for (int k = 0; k < options_.max_rollbacks && !remaining.empty(); ++k) {
@@ -271,28 +282,81 @@ class Selector {
       remaining = Violations(bent);
       if (remaining.size() < violations.size()) {
         violations = remaining;
-        selection->accepted = accepted;
-        selection->poses = bent;
-        selection->blamed = blamed;
+        state->accepted = accepted;
+        state->poses = bent;
+        state->blamed = blamed;
       }
     }
-    Acquit(violations.size(), selection);
-    selection->violations = violations.size();
+    Acquit(violations.size(), state);
+    state->violations = violations.size();
   }
 
+  const CondensedGraph& condensed_;
   const PoseGraph& graph_;
-  const std::vector<int>& neighbours_;
   const LoopSelectionOptions& options_;
   const std::vector<WhitenedEdge> edges_;
   mutable RobustSolver solver_{edges_};
 };
+
+// Whether the loops in force agree with the poses and the others do not, no
+// motion between neighbouring poses is bent, and no other starts are due.
+bool IsSettled(const PoseGraph& graph, const std::vector<int>& neighbours,
+               const LoopSelectionOptions& options,
+               LoopSelection* const selection) {
+  const auto chi2_of = [&](const PoseGraphEdge& edge) {
+    return Chi2(Whiten(edge), graph.poses[edge.from], graph.poses[edge.to]);
+  };
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    const PoseGraphEdge& edge = graph.edges[i];
+    if (!edge.is_loop) continue;
+    selection->chi2[i] = chi2_of(edge);
+    if ((selection->chi2[i] < options.gate) != selection->accepted[i]) {
+      return false;
+    }
+  }
+  if (options.robust_loops && options.thorough &&
+      LeavesOut(kMany, graph, selection->accepted)) {
+    return false;
+  }
+  if (!options.odometry_check) return true;
+  for (const int i : neighbours) {
+    if (chi2_of(graph.edges[i]) > options.odometry_gate) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
 LoopSelection SelectLoops(const PoseGraph& graph,
                           const std::vector<int>& neighbours,
                           const LoopSelectionOptions& options) {
-  return Selector(graph, neighbours, options).Run();
+  LoopSelection selection;
+  selection.accepted.assign(graph.edges.size(), true);
+  selection.chi2.assign(graph.edges.size(), 0.);
+  if (options.robust_loops && !options.left_out_before.empty()) {
+    for (size_t i = 0; i != graph.edges.size(); ++i) {
+      selection.accepted[i] =
+          !graph.edges[i].is_loop || !options.left_out_before[i];
+    }
+  }
+  if (IsSettled(graph, neighbours, options, &selection)) return selection;
+  const CondensedGraph condensed = Condense(graph, neighbours, kMaxSteps);
+  const std::vector<int>& loop_of_edge = condensed.loop_of_edge;
+  std::vector<bool> accepted(loop_of_edge.size(), true);
+  for (size_t i = 0; i != loop_of_edge.size(); ++i) {
+    if (loop_of_edge[i] >= 0) accepted[i] = selection.accepted[loop_of_edge[i]];
+  }
+  Selector selector(condensed, options);
+  const State state = selector.Run(accepted);
+  const std::vector<double> chi2 = Chi2OfEdges(selector.edges(), state.poses);
+  for (size_t i = 0; i != loop_of_edge.size(); ++i) {
+    if (loop_of_edge[i] < 0) continue;
+    selection.accepted[loop_of_edge[i]] = state.accepted[i];
+    selection.chi2[loop_of_edge[i]] = chi2[i];
+  }
+  for (const int i : state.blamed) selection.blamed.push_back(loop_of_edge[i]);
+  selection.violations = state.violations;
+  return selection;
 }
 
 }  // namespace optimization

@@ -6,9 +6,11 @@
 // so that a loop judged wrong can come back when the evidence changes.
 //
 //   1. Nothing, where all loops but those left out last time agree with the
-//      poses and none of those left out does; else least squares with all but
-//      those left out. When that settles it nothing else happens; this is how a
-//      true loop after a long drift gets in.
+//      poses and none of those left out does. All that follows works on the
+//      condensed graph (condensed_graph.h), which has a fraction of the poses:
+//      least squares with all loops but those left out. When that settles it
+//      nothing else happens; this is how a true loop after a long drift gets
+//      in.
 //   2. Otherwise DCS from the poses as they are and from those of (1), each
 //      polished by the gate, which takes back in whatever agrees. The lowest
 //      truncated cost wins. Where that leaves out more than a quarter of the
@@ -17,7 +19,8 @@
 //      still stay out, also from a replay of the graph (R-iSAM).
 //   3. Odometry check with rollback (improved graph optimisation 2024, section
 //      3.4): where the winner bends the trajectory between neighbouring poses
-//      beyond the gate, the loop to blame is the one with the largest chi2
+//      beyond the gate (a stretch of the condensed chain shares the bend among
+//      its steps), the loop to blame is the one with the largest chi2
 //      among those which span the place. It is switched off, the graph is
 //      solved again from the poses before, and the result is kept only if it
 //      has fewer such places.
@@ -46,15 +49,14 @@ struct LoopSelectionOptions {
 
 struct LoopSelection {
   std::vector<bool> accepted;  // per edge; true for all that are no loops
-  std::vector<double> chi2;    // per edge at `poses`
-  std::vector<Pose2> poses;
-  std::vector<int> blamed;  // edges switched off by the odometry check
-  int violations = 0;       // places beyond the odometry gate that remain
+  std::vector<double> chi2;    // per loop; 0 for all others
+  std::vector<int> blamed;     // edges switched off by the odometry check
+  int violations = 0;          // places beyond the odometry gate that remain
 };
 
-// `neighbours` are the indices of the edges which the odometry check looks at
-// (the motion between neighbouring poses); their ends must stand in order of
-// time.
+// `neighbours` are the indices of the edges which the odometry check looks at,
+// the motion between neighbouring poses: from a pose to a later one, at most
+// one out of and one into a pose.
 LoopSelection SelectLoops(const PoseGraph& graph,
                           const std::vector<int>& neighbours,
                           const LoopSelectionOptions& options);
