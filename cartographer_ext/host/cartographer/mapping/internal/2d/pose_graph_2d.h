@@ -172,7 +172,9 @@ class PoseGraph2D : public PoseGraph {
   void HandleConstraints(WorkItem::Result reason,
                          const constraints::ConstraintBuilder2D::Result& result)
       ABSL_LOCKS_EXCLUDED(mutex_);
-  void RunOptimization() ABSL_LOCKS_EXCLUDED(mutex_);
+  // The lock is not held while solving, see there.
+  void RunOptimization()
+      ABSL_LOCKS_EXCLUDED(mutex_) ABSL_NO_THREAD_SAFETY_ANALYSIS;
   void PublishOptimizedPoses() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void CallBackAfterOptimization() ABSL_LOCKS_EXCLUDED(mutex_);
   void DeleteTrajectoriesIfNeeded(TrimmingHandle* handle)

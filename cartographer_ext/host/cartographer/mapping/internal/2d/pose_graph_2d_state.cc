@@ -88,6 +88,7 @@ void PoseGraph2D::AddFixedFramePoseData(
 void PoseGraph2D::AddLandmarkData(const int trajectory_id,
                                   const sensor::LandmarkData& landmark_data) {
   AddChangeOf(trajectory_id, [this, trajectory_id, landmark_data]() {
+    mutex_.AssertHeld();
     for (const auto& observation : landmark_data.landmark_observations) {
       data_.landmark_nodes[observation.id].landmark_observations.push_back(
           LandmarkNode::LandmarkObservation{
@@ -286,6 +287,7 @@ void PoseGraph2D::SetTrajectoryDataFromProto(
       transform::ToRigid3(data.fixed_frame_origin_in_map());
   const int trajectory_id = data.trajectory_id();
   AddChangeOf(trajectory_id, [this, trajectory_id, trajectory_data]() {
+    mutex_.AssertHeld();
     optimization_problem_->SetTrajectoryData(trajectory_id, trajectory_data);
     data_.trajectory_data = optimization_problem_->trajectory_data();
   });
@@ -294,6 +296,7 @@ void PoseGraph2D::SetTrajectoryDataFromProto(
 void PoseGraph2D::AddNodeToSubmap(const NodeId& node_id,
                                   const SubmapId& submap_id) {
   AddChangeOf(submap_id.trajectory_id, [this, node_id, submap_id]() {
+    mutex_.AssertHeld();
     data_.submap_data.at(submap_id).node_ids.insert(node_id);
   });
 }

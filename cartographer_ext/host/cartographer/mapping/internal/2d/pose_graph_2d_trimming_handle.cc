@@ -56,6 +56,7 @@ PoseGraph2D::TrimmingHandle::GetConstraints() const {
 }
 
 bool PoseGraph2D::TrimmingHandle::IsFinished(const int trajectory_id) const {
+  parent_->mutex_.AssertHeld();
   return parent_->IsInState(trajectory_id, TrajectoryState::FINISHED);
 }
 
@@ -65,6 +66,7 @@ void PoseGraph2D::TrimmingHandle::SetTrajectoryState(
 }
 
 void PoseGraph2D::TrimmingHandle::TrimSubmap(const SubmapId& submap_id) {
+  parent_->mutex_.AssertHeld();
   CHECK(data_.submap_data.at(submap_id).state == SubmapState::kFinished)
       << "submap " << submap_id << " still grows";
   const std::set<NodeId> node_ids = NodesOnlyIn(submap_id);
