@@ -7,7 +7,6 @@
 
 #include "Eigen/Eigenvalues"
 #include "absl/strings/str_cat.h"
-#include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -84,6 +83,7 @@ LinearFactor IncrementalSmoother::LinearizeEdge(
 absl::Status IncrementalSmoother::AddPose(
     const std::vector<PoseGraphEdge>& edges, StepReport* const report) {
   const double start = ThreadCpuSeconds();
+  if (!status_.ok()) return status_;
   const int number = num_poses();
   const PoseGraphEdge* odometry = nullptr;
   for (const PoseGraphEdge& edge : edges) {
@@ -119,12 +119,12 @@ absl::Status IncrementalSmoother::AddPose(
     if (edge.is_loop) {
       waiting_.push_back(index);
     } else {
-      CHECK(factor_.Update(LinearizeEdge(edges_.back()), 1.));
+      UpdateFactor(LinearizeEdge(edges_.back()), 1.);
       if (&edge != odometry) estimate_outdated_ = true;
     }
   }
   StepReport result;
-  while (!waiting_.empty() &&
+  while (status_.ok() && !waiting_.empty() &&
          result.loops_tested < options_.max_loops_per_step) {
     result.loops_entered += TestLoop(waiting_.front());
     ++result.loops_tested;
@@ -136,7 +136,16 @@ absl::Status IncrementalSmoother::AddPose(
   }
   result.cpu_seconds = ThreadCpuSeconds() - start;
   if (report != nullptr) *report = result;
-  return absl::OkStatus();
+  return status_;
+}
+
+void IncrementalSmoother::UpdateFactor(const LinearFactor& factor,
+                                       const double weight) {
+  if (!factor_.Update(factor, weight)) {
+    status_ = absl::InternalError(
+        absl::StrCat("the factor is lost to rounding at pose ", num_poses() - 1,
+                     ": information matrices are too uneven"));
+  }
 }
 
 double IncrementalSmoother::EstimateSwitch(
@@ -160,7 +169,7 @@ bool IncrementalSmoother::TestLoop(const int edge_index) {
       Residual(edge, poses_[edge.from], poses_[edge.to]);
   const double s = EstimateSwitch(factor, residual);
   if (s * s < options_.skip_weight) return false;
-  CHECK(factor_.Update(factor, s * s));
+  UpdateFactor(factor, s * s);
   accepted_[edge_index] = true;
   estimate_outdated_ = true;
   return true;
@@ -214,6 +223,7 @@ absl::Status Replay(const PoseGraph& graph, const SmootherOptions& options,
     result->step_seconds.push_back(report.cpu_seconds);
   }
   smoother.Finish();
+  if (!smoother.status().ok()) return smoother.status();
   result->poses = smoother.poses();
   result->accepted.assign(graph.edges.size(), false);
   for (size_t i = 0; i != arrived.size(); ++i) {

@@ -90,7 +90,9 @@ class IncrementalSmoother {
 
   // Adds pose number num_poses(). `edges` end in it: `from` or `to` is the new
   // number and the other end exists. At least one is not a loop; the first such
-  // gives the pose's initial estimate. An error leaves the smoother unchanged.
+  // gives the pose's initial estimate. An invalid argument leaves the smoother
+  // unchanged. Where information matrices are so uneven that the factor is lost
+  // to rounding, this and all later calls return an internal error.
   absl::Status AddPose(const std::vector<PoseGraphEdge>& edges,
                        StepReport* report);
 
@@ -111,6 +113,8 @@ class IncrementalSmoother {
   // Loops that changed from accepted to rejected, and back, at an epoch's end.
   int num_late_rejections() const { return num_late_rejections_; }
   int num_readmissions() const { return num_readmissions_; }
+  // Not OK once the factor is lost.
+  const absl::Status& status() const { return status_; }
   size_t factor_blocks() const { return factor_.num_blocks(); }
   const IncrementalFactor& factor() const { return factor_; }
 
@@ -123,6 +127,7 @@ class IncrementalSmoother {
     double innovation = 0.;  // r' (I + Q)^-1 r
   };
 
+  void UpdateFactor(const LinearFactor& factor, double weight);
   LinearFactor LinearizeEdge(const WhitenedEdge& edge) const;
   Eigen::Vector3d Offset(int pose) const;
   // Estimates the switch of a loop and adds it. True when it entered.
@@ -157,6 +162,7 @@ class IncrementalSmoother {
   std::vector<Pose2> linearization_poses_;
   IncrementalFactor factor_;
   mutable bool estimate_outdated_ = false;
+  absl::Status status_;
   int poses_in_epoch_ = 0;
   int first_edge_of_epoch_ = 0;
   int num_late_rejections_ = 0;

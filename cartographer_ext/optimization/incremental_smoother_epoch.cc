@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "Eigen/Cholesky"
+#include "absl/strings/str_cat.h"
 #include "cartographer_ext/optimization/incremental_smoother.h"
-#include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -22,6 +22,8 @@ constexpr int kMinRevisits = 3;
 constexpr int kManyLoops = 20;
 constexpr double kNearlyAll = 0.9;
 constexpr double kHypothesisMajority = 0.8;
+// For what is not solved to the end; angles make the first step rough.
+constexpr double kWideGate = 4. * kChi2Gate;
 
 bool Agrees(const WhitenedEdge& edge, const std::vector<Pose2>& poses,
             const double gate) {
@@ -61,7 +63,7 @@ int NewRevisits(const std::vector<WhitenedEdge>& edges,
 
 void IncrementalSmoother::EndEpoch() {
   poses_in_epoch_ = 0;
-  if (num_poses() < 2) return;
+  if (num_poses() < 2 || !status_.ok()) return;
   waiting_.clear();  // the batch below weighs them with all others
   if (estimate_outdated_) UpdateEstimate();
   SolverOptions solver = EpochSolverOptions();
@@ -82,10 +84,12 @@ void IncrementalSmoother::EndEpoch() {
   }
   DecideLoops();
   RebuildFactor(&batch);
+  if (!status_.ok()) return;
   UpdateEstimate();
   if (TryHypotheses(first_edge_of_epoch_, &batch)) {
     DecideLoops();
     RebuildFactor(&batch);
+    if (!status_.ok()) return;
     UpdateEstimate();
   }
   first_edge_of_epoch_ = edges_.size();
@@ -158,8 +162,7 @@ std::vector<IncrementalSmoother::Candidate> IncrementalSmoother::FindCandidates(
 std::vector<int> IncrementalSmoother::ChooseSeeds(
     std::vector<Candidate> candidates) const {
   // The surest first; the step that each alone would cause tells which others
-  // go with it. Angles make this rough, hence the wide gate.
-  constexpr double kSupportGate = 4. * kChi2Gate;
+  // go with it.
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) {
                      return a.innovation < b.innovation;
@@ -186,7 +189,9 @@ std::vector<int> IncrementalSmoother::ChooseSeeds(
     };
     for (const Candidate& other : candidates) {
       const WhitenedEdge& edge = edges_[other.edge];
-      if (Chi2(edge, moved(edge.from), moved(edge.to)) < kSupportGate) {
+      const double chi2 = Chi2(edge, moved(edge.from), moved(edge.to));
+      if (chi2 < kWideGate &&
+          2. * chi2 < Chi2(edge, poses_[edge.from], poses_[edge.to])) {
         supported[k].push_back(other.edge);
       }
     }
@@ -242,6 +247,8 @@ bool IncrementalSmoother::TryHypotheses(const int first_edge,
     edges_[seed].is_loop = false;  // in force whatever its error
     batch->Solve(solver, &poses);
     edges_[seed].is_loop = true;
+    // Most hypotheses stand alone; that shows before the polish.
+    if (!LoopsAgree(edges_, poses, kWideGate, kHypothesisMajority)) continue;
     batch->Solve(solver, &poses);
     PolishTruncated(options_.gate, options_.polish_rounds, batch, &poses,
                     nullptr);
@@ -258,7 +265,8 @@ bool IncrementalSmoother::TryHypotheses(const int first_edge,
 
 void IncrementalSmoother::Finish() {
   EndEpoch();
-  if (num_poses() < 2 || !(options_.late_rejection && options_.readmission)) {
+  if (num_poses() < 2 || !status_.ok() ||
+      !(options_.late_rejection && options_.readmission)) {
     return;
   }
   RobustSolver batch(edges_, RobustSolver::LastPoseLast());
@@ -266,6 +274,7 @@ void IncrementalSmoother::Finish() {
        ++round) {
     DecideLoops();
     RebuildFactor(&batch);
+    if (!status_.ok()) return;
     UpdateEstimate();
   }
   TryWiderKernels(&batch);
@@ -333,8 +342,15 @@ void IncrementalSmoother::RebuildFactor(RobustSolver* const batch) {
   linearization_poses_ = poses_;
   const std::vector<double> weights(accepted_.begin(), accepted_.end());
   Eigen::VectorXd rhs;
-  const BlockLdlt& factor = batch->Factor(poses_, weights, &rhs);
-  factor_.Reset(factor, rhs);
+  const BlockLdlt* const factor = batch->Factor(poses_, weights, &rhs);
+  if (factor == nullptr) {
+    status_ = absl::InternalError(
+        absl::StrCat("the system of ", num_poses(),
+                     " poses cannot be factorised: information matrices are "
+                     "too uneven"));
+    return;
+  }
+  factor_.Reset(*factor, rhs);
 }
 
 }  // namespace optimization

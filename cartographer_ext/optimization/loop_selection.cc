@@ -89,29 +89,30 @@ struct State {
 
 class Selector {
  public:
-  Selector(const CondensedGraph& condensed, const LoopSelectionOptions& options)
-      : condensed_(condensed),
-        graph_(condensed.graph),
-        options_(options),
-        edges_(Whiten(condensed.graph.edges)) {}
+  Selector(const PoseGraph& graph, const LoopSelectionOptions& options)
+      : graph_(graph), options_(options), edges_(Whiten(graph.edges)) {}
 
-  // Begins with these edges in force.
-  State Run(const std::vector<bool>& accepted) {
-    State state;
-    state.accepted = accepted;
-    state.poses = graph_.poses;
-    if (!IsConsistent(state)) {
-      SolveAccepted(state.accepted, kRough, &state.poses);
+  // Steps 1 and 2 of the header, beginning with the edges in force of `state`.
+  void Select(State* const state) const {
+    state->poses = graph_.poses;
+    if (!IsConsistent(*state)) {
+      SolveAccepted(state->accepted, kRough, &state->poses);
     }
     if (options_.robust_loops) {
-      if (!IsConsistent(state)) Improve({graph_.poses, state.poses}, &state);
-      if (options_.thorough && LeavesOutMany(kMany, state)) {
-        Improve(ThoroughStarts(), &state);
-        if (LeavesOutMany(kMost, state)) Improve(Replayed(), &state);
+      if (!IsConsistent(*state)) Improve({graph_.poses, state->poses}, state);
+      if (options_.thorough && LeavesOutMany(kMany, *state)) {
+        Improve(ThoroughStarts(), state);
+        if (LeavesOutMany(kMost, *state)) Improve(Replayed(), state);
       }
     }
-    if (options_.odometry_check) CheckOdometry(&state);
-    return state;
+  }
+
+  // Step 3, beginning with the edges in force of `state`.
+  void Check(const std::vector<int>& neighbours, State* const state) {
+    neighbours_ = neighbours;
+    state->poses = graph_.poses;
+    SolveAccepted(state->accepted, kFine, &state->poses);
+    CheckOdometry(state);
   }
 
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
@@ -200,11 +201,11 @@ class Selector {
 
   std::vector<int> Violations(const std::vector<Pose2>& poses) const {
     std::vector<int> result;
-    for (size_t k = 0; k != condensed_.chain.size(); ++k) {
-      const WhitenedEdge& edge = edges_[condensed_.chain[k]];
+    for (const int i : neighbours_) {
+      const WhitenedEdge& edge = edges_[i];
       if (Chi2(edge, poses[edge.from], poses[edge.to]) >
-          options_.odometry_gate * condensed_.chain_steps[k]) {
-        result.push_back(condensed_.chain[k]);
+          options_.odometry_gate) {
+        result.push_back(i);
       }
     }
     return result;
@@ -291,10 +292,10 @@ class Selector {
     state->violations = violations.size();
   }
 
-  const CondensedGraph& condensed_;
   const PoseGraph& graph_;
   const LoopSelectionOptions& options_;
   const std::vector<WhitenedEdge> edges_;
+  std::vector<int> neighbours_;
   mutable RobustSolver solver_{edges_};
 };
 
@@ -325,6 +326,19 @@ bool IsSettled(const PoseGraph& graph, const std::vector<int>& neighbours,
   return true;
 }
 
+// Whether one step of a stretch may be beyond the gate. A stretch of n steps
+// with the whole of its bend in one has n times its chi2 there.
+bool MayBeBent(const CondensedGraph& condensed, const std::vector<double>& chi2,
+               const LoopSelectionOptions& options) {
+  for (size_t k = 0; k != condensed.chain.size(); ++k) {
+    if (chi2[condensed.chain[k]] * condensed.chain_steps[k] >
+        options.odometry_gate) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 LoopSelection SelectLoops(const PoseGraph& graph,
@@ -346,15 +360,29 @@ LoopSelection SelectLoops(const PoseGraph& graph,
   for (size_t i = 0; i != loop_of_edge.size(); ++i) {
     if (loop_of_edge[i] >= 0) accepted[i] = selection.accepted[loop_of_edge[i]];
   }
-  Selector selector(condensed, options);
-  const State state = selector.Run(accepted);
+  const Selector selector(condensed.graph, options);
+  State state;
+  state.accepted = accepted;
+  selector.Select(&state);
   const std::vector<double> chi2 = Chi2OfEdges(selector.edges(), state.poses);
   for (size_t i = 0; i != loop_of_edge.size(); ++i) {
     if (loop_of_edge[i] < 0) continue;
     selection.accepted[loop_of_edge[i]] = state.accepted[i];
     selection.chi2[loop_of_edge[i]] = chi2[i];
   }
-  for (const int i : state.blamed) selection.blamed.push_back(loop_of_edge[i]);
+  if (!options.odometry_check || !MayBeBent(condensed, chi2, options)) {
+    return selection;
+  }
+  Selector checker(graph, options);
+  state.accepted = selection.accepted;
+  checker.Check(neighbours, &state);
+  selection.accepted = state.accepted;
+  for (const int i : state.blamed) {
+    const WhitenedEdge& edge = checker.edges()[i];
+    selection.chi2[i] =
+        Chi2(edge, state.poses[edge.from], state.poses[edge.to]);
+  }
+  selection.blamed = state.blamed;
   selection.violations = state.violations;
   return selection;
 }

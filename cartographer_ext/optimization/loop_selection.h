@@ -19,8 +19,8 @@
 //      still stay out, also from a replay of the graph (R-iSAM).
 //   3. Odometry check with rollback (improved graph optimisation 2024, section
 //      3.4): where the winner bends the trajectory between neighbouring poses
-//      beyond the gate (a stretch of the condensed chain shares the bend among
-//      its steps), the loop to blame is the one with the largest chi2
+//      beyond the gate (looked at in the whole graph where the condensed one
+//      leaves that open), the loop to blame is the one with the largest chi2
 //      among those which span the place. It is switched off, the graph is
 //      solved again from the poses before, and the result is kept only if it
 //      has fewer such places.

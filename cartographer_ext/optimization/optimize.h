@@ -5,10 +5,10 @@
 // method in, poses and a verdict on each loop out.
 //
 // `auto` guards against the local minima which every single kernel has:
-//   1. two incremental replays of the graph (R-iSAM), which start from nothing
-//      and differ in the width of their kernel;
-//   2. DCS, GM and ACS from the graph's own poses, and DCS again from the
-//   replay;
+//   1. an incremental replay of the graph (R-iSAM), which starts from nothing,
+//      and DCS from the graph's own poses; unless both end at the same cost
+//   2. also DCS from the replay, a second replay with a wider kernel, GM and
+//      ACS from the graph's own poses, and with few loops GNC;
 //   3. each result polished by deciding and solving in turn (re-admission);
 //   4. those near the lowest truncated cost stay. Each true loop lost costs the
 //      gate, so a folded map loses this comparison by a wide margin;
@@ -35,7 +35,7 @@ struct OptimizeOptions {
   double parameter = 0.;
   CovarianceNorm norm = CovarianceNorm::kSpectral;  // acs_paper
   int max_iterations = 200;
-  double max_seconds = 1e9;  // sc
+  double max_seconds = 1e9;  // sc: processor time
   bool prune = true;
   // auto: end with the gate narrowed to the scale of the accepted loops
   // (AdaptiveGate). For graphs whose information matrices are only a guess,
@@ -69,7 +69,8 @@ struct OptimizeResult {
 // Names accepted as OptimizeOptions::method.
 const std::vector<std::string>& MethodNames();
 
-// An error for an invalid graph (ValidatePoseGraph), an unknown method or, with
+// The fixed poses of the graph, or else the first, end where they were. An
+// error for an invalid graph (ValidatePoseGraph), an unknown method or, with
 // r_isam, a graph that cannot be replayed.
 absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
                                         const OptimizeOptions& options);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/pose_graph.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -12,6 +13,10 @@
 namespace cartographer_ext {
 namespace optimization {
 namespace {
+
+// Beyond this, and below its inverse, products of three leave the range of a
+// double.
+constexpr double kLargestInformation = 1e60;
 
 bool IsFinite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) &&
@@ -66,10 +71,41 @@ absl::Status ValidateEdge(const PoseGraph& graph, size_t index) {
                      " has an information matrix that is not positive "
                      "definite"));
   }
+  const double smallest = factor.matrixLLT().diagonal().minCoeff();
+  if (scale > kLargestInformation ||
+      smallest * smallest < 1. / kLargestInformation) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        Name(graph, index), " has an information matrix out of range (",
+        1. / kLargestInformation, " to ", kLargestInformation, ")"));
+  }
   return absl::OkStatus();
 }
 
 }  // namespace
+
+void MarkLoops(PoseGraph* const graph) {
+  constexpr uint64_t kLongGap = 10;
+  const size_t num_steps = graph->poses.empty() ? 0 : graph->poses.size() - 1;
+  // As unsigned numbers: ids may be anywhere.
+  std::vector<uint64_t> gaps(num_steps);
+  for (size_t k = 0; k != num_steps; ++k) {
+    gaps[k] = static_cast<uint64_t>(graph->ids[k + 1]) -
+              static_cast<uint64_t>(graph->ids[k]);
+  }
+  std::vector<uint64_t> sorted = gaps;
+  const auto middle = sorted.begin() + sorted.size() / 2;
+  if (!sorted.empty()) std::nth_element(sorted.begin(), middle, sorted.end());
+  std::vector<bool> has_forward(num_steps, false);
+  for (const PoseGraphEdge& edge : graph->edges) {
+    if (edge.to == edge.from + 1) has_forward[edge.from] = true;
+  }
+  for (PoseGraphEdge& edge : graph->edges) {
+    const int k = std::min(edge.from, edge.to);
+    edge.is_loop = std::max(edge.from, edge.to) != k + 1 ||
+                   (edge.from != k && has_forward[k]) ||
+                   (gaps[k] - 1) / kLongGap >= *middle;
+  }
+}
 
 absl::Status ValidatePoseGraph(const PoseGraph& graph) {
   if (graph.poses.empty()) {
@@ -89,6 +125,12 @@ absl::Status ValidatePoseGraph(const PoseGraph& graph) {
     if (!IsFinite(graph.poses[i])) {
       return absl::InvalidArgumentError(absl::StrCat(
           "vertex ", graph.ids[i], " has a value that is not finite"));
+    }
+  }
+  for (const int pose : graph.fixed) {
+    if (pose < 0 || pose >= static_cast<int>(graph.poses.size())) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("fixed pose ", pose, " does not exist"));
     }
   }
   for (size_t i = 0; i != graph.edges.size(); ++i) {

@@ -38,6 +38,8 @@ struct PoseGraph {
   std::vector<int64_t> ids;  // the name of each pose in its file
   std::vector<Pose2> poses;  // initial or current estimate, (map <- pose)
   std::vector<PoseGraphEdge> edges;
+  // Poses that stay where they are (Optimize); none: the first.
+  std::vector<int> fixed;
 };
 
 // The rule of the papers and of Vertigo: a loop is whatever does not lead from
@@ -46,10 +48,18 @@ inline bool IsLoopById(int64_t from_id, int64_t to_id) {
   return to_id != from_id + 1;
 }
 
+// Sets is_loop of all edges, the poses being in order of id. Odometry leads
+// from a pose to the next one; where no such edge exists, the edges that lead
+// back from the next one are. With ids that count by ones this is IsLoopById,
+// but for odometry written backwards. Ids may have gaps; one of more than ten
+// times the usual step begins another trajectory.
+void MarkLoops(PoseGraph* graph);
+
 // OK, or an error which names the first offending vertex or edge: no poses,
 // ids not unique or not as many as poses, an end out of range, both ends equal,
 // a value that is not finite, an information matrix that is not symmetric
-// positive definite, a pose that cannot be reached from the first one.
+// positive definite or has entries beyond 1e60, a pose that cannot be reached
+// from the first one.
 absl::Status ValidatePoseGraph(const PoseGraph& graph);
 
 // Poses by chaining odometry edges from the first pose (breadth first, over

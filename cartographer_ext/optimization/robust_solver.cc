@@ -107,16 +107,15 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
   return summary;
 }
 
-const BlockLdlt& RobustSolver::Factor(const std::vector<Pose2>& poses,
+const BlockLdlt* RobustSolver::Factor(const std::vector<Pose2>& poses,
                                       const std::vector<double>& weights,
                                       Eigen::VectorXd* const rhs) {
   CHECK_EQ(weights.size(), edges_.size());
   SetPoses(poses);
   UpdatePattern(weights);
   Assemble(weights);
-  CHECK(factor_.Factorize(0.));
   *rhs = -gradient_;
-  return factor_;
+  return factor_.Factorize(0.) ? &factor_ : nullptr;
 }
 
 void RobustSolver::SetPoses(const std::vector<Pose2>& poses) {

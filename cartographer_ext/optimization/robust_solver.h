@@ -78,8 +78,8 @@ class RobustSolver {
   SolverSummary Solve(const SolverOptions& options, std::vector<Pose2>* poses);
 
   // The factorised system of the edges at these poses with these weights, one
-  // per edge, and its right hand side.
-  const BlockLdlt& Factor(const std::vector<Pose2>& poses,
+  // per edge, and its right hand side. Null when it is not positive definite.
+  const BlockLdlt* Factor(const std::vector<Pose2>& poses,
                           const std::vector<double>& weights,
                           Eigen::VectorXd* rhs);
 

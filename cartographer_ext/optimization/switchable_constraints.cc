@@ -177,6 +177,23 @@ void FromArrays(const std::vector<std::array<double, 3>>& values,
   }
 }
 
+// Ends a solution by processor time; Ceres' own limit is the time of the wall,
+// of which a busy machine gives little.
+class TimeLimit : public ceres::IterationCallback {
+ public:
+  explicit TimeLimit(const double seconds)
+      : end_(ThreadCpuSeconds() + seconds) {}
+
+  ceres::CallbackReturnType operator()(
+      const ceres::IterationSummary&) override {
+    return ThreadCpuSeconds() < end_ ? ceres::SOLVER_CONTINUE
+                                     : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+
+ private:
+  const double end_;
+};
+
 SolverSummary SolveProblem(const int max_iterations,
                            const double function_tolerance,
                            const double max_seconds,
@@ -186,7 +203,8 @@ SolverSummary SolveProblem(const int max_iterations,
   options.max_num_iterations = max_iterations;
   options.function_tolerance = function_tolerance;
   options.num_threads = 1;
-  options.max_solver_time_in_seconds = max_seconds;
+  TimeLimit time_limit(max_seconds);
+  options.callbacks.push_back(&time_limit);
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   const double start = ThreadCpuSeconds();

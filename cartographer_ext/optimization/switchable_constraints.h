@@ -28,7 +28,7 @@ struct SwitchableOptions {
   double penalty = 1.;  // w
   int max_iterations = 200;
   double function_tolerance = 1e-6;
-  double max_seconds = 1e9;
+  double max_seconds = 1e9;  // processor time
 };
 
 // One switch per edge is returned (1 for odometry). Switches start at 1, or at

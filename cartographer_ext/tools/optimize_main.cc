@@ -35,6 +35,10 @@ DEFINE_string(norm, "spectral",
               "|Lambda| of acs_paper: spectral determinant root information.");
 DEFINE_int32(max_iterations, 200, "Of one solution.");
 DEFINE_bool(prune, true, "Leave dead loops out of the linear systems.");
+DEFINE_bool(adaptive_gate, true,
+            "auto, r_isam: decide in the end by a gate narrowed to the scale "
+            "of the loops that agree. Never for a pbstream, whose weights are "
+            "relative.");
 DEFINE_bool(dead_reckoning, false,
             "Start from chained odometry instead of the file's poses.");
 DEFINE_string(output_filename, "",
@@ -213,7 +217,7 @@ absl::Status Run() {
   auto input = ReadInput();
   if (!input.ok()) return input.status();
   // Weights of a map are relative; their scale is a guess.
-  options.adaptive_gate = !input->pbstream.has_value();
+  options.adaptive_gate = FLAGS_adaptive_gate && !input->pbstream.has_value();
   options.smoother.adaptive_gate = options.adaptive_gate;
   if (FLAGS_dead_reckoning) {
     input->graph.poses = optimization::DeadReckoning(input->graph);

@@ -38,9 +38,17 @@ absl::StatusOr<PoseGraph> ToPoseGraph(const io::G2oGraph& g2o) {
     edge.to = to->second;
     edge.measurement = from_file.measurement;
     edge.information = from_file.information;
-    edge.is_loop = optimization::IsLoopById(from_file.from, from_file.to);
     graph.edges.push_back(edge);
   }
+  for (const int64_t id : g2o.fixed) {
+    const auto index = index_of_id.find(id);
+    if (index == index_of_id.end()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("FIX names vertex ", id, ", which does not exist"));
+    }
+    graph.fixed.push_back(index->second);
+  }
+  optimization::MarkLoops(&graph);
   const absl::Status status = optimization::ValidatePoseGraph(graph);
   if (!status.ok()) return status;
   return graph;
@@ -72,6 +80,7 @@ absl::Status WritePoseGraph(const PoseGraph& graph,
     output.information = edge.information;
     g2o.edges.push_back(output);
   }
+  for (const int pose : graph.fixed) g2o.fixed.insert(graph.ids[pose]);
   return io::WriteG2o(g2o, filename);
 }
 

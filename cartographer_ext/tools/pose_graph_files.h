@@ -17,7 +17,7 @@
 namespace cartographer_ext {
 namespace tools {
 
-// Vertices in order of id; loops by optimization::IsLoopById. The graph is
+// Vertices in order of id; loops by optimization::MarkLoops. The graph is
 // checked (optimization::ValidatePoseGraph).
 absl::StatusOr<optimization::PoseGraph> ToPoseGraph(const io::G2oGraph& g2o);
 

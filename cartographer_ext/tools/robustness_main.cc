@@ -47,7 +47,12 @@ DEFINE_string(truths, "",
               "Ground truth of data sets that have natural outliers: "
               "name=file, comma separated. Their reference is the optimum that "
               "`auto` finds.");
-DEFINE_double(max_seconds, 1e9, "Time limit of one solution by sc.");
+DEFINE_bool(adaptive_gate, true,
+            "auto, r_isam: decide in the end by a gate narrowed to the scale "
+            "of the loops that agree. Off: auto keeps what has the lowest "
+            "truncated cost.");
+DEFINE_double(max_seconds, 1e9,
+              "Limit of the processor time of one solution by sc.");
 DEFINE_string(journal_filename, "",
               "Every finished run is added here at once; a sweep started again "
               "with the same journal leaves out what it holds.");
@@ -126,6 +131,8 @@ absl::Status Run() {
   options.ate_limit_local = FLAGS_ate_limit_local;
   options.journal_filename = FLAGS_journal_filename;
   options.optimize.max_seconds = FLAGS_max_seconds;
+  options.optimize.adaptive_gate = FLAGS_adaptive_gate;
+  options.optimize.smoother.adaptive_gate = FLAGS_adaptive_gate;
   const auto norm = optimization::CovarianceNormFromName(FLAGS_norm);
   if (!norm.ok()) return norm.status();
   options.optimize.norm = *norm;

@@ -83,6 +83,7 @@ std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs) {
       cell.ate_largest = std::max(cell.ate_largest, run->ate);
       cell.step_max = std::max(cell.step_max, run->step_max);
       successes += run->success;
+      cell.unfinished += !run->converged;
     }
     cell.success_rate = static_cast<double>(successes) / cell.runs;
   }
@@ -130,11 +131,14 @@ std::string PrintedComparison(const std::vector<SweepCell>& cells,
     const double value = is_step ? ours->step_mean : ours->cpu_seconds;
     const double sc = baseline == nullptr ? -1. : baseline->cpu_seconds;
     const double total = ours->cpu_seconds;
+    const char* const bound =
+        baseline != nullptr && 2 * baseline->unfinished >= baseline->runs ? ">"
+                                                                          : "";
     absl::StrAppendFormat(
         &table, "%-18s %-4s %6d | %9s %11s %7s | %9s %11s %7s\n", row.dataset,
-        row.type, row.count, Number(sc, " s"), Number(value, unit),
-        Number(sc < 0. ? -1. : sc / total, "x"), Number(row.baseline, " s"),
-        Number(row.method, unit),
+        row.type, row.count, bound + Number(sc, " s"), Number(value, unit),
+        bound + Number(sc < 0. ? -1. : sc / total, "x"),
+        Number(row.baseline, " s"), Number(row.method, unit),
         is_step || row.baseline < 0. ? "-"
                                      : Number(row.baseline / row.method, "x"));
   }
@@ -162,6 +166,7 @@ nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs) {
     out["recall"] = cell.recall;
     out["truncated"] = cell.truncated;
     out["success_rate"] = cell.success_rate;
+    out["unfinished"] = cell.unfinished;
     json["cells"].push_back(out);
   }
   return json;

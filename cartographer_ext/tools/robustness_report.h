@@ -25,6 +25,7 @@ struct SweepCell {
   double rpe = 0., precision = 0., recall = 0., truncated = 0.;
   double step_mean = 0., step_p99 = 0., step_max = 0.;  // ms; max: largest
   double success_rate = 0.;
+  int unfinished = 0;  // runs that a limit of time or iterations ended
 };
 
 // In order of first appearance.
@@ -33,7 +34,8 @@ std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs);
 std::string SweepTable(const std::vector<SweepCell>& cells);
 
 // Our times beside the printed ones, one line per printed row that was run: SC,
-// the method, and SC over the method, ours and theirs.
+// the method, and SC over the method, ours and theirs. SC's time is a lower
+// bound (>) where a limit ended at least half of its runs.
 std::string PrintedComparison(const std::vector<SweepCell>& cells,
                               const std::vector<PrintedRow>& printed,
                               const std::string& method);

@@ -66,6 +66,34 @@ TEST(OptimizeTest, AutoIsRightAndChoosesTheLowestTruncatedCost) {
   }
 }
 
+TEST(OptimizeTest, FixedPosesStay) {
+  test::GridWorld world = test::MakeGridWorld(120, 6, 2);
+  // True poses in another frame; the rest of the file is dead reckoning.
+  const Pose2 frame(30., -12., 2.);
+  PoseGraph& graph = world.graph;
+  graph.fixed = {40, 90};
+  for (const int pose : graph.fixed) {
+    graph.poses[pose] = frame * world.truth[pose];
+  }
+  for (const char* method : {"auto", "r_isam"}) {
+    OptimizeOptions options;
+    options.method = method;
+    const auto result = Optimize(graph, options);
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(result->weights.size(), graph.edges.size());
+    EXPECT_EQ(result->chi2.size(), graph.edges.size());
+    for (const int pose : graph.fixed) {
+      EXPECT_EQ(result->poses[pose].x, graph.poses[pose].x);
+      EXPECT_EQ(result->poses[pose].theta, graph.poses[pose].theta);
+    }
+    for (size_t i = 0; i != graph.poses.size(); ++i) {
+      const Pose2 expected = frame * world.truth[i];
+      EXPECT_NEAR(result->poses[i].x, expected.x, 0.3) << method;
+      EXPECT_NEAR(result->poses[i].y, expected.y, 0.3) << method;
+    }
+  }
+}
+
 TEST(OptimizeTest, Errors) {
   const test::GridWorld world = test::MakeGridWorld(30, 4, 1);
   OptimizeOptions options;

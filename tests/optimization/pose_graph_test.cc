@@ -42,6 +42,56 @@ TEST(PoseGraphTest, LoopsAreWhateverDoesNotLeadToTheNextId) {
   EXPECT_TRUE(IsLoopById(4, 4));
 }
 
+std::vector<bool> Loops(const std::vector<int64_t>& ids,
+                        const std::vector<std::pair<int, int>>& ends) {
+  PoseGraph graph;
+  graph.ids = ids;
+  graph.poses.resize(ids.size());
+  for (const std::pair<int, int>& pair : ends) {
+    graph.edges.push_back(MakeEdge(pair.first, pair.second, Pose2()));
+    graph.edges.back().is_loop = true;
+  }
+  MarkLoops(&graph);
+  std::vector<bool> result;
+  for (const PoseGraphEdge& edge : graph.edges) result.push_back(edge.is_loop);
+  return result;
+}
+
+TEST(PoseGraphTest, MarksLoopsAlsoWhereIdsHaveGapsOrOdometryLeadsBack) {
+  using Flags = std::vector<bool>;
+  // By ones, with a loop to the pose before.
+  EXPECT_EQ(Loops({3, 4, 5}, {{0, 1}, {1, 2}, {2, 1}, {0, 2}, {1, 2}}),
+            (Flags{false, false, true, true, false}));
+  // By tens.
+  EXPECT_EQ(Loops({0, 10, 20}, {{0, 1}, {1, 2}, {2, 0}}),
+            (Flags{false, false, true}));
+  // Key frames.
+  EXPECT_EQ(Loops({0, 3, 4, 11}, {{0, 1}, {1, 2}, {2, 3}, {0, 3}}),
+            (Flags{false, false, false, true}));
+  // Written backwards.
+  EXPECT_EQ(Loops({0, 1, 2}, {{1, 0}, {2, 1}, {2, 0}}),
+            (Flags{false, false, true}));
+  // Two robots: what joins them is no odometry.
+  EXPECT_EQ(Loops({0, 1, 2, 1000, 1001, 1002},
+                  {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}}),
+            (Flags{false, false, true, false, false}));
+  // The widest gap there is.
+  const int64_t large = std::numeric_limits<int64_t>::max();
+  EXPECT_EQ(Loops({-large - 1, large - 1, large}, {{0, 1}, {1, 2}}),
+            (Flags{false, false}));
+  EXPECT_TRUE(Loops({7}, {}).empty());
+}
+
+TEST(PoseGraphTest, RefusesFixedPosesThatDoNotExist) {
+  PoseGraph graph = Triangle();
+  graph.fixed = {2};
+  EXPECT_TRUE(ValidatePoseGraph(graph).ok());
+  graph.fixed = {0, 3};
+  EXPECT_FALSE(ValidatePoseGraph(graph).ok());
+  graph.fixed = {-1};
+  EXPECT_FALSE(ValidatePoseGraph(graph).ok());
+}
+
 TEST(PoseGraphTest, ResidualOfHandComputedCase) {
   // From (1, 2) looking along +y, the pose (0, 4, pi) lies 2 ahead, 1 to the
   // left, turned by pi/2. Measured: (1.5, 1, pi/2), so the error before its

@@ -85,6 +85,17 @@ TEST_F(SwitchableConstraintsTest, JointSwitchesEqualGemanMcClure) {
   }
 }
 
+TEST_F(SwitchableConstraintsTest, EndsInTime) {
+  SwitchableOptions options;
+  options.max_seconds = 0.;
+  std::vector<Pose2> poses = world_.graph.poses;
+  std::vector<double> switches;
+  const SolverSummary summary =
+      SolveSwitchable(edges_, options, &poses, &switches);
+  EXPECT_FALSE(summary.converged);
+  EXPECT_LE(summary.iterations, 1);
+}
+
 TEST_F(SwitchableConstraintsTest, NothingToDo) {
   std::vector<Pose2> poses = {Pose2()};
   std::vector<double> switches;
