@@ -19,6 +19,27 @@ double CountPairs(const MetricsCollector& metrics, const std::string& matcher) {
          metrics.Sum(kOurSearchesMetric, {{"matcher", matcher}});
 }
 
+LoopCpu MeasureLoopCpu(const MetricsCollector& metrics) {
+  const auto stage = [&metrics](const char* const name) {
+    return metrics.Sum(kSearchCpuMetric, {{"stage", name}}) +
+           metrics.Sum(kOurCpuMetric, {{"stage", name}});
+  };
+  LoopCpu cpu;
+  // Stock's stage of searching has the refinement in it.
+  cpu.search = stage("search") + stage("refinement");
+  cpu.build = stage("build");
+  cpu.verification = stage("verification") + stage("planning");
+  return cpu;
+}
+
+LoopCpu operator-(const LoopCpu& after, const LoopCpu& before) {
+  LoopCpu difference;
+  difference.search = after.search - before.search;
+  difference.build = after.build - before.build;
+  difference.verification = after.verification - before.verification;
+  return difference;
+}
+
 void WaitForBackEnd(const MetricsCollector& metrics, const int max_length,
                     const std::chrono::seconds patience) {
   constexpr auto kPause = std::chrono::milliseconds(2);

@@ -23,6 +23,21 @@ constexpr char kOurCpuMetric[] = "cartographer_ext_loop_cpu_seconds";
 // Pairs of submap and node that either builder has "searched" or "found".
 double CountPairs(const MetricsCollector& metrics, const std::string& matcher);
 
+// CPU seconds that closing loops has taken so far, of either builder, the
+// optimisation aside. Zero for a real library, which does not tell.
+struct LoopCpu {
+  // Correlative search and the refinement of what it finds.
+  double search = 0.;
+  double build = 0.;  // preparing submaps to be searched
+  // Which searches to make and which matches to believe; ours only.
+  double verification = 0.;
+
+  double total() const { return search + build + verification; }
+};
+
+LoopCpu MeasureLoopCpu(const MetricsCollector& metrics);
+LoopCpu operator-(const LoopCpu& after, const LoopCpu& before);
+
 // Waits until the queue of the pose graph is short again, which bounds memory
 // and changes no result. Gives up when nothing moves for `patience`: then the
 // number is not what it is taken for.

@@ -13,7 +13,7 @@ namespace cartographer_ext {
 namespace evaluation {
 namespace {
 
-using Key = std::pair<GraphId, GraphId>;  // submap, node
+using Key = LoopPair;
 
 std::map<Key, const GraphConstraint*> LoopsByPair(const MapGraph& graph) {
   std::map<Key, const GraphConstraint*> loops;
@@ -44,6 +44,31 @@ bool IsTooFar(const MapGraph& graph, const Key& key, const double distance) {
                  .norm() > distance;
 }
 
+LoopAbsence AbsenceOf(const Key& key, const MapGraph& second,
+                      const std::map<Key, const GraphConstraint*>& second_loops,
+                      const LoopComparisonOptions& options) {
+  if (second_loops.count(key) > 0) return LoopAbsence::kPresent;
+  if (options.fates != nullptr) {
+    const auto fate = options.fates->find(key);
+    if (fate != options.fates->end()) {
+      switch (fate->second.kind) {
+        case LoopFate::Kind::kTooFar:
+          return LoopAbsence::kTooFar;
+        case LoopFate::Kind::kNotSampled:
+          return LoopAbsence::kNotSampled;
+        case LoopFate::Kind::kSearched:
+          return LoopAbsence::kNoMatch;
+      }
+    }
+  }
+  if (HasNeighbour(second_loops, key, options.node_tolerance)) {
+    return LoopAbsence::kNeighbourInstead;
+  }
+  return IsTooFar(second, key, options.max_constraint_distance)
+             ? LoopAbsence::kTooFar
+             : LoopAbsence::kOtherVisit;
+}
+
 }  // namespace
 
 LoopComparison CompareLoops(const MapGraph& first, const MapGraph& second,
@@ -55,17 +80,9 @@ LoopComparison CompareLoops(const MapGraph& first, const MapGraph& second,
   result.second = static_cast<int64_t>(second_loops.size());
   for (const GraphConstraint& constraint : first.constraints) {
     if (!constraint.is_loop) continue;
-    const Key key{constraint.submap_id, constraint.node_id};
-    LoopAbsence absence = LoopAbsence::kOtherVisit;
-    const auto other = second_loops.find(key);
-    if (other != second_loops.end()) {
-      absence = LoopAbsence::kPresent;
-    } else if (HasNeighbour(second_loops, key, options.node_tolerance)) {
-      absence = LoopAbsence::kNeighbourInstead;
-    } else if (IsTooFar(second, key, options.max_constraint_distance)) {
-      absence = LoopAbsence::kTooFar;
-    }
-    result.absences.push_back(absence);
+    result.absences.push_back(
+        AbsenceOf({constraint.submap_id, constraint.node_id}, second,
+                  second_loops, options));
   }
   for (const auto& entry : first_loops) {
     const auto other = second_loops.find(entry.first);
@@ -78,13 +95,27 @@ LoopComparison CompareLoops(const MapGraph& first, const MapGraph& second,
       result.max_pose_difference =
           std::max(result.max_pose_difference, difference);
       if (difference <= options.pose_tolerance) ++result.common_same_pose;
-    } else if (HasNeighbour(second_loops, entry.first,
-                            options.node_tolerance)) {
-      ++result.neighbour_instead;
-    } else if (IsTooFar(second, entry.first, options.max_constraint_distance)) {
-      ++result.too_far;
-    } else {
-      ++result.other_visit;
+      continue;
+    }
+    const bool has_neighbour =
+        HasNeighbour(second_loops, entry.first, options.node_tolerance);
+    if (has_neighbour) ++result.neighbour_instead;
+    switch (AbsenceOf(entry.first, second, second_loops, options)) {
+      case LoopAbsence::kTooFar:
+        ++result.too_far;
+        break;
+      case LoopAbsence::kNotSampled:
+        ++result.not_sampled;
+        break;
+      case LoopAbsence::kNoMatch:
+        ++result.no_match;
+        break;
+      case LoopAbsence::kOtherVisit:
+        ++result.other_visit;
+        break;
+      case LoopAbsence::kNeighbourInstead:
+      case LoopAbsence::kPresent:
+        break;
     }
   }
   const auto fraction = [&result](const int64_t count) {
@@ -99,21 +130,19 @@ LoopComparison CompareLoops(const MapGraph& first, const MapGraph& second,
 
 std::string ExplainMissing(const LoopComparison& comparison) {
   std::vector<std::string> parts;
-  if (comparison.neighbour_instead > 0) {
-    parts.push_back(absl::StrCat(
-        comparison.neighbour_instead,
-        " have a node of the same visit tied to the same submap instead"));
-  }
-  if (comparison.too_far > 0) {
-    parts.push_back(absl::StrCat(comparison.too_far,
-                                 " lie too far apart in the other map to be "
-                                 "searched"));
-  }
-  if (comparison.other_visit > 0) {
-    parts.push_back(absl::StrCat(
-        comparison.other_visit,
-        " were not tried, or found no match good enough, though near enough"));
-  }
+  const auto add = [&parts](const int64_t count, const char* const text) {
+    if (count > 0) parts.push_back(absl::StrCat(count, text));
+  };
+  add(comparison.not_sampled,
+      " within reach, but the sampler, which counts the candidates of a "
+      "submap, took others");
+  add(comparison.too_far, " too far apart in the other map to be searched");
+  add(comparison.no_match, " searched without a match good enough");
+  add(comparison.other_visit,
+      " not tried, or no match good enough, though near enough");
+  add(comparison.neighbour_instead,
+      " of the missing ones have a node of the same visit tied to the same "
+      "submap instead");
   return absl::StrJoin(parts, "; ");
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cartographer_ext/evaluation/loop_fate.h"
 #include "cartographer_ext/evaluation/map_graph.h"
 
 namespace cartographer_ext {
@@ -20,6 +21,10 @@ struct LoopComparisonOptions {
   int node_tolerance = 5;                // nodes, of the same visit
   double pose_tolerance = 0.05;          // metres, for the same place
   double max_constraint_distance = 15.;  // metres, of the other run
+  // What became of the loops of the first graph in the run that made the
+  // second; null where that is not known. Then places in the second graph, as
+  // its run left it, are all there is to go by.
+  const LoopFates* fates = nullptr;
 };
 
 // Why a loop of the first is not in the second.
@@ -28,6 +33,8 @@ enum class LoopAbsence {
   kNeighbourInstead,  // a node near by is tied to the submap
   kTooFar,            // the other graph has them too far apart to search
   kOtherVisit,        // the other graph could have had it
+  kNotSampled,        // the sampler took other candidates of the submap
+  kNoMatch,           // searched without a match
 };
 
 struct LoopComparison {
@@ -40,6 +47,10 @@ struct LoopComparison {
   int64_t neighbour_instead = 0;
   int64_t too_far = 0;
   int64_t other_visit = 0;
+  // Only with fates; then these, `too_far` and `other_visit` make up what is
+  // missing, and `neighbour_instead` counts some of it again.
+  int64_t not_sampled = 0;
+  int64_t no_match = 0;
   double max_pose_difference = 0.;  // metres, of common ones
   // For each loop of the first graph in the order of its constraints.
   std::vector<LoopAbsence> absences;

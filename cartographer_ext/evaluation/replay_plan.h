@@ -47,12 +47,15 @@ struct ReplayPlan {
   // Of each trajectory in the order of their indices in the pose graph.
   std::vector<ReplaySubmap> submaps;
   int64_t num_placeholders = 0;
+  // Nodes that count as inserted in one submap more, or one less, than they
+  // were, to bridge what was trimmed.
+  int64_t num_guessed = 0;
 };
 
 // Trajectories whose spans of time overlap are interleaved by the stamps of
 // their nodes, others follow each other in the order of their numbers. An error
-// where a node was inserted in more than two submaps, or where submaps between
-// others have been trimmed, so that the order cannot be had again.
+// where a node was inserted in more than two submaps, in one of another
+// trajectory, or in an older one than the node before it.
 absl::StatusOr<ReplayPlan> MakeReplayPlan(const MapGraph& graph);
 
 }  // namespace evaluation

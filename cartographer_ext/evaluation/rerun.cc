@@ -10,16 +10,16 @@
 
 #include "cartographer/common/thread_pool.h"
 #include "cartographer/mapping/internal/2d/pose_graph_2d.h"
-#include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer/sensor/fixed_frame_pose_data.h"
 #include "cartographer/sensor/imu_data.h"
 #include "cartographer/sensor/landmark_data.h"
 #include "cartographer/sensor/odometry_data.h"
-#include "cartographer_ext/evaluation/back_end_metrics.h"
 #include "cartographer_ext/evaluation/host_map.h"
 #include "cartographer_ext/evaluation/host_types.h"
 #include "cartographer_ext/evaluation/metrics_collector.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
+#include "cartographer_ext/evaluation/recorded_track.h"
+#include "cartographer_ext/evaluation/replay_ids.h"
 #include "cartographer_ext/evaluation/replay_plan.h"
 #include "cartographer_ext/evaluation/resource_usage.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
@@ -173,42 +173,18 @@ void SetInitialPoses(const io::Pbstream& pbstream,
   }
 }
 
-// From the ids that the pose graph gave to those of the stored map.
-class IdTranslation {
- public:
-  explicit IdTranslation(const ReplayPlan& plan) {
-    for (const ReplayStep& step : plan.steps) {
-      nodes_[step.node_id.trajectory_id].push_back(step.node_id.index);
-    }
-    for (const ReplaySubmap& submap : plan.submaps) {
-      submaps_[submap.trajectory_id].push_back(submap.stored_index);
-    }
-  }
-
-  GraphId Node(const GraphId& id) const {
-    return {id.trajectory_id, nodes_.at(id.trajectory_id)[id.index]};
-  }
-  // The index is negative for placeholders.
-  GraphId Submap(const GraphId& id) const {
-    return {id.trajectory_id, submaps_.at(id.trajectory_id)[id.index]};
-  }
-
- private:
-  std::map<int, std::vector<int>> nodes_, submaps_;
-};
-
-MapGraph Translate(const MapGraph& graph, const IdTranslation& ids) {
+MapGraph Translate(const MapGraph& graph, const ReplayIds& ids) {
   MapGraph result;
   for (const auto& node : graph.nodes) {
-    result.nodes[ids.Node(node.first)] = node.second;
+    result.nodes[ids.StoredNode(node.first)] = node.second;
   }
   for (const auto& submap : graph.submaps) {
-    const GraphId id = ids.Submap(submap.first);
+    const GraphId id = ids.StoredSubmap(submap.first);
     if (id.index >= 0) result.submaps[id] = submap.second;
   }
   for (GraphConstraint constraint : graph.constraints) {
-    constraint.submap_id = ids.Submap(constraint.submap_id);
-    constraint.node_id = ids.Node(constraint.node_id);
+    constraint.submap_id = ids.StoredSubmap(constraint.submap_id);
+    constraint.node_id = ids.StoredNode(constraint.node_id);
     if (constraint.submap_id.index >= 0) {
       result.constraints.push_back(constraint);
     }
@@ -216,19 +192,14 @@ MapGraph Translate(const MapGraph& graph, const IdTranslation& ids) {
   return result;
 }
 
-double StageSeconds(const MetricsCollector& metrics, const std::string& stage) {
-  return metrics.Sum(kSearchCpuMetric, {{"stage", stage}}) +
-         metrics.Sum(kOurCpuMetric, {{"stage", stage}});
-}
-
 // From the ids of the pose graph to those of the stored map, where it has them.
-void TranslateDecisions(const IdTranslation& ids,
+void TranslateDecisions(const ReplayIds& ids,
                         std::vector<proto::LoopDecision>* const decisions) {
   for (proto::LoopDecision& decision : *decisions) {
-    const GraphId submap =
-        ids.Submap({decision.submap_trajectory_id(), decision.submap_index()});
+    const GraphId submap = ids.StoredSubmap(
+        {decision.submap_trajectory_id(), decision.submap_index()});
     const GraphId node =
-        ids.Node({decision.node_trajectory_id(), decision.node_index()});
+        ids.StoredNode({decision.node_trajectory_id(), decision.node_index()});
     decision.set_submap_index(submap.index);
     decision.set_node_index(node.index);
   }
@@ -283,8 +254,7 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   if (!plan.ok()) return plan.status();
   MetricsCollector* const metrics = MetricsCollector::Global();
   const auto before = metrics->Values();
-  const double before_stage = StageSeconds(*metrics, "search");
-  const double before_build = StageSeconds(*metrics, "build");
+  const LoopCpu loop_cpu_before = MeasureLoopCpu(*metrics);
   const double searched = CountPairs(*metrics, "searched");
   const double found = CountPairs(*metrics, "found");
   auto* const recorder = loop_closure::DecisionRecorder::Global();
@@ -297,17 +267,20 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   // Lives longer than the pose graph, which shares its submaps.
   SubmapMaker submaps(pbstream, *plan);
   cartographer::common::ThreadPool thread_pool(options.num_background_threads);
-  PoseGraph2D pose_graph(
-      pose_graph_options,
-      std::make_unique<
-          cartographer::mapping::optimization::OptimizationProblem2D>(
-          pose_graph_options.optimization_problem_options()),
-      &thread_pool);
+  RecordedTrackOptions track_options;
+  track_options.follow = options.follow_recording;
+  RecordedTrack track(pbstream, *plan, pose_graph_options, track_options);
+  PoseGraph2D pose_graph(pose_graph_options, track.MakeOptimizationProblem(),
+                         &thread_pool);
   Drive(pbstream, *plan, *metrics, options, &submaps, &pose_graph);
-  result.graph = Translate(MakeMapGraph(pose_graph), IdTranslation(*plan));
+  const ReplayIds ids(*plan);
+  result.graph = Translate(MakeMapGraph(pose_graph), ids);
+  result.fates = track.fates();
+  result.followed_loops = track.num_followed();
 
   result.nodes = static_cast<int64_t>(plan->steps.size());
   result.placeholders = plan->num_placeholders;
+  result.guessed_insertions = plan->num_guessed;
   result.wall_seconds = std::chrono::duration<double>(
                             std::chrono::steady_clock::now() - wall_before)
                             .count();
@@ -316,12 +289,11 @@ absl::StatusOr<Rerun> RerunPoseGraph(
       std::max<int64_t>(0, PeakMemorySinceReset() - memory_before);
   result.decisions = recorder->All();
   recorder->Stop();
-  TranslateDecisions(IdTranslation(*plan), &result.decisions);
+  TranslateDecisions(ids, &result.decisions);
   result.searches =
       static_cast<int64_t>(CountPairs(*metrics, "searched") - searched);
   result.matches = static_cast<int64_t>(CountPairs(*metrics, "found") - found);
-  result.search_cpu_seconds = StageSeconds(*metrics, "search") - before_stage;
-  result.build_cpu_seconds = StageSeconds(*metrics, "build") - before_build;
+  result.loop_cpu = MeasureLoopCpu(*metrics) - loop_cpu_before;
   result.metrics = metrics->Values();
   for (const auto& entry : before) result.metrics[entry.first] -= entry.second;
   return result;

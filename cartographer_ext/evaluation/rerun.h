@@ -10,10 +10,13 @@
 // the graph is optimised every so many nodes, and a node's first pose comes
 // from the chain of local poses, not from the optimised poses of the file.
 //
+// Clouds are stored to the millimetre, so results differ from the first run by
+// rounding, and runs are chaotic; recorded_track.h can hold a run beside the
+// first one.
+//
 // What this cannot know: a grid contains the scans of the nodes inserted in it.
 // The pose graph never searches a node in such a submap, so no loop is found by
-// comparing a scan with itself. Clouds are stored to the millimetre, so results
-// differ from the first run by rounding; where a run is chaotic they may part.
+// comparing a scan with itself.
 #ifndef CARTOGRAPHER_EXT_EVALUATION_RERUN_H_
 #define CARTOGRAPHER_EXT_EVALUATION_RERUN_H_
 
@@ -25,6 +28,8 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer/mapping/proto/pose_graph_options.pb.h"
+#include "cartographer_ext/evaluation/back_end_metrics.h"
+#include "cartographer_ext/evaluation/loop_fate.h"
 #include "cartographer_ext/evaluation/map_graph.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/loop_decision.pb.h"
@@ -36,6 +41,9 @@ struct RerunOptions {
   int num_background_threads = 2;
   // Feeding waits while the back end's queue is longer.
   int max_queue_length = 200;
+  // The optimisation is given the stored loops that are found again, so that
+  // rounding does not add up (recorded_track.h).
+  bool follow_recording = false;
   // Called now and then from the calling thread: nodes fed, nodes in total.
   std::function<void(int64_t, int64_t)> on_progress;
 };
@@ -48,16 +56,20 @@ struct Rerun {
   // Ours only; empty for stock, which keeps no records.
   std::vector<proto::LoopDecision> decisions;
 
+  // Of the stored loops, as far as the rules of stock's search go.
+  LoopFates fates;
+  int64_t followed_loops = 0;
+
   int64_t nodes = 0;
   int64_t placeholders = 0;
+  int64_t guessed_insertions = 0;  // see ReplayPlan::num_guessed
   int64_t searches = 0;
   int64_t matches = 0;  // searches that reached min_score
 
   // What it took. CPU seconds count all threads of the process.
   double wall_seconds = 0.;
   double cpu_seconds = 0.;
-  double search_cpu_seconds = 0.;
-  double build_cpu_seconds = 0.;  // preparing submaps for the search
+  LoopCpu loop_cpu;
   int64_t peak_memory_bytes = 0;  // more than before the run
   std::map<std::string, double> metrics;
 };

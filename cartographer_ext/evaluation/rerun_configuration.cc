@@ -167,6 +167,7 @@ absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
     if (stock_name.empty()) {
       result.stock = std::move(without);
       result.stock_name = basename;
+      result.stock_is_known = !result.ours.has_value();
       if (result.ours.has_value()) {
         result.assumptions.push_back(absl::StrCat(
             "stock is ", basename, " with the blocks of ours taken out"));
@@ -180,7 +181,7 @@ absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
     if (!configuration.ok()) return configuration.status();
     result.stock = configuration->map_builder_options.pose_graph_options();
     TakeWeights(graph, &result.stock);
-    RemoveExtensions(&result.stock);
+    result.stock_is_known = !RemoveExtensions(&result.stock) && !assumed;
     result.stock_name = stock_name;
     if (result.ours.has_value()) {
       PoseGraphOptions ours = result.stock;

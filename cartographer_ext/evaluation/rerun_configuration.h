@@ -21,6 +21,9 @@ namespace evaluation {
 
 struct RerunConfiguration {
   std::string stock_name;  // of the Lua file
+  // The file was named and had no blocks to be taken out: the map may have been
+  // made with it.
+  bool stock_is_known = false;
   cartographer::mapping::proto::PoseGraphOptions stock;
   std::string ours_name;
   // Absent when the file has no block of ours.

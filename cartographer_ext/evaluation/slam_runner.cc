@@ -205,13 +205,9 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   optimization::ResetSwitchedLoops();
   MetricsCollector* const metrics = MetricsCollector::Global();
   const auto metrics_before = metrics->Values();
-  const auto search_cpu = [metrics]() {
-    return metrics->Sum(kSearchCpuMetric) +
-           metrics->Sum(kOurCpuMetric, {{"stage", "search"}});
-  };
   const double searched_before = CountPairs(*metrics, "searched");
   const double found_before = CountPairs(*metrics, "found");
-  const double search_cpu_before = search_cpu();
+  const LoopCpu loop_cpu_before = MeasureLoopCpu(*metrics);
   loop_closure::DecisionRecorder* const recorder =
       loop_closure::DecisionRecorder::Global();
   recorder->Start(kMaxDecisions);
@@ -350,9 +346,10 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   run.loops_found =
       static_cast<int64_t>(CountPairs(*metrics, "found") - found_before);
   run.loop_search_cpu_is_measured = metrics->Has(kSearchCpuMetric);
+  run.loop_cpu = MeasureLoopCpu(*metrics) - loop_cpu_before;
   run.loop_search_cpu_seconds =
       run.loop_search_cpu_is_measured
-          ? search_cpu() - search_cpu_before
+          ? run.loop_cpu.total()
           : run.cpu_seconds - (ThreadCpuSeconds() - thread_cpu_start);
   if (run.scans_left_out > 0) {
     run.warnings.push_back(absl::StrCat(

@@ -27,6 +27,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer/mapping/map_builder_interface.h"
+#include "cartographer_ext/evaluation/back_end_metrics.h"
 #include "cartographer_ext/evaluation/slam_configuration.h"
 #include "cartographer_ext/evaluation/starting_state.h"
 #include "cartographer_ext/evaluation/trajectory.h"
@@ -106,10 +107,11 @@ struct SlamRun {
   int64_t peak_memory_bytes = 0;  // of the process so far
   int64_t loop_searches = 0;
   int64_t loops_found = 0;
-  // CPU seconds of the loop search where the host's metrics tell, else of all
-  // threads but the feeding one.
+  // CPU seconds of closing loops, all stages but the optimisation, where the
+  // host's metrics tell; else of all threads but the feeding one.
   double loop_search_cpu_seconds = 0.;
   bool loop_search_cpu_is_measured = false;
+  LoopCpu loop_cpu;  // the same by stage
   // The host's metrics at the end, less those at the start.
   std::map<std::string, double> metrics;
 

@@ -22,6 +22,7 @@
 #include "cartographer_ext/evaluation/decision_table.h"
 #include "cartographer_ext/evaluation/evaluation_report.h"
 #include "cartographer_ext/evaluation/map_evaluation.h"
+#include "cartographer_ext/evaluation/match_files.h"
 #include "cartographer_ext/evaluation/pbstream_map.h"
 #include "cartographer_ext/evaluation/report/map_runs.h"
 #include "cartographer_ext/evaluation/report/report.h"
@@ -44,8 +45,9 @@ DEFINE_string(trajectory_filename, "",
 DEFINE_string(relations_filename, "",
               "Reference relations: t1 t2 x y z roll pitch yaw a line.");
 DEFINE_string(reference_trajectory_filename, "", "Reference trajectory (TUM).");
-DEFINE_int32(trajectory_id, 0,
-             "Which trajectory of the map is compared with the truth.");
+DEFINE_int32(trajectory_id, -1,
+             "Which trajectory of the map is compared with the truth; -1 is "
+             "the first that has nodes.");
 DEFINE_double(stamp_tolerance, 0.001,
               "Seconds within which stamps are the same scan.");
 DEFINE_double(rpe_distance, 1.,
@@ -64,10 +66,16 @@ DEFINE_string(rerun_configuration_basename, "",
               "assumed.");
 DEFINE_string(rerun_stock_configuration_basename, "",
               "Lua file for stock, where that is another one.");
+DEFINE_bool(rerun_follow_recording, true,
+            "Where the Lua file of the map is named, stock's optimisation is "
+            "given the stored loops that the run has found again. Clouds are "
+            "stored rounded to the millimetre and runs are chaotic; left to "
+            "itself, a run soon finds loops of other nodes of the same "
+            "visits.");
 DEFINE_int32(num_background_threads, 2, "Threads of the run.");
 DEFINE_string(match_records_filename, "",
-              "Records of local SLAM beside the map, for the degeneracy along "
-              "the path.");
+              "Records of local SLAM, for the degeneracy along the path; "
+              "without it those beside the map (MAP.nodes.pb), if any.");
 DEFINE_string(report_filename, "",
               "Output: report as one HTML file; beside it the numbers (.json) "
               "and the loops with their evidence (.loops.csv).");
@@ -137,9 +145,14 @@ absl::Status ReadInputs(Inputs* const inputs) {
   return absl::OkStatus();
 }
 
-evaluation::MapEvaluationOptions EvaluationOptions() {
+evaluation::MapEvaluationOptions EvaluationOptions(
+    const evaluation::MapGraph& graph) {
   evaluation::MapEvaluationOptions options;
-  options.trajectory_id = FLAGS_trajectory_id;
+  if (FLAGS_trajectory_id >= 0) {
+    options.trajectory_id = FLAGS_trajectory_id;
+  } else if (!graph.nodes.empty()) {
+    options.trajectory_id = graph.nodes.begin()->first.trajectory_id;
+  }
   const io::TimeNs tolerance = io::FromSeconds(FLAGS_stamp_tolerance);
   options.relations.stamp_tolerance = tolerance;
   options.trajectory.stamp_tolerance = tolerance;
@@ -180,6 +193,20 @@ absl::Status WriteTables(const Inputs& inputs,
                              RelationErrorTable(*result.relations));
 }
 
+absl::Status ReadDegeneracy(report::ReportData* const data) {
+  const bool is_named = !FLAGS_match_records_filename.empty();
+  if (!is_named && FLAGS_pbstream_filename.empty()) return absl::OkStatus();
+  auto samples = report::ReadDegeneracy(
+      is_named ? FLAGS_match_records_filename
+               : evaluation::MatchRecordsFilename(FLAGS_pbstream_filename));
+  if (samples.ok()) {
+    data->degeneracy = *std::move(samples);
+  } else if (is_named || !absl::IsNotFound(samples.status())) {
+    return samples.status();
+  }
+  return absl::OkStatus();
+}
+
 absl::Status WriteReport(const report::ReportData& data,
                          const nlohmann::ordered_json& json) {
   const auto page = report::MakeReport(data);
@@ -193,16 +220,19 @@ absl::Status WriteReport(const report::ReportData& data,
   return status;
 }
 
-// The runs over the map, for the report and the JSON.
-absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data) {
+// The runs over the map, for the report and the JSON. A map that cannot be run
+// again still has its report: `run_again` tells why.
+absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data,
+                      absl::Status* const run_again) {
   report::RunInputs runs;
   runs.pbstream = &*inputs.pbstream;
   runs.graph = &inputs.graph;
   runs.contents = FLAGS_self_consistency ? &inputs.contents : nullptr;
   runs.odometry = &inputs.odometry;
   runs.truth = &inputs.truth;
-  runs.evaluation = EvaluationOptions();
+  runs.evaluation = EvaluationOptions(inputs.graph);
   runs.rerun.num_background_threads = FLAGS_num_background_threads;
+  runs.rerun.follow_recording = FLAGS_rerun_follow_recording;
   const auto configuration = evaluation::LoadRerunConfiguration(
       absl::StrSplit(FLAGS_rerun_configuration_directory, ','),
       FLAGS_rerun_configuration_basename,
@@ -215,7 +245,14 @@ absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data) {
   };
   const absl::Status status = report::AddReruns(runs, *configuration, data);
   progress.Finish();
-  return status;
+  if (!status.ok()) {
+    *run_again =
+        absl::Status(status.code(),
+                     absl::StrCat(FLAGS_pbstream_filename,
+                                  ": cannot be run again: ", status.message()));
+    data->notes.push_back(std::string(run_again->message()));
+  }
+  return absl::OkStatus();
 }
 
 std::string RunsToText(const report::ReportData& data) {
@@ -233,6 +270,8 @@ std::string RunsToText(const report::ReportData& data) {
             ? 100.
             : 100. * (comparison.common + comparison.neighbour_instead) /
                   comparison.first);
+    const std::string missing = evaluation::ExplainMissing(comparison);
+    if (!missing.empty()) absl::StrAppend(&text, "  missing: ", missing, "\n");
     absl::StrAppend(&text, evaluation::ToText(run.evaluation));
   }
   for (const std::string& assumption : data.assumptions) {
@@ -266,22 +305,25 @@ absl::Status Run(const std::string& command_line) {
     map.odometry = &inputs.odometry;
   }
   if (inputs.trajectory.has_value()) map.scans = &*inputs.trajectory;
-  auto result = evaluation::EvaluateMap(map, inputs.truth, EvaluationOptions());
+  auto result = evaluation::EvaluateMap(map, inputs.truth,
+                                        EvaluationOptions(inputs.graph));
   if (!result.ok()) {
     return absl::Status(result.status().code(),
                         absl::StrCat(has_map ? FLAGS_pbstream_filename
                                              : FLAGS_trajectory_filename,
                                      ": ", result.status().message()));
   }
+  std::vector<proto::LoopDecision> decisions;
   if (has_map && result->loops.has_value()) {
-    const auto decisions = evaluation::ReadDecisions(
+    auto beside = evaluation::ReadDecisions(
         evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename));
-    if (decisions.ok()) {
+    if (beside.ok()) {
+      decisions = *std::move(beside);
       const evaluation::DecisionCounts counts =
-          evaluation::CountDecisions(*decisions);
+          evaluation::CountDecisions(decisions);
       result->loops->rejected = counts.rejected + counts.undecided;
-    } else if (!absl::IsNotFound(decisions.status())) {
-      return decisions.status();
+    } else if (!absl::IsNotFound(beside.status())) {
+      return beside.status();
     }
   }
   absl::Status status = WriteTables(inputs, *result);
@@ -298,14 +340,13 @@ absl::Status Run(const std::string& command_line) {
     report::RunInputs stored;
     stored.graph = &inputs.graph;
     data.runs.push_back(report::StoredRun(stored, *result));
+    data.runs.back().stored_decisions = std::move(decisions);
   }
-  if (!FLAGS_match_records_filename.empty()) {
-    auto samples = report::ReadDegeneracy(FLAGS_match_records_filename);
-    if (!samples.ok()) return samples.status();
-    data.degeneracy = *std::move(samples);
-  }
+  status = ReadDegeneracy(&data);
+  if (!status.ok()) return status;
+  absl::Status run_again;
   if (!FLAGS_rerun_configuration_directory.empty()) {
-    status = RunAgain(inputs, &data);
+    status = RunAgain(inputs, &data, &run_again);
     if (!status.ok()) return status;
   }
   if (FLAGS_json != "-") {
@@ -323,8 +364,8 @@ absl::Status Run(const std::string& command_line) {
     status = WriteReport(data, json);
     if (!status.ok()) return status;
   }
-  if (FLAGS_json.empty()) return absl::OkStatus();
-  return tools::WriteJson(json, FLAGS_json);
+  if (!FLAGS_json.empty()) status = tools::WriteJson(json, FLAGS_json);
+  return status.ok() ? run_again : status;
 }
 
 }  // namespace

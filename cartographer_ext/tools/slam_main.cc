@@ -228,7 +228,12 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
       {"found", run.loops_found},
       {"cpu_seconds", run.loop_search_cpu_seconds},
       // Otherwise all threads of the back end are counted.
-      {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured}};
+      {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured},
+      // What these seconds are made of; all 0 if they are not measured.
+      {"stages",
+       {{"search", run.loop_cpu.search},
+        {"build", run.loop_cpu.build},
+        {"verification", run.loop_cpu.verification}}}};
   if (!run.matches.empty()) {
     const evaluation::MatchCounts counts =
         evaluation::CountMatches(run.matches);

@@ -249,7 +249,7 @@ absl::StatusOr<Metrics> RunPbstream(
   Metrics metrics;
   metrics["wall_seconds"] = rerun->wall_seconds;
   metrics["cpu_seconds"] = rerun->cpu_seconds;
-  metrics["loop_search_cpu_seconds"] = rerun->search_cpu_seconds;
+  metrics["loop_search_cpu_seconds"] = rerun->loop_cpu.total();
   const absl::Status status =
       AddAccuracy(*truth, rerun->graph.GlobalTrajectory(), false, &metrics);
   if (!status.ok()) return status;

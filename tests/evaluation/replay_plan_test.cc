@@ -128,14 +128,72 @@ TEST(ReplayPlanTest, PlaceholdersFillGaps) {
   EXPECT_THAT(plan->steps[6].submaps, ElementsAre(2, 3));
 }
 
-TEST(ReplayPlanTest, MapsTrimmedOfNodesAreRefused) {
+TEST(ReplayPlanTest, GapsOfSubmapsAndNodesAreBridged) {
   MapGraph graph = Chain(12, 4);
   RemoveSubmap({0, 1}, &graph);
   RemoveSubmap({0, 2}, &graph);
   for (int i = 2; i < 6; ++i) graph.nodes.erase({0, i});
+  auto& constraints = graph.constraints;
+  constraints.erase(
+      std::remove_if(constraints.begin(), constraints.end(),
+                     [&](const GraphConstraint& constraint) {
+                       return graph.nodes.count(constraint.node_id) == 0;
+                     }),
+      constraints.end());
+  const auto plan = MakeReplayPlan(graph);
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  // Nodes 0 and 1 were in submap 0, 6 and 7 in submap 3, which count as in 0,
+  // too; 8 and 9 in 3 and 4, and so on.
+  EXPECT_EQ(plan->num_guessed, 2);
+  EXPECT_EQ(plan->num_placeholders, 0);
+  EXPECT_THAT(plan->steps[1].submaps, ElementsAre(0));
+  EXPECT_THAT(plan->steps[2].submaps, ElementsAre(0, 1));
+  EXPECT_EQ(plan->submaps[1].stored_index, 3);
+  EXPECT_EQ(plan->submaps[0].last_step, 3u);
+  EXPECT_THAT(plan->steps[4].submaps, ElementsAre(1, 2));
+  // Every step goes on where the one before ended.
+  for (size_t i = 1; i < plan->steps.size(); ++i) {
+    EXPECT_THAT(plan->steps[i].submaps,
+                testing::Contains(plan->steps[i - 1].submaps.back()));
+  }
+}
+
+TEST(ReplayPlanTest, NodesWithoutSubmapsAreBridged) {
+  MapGraph graph = Chain(12, 4);
+  // As a map whose constraints were thinned out.
+  auto& constraints = graph.constraints;
+  constraints.erase(std::remove_if(constraints.begin(), constraints.end(),
+                                   [](const GraphConstraint& constraint) {
+                                     return constraint.node_id.index == 5;
+                                   }),
+                    constraints.end());
+  const auto plan = MakeReplayPlan(graph);
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  EXPECT_GT(plan->num_guessed, 0);
+  for (size_t i = 1; i < plan->steps.size(); ++i) {
+    EXPECT_THAT(plan->steps[i].submaps,
+                testing::Contains(plan->steps[i - 1].submaps.back()));
+  }
+}
+
+TEST(ReplayPlanTest, OlderSubmapsAreRefused) {
+  MapGraph graph = Chain(12, 4);
+  for (GraphConstraint& constraint : graph.constraints) {
+    if (constraint.node_id.index == 11) constraint.submap_id.index -= 4;
+  }
   const auto plan = MakeReplayPlan(graph);
   ASSERT_FALSE(plan.ok());
-  EXPECT_THAT(std::string(plan.status().message()), HasSubstr("trimmed"));
+  EXPECT_THAT(std::string(plan.status().message()),
+              HasSubstr("node (0, 11) was inserted in a submap older"));
+}
+
+TEST(ReplayPlanTest, WithoutConstraintsEverythingIsInOnePlaceholder) {
+  MapGraph graph = Chain(12, 4);
+  graph.constraints.clear();
+  const auto plan = MakeReplayPlan(graph);
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  EXPECT_EQ(plan->steps.size(), 12u);
+  EXPECT_EQ(plan->submaps.size(), 1u);
 }
 
 TEST(ReplayPlanTest, ThreeSubmapsForANodeAreRefused) {

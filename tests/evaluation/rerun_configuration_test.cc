@@ -35,6 +35,7 @@ TEST(RerunConfigurationTest, StockIsAssumedAndWeightsAreTheMaps) {
       {"configuration_files"}, "", "", GraphWithWeights({5., 5.}));
   ASSERT_TRUE(configuration.ok()) << configuration.status();
   EXPECT_EQ(configuration->stock_name, "stock.lua");
+  EXPECT_FALSE(configuration->stock_is_known);
   EXPECT_FALSE(configuration->ours.has_value());
   const auto& builder = configuration->stock.constraint_builder_options();
   EXPECT_EQ(builder.loop_closure_translation_weight(), 5.);
@@ -52,6 +53,7 @@ TEST(RerunConfigurationTest, VariousWeightsAreLeftAlone) {
   EXPECT_EQ(configuration->stock.constraint_builder_options()
                 .loop_closure_translation_weight(),
             1.1e4);
+  EXPECT_TRUE(configuration->stock_is_known);
   EXPECT_THAT(configuration->assumptions, Contains(HasSubstr("various")));
 }
 
@@ -60,6 +62,7 @@ TEST(RerunConfigurationTest, StockIsOursWithoutTheBlocks) {
       {"configuration_files"}, "default.lua", "", MapGraph());
   ASSERT_TRUE(configuration.ok()) << configuration.status();
   ASSERT_TRUE(configuration->ours.has_value());
+  EXPECT_FALSE(configuration->stock_is_known);
   PoseGraphOptions without = *configuration->ours;
   EXPECT_TRUE(RemoveExtensions(&without));
   EXPECT_FALSE(RemoveExtensions(&without));
@@ -76,6 +79,7 @@ TEST(RerunConfigurationTest, BlocksGoIntoTheFileOfStock) {
       {"configuration_files"}, "default.lua", "stock.lua", MapGraph());
   ASSERT_TRUE(configuration.ok()) << configuration.status();
   EXPECT_EQ(configuration->stock_name, "stock.lua");
+  EXPECT_TRUE(configuration->stock_is_known);
   EXPECT_EQ(configuration->ours_name, "stock.lua with blocks of default.lua");
   ASSERT_TRUE(configuration->ours.has_value());
   for (const std::string& line :

@@ -57,9 +57,9 @@ TEST_F(RerunTest, FindsTheStoredLoopsAgain) {
   EXPECT_GE(rerun->searches, rerun->matches);
   EXPECT_GT(rerun->cpu_seconds, 0.);
 #ifdef CARTOGRAPHER_EXT_HOST_TELLS_SEARCH_CPU
-  EXPECT_GT(rerun->search_cpu_seconds, 0.);
+  EXPECT_GT(rerun->loop_cpu.search, 0.);
 #else
-  EXPECT_EQ(rerun->search_cpu_seconds, 0.);
+  EXPECT_EQ(rerun->loop_cpu.search, 0.);
 #endif
   EXPECT_TRUE(rerun->decisions.empty());
   for (const auto& node : graph_->nodes) {

@@ -45,10 +45,8 @@ double LoopEvidence::badness() const {
 std::vector<LoopEvidence> CollectEvidence(
     const ReportRun& run, const evaluation::MapContents& contents) {
   std::map<Key, const proto::LoopDecision*> decisions;
-  if (run.rerun.has_value()) {
-    for (const proto::LoopDecision& decision : run.rerun->decisions) {
-      decisions[KeyOf(decision)] = &decision;
-    }
+  for (const proto::LoopDecision& decision : run.decisions()) {
+    decisions[KeyOf(decision)] = &decision;
   }
   std::vector<LoopEvidence> result;
   const std::vector<double> scores =
@@ -84,8 +82,7 @@ std::vector<LoopEvidence> CollectEvidence(
     result.push_back(evidence);
     ++position;
   }
-  if (!run.rerun.has_value()) return result;
-  for (const proto::LoopDecision& decision : run.rerun->decisions) {
+  for (const proto::LoopDecision& decision : run.decisions()) {
     if (decision.verdict() != proto::LoopDecision::REJECTED ||
         !decision.search().has_refined()) {
       continue;

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/evaluation/report/map_runs.h"
 
-#include <fstream>
-#include <iterator>
-
 #include "Eigen/Core"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "cartographer_ext/evaluation/host_types.h"
-#include "cartographer_ext/front_end/match_record.h"
+#include "cartographer_ext/evaluation/match_files.h"
 #include "ceres/version.h"
 #include "google/protobuf/stubs/common.h"
 
@@ -21,9 +19,12 @@ using evaluation::Evaluation;
 absl::StatusOr<ReportRun> RunOnce(
     const RunInputs& inputs,
     const cartographer::mapping::proto::PoseGraphOptions& options,
-    const std::string& name, const std::string& style) {
+    const std::string& name, const std::string& style, const bool is_stock,
+    const bool follow) {
+  evaluation::RerunOptions rerun_options = inputs.rerun;
+  rerun_options.follow_recording = follow;
   auto rerun =
-      evaluation::RerunPoseGraph(*inputs.pbstream, options, inputs.rerun);
+      evaluation::RerunPoseGraph(*inputs.pbstream, options, rerun_options);
   if (!rerun.ok()) return rerun.status();
   ReportRun run;
   run.name = name;
@@ -42,6 +43,8 @@ absl::StatusOr<ReportRun> RunOnce(
   evaluation::LoopComparisonOptions comparison;
   comparison.max_constraint_distance =
       options.constraint_builder_options().max_constraint_distance();
+  // Ours decides by other rules.
+  if (is_stock) comparison.fates = &run.rerun->fates;
   run.against_stored =
       evaluation::CompareLoops(*inputs.graph, run.graph, comparison);
   return run;
@@ -66,13 +69,31 @@ absl::Status AddReruns(const RunInputs& inputs,
   data->assumptions = configuration.assumptions;
   data->stock_min_score =
       configuration.stock.constraint_builder_options().min_score();
-  auto stock = RunOnce(inputs, configuration.stock, "stock again", "s2");
+  const bool follow =
+      inputs.rerun.follow_recording && configuration.stock_is_known;
+  auto stock = RunOnce(inputs, configuration.stock, "stock again", "s2",
+                       true /* stock */, follow);
   if (!stock.ok()) return stock.status();
+  if (follow) {
+    data->assumptions.push_back(absl::StrFormat(
+        "stock's run follows the record: its optimisation is given the stored "
+        "loops that it has found again within 5 cm and 3 degrees, and only "
+        "these (%d in the end), so that rounding of the stored clouds does not "
+        "add up; -norerun_follow_recording leaves it to itself",
+        stock->rerun->followed_loops));
+  }
   if (stock->rerun->placeholders > 0) {
     data->assumptions.push_back(absl::StrCat(
         stock->rerun->placeholders,
         " unfinished submaps are not in the file; empty ones that are never "
         "searched stand for them"));
+  }
+  if (stock->rerun->guessed_insertions > 0) {
+    data->assumptions.push_back(absl::StrCat(
+        "submaps have been trimmed from the map; ",
+        stock->rerun->guessed_insertions,
+        " nodes beside the gaps are tied to one submap more or less than they "
+        "were"));
   }
   data->runs.push_back(*std::move(stock));
   if (!configuration.ours.has_value()) {
@@ -81,7 +102,8 @@ absl::Status AddReruns(const RunInputs& inputs,
         "given (-rerun_configuration_basename).");
     return absl::OkStatus();
   }
-  auto ours = RunOnce(inputs, *configuration.ours, "ours", "s3");
+  auto ours = RunOnce(inputs, *configuration.ours, "ours", "s3",
+                      false /* stock */, false);
   if (!ours.ok()) return ours.status();
   data->runs.push_back(*std::move(ours));
   data->option_differences =
@@ -91,16 +113,8 @@ absl::Status AddReruns(const RunInputs& inputs,
 
 absl::StatusOr<std::vector<DegeneracySample>> ReadDegeneracy(
     const std::string& filename) {
-  std::ifstream file(filename, std::ios::binary);
-  if (!file) return absl::NotFoundError(absl::StrCat("cannot open ", filename));
-  const std::string bytes((std::istreambuf_iterator<char>(file)),
-                          std::istreambuf_iterator<char>());
-  const auto records = front_end::ParseRecords(bytes);
-  if (!records.ok()) {
-    return absl::Status(
-        records.status().code(),
-        absl::StrCat(filename, ": ", records.status().message()));
-  }
+  const auto records = evaluation::ReadMatches(filename);
+  if (!records.ok()) return records.status();
   std::vector<DegeneracySample> samples;
   for (const proto::MatchRecord& record : *records) {
     if (!record.is_node()) continue;

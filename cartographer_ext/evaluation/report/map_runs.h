@@ -42,7 +42,7 @@ absl::Status AddReruns(const RunInputs& inputs,
                        ReportData* data);
 
 // From the records that a run of local SLAM leaves beside a map; only those of
-// nodes. Errors name the file.
+// nodes. Errors name the file; NotFound where there is none.
 absl::StatusOr<std::vector<DegeneracySample>> ReadDegeneracy(
     const std::string& filename);
 

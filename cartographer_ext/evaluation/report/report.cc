@@ -101,7 +101,16 @@ ordered_json ComparisonToJson(const evaluation::LoopComparison& comparison) {
           {"fraction_of_run", comparison.fraction_of_second},
           {"neighbour_instead", comparison.neighbour_instead},
           {"too_far", comparison.too_far},
+          {"not_sampled", comparison.not_sampled},
+          {"no_match", comparison.no_match},
           {"other_visit", comparison.other_visit}};
+}
+
+std::map<std::string, int> Reasons(
+    const std::vector<proto::LoopDecision>& decisions) {
+  std::map<std::string, int> reasons;
+  for (const auto& decision : decisions) ++reasons[VerdictInWords(decision)];
+  return reasons;
 }
 
 ordered_json RerunToJson(const evaluation::Rerun& rerun,
@@ -109,18 +118,17 @@ ordered_json RerunToJson(const evaluation::Rerun& rerun,
   ordered_json json;
   json["nodes"] = rerun.nodes;
   json["placeholders"] = rerun.placeholders;
+  json["guessed_insertions"] = rerun.guessed_insertions;
   json["searches"] = rerun.searches;
   json["matches"] = rerun.matches;
-  std::map<std::string, int> reasons;
-  for (const auto& decision : rerun.decisions) {
-    ++reasons[VerdictInWords(decision)];
-  }
-  json["decisions"] = reasons;
+  json["followed_loops"] = rerun.followed_loops;
   if (!with_times) return json;
   json["wall_seconds"] = rerun.wall_seconds;
   json["cpu_seconds"] = rerun.cpu_seconds;
-  json["search_cpu_seconds"] = rerun.search_cpu_seconds;
-  json["build_cpu_seconds"] = rerun.build_cpu_seconds;
+  json["loop_search_cpu_seconds"] = rerun.loop_cpu.total();
+  json["search_cpu_seconds"] = rerun.loop_cpu.search;
+  json["build_cpu_seconds"] = rerun.loop_cpu.build;
+  json["verification_cpu_seconds"] = rerun.loop_cpu.verification;
   json["peak_memory_bytes"] = rerun.peak_memory_bytes;
   return json;
 }
@@ -172,6 +180,7 @@ ordered_json RunsToJson(const ReportData& data) {
     }
     if (run.rerun.has_value()) {
       json["run"] = RerunToJson(*run.rerun, data.with_times);
+      json["run"]["decisions"] = Reasons(run.decisions());
     }
     runs.push_back(json);
   }

@@ -17,6 +17,7 @@
 #include "cartographer_ext/evaluation/rerun.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/loop_decision.pb.h"
 
 namespace cartographer_ext {
 namespace report {
@@ -29,6 +30,14 @@ struct ReportRun {
   evaluation::Evaluation evaluation;  // with loops and consistency
   // What the run took and decided; absent for the stored map.
   absl::optional<evaluation::Rerun> rerun;
+  // Of the run that made the stored map, where they were found beside it.
+  std::vector<proto::LoopDecision> stored_decisions;
+
+  // Of our loop closure; empty for stock.
+  const std::vector<proto::LoopDecision>& decisions() const {
+    return rerun.has_value() ? rerun->decisions : stored_decisions;
+  }
+
   // Loops of the stored map against those of this run.
   absl::optional<evaluation::LoopComparison> against_stored;
 };

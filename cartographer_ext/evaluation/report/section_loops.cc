@@ -97,7 +97,7 @@ std::set<std::pair<GraphId, GraphId>> LoopPairs(
 void AddFates(const ReportRun& run, const ReportRun& other,
               Markup* const page) {
   std::map<std::pair<GraphId, GraphId>, const proto::LoopDecision*> decisions;
-  for (const auto& decision : other.rerun->decisions) {
+  for (const auto& decision : other.decisions()) {
     decisions[{{decision.submap_trajectory_id(), decision.submap_index()},
                {decision.node_trajectory_id(), decision.node_index()}}] =
         &decision;
@@ -156,9 +156,9 @@ void AddComparison(const ReportData& data, Markup* const page) {
   }
   page->Raw(table.ToHtml("Pairs of submap and node tied by a loop"));
   for (const ReportRun& run : data.runs) {
-    if (!run.rerun.has_value() || run.rerun->decisions.empty()) continue;
+    if (run.decisions().empty()) continue;
     std::map<std::string, int> reasons;
-    for (const auto& decision : run.rerun->decisions) {
+    for (const auto& decision : run.decisions()) {
       ++reasons[VerdictInWords(decision)];
     }
     Table verdicts({absl::StrCat("candidates, ", run.name), "count"});

@@ -24,27 +24,29 @@ void AddTiming(const ReportData& data, Markup* const page) {
   if (!any || !data.with_times) return;
   AddHeading("timing", "Time and memory", page);
   Table table({"run", "wall", "CPU", "search", "preparing submaps",
-               "optimisation and the rest", "searches", "matches",
-               "ms a search", "memory"});
+               "verification", "optimisation and the rest", "searches",
+               "matches", "ms a search", "memory"});
   for (const ReportRun& run : data.runs) {
     if (!run.rerun.has_value()) continue;
     const evaluation::Rerun& rerun = *run.rerun;
     table.AddRow(
         {run.name, Seconds(rerun.wall_seconds), Seconds(rerun.cpu_seconds),
-         Seconds(rerun.search_cpu_seconds), Seconds(rerun.build_cpu_seconds),
-         Seconds(std::max(0., rerun.cpu_seconds - rerun.search_cpu_seconds -
-                                  rerun.build_cpu_seconds)),
+         Seconds(rerun.loop_cpu.search), Seconds(rerun.loop_cpu.build),
+         Seconds(rerun.loop_cpu.verification),
+         Seconds(std::max(0., rerun.cpu_seconds - rerun.loop_cpu.total())),
          absl::StrCat(rerun.searches), absl::StrCat(rerun.matches),
          rerun.searches == 0
              ? ""
              : absl::StrFormat("%.2f",
-                               1e3 * rerun.search_cpu_seconds / rerun.searches),
+                               1e3 * rerun.loop_cpu.search / rerun.searches),
          absl::StrFormat(
              "%.0f MiB",
              static_cast<double>(rerun.peak_memory_bytes) / (1 << 20))});
   }
   page->Raw(table.ToHtml(
-      "CPU seconds of all threads. Memory: the peak of the run above what the "
+      "CPU seconds of all threads. Search: with the refinement of what it "
+      "finds. Verification: which searches to make and which matches to "
+      "believe, ours only. Memory: the peak of the run above what the "
       "program held before it."));
 }
 

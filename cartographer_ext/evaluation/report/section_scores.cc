@@ -89,10 +89,9 @@ void AddHistograms(const ReportData& data, const size_t index,
 }
 
 void AddScatter(const ReportRun& run, Markup* const page) {
-  if (!run.rerun.has_value()) return;
   const proto::LoopDecision* mixture = nullptr;
   size_t with_scores = 0;
-  for (const auto& decision : run.rerun->decisions) {
+  for (const auto& decision : run.decisions()) {
     if (decision.has_temporal() && decision.temporal().outcome() ==
                                        proto::LoopDecision::Temporal::SCORED) {
       ++with_scores;
@@ -105,7 +104,7 @@ void AddScatter(const ReportRun& run, Markup* const page) {
               {"S_t, temporal score", 0., 1.}, 640, 420);
   const size_t step = 1 + with_scores / kMaxPoints;
   size_t position = 0;
-  for (const auto& decision : run.rerun->decisions) {
+  for (const auto& decision : run.decisions()) {
     if (!decision.has_temporal() ||
         decision.temporal().outcome() !=
             proto::LoopDecision::Temporal::SCORED ||
