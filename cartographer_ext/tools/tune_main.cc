@@ -158,6 +158,7 @@ absl::StatusOr<Setup> ReadSetup() {
   options.budget_seconds = 60. * FLAGS_budget_minutes;
   options.folds = FLAGS_folds;
   options.prune = FLAGS_prune;
+  options.no_input_worse = setup.spec.no_input_worse;
   options.odometry_source = FLAGS_odometry_source;
   options.num_threads = FLAGS_threads;
   return setup;

@@ -151,6 +151,7 @@ absl::StatusOr<Point> BaseConfiguration::Values(
     const std::vector<Parameter>& parameters) const {
   std::set<std::string> roots;
   for (const Parameter& parameter : parameters) {
+    if (parameter.is_include()) continue;
     roots.insert(parameter.key.substr(0, parameter.key.find('.')));
   }
   std::string code = AsFunction(code_) + "return {\n";
@@ -162,6 +163,10 @@ absl::StatusOr<Point> BaseConfiguration::Values(
   if (!tables.ok()) return tables.status();
   Point point;
   for (const Parameter& parameter : parameters) {
+    if (parameter.is_include()) {
+      point.push_back("");
+      continue;
+    }
     const std::vector<std::string> path = absl::StrSplit(parameter.key, '.');
     const nlohmann::json* place = &*tables;
     bool in_block = false;
@@ -257,6 +262,11 @@ std::string BaseConfiguration::CodeWith(
     const nlohmann::json& assignment) const {
   std::string code = AsFunction(code_) + kAssignFunction;
   for (const auto& item : assignment.items()) {
+    if (!IsIncludeKey(item.key()) || item.value() == "") continue;
+    absl::StrAppend(&code, "include ", evaluation::ToLua(item.value()), "\n");
+  }
+  for (const auto& item : assignment.items()) {
+    if (IsIncludeKey(item.key())) continue;
     absl::StrAppend(&code, "assign(\"", item.key(), "\", ",
                     evaluation::ToLua(item.value()), ")\n");
   }

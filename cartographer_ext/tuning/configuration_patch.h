@@ -41,7 +41,8 @@ class BaseConfiguration {
   // of another type, the value is not allowed, or nothing changes with it.
   absl::Status CheckParameters(const std::vector<Parameter>& parameters) const;
 
-  // Lua code of the configuration with { key: value } assigned.
+  // Lua code of the configuration with { key: value } assigned, files to be
+  // included first.
   std::string CodeWith(const nlohmann::json& assignment) const;
 
   // Of all that runs depend on, as a short text.

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
@@ -28,6 +29,8 @@ double Clamp(const double value, const double low, const double high) {
   return std::min(std::max(value, low), high);
 }
 
+constexpr char kIncludePrefix[] = "include.";
+
 // Dotted Lua names.
 bool IsKey(const std::string& key) {
   for (const absl::string_view part : absl::StrSplit(key, '.')) {
@@ -46,17 +49,20 @@ class EntryParser {
 
   absl::StatusOr<Parameter> Parse() {
     if (!entry_.is_object()) return Error("is not a table");
-    static const std::set<std::string> known = {"key",     "range", "scale",
-                                                "integer", "steps", "choices"};
+    static const std::set<std::string> known = {
+        "key", "include", "range", "scale", "integer", "steps", "choices"};
     for (const auto& item : entry_.items()) {
       if (known.count(item.key()) == 0) {
         return Error(absl::StrCat("has the unknown key '", item.key(), "'"));
       }
     }
-    if (!Has("key") || !entry_["key"].is_string()) {
+    const char* const name = Has("include") ? "include" : "key";
+    if (Has("key") && Has("include")) return Error("has key and include");
+    if (!Has(name) || !entry_[name].is_string()) {
       return Error("has no key = \"...\"");
     }
-    parameter_.key = entry_["key"].get<std::string>();
+    parameter_.key = absl::StrCat(Has("include") ? kIncludePrefix : "",
+                                  entry_[name].get<std::string>());
     name_ = absl::StrCat(name_, " (", parameter_.key, ")");
     if (!IsKey(parameter_.key)) return Error("has a key that is no Lua name");
     if (Has("range") == Has("choices")) {
@@ -64,6 +70,12 @@ class EntryParser {
     }
     const absl::Status status = Has("choices") ? ParseChoices() : ParseRange();
     if (!status.ok()) return status;
+    if (parameter_.is_include() &&
+        (parameter_.kind != Parameter::Kind::kChoice ||
+         !std::all_of(parameter_.choices.begin(), parameter_.choices.end(),
+                      [](const Value& file) { return file.is_string(); }))) {
+      return Error("needs names of Lua files as choices, \"\" for none");
+    }
     return parameter_;
   }
 
@@ -152,6 +164,12 @@ class EntryParser {
 };
 
 }  // namespace
+
+bool IsIncludeKey(const std::string& key) {
+  return absl::StartsWith(key, kIncludePrefix);
+}
+
+bool Parameter::is_include() const { return IsIncludeKey(key); }
 
 Value Parameter::FromUnit(const double unit) const {
   const double u = std::isnan(unit) ? 0. : Clamp(unit, 0., 1.);

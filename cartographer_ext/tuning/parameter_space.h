@@ -23,6 +23,8 @@ struct Parameter {
   enum class Kind { kReal, kInteger, kChoice };
 
   // Full name in the configuration: "POSE_GRAPH.constraint_builder.min_score".
+  // Or "include.NAME": the choices are Lua files that are run behind the
+  // configuration and before the assignments, "" being none.
   std::string key;
   Kind kind = Kind::kReal;
   // Both ends belong to the range.
@@ -31,6 +33,8 @@ struct Parameter {
   bool log_scale = false;
   int steps = 5;  // of a grid, for ranges
   std::vector<Value> choices;
+
+  bool is_include() const;
 
   // `unit` in [0, 1], clamped. Numbers are rounded to four digits, so that the
   // result can be read and written again without loss.
@@ -49,9 +53,13 @@ struct Parameter {
 //   { key = "...", range = { 0.4, 0.8 }, scale = "log", integer = true,
 //     steps = 5 }
 //   { key = "...", choices = { true, false } }
+//   { include = "NAME", choices = { "", "front_end_default.lua" } }
 // Errors name the entry, its key and what is wrong.
 absl::StatusOr<std::vector<Parameter>> ParseParameters(
     const nlohmann::json& array);
+
+// Whether the key stands for a file to be included.
+bool IsIncludeKey(const std::string& key);
 
 // Parameter by parameter.
 using Point = std::vector<Value>;

@@ -141,15 +141,23 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
   }
   std::set<std::string> copied;
   std::string assignments;
+  std::string includes;
   for (const KeyResult& key : result.keys) {
+    const std::string comment = absl::StrCat(
+        Gain(key, result.best, context.inputs.size()),
+        "; confidence: ", Confidence(key, context.inputs.size()), "\n");
+    if (IsIncludeKey(key.key)) {
+      absl::StrAppend(&includes, "\n-- Not there before; ", comment, "include ",
+                      evaluation::ToLua(key.after), "\n");
+      continue;
+    }
     absl::StrAppend(&assignments,
                     "\n-- Before: ", evaluation::ToLua(key.before), "; ",
-                    Gain(key, result.best, context.inputs.size()),
-                    "; confidence: ", Confidence(key, context.inputs.size()),
-                    "\n", CopyTables(key.key, &copied), key.key, " = ",
+                    comment, CopyTables(key.key, &copied), key.key, " = ",
                     evaluation::ToLua(key.after), "\n");
   }
-  absl::StrAppend(&text, copied.empty() ? "" : kCopyFunction, assignments);
+  absl::StrAppend(&text, includes, copied.empty() ? "" : kCopyFunction,
+                  assignments);
   return text;
 }
 

@@ -43,8 +43,8 @@ absl::StatusOr<std::vector<std::string>> ParseTexts(const nlohmann::json& value,
 
 absl::Status ParseInto(const nlohmann::json& table, SearchSpec* const spec) {
   static const std::set<std::string> known = {
-      "configuration", "parameters", "objective", "aggregation",
-      "target_recall", "inputs",     "holdout"};
+      "configuration", "parameters",     "objective", "aggregation",
+      "target_recall", "no_input_worse", "inputs",    "holdout"};
   if (!table.is_object()) {
     return absl::InvalidArgumentError("does not return a table with names");
   }
@@ -88,6 +88,12 @@ absl::Status ParseInto(const nlohmann::json& table, SearchSpec* const spec) {
           "target_recall must be above 0 and at most 1");
     }
     spec->objective.target_recall = recall.get<double>();
+  }
+  if (table.contains("no_input_worse")) {
+    if (!table["no_input_worse"].is_boolean()) {
+      return absl::InvalidArgumentError("no_input_worse must be true or false");
+    }
+    spec->no_input_worse = table["no_input_worse"].get<bool>();
   }
   for (const char* key : {"inputs", "holdout"}) {
     if (!table.contains(key)) continue;

@@ -14,6 +14,7 @@
 //     objective = "relations",       -- or { relations = 1., cpu_seconds = 0.01
 //     } aggregation = "mean",          -- over recordings; max, geometric_mean
 //     target_recall = 0.5,           -- of precision_at_recall
+//     no_input_worse = true,         -- than with the configuration as it is
 //     inputs = { "a.clf.xz", "b.clf=b_truth.tum", "corridor.world#3" },
 //     holdout = { "c.clf" },
 //   }
@@ -37,6 +38,9 @@ struct SearchSpec {
   std::string configuration;  // empty: not given
   std::vector<Parameter> parameters;
   Objective objective;
+  // A result must not be worse than the configuration as it is on any input,
+  // however much better on others.
+  bool no_input_worse = false;
   std::vector<std::string> inputs;
   std::vector<std::string> holdout;
 };

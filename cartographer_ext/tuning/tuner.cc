@@ -287,8 +287,18 @@ absl::Status Tuner::RunSampler(const std::vector<size_t>& inputs,
   return absl::OkStatus();
 }
 
+bool Tuner::IsAllowed(const Trial& trial, const Trial& baseline) const {
+  if (!trial.ok || trial.fidelity != 1.) return false;
+  if (!options_.no_input_worse) return true;
+  for (size_t i = 0; i < trial.objectives.size(); ++i) {
+    if (trial.objectives[i] > baseline.objectives[i]) return false;
+  }
+  return true;
+}
+
 absl::Status Tuner::Prune(const std::vector<size_t>& inputs,
-                          const double deadline, SearchResult* const result) {
+                          const Trial& baseline, const double deadline,
+                          SearchResult* const result) {
   Trial* const best = &result->best;
   for (size_t i = 0; i < parameters_.size(); ++i) {
     if (best->point[i] == base_point_[i]) continue;
@@ -303,7 +313,8 @@ absl::Status Tuner::Prune(const std::vector<size_t>& inputs,
       if (!trial.ok()) return trial.status();
       if (trial->has_value() && (*trial)->ok) {
         const double gain = (*trial)->objective - best->objective;
-        if (gain <= options_.least_gain * std::abs(best->objective)) {
+        if (IsAllowed(**trial, baseline) &&
+            gain <= options_.least_gain * std::abs(best->objective)) {
           *best = **trial;
           continue;
         }
@@ -335,7 +346,7 @@ absl::StatusOr<Tuner::SearchResult> Tuner::Search(
   bool any = false;
   for (const Trial& trial : result.trials) {
     any |= trial.ok;
-    if (trial.ok && trial.fidelity == 1. &&
+    if (IsAllowed(trial, *baseline) &&
         trial.objective < result.best.objective) {
       result.best = trial;
     }
@@ -345,7 +356,8 @@ absl::StatusOr<Tuner::SearchResult> Tuner::Search(
         "every trial failed, the first with: ", result.trials.front().message));
   }
   progress_.step = "pruning";
-  const absl::Status pruned = Prune(inputs, start + seconds, &result);
+  const absl::Status pruned =
+      Prune(inputs, *baseline, start + seconds, &result);
   if (!pruned.ok()) return pruned;
   return result;
 }

@@ -51,6 +51,9 @@ struct TunerOptions {
   // A key whose return to its old value makes the objective worse by less than
   // this share goes back.
   double least_gain = 0.005;
+  // The best trial is one that is worse than the configuration as it is on no
+  // recording of the search.
+  bool no_input_worse = false;
   std::string odometry_source;
   int num_threads = 1;  // of each run
 };
@@ -156,10 +159,12 @@ class Tuner {
   };
   absl::StatusOr<SearchResult> Search(const std::vector<size_t>& inputs,
                                       double seconds);
+  // Whether a trial may be the result of a search that began with `baseline`.
+  bool IsAllowed(const Trial& trial, const Trial& baseline) const;
   absl::Status RunSampler(const std::vector<size_t>& inputs, double deadline,
                           std::vector<Trial>* trials);
-  absl::Status Prune(const std::vector<size_t>& inputs, double deadline,
-                     SearchResult* result);
+  absl::Status Prune(const std::vector<size_t>& inputs, const Trial& baseline,
+                     double deadline, SearchResult* result);
   absl::Status RunFolds(double seconds_each);
   void Report(int trials);
   double Elapsed() const;

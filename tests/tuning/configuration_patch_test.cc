@@ -83,6 +83,36 @@ TEST_F(BaseConfigurationTest, AssignsWithoutTouchingTheFile) {
             stock.parsed().map_builder_options.SerializeAsString());
 }
 
+TEST_F(BaseConfigurationTest, FilesAreIncludedBeforeKeysAreAssigned) {
+  const BaseConfiguration stock = Stock();
+  const std::string key =
+      "POSE_GRAPH.optimization_problem.odometry_translation_weight";
+  const std::vector<Parameter> parameters = {
+      Choices("include.loops", {"", "loop_closure_default.lua"}),
+      Range(key, 1., 1e6)};
+  const auto values = stock.Values(parameters);
+  ASSERT_TRUE(values.ok()) << values.status();
+  EXPECT_EQ((*values)[0], "");
+  EXPECT_TRUE(stock.CheckParameters(parameters).ok());
+  const auto weight = [&](const nlohmann::json& assignment) {
+    const auto changed = evaluation::ParseSlamConfiguration(
+        stock.directories(), "changed", stock.CodeWith(assignment));
+    EXPECT_TRUE(changed.ok()) << changed.status();
+    return changed->map_builder_options.pose_graph_options()
+        .optimization_problem_options()
+        .odometry_translation_weight();
+  };
+  EXPECT_EQ(weight({{"include.loops", ""}}), 1e5);
+  EXPECT_EQ(weight({{"include.loops", "loop_closure_default.lua"}}), 10.);
+  EXPECT_EQ(weight({{"include.loops", "loop_closure_default.lua"}, {key, 7.}}),
+            7.);
+  EXPECT_THAT(std::string(stock
+                              .CheckParameters({Choices("include.loops",
+                                                        {"", "not_there.lua"})})
+                              .message()),
+              HasSubstr("not_there.lua"));
+}
+
 TEST_F(BaseConfigurationTest, KnowsKeysThatABlockLeavesOut) {
   const BaseConfiguration configuration = WithBlock();
   const std::string block = "POSE_GRAPH.optimization_problem.cartographer_ext.";

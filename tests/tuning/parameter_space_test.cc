@@ -64,6 +64,28 @@ TEST(ParameterSpaceTest, ChoicesShareTheUnitIntervalEqually) {
   }
 }
 
+TEST(ParameterSpaceTest, FilesToIncludeAreChoices) {
+  const Parameter p =
+      One("{ include = 'front_end', choices = { '', 'a.lua' } }");
+  EXPECT_TRUE(p.is_include());
+  EXPECT_EQ(p.key, "include.front_end");
+  EXPECT_EQ(p.FromUnit(0.9), "a.lua");
+  EXPECT_FALSE(One("{ key = 'a', choices = { 1 } }").is_include());
+  EXPECT_THAT(
+      std::string(
+          Parse("{ include = 'a', range = { 0, 1 } }").status().message()),
+      HasSubstr("needs names of Lua files as choices"));
+  EXPECT_THAT(
+      std::string(
+          Parse("{ include = 'a', choices = { true } }").status().message()),
+      HasSubstr("parameters[1] (include.a) needs names"));
+  EXPECT_THAT(
+      std::string(Parse("{ include = 'a', key = 'b', choices = { '' } }")
+                      .status()
+                      .message()),
+      HasSubstr("has key and include"));
+}
+
 TEST(ParameterSpaceTest, AssignmentIsInAlphabeticalOrder) {
   const auto parameters = *Parse(
       "{ key = 'b', range = { 0, 1 } }, { key = 'a', range = { 0, 1 } }");

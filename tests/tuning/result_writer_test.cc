@@ -82,6 +82,17 @@ TEST(ResultWriterTest, TheLuaFileSetsTheKeys) {
   EXPECT_EQ((*value)["cartographer_ext"]["other"], 3);
 }
 
+TEST(ResultWriterTest, FilesAreIncludedFirst) {
+  TuneResult result = Result();
+  result.keys[1].key = "include.front_end";
+  result.keys[1].before = "";
+  result.keys[1].after = "front_end_default.lua";
+  const std::string text = ToLuaFile(result, Context());
+  const size_t include = text.find("\ninclude \"front_end_default.lua\"\n");
+  ASSERT_NE(include, std::string::npos) << text;
+  EXPECT_LT(include, text.find("A.score = 0.625"));
+}
+
 TEST(ResultWriterTest, SaysWhenNothingWasBetter) {
   TuneResult result = Result();
   result.best = result.baseline;

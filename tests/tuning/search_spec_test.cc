@@ -22,7 +22,8 @@ TEST(SearchSpecTest, ReadsAllKeys) {
       "search.lua", std::string("return { configuration = 'c.lua', ") +
                         kParameters +
                         ", objective = { ate = 2. }, aggregation = 'max',"
-                        " target_recall = 0.7, inputs = { 'a.clf', 'b.clf' },"
+                        " target_recall = 0.7, no_input_worse = true, inputs = "
+                        "{ 'a.clf', 'b.clf' },"
                         " holdout = {} }"));
   ASSERT_TRUE(spec.ok()) << spec.status();
   EXPECT_EQ(spec->configuration, "c.lua");
@@ -30,6 +31,7 @@ TEST(SearchSpecTest, ReadsAllKeys) {
   EXPECT_EQ(spec->objective.weights.at("ate"), 2.);
   EXPECT_EQ(spec->objective.aggregation, Objective::Aggregation::kMax);
   EXPECT_EQ(spec->objective.target_recall, 0.7);
+  EXPECT_TRUE(spec->no_input_worse);
   EXPECT_THAT(spec->inputs, ElementsAre("a.clf", "b.clf"));
   EXPECT_TRUE(spec->holdout.empty());
 }
@@ -51,6 +53,7 @@ TEST(SearchSpecTest, ErrorsNameFileAndKey) {
   EXPECT_THAT(with("objective = 'joy'"), HasSubstr("unknown objective"));
   EXPECT_THAT(with("aggregation = 'sum'"), HasSubstr("aggregation"));
   EXPECT_THAT(with("target_recall = 0"), HasSubstr("target_recall"));
+  EXPECT_THAT(with("no_input_worse = 1"), HasSubstr("no_input_worse"));
   EXPECT_THAT(with("inputs = 'a'"), HasSubstr("inputs"));
   EXPECT_THAT(with("inputs = { 1 }"), HasSubstr("inputs"));
   EXPECT_THAT(with("configuration = 1"), HasSubstr("configuration"));

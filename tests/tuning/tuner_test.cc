@@ -22,11 +22,13 @@ constexpr char kScale[] = "POSE_GRAPH.optimization_problem.huber_scale";
 constexpr char kUnused[] = "POSE_GRAPH.matcher_rotation_weight";
 
 // Instead of SLAM: smallest at min_score 0.7 and huber_scale 100; the third key
-// does nothing. "b" likes them as "a" does, but is twice as bad.
+// does nothing. "b" likes them as "a" does, but is twice as bad; "c" would have
+// min_score low.
 double Error(const std::map<std::string, double>& values,
              const std::string& input) {
   const double score = values.at(kScore) - 0.7;
   const double scale = std::log10(values.at(kScale)) - 2.;
+  if (input[0] == 'c') return 0.01 * (1. + values.at(kScore));
   return (input[0] == 'b' ? 2. : 1.) *
          (0.1 + score * score + 0.05 * scale * scale);
 }
@@ -127,6 +129,7 @@ struct Case {
   double budget_seconds = 0.;
   int hang_after = 0;
   double fail_below_score = 0.;
+  bool no_input_worse = false;
   std::string journal;
   std::vector<std::string> inputs = {"a", "b"};
   int* started = nullptr;
@@ -141,6 +144,7 @@ absl::StatusOr<TuneResult> Tune(const Case& c) {
   options.max_trials = c.max_trials;
   options.folds = c.folds;
   options.budget_seconds = c.budget_seconds;
+  options.no_input_worse = c.no_input_worse;
   const auto journal = Journal::Open(c.journal, "f");
   if (!journal.ok()) return journal.status();
   FakePool pool(c.workers, c.order);
@@ -184,6 +188,21 @@ TEST(TunerTest, FindsTheMinimumAndPrunesWhatGainsNothing) {
   EXPECT_FALSE(result->keys.empty());
   // The pruned point is what the keys say.
   EXPECT_EQ(result->best.point[2], result->baseline.point[2]);
+}
+
+TEST(TunerTest, NoRecordingNeedBeWorse) {
+  Case c;
+  c.inputs = {"a", "c"};
+  const auto free = Tune(c);
+  ASSERT_TRUE(free.ok()) << free.status();
+  EXPECT_GT(free->best.point[0], 0.55);
+  EXPECT_GT(free->best.objectives[1], free->baseline.objectives[1]);
+  c.no_input_worse = true;
+  const auto careful = Tune(c);
+  ASSERT_TRUE(careful.ok()) << careful.status();
+  EXPECT_LE(careful->best.point[0], 0.55);
+  EXPECT_LT(careful->best.objectives[0], careful->baseline.objectives[0]);
+  EXPECT_LE(careful->best.objectives[1], careful->baseline.objectives[1]);
 }
 
 TEST(TunerTest, TheNumberAndOrderOfWorkersDoNotMatter) {
