@@ -151,8 +151,10 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
   const bool replayed = Replay(graph, options.smoother, &replay).ok();
   if (replayed) add("r_isam", replay.poses);
   add_kernel("dcs", KernelType::kDcs, graph.poses);
-  // One started from nothing and the other from the file. Where they meet, the
-  // rest would end there, too.
+  add_kernel("gm", KernelType::kGemanMcClure, graph.poses);
+  add_kernel("acs", KernelType::kAcs, graph.poses);
+  // One started from nothing and the other from the file. Where they meet, more
+  // starts would end there, too.
   const bool settled = replayed && std::abs(members[0].truncated_cost -
                                             members[1].truncated_cost) <=
                                        kSame * members[0].truncated_cost;
@@ -162,8 +164,6 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     SmootherOptions softer = options.smoother;
     softer.epoch_kernel.parameter *= 4.;
     if (Replay(graph, softer, &replay).ok()) add("r_isam, soft", replay.poses);
-    add_kernel("gm", KernelType::kGemanMcClure, graph.poses);
-    add_kernel("acs", KernelType::kAcs, graph.poses);
   }
   const auto lower = [](const Member& a, const Member& b) {
     return a.truncated_cost < b.truncated_cost;

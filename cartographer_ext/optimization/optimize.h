@@ -6,9 +6,9 @@
 //
 // `auto` guards against the local minima which every single kernel has:
 //   1. an incremental replay of the graph (R-iSAM), which starts from nothing,
-//      and DCS from the graph's own poses; unless both end at the same cost
-//   2. also DCS from the replay, a second replay with a wider kernel, GM and
-//      ACS from the graph's own poses, and with few loops GNC;
+//      and DCS, GM and ACS from the graph's own poses;
+//   2. unless the replay and DCS end at the same cost: DCS from the replay, a
+//      second replay with a wider kernel, and with few loops GNC;
 //   3. each result polished by deciding and solving in turn (re-admission);
 //   4. those near the lowest truncated cost stay. Each true loop lost costs the
 //      gate, so a folded map loses this comparison by a wide margin;
