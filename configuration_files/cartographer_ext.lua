@@ -162,6 +162,25 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- noise of the laser. [>= 0 and <= 10, m]
     tolerance = 0.04,
   },
+  node_weights = {
+    -- Weaken the constraint between a node and the submap it is part of as
+    -- far as the scan left its pose open, as along a blank corridor. Needs
+    -- the swap full_information; a map loaded from a file has the constant
+    -- weights again.
+    enabled = false,
+    -- full: each direction by itself. two_scalars: one factor for the way and
+    -- one for the turn, of the worst direction. [one of: full, two_scalars]
+    form = "full",
+    -- Standard deviation that matcher_translation_weight of the pose graph
+    -- stands for. Nodes that are known better keep that weight. [> 0 and <=
+    -- 10, m]
+    translation_sigma = 0.01,
+    -- The same for matcher_rotation_weight. [> 0 and <= 3.2, rad]
+    rotation_sigma = 0.002,
+    -- At least this part of the information of the constant weights is left.
+    -- [>= 1e-09 and <= 1]
+    min_ratio = 0.0001,
+  },
 }
 
 -- Scan matching that knows which directions the scan determines.

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/common/full_information.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <deque>
 #include <map>
 
@@ -19,9 +21,10 @@ constexpr double kTolerance = 1e-9;
 // Kept as numbers: Eigen's fixed-size types would ask for alignment.
 using Sqrt = std::array<double, 9>;
 
+template <typename Bits>
 class Registry {
  public:
-  void Insert(const ConstraintBits& bits, const Sqrt& sqrt) {
+  void Insert(const Bits& bits, const Sqrt& sqrt) {
     const absl::MutexLock lock(&mutex_);
     const auto inserted = sqrt_of_.emplace(bits, sqrt);
     if (!inserted.second) {
@@ -36,7 +39,7 @@ class Registry {
     size_ = order_.size();
   }
 
-  bool Find(const ConstraintBits& bits, Sqrt* const sqrt) {
+  bool Find(const Bits& bits, Sqrt* const sqrt) {
     // Most processes never have an entry, and an optimisation asks for every
     // residual.
     if (size_ == 0) return false;
@@ -57,24 +60,27 @@ class Registry {
   size_t size() const { return size_; }
 
  private:
-  using Map = std::map<ConstraintBits, Sqrt>;
+  using Map = std::map<Bits, Sqrt>;
 
   absl::Mutex mutex_;
   Map sqrt_of_ ABSL_GUARDED_BY(mutex_);
-  std::deque<Map::iterator> order_ ABSL_GUARDED_BY(mutex_);
+  std::deque<typename Map::iterator> order_ ABSL_GUARDED_BY(mutex_);
   std::atomic<size_t> size_{0};
 };
 
 // Never destroyed: background threads may outlive static destruction.
-Registry& TheRegistry() {
-  static Registry* const registry = new Registry;
+Registry<ConstraintBits>& TheRegistry() {
+  static auto* const registry = new Registry<ConstraintBits>;
   return *registry;
 }
 
-}  // namespace
+Registry<PoseBits>& TheRelativeRegistry() {
+  static auto* const registry = new Registry<PoseBits>;
+  return *registry;
+}
 
-bool RememberFullInformation(const ConstraintBits& bits,
-                             const Eigen::Matrix3d& information) {
+// A root of the matrix; false where it is no information.
+bool TakeRoot(const Eigen::Matrix3d& information, Sqrt* const sqrt) {
   if (!information.allFinite()) return false;
   const double scale = information.cwiseAbs().maxCoeff();
   if ((information - information.transpose()).cwiseAbs().maxCoeff() >
@@ -89,22 +95,65 @@ bool RememberFullInformation(const ConstraintBits& bits,
   const Eigen::Matrix3d root =
       eigen.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal() *
       eigen.eigenvectors().transpose();
+  Eigen::Map<Eigen::Matrix3d>{sqrt->data()} = root;
+  return true;
+}
+
+// The pose and the weights of a constraint.
+PoseBits PoseOf(const ConstraintBits& bits) {
+  PoseBits pose;
+  std::copy(bits.begin(), bits.begin() + pose.size(), pose.begin());
+  return pose;
+}
+
+double NumberOf(const uint64_t bits) {
+  double number;
+  std::memcpy(&number, &bits, sizeof(number));
+  return number;
+}
+
+}  // namespace
+
+bool RememberFullInformation(const ConstraintBits& bits,
+                             const Eigen::Matrix3d& information) {
   Sqrt sqrt;
-  Eigen::Map<Eigen::Matrix3d>{sqrt.data()} = root;
+  if (!TakeRoot(information, &sqrt)) return false;
   TheRegistry().Insert(bits, sqrt);
+  return true;
+}
+
+bool RememberRelativeInformation(const PoseBits& bits,
+                                 const Eigen::Matrix3d& relative) {
+  Sqrt sqrt;
+  if (!TakeRoot(relative, &sqrt)) return false;
+  TheRelativeRegistry().Insert(bits, sqrt);
   return true;
 }
 
 bool FindSqrtInformation(const ConstraintBits& bits,
                          Eigen::Matrix3d* const sqrt) {
   Sqrt found;
-  if (!TheRegistry().Find(bits, &found)) return false;
-  *sqrt = Eigen::Map<const Eigen::Matrix3d>(found.data());
+  if (TheRegistry().Find(bits, &found)) {
+    *sqrt = Eigen::Map<const Eigen::Matrix3d>(found.data());
+    return true;
+  }
+  if (!TheRelativeRegistry().Find(PoseOf(bits), &found)) return false;
+  const double translation_weight = NumberOf(bits[7]);
+  const double rotation_weight = NumberOf(bits[8]);
+  *sqrt =
+      Eigen::Map<const Eigen::Matrix3d>(found.data()) *
+      Eigen::Vector3d(translation_weight, translation_weight, rotation_weight)
+          .asDiagonal();
   return true;
 }
 
-size_t CountFullInformation() { return TheRegistry().size(); }
+size_t CountFullInformation() {
+  return TheRegistry().size() + TheRelativeRegistry().size();
+}
 
-void ForgetFullInformation() { TheRegistry().Clear(); }
+void ForgetFullInformation() {
+  TheRegistry().Clear();
+  TheRelativeRegistry().Clear();
+}
 
 }  // namespace cartographer_ext

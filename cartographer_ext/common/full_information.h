@@ -14,6 +14,14 @@
 //   found    r = S e,                          S^T S = information
 //   else     r = (w_t e_x, w_t e_y, w_r e_theta), the stock residual
 //
+// Local SLAM knows the pose of the constraints within a submap beforehand, but
+// not the weights they are going to have. It remembers, under the bits of the
+// pose alone, which part of the information of the weights is left; looked up
+// where no whole matrix is there:
+//
+//   found    r = S W e,   S^T S = relative information,  W = diag(w_t, w_t,
+//   w_r)
+//
 // with e = (z_xy - R(theta_i)^T (t_j - t_i), z_theta - (theta_j - theta_i)),
 // metres and radians in the frame of the submap i (Konolige et al., "Efficient
 // sparse pose adjustment for 2D mapping", IROS 2010, equation 1). The two
@@ -52,6 +60,22 @@ ConstraintBits BitsOf(const ConstraintPose& pose) {
   return bits;
 }
 
+// Bits of a relative pose alone.
+using PoseBits = std::array<uint64_t, 7>;
+
+// `Rigid3` is Cartographer's transform::Rigid3d.
+template <typename Rigid3>
+PoseBits PoseBitsOf(const Rigid3& pose) {
+  const std::array<double, 7> values{
+      {pose.translation().x(), pose.translation().y(), pose.translation().z(),
+       pose.rotation().w(), pose.rotation().x(), pose.rotation().y(),
+       pose.rotation().z()}};
+  PoseBits bits;
+  static_assert(sizeof(bits) == sizeof(values), "double has 64 bits");
+  std::memcpy(bits.data(), values.data(), sizeof(bits));
+  return bits;
+}
+
 // What the two weights of a constraint stand for, in the order x, y, theta.
 inline Eigen::Matrix3d InformationOfWeights(const double translation_weight,
                                             const double rotation_weight) {
@@ -68,10 +92,17 @@ inline Eigen::Matrix3d InformationOfWeights(const double translation_weight,
 bool RememberFullInformation(const ConstraintBits& bits,
                              const Eigen::Matrix3d& information);
 
+// Remembers which part of the information of its weights a constraint with this
+// pose has (no unit; symmetric, positive semi-definite, in the frame of the
+// constraint). Returns as above.
+bool RememberRelativeInformation(const PoseBits& bits,
+                                 const Eigen::Matrix3d& relative);
+
 // A square root S of the information, S^T S = information. False where there
 // is none.
 bool FindSqrtInformation(const ConstraintBits& bits, Eigen::Matrix3d* sqrt);
 
+// Of both kinds together.
 size_t CountFullInformation();
 
 // Forgets everything, for tests.

@@ -11,6 +11,11 @@ namespace {
 
 // A velocity needs an interval that a stamp of arrival does not spoil, seconds.
 constexpr double kMinVelocityInterval = 0.02;
+// Odometry is not asked for a longer way than this since the last scan that is
+// in the map: metres, radians, seconds.
+constexpr double kMaxWaySinceMap = 1.;
+constexpr double kMaxTurnSinceMap = 1.;
+constexpr double kMaxTimeSinceMap = 10.;
 
 double Squared(const double x) { return x * x; }
 
@@ -18,6 +23,17 @@ double Squared(const double x) { return x * x; }
 Eigen::Matrix3d Spread(const Pose2& difference) {
   const Eigen::Vector3d d(difference.x, difference.y, difference.theta);
   return d.cwiseAbs2().asDiagonal();
+}
+
+// Two independent readings of the turn.
+void WeighTurns(const ImuMotion& imu, OdometryMotion* const odometry) {
+  const double a = odometry->covariance(2, 2);
+  const double b = imu.covariance(2, 2);
+  const double ratio = a / (a + b);
+  odometry->motion.theta = NormalizeAngle(
+      odometry->motion.theta +
+      ratio * NormalizeAngle(imu.motion.theta - odometry->motion.theta));
+  odometry->covariance(2, 2) = a * b / (a + b);
 }
 
 }  // namespace
@@ -70,6 +86,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   prediction.covariance = VelocityCovariance(interval);
   prediction.is_uncertain = prediction.source == PredictionSource::kNothing;
   if (prediction.is_uncertain) {
+    prediction.unknown_way = options_.constant_velocity.speed_noise * interval;
     prediction.unknown_turn = std::min(
         kPi, 2. * options_.constant_velocity.turn_rate_noise * interval);
   }
@@ -87,7 +104,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
     prediction.covariance(0, 0) += Squared(way);
     prediction.covariance(1, 1) += Squared(way);
     prediction.is_uncertain = interval > options_.constant_velocity.max_time;
-    prediction.unknown_turn = 0.;
+    prediction.unknown_way = prediction.unknown_turn = 0.;
   }
 
   OdometryMotion odometry;
@@ -96,7 +113,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   const bool expectation_is_known =
       has_imu || interval <= options_.constant_velocity.max_time;
   const bool is_suspect =
-      expectation_is_known &&
+      expectation_is_known && !odometry.is_late &&
       monitor_.IsSuspect(interval, odometry.motion, odometry.frozen, without);
   if (!monitor_.IsTrusted() && monitor_.state() != OdometryState::kAbsent &&
       expectation_is_known) {
@@ -107,17 +124,17 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
     prediction.is_uncertain = prediction.is_uncertain || is_suspect;
     return prediction;
   }
-  prediction.unknown_turn = 0.;
+  prediction.unknown_way = prediction.unknown_turn = 0.;
   const Eigen::Matrix3d covariance_without = prediction.covariance;
   prediction.source = PredictionSource::kOdometry;
   prediction.motion = odometry.motion;
-  prediction.covariance = odometry.covariance;
+  prediction.covariance = CovarianceOf(odometry, interval);
   prediction.is_uncertain = is_suspect;
   OdometryMotion since_anchor;
   if (monitor_.state() == OdometryState::kAbsent && has_anchor_ &&
       odometry_.Predict(anchor_time_, time, &since_anchor)) {
     // Odometry is back: it knows what happened in between, too.
-    prediction.is_uncertain = true;
+    prediction.is_uncertain = !odometry.is_late;
     prediction.alternatives.push_back(since_anchor_.Inverse() *
                                       since_anchor.motion);
   }
@@ -129,18 +146,86 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
               NormalizeAngle(odometry.motion.theta - without.theta)));
   } else {
     prediction.alternatives.push_back(without);
-    if (has_imu) {
-      // Two independent readings of the turn.
-      const double a = odometry.covariance(2, 2);
-      const double b = imu.covariance(2, 2);
-      const double ratio = a / (a + b);
-      prediction.motion.theta = NormalizeAngle(
-          odometry.motion.theta +
-          ratio * NormalizeAngle(imu.motion.theta - odometry.motion.theta));
-      prediction.covariance(2, 2) = a * b / (a + b);
-    }
+    PredictFromMap(time, &prediction);
   }
   return prediction;
+}
+
+Eigen::Matrix3d MotionPredictor::CovarianceOf(const OdometryMotion& odometry,
+                                              const double interval) const {
+  Eigen::Matrix3d covariance = odometry.covariance;
+  // Its end is a guess from the readings before.
+  if (odometry.is_late) covariance += VelocityCovariance(interval);
+  return covariance;
+}
+
+void MotionPredictor::PredictFromMap(const double time,
+                                     MotionPrediction* const prediction) const {
+  OdometryMotion odometry;
+  if (!odometry_.Predict(map_time_, time, &odometry)) return;
+  ImuMotion imu;
+  if (imu_.Predict(map_time_, time, Eigen::Vector2d::Zero(), &imu)) {
+    WeighTurns(imu, &odometry);
+  }
+  prediction->motion = since_map_.Inverse() * odometry.motion;
+  prediction->since_last_scan = !(map_time_ < last_time_);
+  // Into the frame of the last scan.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  const double c = std::cos(since_map_.theta), s = std::sin(since_map_.theta);
+  turn.topLeftCorner<2, 2>() << c, s, -s, c;
+  prediction->covariance =
+      turn * CovarianceOf(odometry, time - last_time_) * turn.transpose();
+}
+
+void MotionPredictor::AddToMap() {
+  map_time_ = last_time_;
+  since_map_ = Pose2();
+}
+
+OdometryState MotionPredictor::CheckOdometry(const double time,
+                                             const MatchedMotion& matched) {
+  since_anchor_ = since_anchor_ * matched.motion;
+  OdometryMotion odometry;
+  const bool has_odometry = PredictOdometry(time, &odometry);
+  if (has_odometry && odometry.is_late) {
+    // Up to the scan before everything is there.
+    const OdometryState state = Compare(last_time_, has_odometry);
+    not_compared_ = matched;
+    return state;
+  }
+  if (has_odometry) {
+    has_anchor_ = true;
+    anchor_time_ = time;
+    since_anchor_ = Pose2();
+  }
+  not_compared_.motion = not_compared_.motion * matched.motion;
+  not_compared_.way_is_determined =
+      not_compared_.way_is_determined && matched.way_is_determined;
+  return Compare(time, has_odometry);
+}
+
+OdometryState MotionPredictor::Compare(const double time,
+                                       const bool has_odometry) {
+  MotionComparison comparison;
+  comparison.time = time;
+  comparison.interval = time - compared_time_;
+  if (!(comparison.interval > 0.)) return monitor_.state();
+  OdometryMotion odometry;
+  comparison.has_odometry =
+      has_odometry && odometry_.Predict(compared_time_, time, &odometry);
+  comparison.odometry = odometry.motion;
+  comparison.frozen = odometry.frozen;
+  comparison.match = not_compared_.motion;
+  comparison.way_is_determined = not_compared_.way_is_determined;
+  ImuMotion imu;
+  if (imu_.Predict(compared_time_, time,
+                   Eigen::Vector2d(velocity_.x, velocity_.y), &imu)) {
+    comparison.has_inertial = imu_.bias_is_known();
+    comparison.inertial_speed_change = imu.speed_change;
+  }
+  compared_time_ = time;
+  not_compared_ = MatchedMotion();
+  return monitor_.Add(comparison);
 }
 
 OdometryState MotionPredictor::AddMatch(const double time,
@@ -151,33 +236,13 @@ OdometryState MotionPredictor::AddMatch(const double time,
     last_time_ = time;
     has_anchor_ = true;
     anchor_time_ = time;
+    map_time_ = time;
+    compared_time_ = time;
     return monitor_.state();
   }
   if (!(interval > 0.)) return monitor_.state();
 
-  MotionComparison comparison;
-  comparison.time = time;
-  comparison.interval = interval;
-  OdometryMotion odometry;
-  comparison.has_odometry = PredictOdometry(time, &odometry);
-  comparison.odometry = odometry.motion;
-  comparison.frozen = odometry.frozen;
-  comparison.match = matched.motion;
-  comparison.way_is_determined = matched.way_is_determined;
-  ImuMotion imu;
-  if (imu_.Predict(last_time_, time, Eigen::Vector2d(velocity_.x, velocity_.y),
-                   &imu)) {
-    comparison.has_inertial = imu_.bias_is_known();
-    comparison.inertial_speed_change = imu.speed_change;
-  }
-  if (comparison.has_odometry) {
-    has_anchor_ = true;
-    anchor_time_ = time;
-    since_anchor_ = Pose2();
-  } else {
-    since_anchor_ = since_anchor_ * matched.motion;
-  }
-  const OdometryState state = monitor_.Add(comparison);
+  const OdometryState state = CheckOdometry(time, matched);
   if (state == OdometryState::kOk && matched.turn_is_determined) {
     odometry_.AddMatch(last_time_, time, matched.motion);
   }
@@ -188,6 +253,15 @@ OdometryState MotionPredictor::AddMatch(const double time,
                       matched.motion.theta / interval);
   }
   last_time_ = time;
+  since_map_ = since_map_ * matched.motion;
+  const bool is_far =
+      std::hypot(since_map_.x, since_map_.y) > kMaxWaySinceMap ||
+      std::abs(since_map_.theta) > kMaxTurnSinceMap ||
+      time - map_time_ > kMaxTimeSinceMap;
+  if (is_far || !(state == OdometryState::kOk ||
+                  state == OdometryState::kSlipSuspected)) {
+    AddToMap();
+  }
   return state;
 }
 

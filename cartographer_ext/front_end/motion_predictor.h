@@ -15,6 +15,12 @@
 // velocity does better. An interval that looks wrong before the match (a jump,
 // a frozen pose while moving) gets a wide covariance and alternatives to search
 // around; the match then tells who was right.
+//
+// Scans that are matched with one and the same map err alike: a scan that hangs
+// on the beginnings of a map goes on hanging there, a little behind odometry
+// every time. So odometry is asked for the whole way since the last scan that
+// became part of the map, and predicts from where that scan lies; the matches
+// in between change nothing of it.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_
 
@@ -51,10 +57,14 @@ struct MotionPrediction {
   Pose2 motion;  // (robot at the last scan <- robot now)
   // Of (x, y, theta) of the motion, in the frame of the robot at the last scan.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  // That is of the motion since the last scan, otherwise since the last one
+  // that is in the map.
+  bool since_last_scan = true;
   // Not to be relied on: search.
   bool is_uncertain = false;
-  // How far the robot may have turned from the motions on trial, where nothing
-  // tells, radians.
+  // How far the robot may have gone (metres) and turned (radians) from the
+  // motions on trial, where nothing tells.
+  double unknown_way = 0.;
   double unknown_turn = 0.;
   // Other motions worth a try then.
   std::vector<Pose2> alternatives;
@@ -82,6 +92,9 @@ class MotionPredictor {
   // The scan at `time` was matched. Returns what the match says of odometry.
   OdometryState AddMatch(double time, const MatchedMotion& matched);
 
+  // The last scan that was matched became part of the map.
+  void AddToMap();
+
   double time_offset() const { return odometry_.time_offset(); }
   OdometryState odometry_state() const { return monitor_.state(); }
   // Of the last match, robot's frame, per second; zero before the second one.
@@ -91,6 +104,14 @@ class MotionPredictor {
   Pose2 VelocityMotion(double interval) const;
   Eigen::Matrix3d VelocityCovariance(double interval) const;
   bool PredictOdometry(double time, OdometryMotion* motion) const;
+  // By odometry and IMU since the last scan that is in the map.
+  void PredictFromMap(double time, MotionPrediction* prediction) const;
+  OdometryState CheckOdometry(double time, const MatchedMotion& matched);
+  // Odometry with `not_compared_`, up to `time`.
+  OdometryState Compare(double time, bool has_odometry);
+  // Covariance of a motion by odometry.
+  Eigen::Matrix3d CovarianceOf(const OdometryMotion& odometry,
+                               double interval) const;
 
   const MotionPredictorOptions options_;
   OdometryPredictor odometry_;
@@ -103,6 +124,14 @@ class MotionPredictor {
   bool has_anchor_ = false;
   double anchor_time_ = 0.;
   Pose2 since_anchor_;
+  // The scan up to which odometry was compared with the matches, and what was
+  // matched since then.
+  double compared_time_ = 0.;
+  MatchedMotion not_compared_;
+  // The last scan that is in the map, or the last one since which odometry is
+  // without fault; and the matched motion since then.
+  double map_time_ = 0.;
+  Pose2 since_map_;
 };
 
 }  // namespace front_end

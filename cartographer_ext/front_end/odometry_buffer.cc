@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace cartographer_ext {
 namespace front_end {
@@ -13,6 +14,8 @@ namespace {
 constexpr double kVelocitySpan = 0.05;
 // ... and from readings not further apart than this.
 constexpr double kMaxVelocitySpan = 0.7;
+// Readings that tell how often one comes.
+constexpr size_t kUsualReadings = 10;
 
 bool IsSame(const Pose2& a, const Pose2& b) {
   return a.x == b.x && a.y == b.y && a.theta == b.theta;
@@ -48,10 +51,23 @@ Pose2 OdometryBuffer::Extrapolate(const double seconds) const {
   while (i > 0 && last.time - readings_[i].time < kVelocitySpan) --i;
   const double span = last.time - readings_[i].time;
   if (span > kMaxVelocitySpan) return last.pose;
-  const double ratio = std::min(seconds, max_extrapolation_) / span;
+  const double ratio =
+      std::min(seconds, std::max(max_extrapolation_, span)) / span;
   const Pose2 motion = Between(readings_[i].pose, last.pose);
   return last.pose *
          Pose2(motion.x * ratio, motion.y * ratio, motion.theta * ratio);
+}
+
+double OdometryBuffer::UsualInterval() const {
+  std::vector<double> intervals;
+  for (size_t i = readings_.size();
+       i > 1 && intervals.size() + 1 < kUsualReadings; --i) {
+    intervals.push_back(readings_[i - 1].time - readings_[i - 2].time);
+  }
+  if (intervals.empty()) return 0.;
+  const auto middle = intervals.begin() + intervals.size() / 2;
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
 }
 
 bool OdometryBuffer::Lookup(const double time,

@@ -39,6 +39,9 @@ class OdometryBuffer {
   // False without readings.
   bool Lookup(double time, OdometrySample* sample) const;
 
+  // Median time between the last readings, seconds; 0 with fewer than two.
+  double UsualInterval() const;
+
   bool empty() const { return readings_.empty(); }
   double first_time() const { return readings_.front().time; }
   double last_time() const { return readings_.back().time; }

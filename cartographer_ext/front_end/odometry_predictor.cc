@@ -16,6 +16,11 @@ constexpr size_t kMaxReadings = 20000;
 constexpr double kMaxOffsetInterval = 1.;
 // Matches that wait for the odometry after them.
 constexpr size_t kMaxPending = 20;
+// A scan may come this much before the reading of its moment, of the usual
+// interval between readings, ...
+constexpr double kMaxLateness = 1.25;
+// ... if that is not longer than this, seconds.
+constexpr double kMaxUsualInterval = 0.8;
 
 double Squared(const double x) { return x * x; }
 
@@ -52,9 +57,15 @@ bool OdometryPredictor::Predict(const double from, const double to,
   OdometrySample begin, end;
   if (!buffer_.Lookup(from - offset, &begin) ||
       !buffer_.Lookup(to - offset, &end) ||
-      begin.extrapolated > noise_.max_extrapolation ||
-      end.extrapolated > noise_.max_extrapolation) {
+      begin.extrapolated > noise_.max_extrapolation) {
     return false;
+  }
+  motion->is_late = end.extrapolated > noise_.max_extrapolation;
+  if (motion->is_late) {
+    const double usual = buffer_.UsualInterval();
+    if (usual > kMaxUsualInterval || end.extrapolated > kMaxLateness * usual) {
+      return false;
+    }
   }
   motion->motion = Between(begin.pose, end.pose);
   motion->frozen = begin.frozen || end.frozen;

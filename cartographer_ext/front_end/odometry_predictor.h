@@ -40,6 +40,10 @@ struct OdometryMotion {
   // Of (x, y, theta) of the motion, in the frame of the robot at `from`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   bool frozen = false;  // one pose is repeated at the start or the end
+  // The end lies further beyond the last reading than an extrapolation is good
+  // for, but not further than the usual interval of the readings: the motion is
+  // hardly better known than by constant velocity.
+  bool is_late = false;
 };
 
 // The covariance above for a motion.

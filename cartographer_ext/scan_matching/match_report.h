@@ -22,6 +22,9 @@ struct Prediction {
   // Symmetric and positive definite. One that is not finite or not positive
   // definite counts as "not known": the match uses the weights of the options.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  // Scans that the map is made of; 0 when that is not known. A map of a single
+  // scan has its noise and its cells in all walls alike.
+  int scans_in_map = 0;
 };
 
 struct MatchReport {

@@ -79,6 +79,32 @@ TEST_F(FullInformationTest, GivesASquareRootOfWhatWasRemembered) {
             1e-12);
 }
 
+TEST_F(FullInformationTest, ARelativeOneScalesTheWeights) {
+  ConstraintPose pose;
+  pose.zbar_ij.position.x() = 1.;
+  pose.translation_weight = 10.;
+  pose.rotation_weight = 4.;
+  Eigen::Matrix3d relative = Eigen::Matrix3d::Identity();
+  relative(0, 0) = 0.25;
+  relative(0, 2) = relative(2, 0) = 0.1;
+  ASSERT_TRUE(RememberRelativeInformation(PoseBitsOf(pose.zbar_ij), relative));
+  EXPECT_EQ(CountFullInformation(), 1u);
+  Eigen::Matrix3d sqrt;
+  ASSERT_TRUE(FindSqrtInformation(BitsOf(pose), &sqrt));
+  Eigen::Matrix3d expected;
+  expected << 25., 0., 4., 0., 100., 0., 4., 0., 16.;
+  EXPECT_LT((sqrt.transpose() * sqrt - expected).norm(), 1e-12);
+  EXPECT_FALSE(FindSqrtInformation(BitsOfX(2.), &sqrt));
+  // A whole matrix comes first.
+  ASSERT_TRUE(
+      RememberFullInformation(BitsOf(pose), Eigen::Matrix3d::Identity()));
+  ASSERT_TRUE(FindSqrtInformation(BitsOf(pose), &sqrt));
+  EXPECT_LT((sqrt.transpose() * sqrt - Eigen::Matrix3d::Identity()).norm(),
+            1e-12);
+  EXPECT_FALSE(RememberRelativeInformation(PoseBitsOf(pose.zbar_ij),
+                                           -Eigen::Matrix3d::Identity()));
+}
+
 TEST_F(FullInformationTest, AnUnknownDirectionIsAllowed) {
   const Eigen::Vector3d known(0.6, 0.8, 0.);
   const Eigen::Matrix3d information = 100. * known * known.transpose();

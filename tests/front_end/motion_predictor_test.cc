@@ -127,6 +127,77 @@ TEST(MotionPredictorTest, OdometryCanBeSwitchedOff) {
   EXPECT_EQ(predictor.Predict(0.7).motion.x, 0.);
 }
 
+// Matches that hang back by 40 % of every step: the prediction goes on from the
+// last scan in the map, not from them.
+TEST(MotionPredictorTest, OdometryCountsFromTheLastScanInTheMap) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  for (int i = 0; i <= 10; ++i) {
+    predictor.AddOdometry(0.1 * i, Pose2(0.02 * i, 0., 0.01 * i));
+  }
+  predictor.AddMatch(0.2, Matched(Pose2()));
+  const double variance = predictor.Predict(0.3).covariance(0, 0);
+  predictor.AddMatch(0.3, Matched(Pose2(0.012, 0., 0.)));
+  predictor.AddMatch(0.4, Matched(Pose2(0.012, 0., 0.)));
+  const MotionPrediction behind = predictor.Predict(0.5);
+  EXPECT_NEAR(behind.motion.theta, 0.03, 1e-9);
+  // 6 cm of chords of a gentle arc, of which the matches had 2.4 cm.
+  EXPECT_NEAR(behind.motion.x, 0.06 - 0.024, 1e-4);
+  EXPECT_GT(behind.covariance(0, 0), variance);
+  predictor.AddToMap();
+  const MotionPrediction from_map = predictor.Predict(0.5);
+  EXPECT_NEAR(from_map.motion.x, 0.02, 1e-4);
+  EXPECT_NEAR(from_map.motion.theta, 0.01, 1e-9);
+  EXPECT_NEAR(from_map.covariance(0, 0), variance, 1e-6);
+}
+
+TEST(MotionPredictorTest, AMapThatNeverGrowsDoesNotBindOdometryForEver) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  for (int i = 0; i <= 300; ++i) {
+    const double time = 0.1 * i;
+    predictor.AddOdometry(time, Pose2(0.05 * i, 0., 0.));
+    if (i > 0) {
+      const MotionPrediction prediction = predictor.Predict(time);
+      // Each match is 1 mm short; twenty of them make a metre.
+      EXPECT_NEAR(prediction.motion.x, 0.05, 0.03);
+    }
+    predictor.AddMatch(time, Matched(Pose2(i == 0 ? 0. : 0.049, 0., 0.)));
+  }
+}
+
+// One reading every 0.4 s, that of the moment of a scan always after the scan.
+TEST(MotionPredictorTest, SlowOdometryIsExtrapolatedAndComparedLater) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  for (int i = 0; i <= 20; ++i) {
+    const double time = 0.4 * i;
+    if (i > 2) {
+      const MotionPrediction prediction = predictor.Predict(time);
+      EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
+      EXPECT_NEAR(prediction.motion.x, 0.2, 1e-9);
+      EXPECT_FALSE(prediction.is_uncertain);
+      // Hardly more is known than a velocity tells.
+      EXPECT_GT(prediction.covariance(0, 0), 0.2 * 0.2);
+    }
+    const OdometryState state =
+        predictor.AddMatch(time, Matched(Pose2(i == 0 ? 0. : 0.2, 0., 0.)));
+    if (i > 2) {
+      EXPECT_EQ(state, OdometryState::kOk);
+    }
+    predictor.AddToMap();
+    predictor.AddOdometry(time, Pose2(0.2 * i, 0., 0.));
+  }
+  // Later than usual by far: odometry has stopped.
+  EXPECT_NE(predictor.Predict(9.2).source, PredictionSource::kOdometry);
+}
+
+TEST(MotionPredictorTest, WhatIsUnknownGrowsWithTheGap) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  predictor.AddMatch(0., Matched(Pose2()));
+  EXPECT_EQ(predictor.Predict(0.3).unknown_way, 0.);
+  EXPECT_NEAR(predictor.Predict(2.).unknown_way, 1., 1e-9);
+  EXPECT_NEAR(predictor.Predict(2.).unknown_turn, 2., 1e-9);
+  EXPECT_NEAR(predictor.Predict(20.).unknown_turn, kPi, 1e-9);
+}
+
 // A drive of 60 s with a scan every 0.1 s and odometry every 0.05 s, on which
 // the matcher is right up to a centimetre and knows nothing of odometry.
 struct DriveResult {
@@ -165,6 +236,7 @@ DriveResult SimulateDrive(const double fault_start, const double fault_end,
                         motion.y + random.Normal(0., 0.003),
                         motion.theta + random.Normal(0., 0.001));
     const OdometryState state = predictor.AddMatch(t, Matched(matched));
+    predictor.AddToMap();
     const bool told = state != OdometryState::kOk;
     if (t > fault_start + 0.6 && t <= fault_end) {
       ++result.scans_in;

@@ -43,6 +43,23 @@ TEST(OdometryBufferTest, GoesOnWithTheLastVelocityForABoundedTime) {
   EXPECT_NEAR(sample.extrapolated, 4.9, 1e-12);
 }
 
+TEST(OdometryBufferTest, TellsHowOftenAReadingComes) {
+  OdometryBuffer buffer(100., 100, 0.3);
+  EXPECT_EQ(buffer.UsualInterval(), 0.);
+  buffer.Add(0., Pose2());
+  EXPECT_EQ(buffer.UsualInterval(), 0.);
+  buffer.Add(3., Pose2());
+  EXPECT_DOUBLE_EQ(buffer.UsualInterval(), 3.);
+  // One gap among many does not count.
+  for (int i = 1; i <= 20; ++i)
+    buffer.Add(3. + 0.4 * i, Pose2(0.2 * i, 0., 0.));
+  EXPECT_NEAR(buffer.UsualInterval(), 0.4, 1e-9);
+  // Readings that are that rare are extrapolated by one interval.
+  OdometrySample sample;
+  ASSERT_TRUE(buffer.Lookup(11.4, &sample));
+  EXPECT_NEAR(sample.pose.x, 4.2, 1e-9);
+}
+
 TEST(OdometryBufferTest, TheFirstReadingStandsForTheTimeBefore) {
   OdometryBuffer buffer(10., 100, 0.3);
   buffer.Add(3., Pose2(1., 2., 0.5));

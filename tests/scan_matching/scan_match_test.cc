@@ -129,6 +129,19 @@ TEST(ScanMatchTest, FindsARoom) {
   EXPECT_EQ(again.theta, pose.theta);
 }
 
+// The start comes from a search, and the prediction knows nothing.
+TEST(ScanMatchTest, AStartFarFromThePredictionIsNotPulledBack) {
+  const TestCells cells = Room();
+  Prediction prediction = Predict(Pose2(0.4, 0.3, 1.4));
+  prediction.covariance = Eigen::Vector3d(200., 200., 200.).asDiagonal();
+  const Pose2 found =
+      MatchScan(ScanMatchOptions(), prediction, Pose2(0.04, -0.03, 0.02),
+                RoomPoints(), cells, nullptr);
+  EXPECT_NEAR(found.x, 0., 0.015);
+  EXPECT_NEAR(found.y, 0., 0.015);
+  EXPECT_NEAR(found.theta, 0., 0.01);
+}
+
 TEST(ScanMatchTest, CorridorKeepsThePredictionAlongItself) {
   for (const double angle : {0., 0.3, 0.9, 2.}) {
     const TestCells cells = Corridor(angle);

@@ -35,6 +35,10 @@ Pose2 ToPose2(const Rigid3d& pose) {
 // Below this weight a direction counts as not determined by the scan.
 constexpr double kDetermined = 0.5;
 
+// So many scans begin a map, whether the robot moves or not: one scan is too
+// little to match the next one with.
+constexpr int kFirstScans = 5;
+
 // Whether the scan tells how far the robot went in the direction it went.
 bool WayIsDetermined(const scan_matching::DegeneracyResult& degeneracy,
                      const Pose2& from, const Pose2& to) {
@@ -68,7 +72,8 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
                      extension,
                      options.submaps_options().grid_options_2d().resolution())),
       predictor_(ToMotionPredictorOptions(extension)),
-      matcher_(extension, options.ceres_scan_matcher_options()) {}
+      matcher_(extension, options.ceres_scan_matcher_options()),
+      node_weights_(ToNodeWeightOptions(extension)) {}
 
 AdaptiveLocalTrajectoryBuilder2D::~AdaptiveLocalTrajectoryBuilder2D() {}
 
@@ -197,6 +202,11 @@ AdaptiveLocalTrajectoryBuilder2D::MatchAndInsert(
       time, range_data_in_local,
       cartographer::sensor::TransformPointCloud(scan.filling, pose_3d), cloud,
       local_pose, alignment);
+  if (insertion_result != nullptr) {
+    predictor_.AddToMap();
+    node_weights_.AddNode(*insertion_result->constant_data,
+                          insertion_result->insertion_submaps);
+  }
   record.set_is_node(insertion_result != nullptr);
   MatchRecorder::Global()->Record(record);
   CountMatch(record);
@@ -217,7 +227,9 @@ void AdaptiveLocalTrajectoryBuilder2D::MatchScan(
     match = matcher_.Match(
         last_pose, prediction,
         extension_.features().enabled() ? SelectFeatures(cloud) : cloud,
-        *submaps.front()->grid());
+        *submaps.front());
+    node_weights_.AddScan(match.motion_covariance, prediction.since_last_scan,
+                          match.report.scan_information);
   }
   MatchedMotion matched;
   matched.motion = Between(last_pose, match.pose);
@@ -245,7 +257,10 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
     const cartographer::common::Time time, const RangeData& range_data_in_local,
     const PointCloud& filling_in_local, const PointCloud& cloud,
     const Rigid3d& local_pose, const Eigen::Quaterniond& alignment) {
-  if (motion_filter_.IsSimilar(time, local_pose)) return nullptr;
+  const auto submaps = active_submaps_.submaps();
+  const bool is_young =
+      submaps.empty() || submaps.front()->num_range_data() < kFirstScans;
+  if (motion_filter_.IsSimilar(time, local_pose) && !is_young) return nullptr;
   RangeData completed = range_data_in_local;
   for (const auto& point : filling_in_local) completed.returns.push_back(point);
   auto result = absl::make_unique<InsertionResult>();

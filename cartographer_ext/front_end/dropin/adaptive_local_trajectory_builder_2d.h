@@ -38,6 +38,7 @@
 #include "cartographer/sensor/timed_point_cloud_data.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/front_end/dropin/local_matcher.h"
+#include "cartographer_ext/front_end/dropin/node_weight_recorder.h"
 #include "cartographer_ext/front_end/dropin/scan_assembler.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
 #include "cartographer_ext/front_end_options.pb.h"
@@ -108,6 +109,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   ScanAssembler assembler_;
   MotionPredictor predictor_;
   LocalMatcher matcher_;
+  NodeWeightRecorder node_weights_;
   // Null until the first reading.
   std::unique_ptr<cartographer::mapping::ImuTracker> imu_tracker_;
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "cartographer/mapping/internal/2d/scan_matching/real_time_correlative_scan_matcher_2d.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/options/option_description.h"
+#include "cartographer_ext/scan_matching/dropin/real_time_matcher_2d.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -21,6 +21,7 @@ using cartographer::sensor::PointCloud;
 using cartographer::transform::Rigid2d;
 using scan_matching::Prediction;
 
+namespace mapping = cartographer::mapping;
 namespace stock_proto = cartographer::mapping::scan_matching::proto;
 
 // Of a new score in the running mean.
@@ -117,20 +118,21 @@ bool LocalMatcher::IsDoubtful(const LocalMatch& match,
 }
 
 Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
-                           const double unknown_turn, const PointCloud& cloud,
-                           const Grid2D& grid) const {
+                           const MotionPrediction& prediction,
+                           const PointCloud& cloud, const Grid2D& grid) const {
   stock_proto::RealTimeCorrelativeScanMatcherOptions options;
   options.set_linear_search_window(std::min(
       options_.max_linear_window(),
-      options_.linear_window() + 0.5 * std::hypot(motion.x, motion.y)));
+      std::max(
+          prediction.unknown_way,
+          options_.linear_window() + 0.5 * std::hypot(motion.x, motion.y))));
   options.set_angular_search_window(
-      std::max(unknown_turn,
+      std::max(prediction.unknown_turn,
                std::min(options_.max_angular_window(),
                         options_.angular_window() + std::abs(motion.theta))));
   options.set_translation_delta_cost_weight(kSearchPenalty);
   options.set_rotation_delta_cost_weight(kSearchPenalty);
-  const cartographer::mapping::scan_matching::RealTimeCorrelativeScanMatcher2D
-      search(options);
+  const scan_matching::RealTimeMatcher2D search(options);
   Rigid2d found = ToRigid(center);
   search.Match(ToRigid(center), cloud, grid, &found);
   return FromRigid(found);
@@ -138,10 +140,13 @@ Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
 
 LocalMatch LocalMatcher::Match(const Pose2& last_pose,
                                const MotionPrediction& prediction,
-                               const PointCloud& cloud, const Grid2D& grid) {
-  LocalMatch best = MatchFrom(
-      ToPrediction(last_pose, prediction.motion, prediction.covariance),
-      last_pose * prediction.motion, cloud, grid);
+                               const PointCloud& cloud,
+                               const mapping::Submap2D& submap) {
+  const Grid2D& grid = *submap.grid();
+  Prediction predicted =
+      ToPrediction(last_pose, prediction.motion, prediction.covariance);
+  predicted.scans_in_map = submap.num_range_data();
+  LocalMatch best = MatchFrom(predicted, predicted.pose, cloud, grid);
   if (options_.enabled() && IsDoubtful(best, prediction)) {
     best.searched = true;
     std::vector<Pose2> motions = {prediction.motion};
@@ -154,12 +159,12 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
     }
     double to_beat = best.score + options_.min_gain();
     for (const Pose2& motion : motions) {
-      const Prediction start = ToPrediction(
-          last_pose, motion, kSearchSpread * prediction.covariance);
-      const LocalMatch match = MatchFrom(
-          start,
-          Search(start.pose, motion, prediction.unknown_turn, cloud, grid),
-          cloud, grid);
+      Prediction start = ToPrediction(last_pose, motion,
+                                      kSearchSpread * prediction.covariance);
+      start.scans_in_map = predicted.scans_in_map;
+      const LocalMatch match =
+          MatchFrom(start, Search(start.pose, motion, prediction, cloud, grid),
+                    cloud, grid);
       if (match.score <= to_beat) continue;
       to_beat = match.score;
       best = match;
@@ -170,6 +175,7 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   mean_score_ +=
       (has_mean_score_ ? kScoreRate : 1.) * (best.score - mean_score_);
   has_mean_score_ = true;
+  best.motion_covariance = predicted.covariance;
   return best;
 }
 

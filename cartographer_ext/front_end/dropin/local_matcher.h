@@ -15,6 +15,7 @@
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_LOCAL_MATCHER_H_
 
 #include "cartographer/mapping/2d/grid_2d.h"
+#include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/mapping/proto/scan_matching/ceres_scan_matcher_options_2d.pb.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
@@ -29,6 +30,8 @@ namespace front_end {
 struct LocalMatch {
   Pose2 pose;  // (local <- robot)
   scan_matching::MatchReport report;
+  // Covariance of the prediction, in the local frame.
+  Eigen::Matrix3d motion_covariance = Eigen::Matrix3d::Zero();
   // Mean probability under the points, 0 to 1.
   double score = 0.;
   bool searched = false;
@@ -46,7 +49,7 @@ class LocalMatcher {
   // scans fit.
   LocalMatch Match(const Pose2& last_pose, const MotionPrediction& prediction,
                    const cartographer::sensor::PointCloud& cloud,
-                   const cartographer::mapping::Grid2D& grid);
+                   const cartographer::mapping::Submap2D& submap);
 
  private:
   LocalMatch MatchFrom(const scan_matching::Prediction& prediction,
@@ -55,8 +58,10 @@ class LocalMatcher {
                        const cartographer::mapping::Grid2D& grid) const;
   bool IsDoubtful(const LocalMatch& match,
                   const MotionPrediction& prediction) const;
-  // `unknown_turn` as in MotionPrediction.
-  Pose2 Search(const Pose2& center, const Pose2& motion, double unknown_turn,
+  // Around `center`, where `motion` leads, in a window for all that is not
+  // known of it.
+  Pose2 Search(const Pose2& center, const Pose2& motion,
+               const MotionPrediction& prediction,
                const cartographer::sensor::PointCloud& cloud,
                const cartographer::mapping::Grid2D& grid) const;
 

@@ -172,6 +172,63 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedInAGap) {
   EXPECT_LT(with_odometry.max_error, 0.05);
 }
 
+TEST(AdaptiveLocalTrajectoryBuilder2DTest,
+     AfterAGapWithoutAnythingItLooksAround) {
+  // A way of 0.4 m and a turn of 75 degrees that neither scans nor odometry
+  // have seen.
+  const auto path = [](const double t) {
+    // Sets off gently.
+    const double driven = t < 4.    ? 0.125 * t * t
+                          : t < 20. ? t - 2.
+                                    : std::max(18., t - 5.);
+    const double gap = std::min(1., std::max(0., (t - 20.) / 3.));
+    const Pose2 pose = Path(driven);
+    return Pose2(pose.x + 0.3 * gap, pose.y - 0.25 * gap,
+                 pose.theta - 1.3 * gap);
+  };
+  RunOptions options;
+  options.path = path;
+  options.use_odometry = false;
+  options.seconds = 26.;
+  options.has_scan = [](const double t) { return t <= 20. || t > 23.; };
+  const RunResult result = RunDrive(options);
+  EXPECT_LT(result.max_error, 0.06);
+  EXPECT_LT(result.max_turn_error, 0.03);
+  EXPECT_EQ(Count(result.records, MatchRecord::ABSENT), result.matched - 1);
+}
+
+// From a single scan in the map, with slow first steps, along walls that show
+// hardly more than themselves: the dots of the first scan must not hold the
+// robot back.
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, SetsOffFromItsFirstScan) {
+  RunOptions options;
+  options.walls.clear();
+  for (const double side : {-1., 1.}) {
+    for (int i = -10; i < 10; ++i) {
+      const double x = 3.6 * i + 0.4 * side;
+      const std::vector<Eigen::Vector2d> line = {{x, 1.2 * side},
+                                                 {x + 2.7, 1.2 * side},
+                                                 {x + 2.7, 1.35 * side},
+                                                 {x + 3.6, 1.35 * side},
+                                                 {x + 3.6, 1.2 * side}};
+      for (size_t k = 1; k < line.size(); ++k) {
+        options.walls.push_back({line[k - 1], line[k]});
+      }
+    }
+  }
+  options.path = [](const double t) {
+    const double driving = std::max(0., t - 1.);
+    return Pose2(driving < 2. ? 0.2 * driving * driving : 0.8 * driving - 0.8,
+                 0., 0.);
+  };
+  options.odometry = options.path;
+  options.seconds = 6.;
+  options.max_range = 25.;
+  const RunResult result = RunDrive(options);
+  EXPECT_LT(result.max_error, 0.09);
+  EXPECT_EQ(Count(result.records, MatchRecord::OK), result.matched);
+}
+
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, StaleOdometryIsBridgedAndTold) {
   const double clean = RunDrive(RunOptions()).mean_error;
   RunOptions options;
