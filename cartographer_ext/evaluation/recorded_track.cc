@@ -155,6 +155,7 @@ std::vector<RecordedTrack::Constraint> RecordedTrack::Follow(
         recorded_.find({ids_.StoredSubmap(ToGraphId(constraint.submap_id)),
                         ids_.StoredNode(ToGraphId(constraint.node_id))});
     if (recorded == recorded_.end()) continue;
+    result.push_back(constraint);
     // Inside the pose graph a node stands for the gravity-aligned frame.
     const Rigid3d stored_pose =
         recorded->second * Rigid3d::Rotation(problem.node_data()
@@ -162,13 +163,12 @@ std::vector<RecordedTrack::Constraint> RecordedTrack::Follow(
                                                  .gravity_alignment.inverse());
     const Rigid2d difference = cartographer::transform::Project2D(
         constraint.pose.zbar_ij.inverse() * stored_pose);
-    if (difference.translation().norm() > options_.translation_tolerance ||
-        std::abs(difference.normalized_angle()) > options_.rotation_tolerance) {
-      continue;
+    if (difference.translation().norm() <= options_.translation_tolerance &&
+        std::abs(difference.normalized_angle()) <=
+            options_.rotation_tolerance) {
+      result.back().pose.zbar_ij = stored_pose;
+      ++num_followed_;
     }
-    result.push_back(constraint);
-    result.back().pose.zbar_ij = stored_pose;
-    ++num_followed_;
   }
   return result;
 }

@@ -10,11 +10,12 @@
 // distance limit, and from there on the sampler, which counts candidates, picks
 // other nodes. To see whether options find the loops of a map, and not how
 // rounding adds up, a run can follow the record: the optimisation is given the
-// stored loops that the run has found again at the stored place, with the
-// stored poses, and no others. So every search begins where the recorded one
-// began, as long as the ones before found what the recorded ones found. Loops
-// that the run does not find are not given to it, and loops that only the run
-// finds are its result as any others; they just do not move the graph.
+// stored loops that the run has found again and no others, with the stored
+// poses where they lie at the stored place. So every search begins where the
+// recorded one began, as long as the ones before found what the recorded ones
+// found. Loops that the run does not find are not given to it, and loops that
+// only the run finds are its result as any others; they just do not move the
+// graph.
 #ifndef CARTOGRAPHER_EXT_EVALUATION_RECORDED_TRACK_H_
 #define CARTOGRAPHER_EXT_EVALUATION_RECORDED_TRACK_H_
 
@@ -64,7 +65,7 @@ class RecordedTrack {
   // searched depends on more than distances, so they are not in it.
   const LoopFates& fates() const { return fates_; }
 
-  // Loops that the last optimisation was given, if the record is followed.
+  // Loops that the last optimisation was given with their stored poses.
   int64_t num_followed() const { return num_followed_; }
 
  private:

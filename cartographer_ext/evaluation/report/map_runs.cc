@@ -77,9 +77,10 @@ absl::Status AddReruns(const RunInputs& inputs,
   if (follow) {
     data->assumptions.push_back(absl::StrFormat(
         "stock's run follows the record: its optimisation is given the stored "
-        "loops that it has found again within 5 cm and 3 degrees, and only "
-        "these (%d in the end), so that rounding of the stored clouds does not "
-        "add up; -norerun_follow_recording leaves it to itself",
+        "loops that it has found again, and only these, with the stored poses "
+        "where these are within 5 cm and 3 degrees (%d in the end), so that "
+        "rounding of the stored clouds does not add up; "
+        "-norerun_follow_recording leaves it to itself",
         stock->rerun->followed_loops));
   }
   if (stock->rerun->placeholders > 0) {
