@@ -33,9 +33,9 @@ ShellResult Shell(const std::string& command) {
 TEST(ReproduceTest, ListsEveryTable) {
   const ShellResult result = Shell("python3 scripts/reproduce list");
   EXPECT_EQ(result.exit_code, 0) << result.out;
-  for (const char* name :
-       {"a_table_2", "r_table_2", "g_table_2", "g_table_3", "c_table_1",
-        "c_table_3", "c_table_4", "c_table_5", "c_gamma", "c_alpha_beta"}) {
+  for (const char* name : {"a_table_2", "r_table_2", "g_table_2", "g_table_3",
+                           "c_table_1", "c_table_3", "c_table_4", "c_table_5",
+                           "c_gamma", "c_alpha_beta", "stored_maps"}) {
     EXPECT_THAT(result.out, HasSubstr(name));
   }
 }
@@ -89,6 +89,43 @@ TEST(ReproduceTest, ClosingErrorsAndDistances) {
             "assert r.change(2., 1.) == '-50.0 %'\n"
             "assert r.table(['a', 'b'], [[1, 2]]) == "
             "'| a | b |\\n|---|---|\\n| 1 | 2 |\\n'\n");
+  const ShellResult result =
+      Shell("python3 " + folder / "check.py" + " " + folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+}
+
+TEST(ReproduceTest, TablesOfSearchesAndMaps) {
+  const TemporaryFolder folder;
+  WriteFile(
+      folder / "check.py",
+      "import importlib.machinery, json, pathlib, sys, types\n"
+      "sys.dont_write_bytecode = True\n"
+      "r = importlib.machinery.SourceFileLoader('r', "
+      "'scripts/reproduce').load_module()\n"
+      "folder = pathlib.Path(sys.argv[1])\n"
+      "key = 'A.window_gamma'\n"
+      "def line(gamma, seed, status, precision):\n"
+      "    return json.dumps({'values': {key: gamma}, 'input': '%s#%d' % (\n"
+      "        r.WORLDS / 'ri_corridor.world', seed), 'status': status,\n"
+      "        'metrics': {'loop_precision': precision, 'relations': 1.}})\n"
+      "(folder / 'journal.jsonl').write_text('{}\\n' + '\\n'.join([\n"
+      "    line(0.3, 1, 'ok', 0.9), line(0.3, 2, 'ok', 0.7),\n"
+      "    line(0.3, 3, 'ok', 0.1), line(0.1, 1, 'ok', 0.5),\n"
+      "    line(0.1, 2, 'failed', 0.)]) + '\\n')\n"
+      "commands = types.SimpleNamespace(out=folder, run=lambda *a: '')\n"
+      "options = types.SimpleNamespace(jobs=1, seeds=2)\n"
+      "title, note, table = r.EXPERIMENTS['c_gamma'](commands, options)\n"
+      "rows = table.splitlines()\n"
+      // The third seed is not asked for, the failed run has no figures.
+      "assert rows[2].startswith('| 0.1 |  | 0.500 | - |'), rows\n"
+      "assert '| 0.800 (0.700-0.900) | - | - | 1.000' in rows[3], rows\n"
+      "assert 'chosen' in rows[3] and len(rows) == 4, rows\n"
+      "options = types.SimpleNamespace(data=str(folder / 'none'))\n"
+      "try:\n"
+      "    r.EXPERIMENTS['stored_maps'](commands, options)\n"
+      "    assert False\n"
+      "except r.Failed as error:\n"
+      "    assert 'no map in' in str(error)\n");
   const ShellResult result =
       Shell("python3 " + folder / "check.py" + " " + folder.path());
   EXPECT_EQ(result.exit_code, 0) << result.out;

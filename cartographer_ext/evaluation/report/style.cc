@@ -114,8 +114,13 @@ font-size:.85rem;white-space:pre-wrap;overflow-wrap:anywhere}
 --soft:#444;--rule:#bbb;--map-filter:none}body{font-size:10.5pt}
 main{max-width:none;padding:0}nav,.screen-only{display:none}
 .print-only{display:block}.pair.print-only{display:grid}
-h2{break-after:avoid}tr{break-inside:avoid}
-svg.map-figure{max-height:18cm}}
+h2{margin-top:22px}h2,h3,h2+p{break-after:avoid}
+tr,.scroll,pre,.verdict{break-inside:avoid}.scroll{overflow:visible}
+table{font-size:8.5pt}th,td{padding:2px 7px 2px 0}.number{white-space:normal}
+.soft,figcaption,.legend{font-size:8.5pt;line-height:1.35}
+.grid3{grid-template-columns:repeat(3,1fr);gap:8px}
+.grid3 svg.map-figure{height:6.5cm}
+svg.map-figure{max-height:10.5cm}#map+figure svg.map-figure{max-height:17cm}}
 )css";
 }
 
