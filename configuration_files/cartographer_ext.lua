@@ -125,6 +125,11 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- By how much the mean probability must grow for another place to be
     -- taken. [>= 0 and <= 1]
     min_gain = 0.03,
+    -- So much more must it grow for a place that contradicts a prediction
+    -- that is held for certain (15 cm or 5 degrees off; from 5 cm and 2
+    -- degrees on a part of it). Odometry is seldom wrong, and a poor fit has
+    -- many places nearly as good. [>= 0 and <= 1]
+    contradiction_gain = 0.12,
     -- Half width of the search; half the way since the last scan is added.
     -- [>= 0 and <= 10, m]
     linear_window = 0.15,

@@ -28,6 +28,12 @@ namespace stock_proto = cartographer::mapping::scan_matching::proto;
 constexpr double kScoreRate = 0.02;
 // Penalties of the search, per metre and radian: only to break ties.
 constexpr double kSearchPenalty = 0.1;
+// A place that is less off agrees with the prediction, one that is more off
+// contradicts it.
+constexpr double kAgreeingWay = 0.05;                   // metres
+constexpr double kContradictingWay = 0.15;              // metres
+constexpr double kAgreeingTurn = 2. * kPi / 180.;       // radians
+constexpr double kContradictingTurn = 5. * kPi / 180.;  // radians
 // Predictions around which is searched at most.
 constexpr size_t kMaxStarts = 4;
 // A search result stands for itself; the motion it came from hardly pulls.
@@ -70,6 +76,15 @@ bool IsNear(const Pose2& a, const Pose2& b) {
 }
 
 }  // namespace
+
+double Contradiction(const Pose2& predicted, const Pose2& found) {
+  const Pose2 off = Between(predicted, found);
+  const double way = (std::hypot(off.x, off.y) - kAgreeingWay) /
+                     (kContradictingWay - kAgreeingWay);
+  const double turn = (std::abs(off.theta) - kAgreeingTurn) /
+                      (kContradictingTurn - kAgreeingTurn);
+  return std::min(1., std::max({0., way, turn}));
+}
 
 double MeanScore(const Pose2& pose, const PointCloud& cloud,
                  const Grid2D& grid) {
@@ -157,7 +172,8 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
       }
       if (is_new) motions.push_back(motion);
     }
-    double to_beat = best.score + options_.min_gain();
+    const double first_score = best.score;
+    double to_beat = first_score + options_.min_gain();
     for (const Pose2& motion : motions) {
       Prediction start = ToPrediction(last_pose, motion,
                                       kSearchSpread * prediction.covariance);
@@ -165,7 +181,12 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
       const LocalMatch match =
           MatchFrom(start, Search(start.pose, motion, prediction, cloud, grid),
                     cloud, grid);
-      if (match.score <= to_beat) continue;
+      const double gain = options_.min_gain() +
+                          (prediction.is_uncertain
+                               ? 0.
+                               : options_.contradiction_gain() *
+                                     Contradiction(predicted.pose, match.pose));
+      if (match.score <= std::max(to_beat, first_score + gain)) continue;
       to_beat = match.score;
       best = match;
       best.searched = true;

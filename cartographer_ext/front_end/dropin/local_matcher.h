@@ -10,7 +10,9 @@
 // scan does not determine (a corridor) the outcome is still that motion and not
 // where the search happened to score best. Of the outcomes the one under whose
 // points the grid is most probable wins, if it is clearly better than the match
-// without search.
+// without search, and by more than that if it contradicts a prediction that was
+// held for certain: odometry is seldom wrong, and a scan that fits badly finds
+// many places nearly as good.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_LOCAL_MATCHER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_LOCAL_MATCHER_H_
 
@@ -70,6 +72,10 @@ class LocalMatcher {
   double mean_score_ = 0.;
   bool has_mean_score_ = false;
 };
+
+// How far `found` contradicts `predicted`, from 0 (less than 5 cm and 2 degrees
+// off) to 1 (15 cm or 5 degrees and more).
+double Contradiction(const Pose2& predicted, const Pose2& found);
 
 // Mean over the points of 1 - |cost| / largest cost on a TSDF, of the
 // probability of their cells otherwise; 0 without points.

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/dropin/local_matcher.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/memory/memory.h"
+#include "cartographer/common/configuration_file_resolver.h"
+#include "cartographer/common/lua_parameter_dictionary.h"
+#include "cartographer/mapping/internal/2d/local_trajectory_builder_options_2d.h"
+#include "cartographer/transform/transform.h"
+#include "cartographer_ext/options/option_description.h"
+#include "gtest/gtest.h"
+#include "tests/front_end/dropin/simulated_room.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+using cartographer::mapping::ActiveSubmaps2D;
+using cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D;
+using cartographer::sensor::PointCloud;
+
+TEST(ContradictionTest, GrowsBetweenItsBounds) {
+  const Pose2 predicted(3., -2., 1.5);
+  EXPECT_EQ(Contradiction(predicted, predicted), 0.);
+  // In the frame of the prediction; only the distance counts.
+  EXPECT_EQ(Contradiction(predicted, predicted * Pose2(0.03, -0.03, 0.)), 0.);
+  EXPECT_NEAR(Contradiction(predicted, predicted * Pose2(0.06, 0.08, 0.)), 0.5,
+              1e-9);
+  EXPECT_EQ(Contradiction(predicted, predicted * Pose2(0., -0.2, 0.)), 1.);
+  EXPECT_EQ(Contradiction(predicted, predicted * Pose2(0., 0., DegToRad(1.9))),
+            0.);
+  EXPECT_NEAR(
+      Contradiction(predicted, predicted * Pose2(0., 0., -DegToRad(4.))),
+      2. / 3., 1e-9);
+  EXPECT_EQ(Contradiction(predicted, predicted * Pose2(0., 0., DegToRad(170.))),
+            1.);
+  // The larger of both.
+  EXPECT_NEAR(
+      Contradiction(predicted, predicted * Pose2(0.06, 0., DegToRad(3.5))), 0.5,
+      1e-9);
+}
+
+// A map of the room, a robot that stands at the origin of it, and a prediction
+// that is held for certain.
+class LocalMatcherTest : public testing::Test {
+ protected:
+  LocalMatcherTest() {
+    cartographer::common::LuaParameterDictionary dictionary(
+        "include 'common_2d.lua' include 'front_end_default.lua' "
+        "return TRAJECTORY_BUILDER_2D",
+        absl::make_unique<cartographer::common::ConfigurationFileResolver>(
+            std::vector<std::string>{"configuration_files"}));
+    const LocalTrajectoryBuilderOptions2D stock =
+        cartographer::mapping::CreateLocalTrajectoryBuilderOptions2D(
+            &dictionary);
+    matcher_options_ = stock.ceres_scan_matcher_options();
+    submaps_ = absl::make_unique<ActiveSubmaps2D>(stock.submaps_options());
+    for (int i = 0; i < 20; ++i) {
+      cartographer::sensor::RangeData range_data;
+      range_data.origin = Eigen::Vector3f::Zero();
+      range_data.returns = Cloud();
+      submaps_->InsertRangeData(range_data);
+    }
+    options::SetDefaults(&options_);
+    prediction_.source = PredictionSource::kOdometry;
+    prediction_.covariance = Eigen::Vector3d(1e-4, 1e-4, 25e-6).asDiagonal();
+  }
+
+  PointCloud Cloud() {
+    PointCloud cloud;
+    for (const auto& point :
+         test::Scan(test::Room(), 0., Pose2(), 12., &random_).ranges) {
+      cloud.push_back({point.position});
+    }
+    return cloud;
+  }
+
+  // From a prediction that is `off` the truth.
+  LocalMatch MatchFrom(const Pose2& off) {
+    LocalMatcher matcher(options_, matcher_options_);
+    const auto& submap = *submaps_->submaps().front();
+    // What is usual.
+    MotionPrediction standing = prediction_;
+    standing.is_uncertain = false;
+    const LocalMatch usual = matcher.Match(Pose2(), standing, Cloud(), submap);
+    EXPECT_FALSE(usual.relocated);
+    EXPECT_NEAR(usual.pose.x, 0., 0.01);
+    prediction_.motion = off;
+    return matcher.Match(Pose2(), prediction_, Cloud(), submap);
+  }
+
+  cartographer::mapping::scan_matching::proto::CeresScanMatcherOptions2D
+      matcher_options_;
+  proto::FrontEndOptions options_;
+  std::unique_ptr<ActiveSubmaps2D> submaps_;
+  MotionPrediction prediction_;
+  Random random_{3};
+};
+
+TEST_F(LocalMatcherTest, AMuchBetterPlaceOverrulesThePrediction) {
+  const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
+  EXPECT_TRUE(match.searched);
+  EXPECT_TRUE(match.relocated);
+  EXPECT_NEAR(match.pose.x, 0., 0.02);
+  EXPECT_NEAR(match.pose.y, 0., 0.02);
+  EXPECT_NEAR(match.pose.theta, 0., 0.02);
+}
+
+TEST_F(LocalMatcherTest, ASlightlyBetterPlaceDoesNot) {
+  options_.mutable_search()->set_contradiction_gain(1.);
+  const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
+  EXPECT_TRUE(match.searched);
+  EXPECT_FALSE(match.relocated);
+}
+
+TEST_F(LocalMatcherTest, APredictionInDoubtIsOverruledSooner) {
+  options_.mutable_search()->set_contradiction_gain(1.);
+  prediction_.is_uncertain = true;
+  const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
+  EXPECT_TRUE(match.relocated);
+  EXPECT_NEAR(match.pose.x, 0., 0.02);
+  EXPECT_NEAR(match.pose.theta, 0., 0.02);
+}
+
+TEST_F(LocalMatcherTest, WithoutSearchItStaysWithThePrediction) {
+  options_.mutable_search()->set_enabled(false);
+  const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
+  EXPECT_FALSE(match.searched);
+  EXPECT_FALSE(match.relocated);
+}
+
+TEST_F(LocalMatcherTest, NoPointsHaveNoScore) {
+  EXPECT_EQ(
+      MeanScore(Pose2(), PointCloud(), *submaps_->submaps().front()->grid()),
+      0.);
+  EXPECT_GT(MeanScore(Pose2(), Cloud(), *submaps_->submaps().front()->grid()),
+            0.6);
+}
+
+}  // namespace
+}  // namespace front_end
+}  // namespace cartographer_ext
