@@ -26,6 +26,8 @@ constexpr size_t kMaxScanPoints = 400;
 // What a picture shows around the scan, metres.
 constexpr double kSurroundings = 2.;
 constexpr double kFarthest = 15.;
+// Of the sides of a picture, the shorter to the longer at least.
+constexpr double kAspect = 0.75;
 
 std::vector<const LoopEvidence*> Worst(
     const std::vector<LoopEvidence>& evidence) {
@@ -92,6 +94,18 @@ class SubmapPictures {
   ImageStore store_;
 };
 
+// Shows more of the surroundings instead of a tall or flat picture.
+void MakeCompact(io::PictureBounds* const bounds) {
+  const double width = bounds->max_x - bounds->min_x;
+  const double height = bounds->max_y - bounds->min_y;
+  const double more_x = 0.5 * std::max(0., kAspect * height - width);
+  const double more_y = 0.5 * std::max(0., kAspect * width - height);
+  bounds->min_x -= more_x;
+  bounds->max_x += more_x;
+  bounds->min_y -= more_y;
+  bounds->max_y += more_y;
+}
+
 std::string DrawLoop(const ReportRun& run, const ReportData& data,
                      const LoopEvidence& loop, const std::string& image_id) {
   const auto scan = data.contents->scans.find(loop.node_id);
@@ -118,6 +132,7 @@ std::string DrawLoop(const ReportRun& run, const ReportData& data,
   bounds.min_y -= kSurroundings;
   bounds.max_x += kSurroundings;
   bounds.max_y += kSurroundings;
+  MakeCompact(&bounds);
   MapFigure figure("Scan on the submap", bounds);
   if (!image_id.empty()) figure.Image(image_id);
   figure.Dots(at_map, "s2");
