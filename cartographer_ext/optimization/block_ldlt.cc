@@ -49,6 +49,14 @@ Adjacency FullAdjacency(const int size,
   return result;
 }
 
+// Room for the next, somewhat larger pattern, without copies of old values.
+void ReserveForMore(const size_t size,
+                    std::vector<Eigen::Matrix3d>* const blocks) {
+  if (size <= blocks->capacity()) return;
+  blocks->clear();
+  blocks->reserve(size + size / 8);
+}
+
 }  // namespace
 
 bool InvertSpd(const Eigen::Matrix3d& block, Eigen::Matrix3d* const inverse) {
@@ -99,7 +107,11 @@ void BlockLdlt::Analyze(const int size,
   order_ = FillReducingOrder(size, pairs, groups);
   position_.resize(size);
   for (int i = 0; i != size; ++i) position_[order_[i]] = i;
+  AnalyzeInOrder(pairs);
+}
 
+void BlockLdlt::AnalyzeInOrder(const std::vector<std::pair<int, int>>& pairs) {
+  const int size = order_.size();
   // Rows of the strict lower triangle by position: columns left of each row.
   std::vector<int> row_starts(size + 1, 0);
   for (const std::pair<int, int>& pair : pairs) {
@@ -113,8 +125,8 @@ void BlockLdlt::Analyze(const int size,
     entries[next[std::max(a, b)]++] = {std::min(a, b), static_cast<int>(k)};
   }
 
-  // Elimination tree with path compression, then column counts and rows by
-  // walking each row's subtree; ascending rows come out sorted.
+  // Elimination tree with path compression, then the rows by walking each
+  // row's subtree; ascending rows come out sorted.
   std::vector<int> parent(size, -1), ancestor(size, -1);
   for (int i = 0; i != size; ++i) {
     for (int e = row_starts[i]; e != row_starts[i + 1]; ++e) {
@@ -127,33 +139,30 @@ void BlockLdlt::Analyze(const int size,
       }
     }
   }
+  // Columns of each row of L, row after row.
   starts_.assign(size + 1, 0);
-  std::vector<int> mark(size, -1);
+  std::vector<int> mark(size, -1), columns, row_ends(size);
+  columns.reserve(rows_.capacity());
   for (int i = 0; i != size; ++i) {
     mark[i] = i;
     for (int e = row_starts[i]; e != row_starts[i + 1]; ++e) {
       for (int k = entries[e].first; mark[k] != i; k = parent[k]) {
         mark[k] = i;
+        columns.push_back(k);
         ++starts_[k + 1];
       }
     }
+    row_ends[i] = columns.size();
   }
   for (int i = 0; i != size; ++i) starts_[i + 1] += starts_[i];
-  rows_.resize(starts_[size]);
-  std::fill(mark.begin(), mark.end(), -1);
+  rows_.resize(columns.size());
   next.assign(starts_.begin(), starts_.end() - 1);
   slots_.assign(pairs.size(), Slot());
   slot_of_matrix_.clear();
   matrix_of_pair_.assign(pairs.size(), 0);
   std::vector<int> matrix_of_column(size, -1);
-  for (int i = 0; i != size; ++i) {
-    mark[i] = i;
-    for (int e = row_starts[i]; e != row_starts[i + 1]; ++e) {
-      for (int k = entries[e].first; mark[k] != i; k = parent[k]) {
-        mark[k] = i;
-        rows_[next[k]++] = i;
-      }
-    }
+  for (int i = 0, c = 0; i != size; ++i) {
+    for (; c != row_ends[i]; ++c) rows_[next[columns[c]]++] = i;
     for (int e = row_starts[i]; e != row_starts[i + 1]; ++e) {
       const int column = entries[e].first, pair = entries[e].second;
       // The row just written is the last one of its column.
@@ -168,9 +177,11 @@ void BlockLdlt::Analyze(const int size,
       matrix_of_pair_[pair] = matrix_of_column[column];
     }
   }
+  ReserveForMore(rows_.size(), &blocks_);
   blocks_.resize(rows_.size());
   pivots_.resize(size);
   pivot_inverses_.resize(size);
+  ReserveForMore(slot_of_matrix_.size(), &matrix_);
   matrix_.resize(slot_of_matrix_.size());
   diagonal_.resize(size);
 }

@@ -53,6 +53,9 @@ class BlockLdlt {
  public:
   void Analyze(int size, const std::vector<std::pair<int, int>>& pairs,
                const std::vector<int>& groups);
+  // The same for other pairs of as many variables in the order of before, which
+  // saves most of the time and costs some fill.
+  void AnalyzeInOrder(const std::vector<std::pair<int, int>>& pairs);
   // Appends pairs if the fill has room for all of them; false, and nothing has
   // changed, if it has not.
   bool Extend(const std::vector<std::pair<int, int>>& pairs);

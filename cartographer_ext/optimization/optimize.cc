@@ -37,35 +37,15 @@ KernelOptions MakeKernel(const KernelType type,
   return kernel;
 }
 
-// Weights of the kernel at the final poses.
-void WeighByKernel(const std::vector<WhitenedEdge>& edges,
-                   const KernelOptions& kernel, OptimizeResult* const result) {
-  result->weights.assign(edges.size(), 1.);
-  for (size_t i = 0; i != edges.size(); ++i) {
-    const WhitenedEdge& edge = edges[i];
-    if (!edge.is_loop) continue;
-    const Eigen::Vector3d residual =
-        Residual(edge, result->poses[edge.from], result->poses[edge.to]);
-    const double chi2 = residual.squaredNorm();
-    double shape = AcsShape(kernel);
-    if (kernel.type == KernelType::kAcsPaper) {
-      shape = AcsPaperShape(
-          chi2, UnwhitenedSquaredNorm(edge, residual),
-          NormOfCovariance(edge.whitening.transpose() * edge.whitening,
-                           kernel.norm));
-    }
-    result->weights[i] = EvaluateKernel(kernel, chi2, shape).weight;
-  }
-}
-
 void RunKernel(const std::vector<WhitenedEdge>& edges, const KernelType type,
                const OptimizeOptions& options, OptimizeResult* const result) {
   SolverOptions solver;
   solver.kernel = MakeKernel(type, options);
   solver.max_iterations = options.max_iterations;
   solver.prune = options.prune;
-  AddSummary(SolveRobust(edges, solver, &result->poses), result);
-  WeighByKernel(edges, solver.kernel, result);
+  RobustSolver robust(edges);
+  AddSummary(robust.Solve(solver, &result->poses), result);
+  result->weights = robust.weights();
 }
 
 void RunSwitchable(const std::vector<WhitenedEdge>& edges,

@@ -187,7 +187,9 @@ std::vector<Pose2> DeadReckoning(const PoseGraph& graph) {
   return poses;
 }
 
-WhitenedEdge Whiten(const PoseGraphEdge& edge) {
+namespace {
+
+WhitenedEdge Whiten(const PoseGraphEdge& edge, const Eigen::Matrix3d& upper) {
   WhitenedEdge result;
   result.from = edge.from;
   result.to = edge.to;
@@ -198,16 +200,31 @@ WhitenedEdge Whiten(const PoseGraphEdge& edge) {
   const double s = std::sin(edge.measurement.theta);
   Eigen::Matrix3d rotation;
   rotation << c, s, 0., -s, c, 0., 0., 0., 1.;
-  const Eigen::Matrix3d upper =
-      Eigen::LLT<Eigen::Matrix3d>(edge.information).matrixU();
   result.whitening = upper * rotation;
   return result;
+}
+
+Eigen::Matrix3d UpperRoot(const Eigen::Matrix3d& information) {
+  return Eigen::LLT<Eigen::Matrix3d>(information).matrixU();
+}
+
+}  // namespace
+
+WhitenedEdge Whiten(const PoseGraphEdge& edge) {
+  return Whiten(edge, UpperRoot(edge.information));
 }
 
 std::vector<WhitenedEdge> Whiten(const std::vector<PoseGraphEdge>& edges) {
   std::vector<WhitenedEdge> result;
   result.reserve(edges.size());
-  for (const PoseGraphEdge& edge : edges) result.push_back(Whiten(edge));
+  // Most graphs have one information matrix or two.
+  Eigen::Matrix3d upper;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (i == 0 || edges[i].information != edges[i - 1].information) {
+      upper = UpperRoot(edges[i].information);
+    }
+    result.push_back(Whiten(edges[i], upper));
+  }
   return result;
 }
 

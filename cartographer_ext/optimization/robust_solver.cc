@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "glog/logging.h"
 
@@ -14,6 +15,20 @@ namespace optimization {
 namespace {
 
 constexpr double kMaxLambda = 1e12;
+// A step that lowers the cost by less than this fraction is one of the last.
+constexpr double kSettling = 1e-3;
+// Where a step gains so many times what the quadratic model promised, a loop is
+// being let go, and would be for many more such steps.
+constexpr double kShedding = 1.5;
+constexpr int kMaxProlongations = 5;
+// Loops with so many times the weight that counts may count soon; if they are
+// few, a new pattern has room for them.
+constexpr double kRoom = 1e-2;
+// Edges that may leave or enter before the order of elimination is worked out
+// anew, besides one loop in fifty, and by how much the factor may grow until
+// then.
+constexpr size_t kFewChanges = 5;
+constexpr double kMaxGrowth = 1.1;
 
 std::vector<Pose2> Stepped(const std::vector<Pose2>& poses,
                            const Eigen::VectorXd& step) {
@@ -50,11 +65,22 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
   summary.initial_cost = now.cost;
   double lambda = options.initial_lambda;
   bool done = poses_.size() < 2 || edges_.empty();
+  bool settling = false;
   summary.converged = done;
   Eigen::VectorXd step;
   while (!done && summary.iterations < options.max_iterations) {
-    if (UpdatePattern(now.weights)) ++summary.analyses;
+    const bool analysed = UpdatePattern(now.weights);
+    summary.analyses += analysed;
     Assemble(now.weights);
+    if (settling && !analysed) {
+      // What the next step would gain, by the factor of the last one.
+      step = -gradient_;
+      factor_.Solve(&step);
+      if (-gradient_.dot(step) <= options.cost_tolerance * now.cost) {
+        summary.converged = true;
+        break;
+      }
+    }
     const std::vector<Pose2> from = poses_;
     bool accepted = false;
     while (!accepted && !done && summary.iterations < options.max_iterations) {
@@ -84,6 +110,10 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
         done = decrease <= options.cost_tolerance * now.cost ||
                largest < options.step_tolerance;
         summary.converged = done;
+        settling = decrease <= kSettling * now.cost;
+        if (settling && !done && ratio > kShedding) {
+          Prolong(from, step, now.shapes, &next);
+        }
         // A kernel with a moving shape is weighed anew; the cost reported
         // belongs to the last shapes.
         if (options.kernel.type == KernelType::kAcsPaper) {
@@ -104,7 +134,26 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
   summary.factor_blocks = factor_.num_blocks();
   summary.cpu_seconds = ThreadCpuSeconds() - start;
   *poses = poses_;
+  weights_ = std::move(now.weights);
   return summary;
+}
+
+// Doubles an accepted step as long as that lowers the cost.
+void RobustSolver::Prolong(const std::vector<Pose2>& from, Eigen::VectorXd step,
+                           const std::vector<double>& held_shapes,
+                           Evaluation* const reached) {
+  Evaluation next;
+  for (int i = 0; i != kMaxProlongations; ++i) {
+    const std::vector<Pose2> last = poses_;
+    step *= 2.;
+    SetPoses(Stepped(from, step));
+    Evaluate(&held_shapes, &next);
+    if (!(next.cost < reached->cost)) {
+      SetPoses(last);
+      return;
+    }
+    std::swap(next, *reached);
+  }
 }
 
 const BlockLdlt* RobustSolver::Factor(const std::vector<Pose2>& poses,
@@ -161,19 +210,29 @@ void RobustSolver::Evaluate(const std::vector<double>* const held_shapes,
 // Chooses the edges of the linear systems; true when they were analysed anew.
 bool RobustSolver::UpdatePattern(const std::vector<double>& weights) {
   if (!analysed_) in_pattern_.assign(edges_.size(), false);
-  std::vector<int> entering;
-  int dead = 0, alive = 0;
-  std::vector<bool> wanted(edges_.size());
+  std::vector<int> wanted, entering, near;
+  size_t dead = 0, near_inside = 0, loops = 0;
   for (size_t i = 0; i != edges_.size(); ++i) {
-    wanted[i] = !edges_[i].is_loop || !options_.prune ||
-                weights[i] >= options_.prune_weight;
-    if (wanted[i] && !in_pattern_[i]) entering.push_back(i);
-    if (!wanted[i] && in_pattern_[i]) ++dead;
-    if (wanted[i] && edges_[i].is_loop) ++alive;
+    if (!edges_[i].is_loop || !options_.prune ||
+        weights[i] >= options_.prune_weight) {
+      wanted.push_back(i);
+      loops += edges_[i].is_loop;
+      if (!in_pattern_[i]) entering.push_back(i);
+    } else if (weights[i] >= kRoom * options_.prune_weight) {
+      near.push_back(i);
+      near_inside += in_pattern_[i];
+    } else {
+      dead += in_pattern_[i];
+    }
+  }
+  const size_t few = kFewChanges + loops / 50;
+  if (near.size() > few) {
+    near.clear();
+    dead += near_inside;
   }
   // A few dead edges cost less than a new analysis, and so does a new edge that
   // needs no more fill.
-  if (analysed_ && dead <= 5 + alive / 50) {
+  if (analysed_ && dead <= few) {
     if (entering.empty()) return false;
     std::vector<std::pair<int, int>> pairs;
     for (const int i : entering) {
@@ -186,22 +245,30 @@ bool RobustSolver::UpdatePattern(const std::vector<double>& weights) {
       return false;
     }
   }
+  // Much the same pattern has much the same best order.
+  const bool reorder = !analysed_ || dead + entering.size() > few;
   analysed_ = true;
   in_pattern_.assign(edges_.size(), false);
   pattern_.clear();
   num_pairs_ = 0;
-  std::vector<int> all;
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    if (wanted[i]) all.push_back(i);
-  }
+  wanted.insert(wanted.end(), near.begin(), near.end());
   std::vector<std::pair<int, int>> pairs;
-  AddToPattern(all, &pairs);
+  AddToPattern(wanted, &pairs);
   std::vector<int> groups;
   if (last_pose_last_ && poses_.size() > 2) {
     groups.assign(poses_.size() - 1, 0);
     groups.back() = 1;
   }
-  factor_.Analyze(poses_.size() - 1, pairs, groups);
+  if (reorder) {
+    factor_.Analyze(poses_.size() - 1, pairs, groups);
+    ordered_blocks_ = factor_.num_blocks();
+  } else {
+    factor_.AnalyzeInOrder(pairs);
+    if (factor_.num_blocks() > kMaxGrowth * ordered_blocks_) {
+      factor_.Analyze(poses_.size() - 1, pairs, groups);
+      ordered_blocks_ = factor_.num_blocks();
+    }
+  }
   return true;
 }
 

@@ -77,6 +77,9 @@ class RobustSolver {
   // Improves `poses` in place; their number is the same in all calls.
   SolverSummary Solve(const SolverOptions& options, std::vector<Pose2>* poses);
 
+  // The weight of each edge where the last solution ended.
+  const std::vector<double>& weights() const { return weights_; }
+
   // The factorised system of the edges at these poses with these weights, one
   // per edge, and its right hand side. Null when it is not positive definite.
   const BlockLdlt* Factor(const std::vector<Pose2>& poses,
@@ -95,6 +98,8 @@ class RobustSolver {
 
   void SetPoses(const std::vector<Pose2>& poses);
   void Evaluate(const std::vector<double>* held_shapes, Evaluation* result);
+  void Prolong(const std::vector<Pose2>& from, Eigen::VectorXd step,
+               const std::vector<double>& held_shapes, Evaluation* reached);
   bool UpdatePattern(const std::vector<double>& weights);
   void AddToPattern(const std::vector<int>& edges,
                     std::vector<std::pair<int, int>>* pairs);
@@ -107,11 +112,13 @@ class RobustSolver {
   std::vector<Pose2> poses_;
   std::vector<Eigen::Vector2d> rotations_;  // cosine and sine of each pose
   std::vector<double> covariance_norms_;    // per edge, literal ACS
+  std::vector<double> weights_;
   bool analysed_ = false;
   std::vector<bool> in_pattern_;
   std::vector<std::pair<int, int>> pattern_;  // (edge, pair of factor_ or -1)
   int num_pairs_ = 0;
   BlockLdlt factor_;
+  size_t ordered_blocks_ = 0;  // of the factor when it was last ordered
   Eigen::VectorXd gradient_;
   Eigen::VectorXd diagonal_;
 };

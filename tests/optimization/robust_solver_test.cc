@@ -120,6 +120,35 @@ TEST_F(RobustSolverTest, PrunedEdgesComeBack) {
   EXPECT_GT(alive_after, alive_before);
 }
 
+TEST_F(RobustSolverTest, EndsWhereMoreStepsWouldGainNothing) {
+  for (const KernelType type :
+       {KernelType::kGemanMcClure, KernelType::kDcs, KernelType::kAcs}) {
+    SolverOptions options = WithKernel(type);
+    RobustSolver solver(dirty_);
+    std::vector<Pose2> poses = world_.graph.poses;
+    const SolverSummary summary = solver.Solve(options, &poses);
+    EXPECT_TRUE(summary.converged);
+    for (size_t i = 0; i != dirty_.size(); ++i) {
+      const WhitenedEdge& edge = dirty_[i];
+      const double expected =
+          edge.is_loop
+              ? EvaluateKernel(options.kernel,
+                               Chi2(edge, poses[edge.from], poses[edge.to]),
+                               AcsShape(options.kernel))
+                    .weight
+              : 1.;
+      EXPECT_NEAR(solver.weights()[i], expected, 1e-9);
+    }
+    options.cost_tolerance = 0.;
+    options.step_tolerance = 1e-9;
+    const SolverSummary further = solver.Solve(options, &poses);
+    EXPECT_NEAR(summary.final_cost, further.final_cost,
+                1e-5 * further.final_cost)
+        << KernelName(type);
+    EXPECT_LE(further.final_cost, summary.final_cost);
+  }
+}
+
 TEST_F(RobustSolverTest, EdgeWeightsScaleAndSwitchOff) {
   SolverOptions options;
   options.edge_weights.assign(dirty_.size(), 1.);
