@@ -275,6 +275,10 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Where the way to the submap is known better than this, a loop would
     -- tell nothing new and is not searched. [>= 0 and <= 1000, m]
     informative_sigma = 0.05,
+    -- After this time a submap is searched again all the same, so that a
+    -- place visited twice without going far is closed twice. Not for searches
+    -- of a whole submap. [>= 0 and <= 1e+09, s]
+    redundant_time = 10,
   },
   temporal_verification = {
     -- Compares the last nodes with what the submap predicts along the same
@@ -307,27 +311,38 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Whether every prediction has to be matched (symmetric, the textbook) or
     -- one for each node. [one of: symmetric, asymmetric]
     step = "asymmetric",
-    -- Angular sectors of a range signature. [>= 1 and <= 720]
+    -- Angular sectors of a range signature, for sectors. [>= 1 and <= 720]
     num_sectors = 36,
-    -- Rays of a sector; their median is its range. [>= 1 and <= 100]
+    -- Rays of a sector, for sectors; their median is its range. [>= 1 and <=
+    -- 100]
     rays_per_sector = 4,
     -- Longer ranges count as this. [> 0 and <= 1000, m]
-    max_range = 10,
+    max_range = 25,
     -- A predicted ray that crosses more unknown space than this predicts
     -- nothing. [>= 0 and <= 1000, m]
     max_unknown = 0.15,
-    -- Sectors that differ by more count as this. Smaller punishes small
+    -- Ranges that differ by more count as this. Smaller punishes small
     -- differences more. [> 0 and <= 1000, m]
-    clip = 1,
-    -- Share of a node's sectors that the submap has to predict. [> 0 and <=
-    -- 1]
-    minimum_overlap = 0.5,
-    -- Nodes remembered of each trajectory, about 300 bytes each. [>= 1 and <=
-    -- 1e+07, nodes]
+    clip = 0.2,
+    -- Share of a scan that the submap has to predict. [> 0 and <= 1]
+    minimum_overlap = 0.7,
+    -- Nodes remembered of each trajectory, about 1500 bytes each. [>= 1 and
+    -- <= 1e+07, nodes]
     max_history_nodes = 20000,
     -- Neighbouring submaps on each side that continue the reference where the
     -- way leaves the submap. [>= 0 and <= 100]
     num_neighbours = 2,
+    -- beams compares every beam at its own angle, sectors the medians of
+    -- sectors. The beams tell look-alike places apart that differ in little;
+    -- for sectors max_range 10, clip 1 and minimum_overlap 0.5 suit. [one of:
+    -- sectors, beams]
+    comparison = "beams",
+    -- A beam that ends this near an occupied cell agrees, for beams. [>= 0
+    -- and <= 10, cells]
+    tolerance = 1,
+    -- Scans are thinned out to this many beams, for beams. Fewer is faster
+    -- and tells less. [>= 1 and <= 10000]
+    max_beams = 120,
   },
   dynamic_threshold = {
     -- Off: the base threshold holds always.
@@ -336,7 +351,7 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- text wants the opposite. [one of: as_printed, stricter_when_unstable]
     direction = "stricter_when_unstable",
     -- Lower end of the threshold. [>= 0 and <= 1]
-    low = 0.4,
+    low = 0.45,
     -- Range of the threshold above its lower end. [>= 0 and <= 1]
     span = 0.1,
     -- C of equation 1. Variances are 0.001 to 0.01, so tens to hundreds
@@ -346,7 +361,7 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- 100000]
     window = 10,
     -- Threshold until there are that many scores. [>= 0 and <= 1]
-    base_threshold = 0.4,
+    base_threshold = 0.5,
   },
   fusion = {
     -- Off: the final score is the grid score.
@@ -365,7 +380,7 @@ CARTOGRAPHER_EXT.constraint_builder = {
     min_final_score = 0.01,
     -- Candidates that the prior of the mixture counts as. Stronger is safer
     -- with few candidates. [> 0 and <= 100000]
-    prior_strength = 30,
+    prior_strength = 100,
     -- Candidates the mixture remembers. [>= 1 and <= 1000000]
     capacity = 500,
   },
@@ -380,6 +395,10 @@ CARTOGRAPHER_EXT.constraint_builder = {
     reference_score = 1,
     -- Lower final scores count as this. [> 0 and <= 1]
     minimum_score = 0.001,
+    -- Whether loops pull less along what their match leaves open, as the way
+    -- along a corridor. Needs the swap full_information; stored maps have the
+    -- two weights.
+    full_matrix = false,
   },
   path_noise = {
     -- Standard deviation after one metre; it grows with the square root of
@@ -453,6 +472,9 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Revisits that have to agree on a place that was predicted badly. [>= 1
     -- and <= 100]
     doubtful_revisits = 3,
+    -- Share of contradictions that is forgiven to a loop where it was
+    -- predicted, within single_strong_sigma. [>= 0 and <= 0.5]
+    predicted_tolerance = 0.2,
   },
   innovation_veto = {
     -- Rejects loops that demand more than the uncertainty allows.
@@ -460,6 +482,44 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Largest squared innovation in standard deviations; 21.108 is the 99.99
     -- percent point for 3 degrees of freedom. [> 0 and <= 1000000]
     chi_square_bound = 21.108,
+  },
+  localization = {
+    -- Searches all submaps of another run at once, follows the places found
+    -- along the way, and believes one only when it is ahead of all others.
+    -- Off: whole submaps are searched one by one as the host asks for.
+    enabled = true,
+    -- Way between two searches of all submaps while the place is not known.
+    -- [>= 0 and <= 1000, m]
+    query_spacing = 2.5,
+    -- The same while the place is known, to find out when that is wrong.
+    -- Larger is cheaper and later. [>= 0 and <= 1000000, m]
+    watch_spacing = 5,
+    -- Hard cap on submaps searched for one node; the next node gets the
+    -- others. [>= 1 and <= 100000]
+    max_submaps_per_query = 100,
+    -- So many of the best submaps are looked at closer. [>= 1 and <= 1000]
+    places_per_query = 6,
+    -- Nodes along which places are followed and compared. More tells places
+    -- apart that look very much alike, and costs more. [>= 4 and <= 1000]
+    max_nodes = 16,
+    -- By how many standard deviations the scores of a place have to be ahead
+    -- of those of every other one. More is safer and later. [>= 0 and <= 100]
+    significance = 3,
+    -- Places along the way, revisit_distance apart, that have to agree before
+    -- the robot is localised. More is safer and later. [>= 1 and <= 100]
+    revisits = 3,
+    -- After that way without an accepted loop the place is not known any
+    -- more. [> 0 and <= 1000000, m]
+    lost_distance = 15,
+    -- So many searches of all submaps that decide for another place (one in
+    -- between may not) mean that it is not the one that was known. [>= 1 and
+    -- <= 100]
+    watches = 2,
+  },
+  log = {
+    -- Whether the records tell the CPU time of each stage. Such logs differ
+    -- from run to run.
+    times = false,
   },
 }
 

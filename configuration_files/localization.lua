@@ -12,6 +12,9 @@ TRAJECTORY_BUILDER.pure_localization_trimmer = {
   max_submaps_to_keep = 3,
 }
 POSE_GRAPH.optimize_every_n_nodes = 20
+-- Every pair of a node and a submap of the map is offered while the place in it
+-- is not known; which of them are searched is decided by our loop closure.
+POSE_GRAPH.global_sampling_ratio = 1.
 
 return {
   map_builder = MAP_BUILDER,

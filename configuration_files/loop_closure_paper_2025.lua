@@ -16,6 +16,10 @@ loops.temporal_verification.window_gamma = 0.3
 loops.temporal_verification.spacing = 0.
 loops.temporal_verification.minimum_length = 2
 loops.temporal_verification.step = "symmetric"
+loops.temporal_verification.comparison = "sectors"
+loops.temporal_verification.max_range = 10.
+loops.temporal_verification.clip = 1.
+loops.temporal_verification.minimum_overlap = 0.5
 
 -- Equations 1 to 3.
 loops.dynamic_threshold.enabled = true

@@ -68,7 +68,10 @@ LocalizationStretch ComputeStretch(const std::vector<PosePair>& pairs,
     const PoseError& error = errors[i - first];
     const double jump =
         (error.translation - errors[i - first - 1].translation).norm();
-    if (jump <= options.jump_distance) continue;
+    if (jump <= options.jump_distance ||
+        io::ToSeconds(pairs[i].time - stretch.begin) < options.settle_seconds) {
+      continue;
+    }
     if (i > localized) ++stretch.jumps;
     if (error.translation.norm() > options.jump_distance ||
         error.rotation > options.wrong_rotation) {

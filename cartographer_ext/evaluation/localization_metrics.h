@@ -12,7 +12,8 @@
 //               tolerances for `hold_seconds`, or to the end of the stretch.
 //   jump        The reported pose moves against the truth by more than
 //               `jump_distance` from one scan to the next: by a loop closure,
-//               not by drift.
+//               not by drift. Not in the first `settle_seconds` of a stretch,
+//               when local SLAM finds itself among other walls.
 //   wrong       A jump that ends farther from the truth than `jump_distance`,
 //               or turned by more than `wrong_rotation`: the robot was put
 //               into another place than it was in.
@@ -37,6 +38,7 @@ struct LocalizationOptions {
   double translation_tolerance = 0.3;        // metres
   double rotation_tolerance = DegToRad(5.);  // radians
   double hold_seconds = 10.;
+  double settle_seconds = 1.;
   double jump_distance = 0.5;             // metres
   double wrong_rotation = DegToRad(10.);  // radians
   double carried_distance = 1.;           // metres, between two scans

@@ -21,6 +21,12 @@ LoopEdge Reversed(const LoopEdge& edge) {
   return reversed;
 }
 
+// Negative ids are those of submaps, see LoopVerifier::PathKey.
+bool SameTrajectory(const LoopEdge& edge) {
+  return edge.a.trajectory_id == edge.b.trajectory_id ||
+         edge.a.trajectory_id == -1 - edge.b.trajectory_id;
+}
+
 // Standard deviation along the worst direction.
 double WorstTranslationSigma(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix2d translation = covariance.topLeftCorner<2, 2>();
@@ -90,6 +96,38 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
   relations_.push_back(std::move(relations));
 }
 
+// How many support a cluster, all of them or those of the subset.
+int CompatibleSubset::Support(const int index, const bool of_subset) const {
+  const LoopEdge& edge = clusters_[index].leader.edge;
+  std::vector<NodeKey> nodes;
+  for (int j = 0; j < num_clusters(); ++j) {
+    if (j == index || (of_subset && !clusters_[j].in_subset) ||
+        relations_[std::max(index, j)][std::min(index, j)] !=
+            Relation::kSupports) {
+      continue;
+    }
+    // The end in the same run.
+    const LoopEdge& other = clusters_[j].leader.edge;
+    nodes.push_back(other.b.trajectory_id == edge.b.trajectory_id ? other.b
+                                                                  : other.a);
+  }
+  if (SameTrajectory(edge)) return static_cast<int>(nodes.size());
+  std::sort(nodes.begin(), nodes.end(), [](const NodeKey& a, const NodeKey& b) {
+    return std::make_pair(a.trajectory_id, a.node_index) <
+           std::make_pair(b.trajectory_id, b.node_index);
+  });
+  std::vector<NodeKey> places = {edge.b};
+  for (const NodeKey& node : nodes) {
+    const bool is_near =
+        std::any_of(places.begin(), places.end(), [&](const NodeKey& place) {
+          const absl::optional<double> way = paths_->Travelled(place, node);
+          return way.has_value() && *way <= options_.revisit_distance;
+        });
+    if (!is_near) places.push_back(node);
+  }
+  return static_cast<int>(places.size()) - 1;
+}
+
 void CompatibleSubset::Solve() {
   const int n = num_clusters();
   const auto relation = [this](const int i, const int j) {
@@ -113,15 +151,12 @@ void CompatibleSubset::Solve() {
   std::vector<int> total_support(n, 0);
   for (int i = 0; i < n; ++i) {
     Cluster& cluster = clusters_[i];
-    cluster.support = 0;
+    cluster.support = Support(i, true);
+    total_support[i] = Support(i, false);
     cluster.contradictions = 0;
     for (int j = 0; j < n; ++j) {
-      if (j == i) continue;
-      const Relation r = relation(i, j);
-      total_support[i] += r == Relation::kSupports;
-      if (!clusters_[j].in_subset) continue;
-      cluster.support += r == Relation::kSupports;
-      cluster.contradictions += r == Relation::kContradicts;
+      if (j == i || !clusters_[j].in_subset) continue;
+      cluster.contradictions += relation(i, j) == Relation::kContradicts;
     }
     if (cluster.accepted && !cluster.in_subset) ++num_overturned_;
   }
@@ -142,9 +177,13 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
                                  SubsetReason* const reason) const {
   if (!cluster.in_subset) {
     // A few failed tests among many that agree are forgiven.
+    const double tolerance =
+        cluster.least_sigma <= options_.single_strong_sigma
+            ? std::max(options_.tolerance, options_.predicted_tolerance)
+            : options_.tolerance;
     if (cluster.best_score < options_.forgiven_score ||
         cluster.contradictions >
-            options_.tolerance * (cluster.support + cluster.contradictions)) {
+            tolerance * (cluster.support + cluster.contradictions)) {
       *reason = SubsetReason::kContradicted;
       return false;
     }
@@ -157,10 +196,13 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
     *reason = SubsetReason::kJoinsAccepted;
     return true;
   }
-  const int needed =
-      cluster.least_sigma > options_.doubtful_sigma
-          ? std::max(options_.min_revisits, options_.doubtful_revisits)
-          : options_.min_revisits;
+  int needed = options_.min_revisits;
+  if (cluster.least_sigma > options_.doubtful_sigma) {
+    needed = std::max(needed, options_.doubtful_revisits);
+  }
+  if (std::isinf(cluster.least_sigma)) {
+    needed = std::max(needed, options_.unpredicted_revisits);
+  }
   if (cluster.support + 1 >= needed) {
     *reason = SubsetReason::kSupported;
     return true;
@@ -251,6 +293,17 @@ std::vector<int64_t> CompatibleSubset::Withdraw(
   if (!ids.empty()) changed_ = true;
   std::sort(ids.begin(), ids.end());
   return ids;
+}
+
+void CompatibleSubset::ForgetAccepted(
+    const std::function<bool(const LoopEvidence&)>& condition) {
+  for (int i = num_clusters() - 1; i >= 0; --i) {
+    Cluster& cluster = clusters_[i];
+    if (!cluster.accepted || !condition(cluster.leader)) continue;
+    changed_ = true;
+    cluster.accepted = false;
+    if (cluster.undecided.empty()) Erase(i);
+  }
 }
 
 void CompatibleSubset::Erase(const int index) {

@@ -27,6 +27,10 @@
 // Pairwise tests of true loops fail now and then; `tolerance` forgives a few
 // contradictions so that long runs do not lose true loops. Zero is the print.
 //
+// Between trajectories one scan fits each of the submaps that overlap where it
+// was taken, without telling more than one of them would. There support counts
+// places along the run, `revisit_distance` apart, instead of clusters.
+//
 // Bounded: beyond `max_clusters` the oldest accepted cluster is forgotten when
 // more than half are accepted, otherwise the oldest undecided one is decided
 // as in `Flush`. Not thread-safe; loops are added in candidate order, which
@@ -50,7 +54,7 @@ struct LoopEvidence {
   LoopEdge edge;
   double score = 0.;  // the fused score, in [0, 1]
   // How well the place was predicted before the search, one standard deviation
-  // in metres.
+  // in metres; infinity without a prediction.
   double prior_sigma = 0.;
 };
 
@@ -65,7 +69,10 @@ struct CompatibleSubsetOptions {
   // Share of contradictions among the informative relations to the clique that
   // is forgiven, in [0, 1).
   double tolerance = 0.04;
-  // Only of clusters with a loop of at least this score: one about which
+  // The same of clusters that lie where they were predicted (the single strong
+  // sigma): a place that only looks alike lies elsewhere.
+  double predicted_tolerance = 0.2;
+  // Both only of clusters with a loop of at least this score: one about which
   // nothing is known has to fit.
   double forgiven_score = 0.6;
   double accepted_weight = 1.5;  // of a cluster accepted before, >= 1
@@ -79,7 +86,9 @@ struct CompatibleSubsetOptions {
   // A place predicted worse than this needs more revisits that agree.
   double doubtful_sigma = 1.;  // metres
   int doubtful_revisits = 3;   // including the loop itself, >= 1
-  int max_clusters = 400;      // > 0
+  // The same for a place that was not predicted at all.
+  int unpredicted_revisits = 4;
+  int max_clusters = 400;  // > 0
   MaxCliqueOptions clique;
 };
 
@@ -121,6 +130,11 @@ class CompatibleSubset {
   std::vector<int64_t> Withdraw(
       const std::function<bool(const LoopEvidence&)>& condition);
 
+  // Accepted loops no longer count, where the condition holds for the first of
+  // their revisit.
+  void ForgetAccepted(
+      const std::function<bool(const LoopEvidence&)>& condition);
+
   // What waits and why, as of the last `Decide`, in the order of adding.
   std::vector<SubsetDecision> Undecided() const;
   int num_undecided() const;
@@ -156,6 +170,7 @@ class CompatibleSubset {
 
   Relation Relate(const LoopEdge& u, const LoopEdge& v) const;
   bool SameRevisit(const LoopEdge& u, const LoopEdge& v) const;
+  int Support(int index, bool of_subset) const;
   void Solve();
   bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;
   void Emit(const Cluster& cluster, bool accepted, SubsetReason reason,

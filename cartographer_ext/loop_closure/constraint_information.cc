@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Eigen/Cholesky"
 #include "Eigen/Eigenvalues"
 #include "Eigen/LU"
 
@@ -32,6 +33,22 @@ Eigen::Matrix3d PaperInformation(const double final_score, const double alpha,
                                  std::pow(final_score, alpha),
                                  std::pow(final_score, beta));
   return u.transpose() * diagonal.asDiagonal() * u;  // C eq. 11, U^-1 = U^T
+}
+
+Eigen::Matrix3d FullInformation(const ConstraintWeights& weights,
+                                const Eigen::Matrix3d& certain_covariance,
+                                const Eigen::Matrix3d& match_covariance) {
+  const Eigen::LLT<Eigen::Matrix3d> factor(match_covariance);
+  if (!match_covariance.allFinite() || factor.info() != Eigen::Success) {
+    return Eigen::Matrix3d::Zero();
+  }
+  const Eigen::Vector3d scale =
+      certain_covariance.diagonal().cwiseSqrt().cwiseProduct(Eigen::Vector3d(
+          weights.translation, weights.translation, weights.rotation));
+  const Eigen::Matrix3d information =
+      scale.asDiagonal() * factor.solve(Eigen::Matrix3d::Identity()) *
+      scale.asDiagonal();
+  return 0.5 * (information + information.transpose());
 }
 
 ConstraintWeights ScalarWeights(const Eigen::Matrix3d& information) {

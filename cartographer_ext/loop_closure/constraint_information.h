@@ -48,6 +48,20 @@ ConstraintWeights ConfidenceWeights(const ConfidenceWeightOptions& options,
 Eigen::Matrix3d PaperInformation(double final_score, double alpha, double beta,
                                  double angle);
 
+// The full matrix for weights w of a loop whose match is as uncertain as
+// `match_covariance`, where the weights stand for one as certain as
+// `certain_covariance` (diagonal; metres, radians):
+//
+//   Omega = W L^(1/2) C^-1 L^(1/2) W,  W = diag(w_t, w_t, w_r)
+//
+// with L and C the two covariances. A certain match has W^2; along a corridor
+// that leaves the way open the loop pulls less. Weights are no deviations in
+// metres, therefore only the ratio of the covariances counts. Zero where C has
+// no inverse.
+Eigen::Matrix3d FullInformation(const ConstraintWeights& weights,
+                                const Eigen::Matrix3d& certain_covariance,
+                                const Eigen::Matrix3d& match_covariance);
+
 // A pair of scalar weights for a full information matrix (metres, radians), so
 // that a solver which knows only two scalars stays sane: the translation weight
 // is the square root of the smaller eigenvalue of the translation block after

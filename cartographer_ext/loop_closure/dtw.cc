@@ -78,7 +78,7 @@ absl::optional<DtwResult> DynamicTimeWarping(
 absl::optional<DtwResult> AsymmetricTimeWarping(
     const int num_query, const int num_reference,
     const std::vector<double>& local_cost, const double band,
-    const int max_advance) {
+    const int max_advance, std::vector<int>* const path) {
   CHECK_GE(num_query, 0);
   CHECK_GE(num_reference, 0);
   CHECK_GE(max_advance, 0);
@@ -91,6 +91,8 @@ absl::optional<DtwResult> AsymmetricTimeWarping(
                     : 0.;
   const double infinity = std::numeric_limits<double>::infinity();
   std::vector<double> previous(num_reference, 0.), current(num_reference);
+  std::vector<int> come_from;
+  if (path != nullptr) come_from.resize(local_cost.size());
   for (int i = 0; i < num_query; ++i) {
     // Seen from the end, where the band is anchored.
     const double line = num_reference - 1 - slope * (num_query - 1 - i);
@@ -102,10 +104,17 @@ absl::optional<DtwResult> AsymmetricTimeWarping(
         continue;
       }
       double best = i == 0 ? 0. : infinity;
+      int from = j;
       for (int k = std::max(0, j - max_advance); i > 0 && k <= j; ++k) {
-        best = std::min(best, previous[k]);
+        if (previous[k] < best) {
+          best = previous[k];
+          from = k;
+        }
       }
       current[j] = best + cost;
+      if (path != nullptr) {
+        come_from[static_cast<size_t>(i) * num_reference + j] = from;
+      }
     }
     std::swap(previous, current);
   }
@@ -113,6 +122,14 @@ absl::optional<DtwResult> AsymmetricTimeWarping(
   DtwResult result;
   result.cost = previous.back();
   result.path_length = num_query;
+  if (path != nullptr) {
+    path->resize(num_query);
+    int j = num_reference - 1;
+    for (int i = num_query - 1; i >= 0; --i) {
+      (*path)[i] = j;
+      j = come_from[static_cast<size_t>(i) * num_reference + j];
+    }
+  }
   return result;
 }
 

@@ -57,10 +57,11 @@ absl::optional<DtwResult> DynamicTimeWarping(
 // 0) elements from one to the next. A finely sampled reference then costs
 // nothing by being fine, a perfect repetition has score 1. The last query
 // element meets the last reference element (the candidate pose); the first may
-// meet any within the band. Empty as above.
+// meet any within the band. Empty as above. `path`, where given, gets the
+// reference element of each query element.
 absl::optional<DtwResult> AsymmetricTimeWarping(
     int num_query, int num_reference, const std::vector<double>& local_cost,
-    double band, int max_advance);
+    double band, int max_advance, std::vector<int>* path = nullptr);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

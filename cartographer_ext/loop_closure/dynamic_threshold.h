@@ -29,11 +29,11 @@ enum class ThresholdDirection { kAsPrinted, kStricterWhenUnstable };
 
 struct DynamicThresholdOptions {
   ThresholdDirection direction = ThresholdDirection::kStricterWhenUnstable;
-  double low = 0.4;             // of eq. 1, in [0, 1]
+  double low = 0.45;            // of eq. 1, in [0, 1]
   double span = 0.1;            // of eq. 1, in [0, 1 - low]
   double sensitivity = 100.;    // C of eq. 1, >= 0
   int window = 10;              // k of eq. 2, > 0
-  double base_threshold = 0.4;  // until k scores exist, in [0, 1]
+  double base_threshold = 0.5;  // until k scores exist, in [0, 1]
 };
 
 // C eq. 1 for a given variance (>= 0).

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "Eigen/LU"
@@ -15,41 +16,57 @@ namespace {
 
 constexpr double kLogTwoPi = 1.8378770664093453;
 
-double LogPosterior(const std::array<MixtureComponent, 2>& components,
-                    const Eigen::Vector2d& scores) {
-  const double a = LogWeightedDensity(components[0], scores);
-  const double b = LogWeightedDensity(components[1], scores);
-  const double top = std::max(a, b);
-  return top + std::log(std::exp(a - top) + std::exp(b - top));
-}
+// Keeps the logarithm finite at S_t = 1: one beam in fifty more or less.
+constexpr double kCostFloor = 0.02;
 
-double Responsibility(const std::array<MixtureComponent, 2>& components,
-                      const Eigen::Vector2d& scores) {
-  const double log_false = LogWeightedDensity(components[0], scores);
-  const double log_true = LogWeightedDensity(components[1], scores);
-  return 1. / (1. + std::exp(log_false - log_true));
+// A component with what its density needs worked out.
+class Density {
+ public:
+  explicit Density(const MixtureComponent& component)
+      : mean_(component.mean),
+        inverse_(component.covariance.inverse()),
+        log_factor_(std::log(component.weight) - kLogTwoPi -
+                    0.5 * std::log(component.covariance.determinant())) {}
+
+  double Log(const Eigen::Vector2d& scores) const {
+    const Eigen::Vector2d difference = scores - mean_;
+    return log_factor_ - 0.5 * difference.dot(inverse_ * difference);
+  }
+
+ private:
+  const Eigen::Vector2d mean_;
+  const Eigen::Matrix2d inverse_;
+  const double log_factor_;
+};
+
+MixtureComponent Component(const Eigen::Vector2d& mean, const double sigma_grid,
+                           const double sigma_temporal,
+                           const double correlation) {
+  MixtureComponent component;
+  component.weight = 0.5;
+  component.mean = mean;
+  const double covariance = correlation * sigma_grid * sigma_temporal;
+  component.covariance << sigma_grid * sigma_grid, covariance, covariance,
+      sigma_temporal * sigma_temporal;
+  return component;
 }
 
 }  // namespace
 
+double TemporalCoordinate(const double temporal_score) {
+  return -std::log(1. + kCostFloor - std::min(1., temporal_score));
+}
+
 std::array<MixtureComponent, 2> LoopMixtureOptions::DefaultPrior() {
-  std::array<MixtureComponent, 2> prior;
-  prior[0].weight = 0.5;
-  prior[0].mean = Eigen::Vector2d(0.60, 0.50);
-  prior[0].covariance = Eigen::Vector2d(0.08 * 0.08, 0.20 * 0.20).asDiagonal();
-  prior[1].weight = 0.5;
-  prior[1].mean = Eigen::Vector2d(0.66, 0.82);
-  prior[1].covariance = Eigen::Vector2d(0.09 * 0.09, 0.10 * 0.10).asDiagonal();
-  return prior;
+  // Scans that see little of the submap have lower scores of both kinds.
+  constexpr double kCorrelation = 0.4;
+  return {{Component(Eigen::Vector2d(0.64, 1.3), 0.07, 0.5, kCorrelation),
+           Component(Eigen::Vector2d(0.72, 2.8), 0.09, 0.5, kCorrelation)}};
 }
 
 double LogWeightedDensity(const MixtureComponent& component,
                           const Eigen::Vector2d& scores) {
-  const Eigen::Vector2d difference = scores - component.mean;
-  const double mahalanobis =
-      difference.dot(component.covariance.inverse() * difference);
-  return std::log(component.weight) - kLogTwoPi -
-         0.5 * std::log(component.covariance.determinant()) - 0.5 * mahalanobis;
+  return Density(component).Log(scores);
 }
 
 LoopMixture::LoopMixture(const LoopMixtureOptions& options)
@@ -60,12 +77,13 @@ LoopMixture::LoopMixture(const LoopMixtureOptions& options)
 
 double LoopMixture::ProbabilityTrue(const double grid_score,
                                     const double temporal_score) const {
-  return Responsibility(components_,
-                        Eigen::Vector2d(grid_score, temporal_score));
+  const Eigen::Vector2d scores(grid_score, TemporalCoordinate(temporal_score));
+  return 1. / (1. + std::exp(LogWeightedDensity(components_[0], scores) -
+                             LogWeightedDensity(components_[1], scores)));
 }
 
 void LoopMixture::Add(const double grid_score, const double temporal_score) {
-  scores_.emplace_back(grid_score, temporal_score);
+  scores_.emplace_back(grid_score, TemporalCoordinate(temporal_score));
   if (scores_.size() > static_cast<size_t>(options_.capacity)) {
     scores_.pop_front();
   }
@@ -79,10 +97,15 @@ int LoopMixture::Fit() {
   double last = -std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
     // Expectation.
+    const Density density_false(components_[0]);
+    const Density density_true(components_[1]);
     double total = 0.;
     for (size_t i = 0; i < scores_.size(); ++i) {
-      of_true[i] = Responsibility(components_, scores_[i]);
-      total += LogPosterior(components_, scores_[i]);
+      const double log_false = density_false.Log(scores_[i]);
+      const double log_true = density_true.Log(scores_[i]);
+      of_true[i] = 1. / (1. + std::exp(log_false - log_true));
+      const double top = std::max(log_false, log_true);
+      total += top + std::log1p(std::exp(-std::abs(log_false - log_true)));
     }
     total /= n;
     if (std::abs(total - last) < options_.tolerance) return iteration;

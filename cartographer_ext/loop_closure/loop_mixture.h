@@ -2,9 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A calibrated probability that a loop candidate is true: a mixture of two
-// Gaussians, "true loop" and "false loop", over the pair (S_g, S_t), fitted
-// online. This replaces the fusion of paper C (eq. 6, 7), which rewards typical
-// scores, by the likelihood ratio of a proper mixture:
+// Gaussians, "true loop" and "false loop", over the pair s = (S_g, u), fitted
+// online, with
+//
+//   u = -ln(1.02 - S_t)
+//
+// since the cost 1 - S_t is never below zero and spreads over orders of
+// magnitude: in u the scores of either kind are about normal. This replaces the
+// fusion of paper C (eq. 6, 7), which rewards typical scores, by the likelihood
+// ratio of a proper mixture:
 //
 //   P(true | s) = pi_1 N(s; m_1, Sigma_1)
 //                 / (pi_1 N(s; m_1, Sigma_1) + pi_0 N(s; m_0, Sigma_0))
@@ -25,27 +31,31 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// u of a temporal score in [0, 1].
+double TemporalCoordinate(double temporal_score);
+
 struct MixtureComponent {
   double weight = 0.5;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();  // (S_g, S_t)
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();  // (S_g, u)
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
 };
 
-// Log of weight times density of `component` at `scores`.
+// Log of weight times density of `component` at `scores`, (S_g, u).
 double LogWeightedDensity(const MixtureComponent& component,
                           const Eigen::Vector2d& scores);
 
 struct LoopMixtureOptions {
   // Component 0 is "false", 1 is "true".
   std::array<MixtureComponent, 2> prior = DefaultPrior();
-  // Pseudo-observations per component, > 0. Strong priors are safer with few
-  // candidates, but bias the tails: with 20 and 4000 candidates the middle
-  // probabilities came out 0.1 too high in simulation, with 2 within 0.05.
-  double prior_strength = 30.;
+  // Pseudo-observations per component, > 0. Few candidates are false, so it is
+  // the prior above all that says what they are like; a weak one lets the
+  // component of the false ones take over poor true ones.
+  double prior_strength = 100.;
   int capacity = 500;       // candidates remembered, > 0
   int max_iterations = 50;  // of EM per fit
   double tolerance = 1e-6;  // change of the mean log-posterior that stops EM
 
+  // Of scores by beams (temporal_verification.h).
   static std::array<MixtureComponent, 2> DefaultPrior();
 };
 
@@ -69,7 +79,7 @@ class LoopMixture {
  private:
   const LoopMixtureOptions options_;
   std::array<MixtureComponent, 2> components_;
-  std::deque<Eigen::Vector2d> scores_;
+  std::deque<Eigen::Vector2d> scores_;  // (S_g, u)
 };
 
 }  // namespace loop_closure

@@ -21,12 +21,22 @@ TemporalVerificationOptions ToTemporalVerificationOptions(
     const LoopClosureOptions& options) {
   const auto& from = options.temporal_verification();
   TemporalVerificationOptions to;
+  to.comparison =
+      from.comparison() == LoopClosureOptions::TemporalVerification::SECTORS
+          ? ScanComparison::kSectors
+          : ScanComparison::kBeams;
   to.signature.num_sectors = from.num_sectors();
   to.signature.rays_per_sector = from.rays_per_sector();
   to.signature.max_range = from.max_range();
   to.signature.max_unknown = from.max_unknown();
   to.signature.clip = from.clip();
   to.signature.minimum_overlap = from.minimum_overlap();
+  to.beams.max_range = from.max_range();
+  to.beams.max_unknown = from.max_unknown();
+  to.beams.tolerance = from.tolerance();
+  to.beams.clip = from.clip();
+  to.beams.minimum_overlap = from.minimum_overlap();
+  to.beams.max_beams = from.max_beams();
   to.oversampling = from.oversampling();
   to.step = from.step() == LoopClosureOptions::TemporalVerification::SYMMETRIC
                 ? WarpingStep::kSymmetric
@@ -96,6 +106,17 @@ PathNoiseOptions ToPathNoiseOptions(const LoopClosureOptions& options) {
   return to;
 }
 
+MapLocalizationOptions ToMapLocalizationOptions(
+    const LoopClosureOptions& options) {
+  const auto& from = options.localization();
+  MapLocalizationOptions to;
+  to.query_spacing = from.query_spacing();
+  to.watch_spacing = from.watch_spacing();
+  to.lost_distance = from.lost_distance();
+  to.watches = from.watches();
+  return to;
+}
+
 CompatibleSubsetOptions ToCompatibleSubsetOptions(
     const LoopClosureOptions& options) {
   const auto& from = options.compatible_subset();
@@ -111,12 +132,14 @@ CompatibleSubsetOptions ToCompatibleSubsetOptions(
   to.informative_sigma = from.informative_sigma();
   to.min_revisits = from.min_revisits();
   to.tolerance = from.tolerance();
+  to.predicted_tolerance = from.predicted_tolerance();
   to.single_strong_enabled = from.single_strong();
   to.single_strong_score = from.single_strong_score();
   to.single_strong_loops = from.single_strong_loops();
   to.single_strong_sigma = from.single_strong_sigma();
   to.doubtful_sigma = from.doubtful_sigma();
   to.doubtful_revisits = from.doubtful_revisits();
+  to.unpredicted_revisits = options.localization().revisits();
   to.max_clusters = from.max_clusters();
   to.clique.max_steps = from.max_clique_steps();
   return to;

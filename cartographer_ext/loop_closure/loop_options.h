@@ -11,6 +11,7 @@
 #include "cartographer_ext/loop_closure/dynamic_threshold.h"
 #include "cartographer_ext/loop_closure/innovation_veto.h"
 #include "cartographer_ext/loop_closure/loop_mixture.h"
+#include "cartographer_ext/loop_closure/map_localization.h"
 #include "cartographer_ext/loop_closure/path_uncertainty.h"
 #include "cartographer_ext/loop_closure/score_fusion.h"
 #include "cartographer_ext/loop_closure/temporal_verification.h"
@@ -34,6 +35,8 @@ LoopMixtureOptions ToLoopMixtureOptions(
 ConfidenceWeightOptions ToConfidenceWeightOptions(
     const proto::LoopClosureOptions& options);
 PathNoiseOptions ToPathNoiseOptions(const proto::LoopClosureOptions& options);
+MapLocalizationOptions ToMapLocalizationOptions(
+    const proto::LoopClosureOptions& options);
 CompatibleSubsetOptions ToCompatibleSubsetOptions(
     const proto::LoopClosureOptions& options);
 InnovationOptions ToInnovationOptions(const proto::LoopClosureOptions& options);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "Eigen/LU"
+#include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/loop_closure/dtw.h"
 #include "cartographer_ext/loop_closure/innovation_veto.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
@@ -74,12 +76,11 @@ constexpr double kCorrelatedPoints = 25.;
 constexpr double kLeastCertainTranslation = 0.3;
 constexpr double kLeastCertainRotation = 0.1;
 
-// Of the loop itself, frame of the node: the constant part of the options, and
-// what the match leaves open, such as the way along a corridor.
-Eigen::Matrix3d MatchCovariance(const Eigen::Matrix3d& constant,
-                                const LoopCandidate& candidate) {
+// What the match leaves open, such as the way along a corridor; frame of the
+// submap. Zero where nothing is known about it.
+Eigen::Matrix3d OpenCovariance(const LoopCandidate& candidate) {
   if (candidate.information.isZero(0.) || !candidate.information.allFinite()) {
-    return constant;
+    return Eigen::Matrix3d::Zero();
   }
   const Eigen::Vector3d least(
       1. / (kLeastCertainTranslation * kLeastCertainTranslation),
@@ -87,24 +88,60 @@ Eigen::Matrix3d MatchCovariance(const Eigen::Matrix3d& constant,
       1. / (kLeastCertainRotation * kLeastCertainRotation));
   Eigen::Matrix3d information = candidate.information / kCorrelatedPoints;
   information.diagonal() += least;
+  return information.inverse();
+}
+
+// Of the loop itself, frame of the node: the constant part of the options, and
+// what the match leaves open.
+Eigen::Matrix3d MatchCovariance(const Eigen::Matrix3d& constant,
+                                const LoopCandidate& candidate) {
   Eigen::Matrix3d to_node = Eigen::Matrix3d::Identity();
   const double c = std::cos(candidate.refined.theta);
   const double s = std::sin(candidate.refined.theta);
   to_node.topLeftCorner<2, 2>() << c, s, -s, c;
-  return constant + to_node * information.inverse() * to_node.transpose();
+  return constant + to_node * OpenCovariance(candidate) * to_node.transpose();
 }
 
 // How well the search knew where to look: by the uncertainty of the way, or
 // because it found the place right there.
 double PriorSigma(const LoopCandidate& candidate) {
   const LoopDecision::Search& search = candidate.search;
-  if (!search.has_predicted()) return search.prior_translation_sigma();
+  const bool is_foreign =
+      candidate.submap.trajectory_id != candidate.node.trajectory_id;
+  double sigma = search.prior_translation_sigma();
+  // In another run zero means that nobody knows.
+  if (is_foreign && (sigma == 0. || candidate.unpredicted)) {
+    sigma = std::numeric_limits<double>::infinity();
+  }
+  if (!search.has_predicted() || candidate.unpredicted) return sigma;
   const double offset =
       (Eigen::Vector2d(search.predicted().x(), search.predicted().y()) -
        candidate.refined.translation())
           .norm();
-  return std::min(search.prior_translation_sigma(), offset);
+  return std::min(sigma, offset);
 }
+
+// Adds the CPU time that passes while it exists, where times are asked for.
+class Timer {
+ public:
+  using Setter = void (LoopDecision::Times::*)(double);
+  Timer(const proto::LoopClosureOptions& options, LoopDecision* const decision,
+        const Setter setter)
+      : decision_(options.log().times() ? decision : nullptr),
+        setter_(setter),
+        start_(decision_ == nullptr ? 0. : ThreadCpuSeconds()) {}
+  ~Timer() {
+    if (decision_ == nullptr) return;
+    (decision_->mutable_times()->*setter_)(ThreadCpuSeconds() - start_);
+  }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  LoopDecision* const decision_;
+  const Setter setter_;
+  const double start_;
+};
 
 bool Reject(const LoopDecision::Reason reason, LoopOutcome* const outcome) {
   outcome->decision.set_verdict(LoopDecision::REJECTED);
@@ -147,6 +184,8 @@ bool LoopVerifier::VerifyScores(const LoopCandidate& candidate,
   bool below_threshold = false;
   double temporal_score = 0.;
   if (options_.temporal_verification().enabled()) {
+    const Timer timer(options_, &decision,
+                      &LoopDecision::Times::set_temporal_seconds);
     const int window =
         VariableWindow(ToVariableWindowOptions(options_), candidate.submap_age);
     const TemporalResult result = VerifySequence(
@@ -178,6 +217,8 @@ bool LoopVerifier::VerifyScores(const LoopCandidate& candidate,
 
   double final_score = candidate.grid_score;
   if (options_.fusion().enabled()) {
+    const Timer timer(options_, &decision,
+                      &LoopDecision::Times::set_fusion_seconds);
     LoopDecision::Fusion& record = *decision.mutable_fusion();
     if (options_.fusion().mode() == FusionOptions::LIKELIHOOD_RATIO) {
       ToProto(mixture_.components()[0], record.mutable_false_loops());
@@ -261,6 +302,11 @@ LoopOutcome LoopVerifier::MakeOutcome(const LoopCandidate& candidate) {
   decision.set_node_index(candidate.node.node_index);
   decision.set_node_time(candidate.node_time);
   *decision.mutable_search() = candidate.search;
+  if (options_.log().times()) {
+    decision.mutable_times()->set_search_seconds(candidate.search_seconds);
+    decision.mutable_times()->set_refinement_seconds(
+        candidate.refinement_seconds);
+  }
   return outcome;
 }
 
@@ -292,6 +338,12 @@ void LoopVerifier::Process(const LoopCandidate& candidate) {
       }
     }
   }
+  if (options_.information().full_matrix() &&
+      !candidate.information.isZero(0.)) {
+    const Eigen::Matrix3d certain = LoopCovariance(options_);
+    outcome.full_information = FullInformation(
+        outcome.weights, certain, certain + OpenCovariance(candidate));
+  }
   if (!options_.compatible_subset().enabled()) {
     decision.set_verdict(LoopDecision::ACCEPTED);
     decision.set_reason(LoopDecision::ALL_STAGES_PASSED);
@@ -319,8 +371,11 @@ void LoopVerifier::Process(const LoopCandidate& candidate) {
   evidence.score = decision.has_fusion() ? decision.fusion().final_score()
                                          : candidate.grid_score;
   evidence.prior_sigma = PriorSigma(candidate);
-  waiting_.emplace(number, std::move(outcome));
+  LoopOutcome& waiting =
+      waiting_.emplace(number, std::move(outcome)).first->second;
   tests_waited_[number] = 0;
+  const Timer timer(options_, &waiting.decision,
+                    &LoopDecision::Times::set_subset_seconds);
   subset_.Add(evidence);
 }
 
@@ -400,6 +455,24 @@ void LoopVerifier::Withdraw(
     waiting_.erase(it);
     tests_waited_.erase(id);
   }
+}
+
+void LoopVerifier::ForgetLoops(const int trajectory_id,
+                               const int submap_trajectory_id,
+                               const int last_node_index) {
+  Withdraw(
+      [&](const LoopOutcome& outcome) {
+        return outcome.node.trajectory_id == trajectory_id &&
+               outcome.submap.trajectory_id == submap_trajectory_id &&
+               outcome.node.node_index <= last_node_index &&
+               !outcome.decision.search().full_submap();
+      },
+      LoopDecision::OUT_OF_DATE);
+  subset_.ForgetAccepted([&](const LoopEvidence& evidence) {
+    return evidence.edge.b.trajectory_id == trajectory_id &&
+           evidence.edge.b.node_index <= last_node_index &&
+           evidence.edge.a.trajectory_id == -1 - submap_trajectory_id;
+  });
 }
 
 void LoopVerifier::DeleteSubmap(const SubmapKey& submap) {

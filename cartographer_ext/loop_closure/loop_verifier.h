@@ -66,8 +66,13 @@ struct LoopCandidate {
   // radians; zero where it is not known.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   proto::LoopDecision::Search search;  // for the record
+  // For the record as well, CPU seconds.
+  double search_seconds = 0.;
+  double refinement_seconds = 0.;
   // The submap first, then its neighbours; needed during `Process` only.
   std::vector<ReferenceMap> maps;
+  // Found without a prediction, or not to be believed for it.
+  bool unpredicted = false;
 };
 
 struct LoopOutcome {
@@ -78,6 +83,9 @@ struct LoopOutcome {
   Pose2 pose;                 // (submap <- node)
   Pose2 constraint_pose;      // of the candidate
   ConstraintWeights weights;  // for the constraint when accepted
+  // The same as a full matrix, frame of the submap; zero unless it is asked for
+  // and known.
+  Eigen::Matrix3d full_information = Eigen::Matrix3d::Zero();
   proto::LoopDecision decision;
   bool accepted() const {
     return decision.verdict() == proto::LoopDecision::ACCEPTED;
@@ -98,9 +106,9 @@ class LoopVerifier {
   // For every submap offered; the order of the calls does not matter.
   void AddSubmap(const SubmapKey& submap, const Pose2& local_pose);
   bool HasNode(const NodeKey& node) const;
-  // Options of the signatures that `AddNode` wants.
-  const RangeSignatureOptions& signature_options() const {
-    return temporal_options_.signature;
+  // How `AddNode` wants scans described (DescribeScan).
+  const TemporalVerificationOptions& temporal_options() const {
+    return temporal_options_;
   }
 
   // Candidates in the order they were offered: those that the search found, and
@@ -113,6 +121,11 @@ class LoopVerifier {
   // candidates. `Flush` leaves nothing undecided.
   std::vector<LoopOutcome> Decide();
   std::vector<LoopOutcome> Flush();
+
+  // Loops of nodes of a trajectory up to an index with submaps of another one
+  // no longer count; undecided ones with a prediction are rejected.
+  void ForgetLoops(int trajectory_id, int submap_trajectory_id,
+                   int last_node_index);
 
   // Rejects what is undecided or not yet handed out for a submap.
   void DeleteSubmap(const SubmapKey& submap);

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/beam_agreement.h"
 #include "cartographer_ext/loop_closure/range_signature.h"
 
 namespace cartographer_ext {
@@ -27,6 +28,8 @@ struct HistoryNode {
   int node_index = 0;
   int64_t time = 0;  // host ticks
   Pose2 local_pose;  // (local frame of the trajectory <- node)
+  // What the temporal score compares, one of them (DescribeScan).
+  std::vector<Beam> beams;
   RangeSignature signature;
 };
 

@@ -39,18 +39,72 @@ Axis MakeAxis(double position, double direction, double resolution) {
 
 }  // namespace
 
+constexpr int OccupancyView::kMaxReach;
+constexpr uint8_t OccupancyView::kFar;
+constexpr uint8_t OccupancyView::kKnown;
+
+void OccupancyView::FindDistances(const int reach) {
+  CHECK_GE(reach, 0);
+  const int radius = std::min(reach, kMaxReach);
+  const size_t num_x = static_cast<size_t>(num_x_);
+  // Squared distance along the row, then the nearest over the rows around.
+  std::vector<uint8_t> along(cells_.size(), kFar);
+  for (int j = 0; j < num_y_; ++j) {
+    const uint8_t* const row = cells_.data() + Offset(0, j);
+    uint8_t* const squares = along.data() + Offset(0, j);
+    for (const bool backwards : {false, true}) {
+      int since = radius + 1;
+      for (int k = 0; k < num_x_; ++k) {
+        const int i = backwards ? num_x_ - 1 - k : k;
+        since = row[i] == kKnown ? 0 : since + 1;
+        if (since <= radius) {
+          squares[i] =
+              std::min(squares[i], static_cast<uint8_t>(since * since));
+        }
+      }
+    }
+  }
+  std::vector<uint8_t> nearest(num_x);
+  for (int j = 0; j < num_y_; ++j) {
+    std::fill(nearest.begin(), nearest.end(), kFar);
+    for (int k = std::max(0, j - radius); k <= std::min(num_y_ - 1, j + radius);
+         ++k) {
+      const uint8_t apart = static_cast<uint8_t>((j - k) * (j - k));
+      const uint8_t* const squares = along.data() + Offset(0, k);
+      for (size_t i = 0; i < num_x; ++i) {
+        // At most 127 + 121, which a byte holds.
+        const uint8_t square = static_cast<uint8_t>(squares[i] + apart);
+        nearest[i] = std::min(nearest[i], square);
+      }
+    }
+    uint8_t* const row = cells_.data() + Offset(0, j);
+    const uint8_t most = static_cast<uint8_t>(radius * radius);
+    for (size_t i = 0; i < num_x; ++i) {
+      row[i] = static_cast<uint8_t>((row[i] & kKnown) |
+                                    (nearest[i] <= most ? nearest[i] : kFar));
+    }
+  }
+}
+
 double CastRay(const OccupancyView& view, const Eigen::Vector2d& start,
-               double angle, const RayOptions& options) {
+               const double angle, const RayOptions& options) {
+  if (!std::isfinite(angle)) return kNaN;
+  return CastRay(view, start, Eigen::Vector2d(std::cos(angle), std::sin(angle)),
+                 options);
+}
+
+double CastRay(const OccupancyView& view, const Eigen::Vector2d& start,
+               const Eigen::Vector2d& direction, const RayOptions& options) {
   const Eigen::Vector2d local = start - view.origin();
   const double extent =
       view.resolution() * std::max(view.num_x(), view.num_y());
   // Starts far outside would overflow the cell index; they are unknown anyway.
-  if (!local.allFinite() || !std::isfinite(angle) ||
+  if (!local.allFinite() || !direction.allFinite() ||
       local.cwiseAbs().maxCoeff() > extent) {
     return kNaN;
   }
-  Axis x = MakeAxis(local.x(), std::cos(angle), view.resolution());
-  Axis y = MakeAxis(local.y(), std::sin(angle), view.resolution());
+  Axis x = MakeAxis(local.x(), direction.x(), view.resolution());
+  Axis y = MakeAxis(local.y(), direction.y(), view.resolution());
   if (view.At(x.cell, y.cell) != CellState::kFree) return kNaN;
   double range = 0.;
   double unknown = 0.;

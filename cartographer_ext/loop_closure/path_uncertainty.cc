@@ -31,6 +31,9 @@ Eigen::Matrix3d StepCovariance(const PathNoiseOptions& options,
   return Eigen::Vector3d(translation, translation, rotation).asDiagonal();
 }
 
+// Keeps efforts finite where driving is said to be exact.
+constexpr double kLeastNoise = 1e-4;
+
 }  // namespace
 
 PathUncertainty::PathUncertainty(const PathNoiseOptions& options,
@@ -71,6 +74,7 @@ const PathUncertainty::Entry* PathUncertainty::Find(const NodeKey& node) const {
   for (; trajectory.num_valid < entries.size(); ++trajectory.num_valid) {
     Entry& entry = entries[trajectory.num_valid];
     entry.travelled = 0.;
+    entry.effort = 0.;
     entry.sum.setZero();
     entry.drift.setZero();
     entry.scale.setZero();
@@ -80,12 +84,11 @@ const PathUncertainty::Entry* PathUncertainty::Find(const NodeKey& node) const {
         cartographer_ext::Between(before.local_pose, entry.local_pose);
     const double metres = step.translation().norm();
     const Eigen::Matrix3d transport = Adjoint(entry.local_pose);
+    const Eigen::Matrix3d covariance = StepCovariance(
+        options_, node.trajectory_id >= 0, metres, std::abs(step.theta));
     entry.travelled = before.travelled + metres;
-    entry.sum =
-        before.sum + transport *
-                         StepCovariance(options_, node.trajectory_id >= 0,
-                                        metres, std::abs(step.theta)) *
-                         transport.transpose();
+    entry.effort = before.effort + EffortOf(covariance);
+    entry.sum = before.sum + transport * covariance * transport.transpose();
     entry.drift = before.drift + transport * Eigen::Vector3d(0., 0., metres);
     // The step's way in the frame of its end.
     const Eigen::Vector2d way = -step.Inverse().translation();
@@ -137,6 +140,23 @@ absl::optional<double> PathUncertainty::Travelled(const NodeKey& u,
   const Entry* const to = Find(v);
   if (from == nullptr || to == nullptr) return absl::nullopt;
   return std::abs(to->travelled - from->travelled);
+}
+
+absl::optional<double> PathUncertainty::Effort(const NodeKey& u,
+                                               const NodeKey& v) const {
+  if (u.trajectory_id != v.trajectory_id) return absl::nullopt;
+  const Entry* const from = Find(u);
+  const Entry* const to = Find(v);
+  if (from == nullptr || to == nullptr) return absl::nullopt;
+  return std::abs(to->effort - from->effort);
+}
+
+double PathUncertainty::EffortOf(const Eigen::Matrix3d& covariance) const {
+  // Each of the two kinds in metres of driving.
+  return covariance(0, 0) /
+             Square(std::max(options_.translation_per_metre, kLeastNoise)) +
+         covariance(2, 2) /
+             Square(std::max(options_.rotation_per_metre, kLeastNoise));
 }
 
 absl::optional<Pose2> PathUncertainty::LocalPose(const NodeKey& node) const {

@@ -73,6 +73,11 @@ class PathUncertainty {
                                         const NodeKey& v) const;
   // Metres driven between two nodes, empty as above.
   absl::optional<double> Travelled(const NodeKey& u, const NodeKey& v) const;
+  // The way between two nodes as metres of plain driving that would be as
+  // uncertain, jumps included; adds up along the trajectory. Empty as above.
+  absl::optional<double> Effort(const NodeKey& u, const NodeKey& v) const;
+  // The same of a pose with this covariance.
+  double EffortOf(const Eigen::Matrix3d& covariance) const;
   // (local frame <- node).
   absl::optional<Pose2> LocalPose(const NodeKey& node) const;
 
@@ -93,6 +98,7 @@ class PathUncertainty {
     int node_index;
     Pose2 local_pose;
     double travelled = 0.;                          // prefix sum, metres
+    double effort = 0.;                             // prefix sum, metres
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();  // S_n
     // Sums of the steps' errors for a unit of drift and scale error.
     Eigen::Vector3d drift = Eigen::Vector3d::Zero();

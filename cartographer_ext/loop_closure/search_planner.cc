@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -16,13 +18,11 @@ namespace {
 
 using proto::LoopDecision;
 
-// Accepted loops before the node that may offer a more certain way. The newest
-// ones are the nearest along the trajectory, others add little.
-constexpr int kLoopsTried = 20;
 // A whole submap costs a hundred windows.
 constexpr size_t kFullSearchesPerNode = 1;
-// Accepted loops and searched nodes remembered, oldest forgotten first.
-constexpr size_t kMaxLoops = 20000;
+// Loops nearer than this to each other tell of the same ways, metres.
+constexpr double kLoopSpacing = 3.;
+// Searched nodes remembered, oldest forgotten first.
 constexpr size_t kMaxNodesPerSubmap = 20000;
 
 double WorstSigma(const Eigen::Matrix3d& covariance) {
@@ -45,58 +45,58 @@ SearchPlanner::SearchPlanner(const proto::LoopClosureOptions::Search& options,
       reach_(reach),
       default_linear_window_(default_linear_window),
       default_angular_window_(default_angular_window),
-      paths_(CHECK_NOTNULL(paths)) {}
+      paths_(CHECK_NOTNULL(paths)),
+      ways_(kLoopSpacing, paths) {}
 
-bool SearchPlanner::HasNear(const NodeSet& nodes, const NodeKey& node,
-                            const double distance) const {
+bool SearchPlanner::HasNear(const Nodes& nodes, const SearchPair& pair,
+                            const double distance,
+                            const double duration) const {
   if (distance <= 0.) return false;
-  const auto near = [&](const NodeKey& other) {
-    const absl::optional<double> travelled = paths_->Travelled(other, node);
+  const double ticks = 1e7 * duration;
+  const auto near = [&](const Nodes::value_type& other) {
+    if (std::abs(static_cast<double>(other.second - pair.node_time)) > ticks) {
+      return false;
+    }
+    const absl::optional<double> travelled =
+        paths_->Travelled(other.first, pair.node);
     return travelled.has_value() && *travelled < distance;
   };
-  const auto after = nodes.lower_bound(node);
+  const auto after = nodes.lower_bound(pair.node);
   if (after != nodes.end() && near(*after)) return true;
   return after != nodes.begin() && near(*std::prev(after));
 }
 
-absl::optional<UncertainPose> SearchPlanner::BestWay(
-    const SearchPair& pair) const {
-  if (!pair.anchor.has_value()) return absl::nullopt;
-  absl::optional<UncertainPose> best = paths_->Between(*pair.anchor, pair.node);
-  const auto offer = [&](const LoopEdge& loop) {
-    const absl::optional<UncertainPose> before =
-        paths_->Between(*pair.anchor, loop.a);
-    const absl::optional<UncertainPose> after =
-        paths_->Between(loop.b, pair.node);
-    if (!before.has_value() || !after.has_value()) return;
-    const UncertainPose way = Compose(Compose(*before, loop.pose), *after);
-    if (!best.has_value() ||
-        way.covariance.topLeftCorner<2, 2>().trace() <
-            best->covariance.topLeftCorner<2, 2>().trace()) {
-      best = way;
-    }
-  };
-  // Loops on both sides of the node: in a burst after a submap was finished the
-  // nodes are old ones.
-  const auto middle = accepted_loops_.lower_bound(pair.node);
-  auto it = middle;
-  for (int i = 0; i < kLoopsTried && it != accepted_loops_.begin(); ++i) {
-    --it;
-    if (it->first.trajectory_id != pair.node.trajectory_id) break;
-    offer(it->second);
-  }
-  it = middle;
-  for (int i = 0; i < kLoopsTried && it != accepted_loops_.end(); ++i, ++it) {
-    if (it->first.trajectory_id != pair.node.trajectory_id) break;
-    offer(it->second);
-  }
-  return best;
-}
-
-SearchPlan SearchPlanner::PlanAlone(const SearchPair& pair) const {
+SearchPlan SearchPlanner::PlanAlone(const SearchPair& pair) {
   SearchPlan plan;
+  // First what costs little: most pairs end here.
+  const auto found = submaps_.find(
+      std::make_pair(pair.submap_trajectory_id, pair.submap_index));
+  const SubmapMemory* const memory =
+      found == submaps_.end() ? nullptr : &found->second;
+  if (memory != nullptr &&
+      HasNear(memory->accepted, pair, options_.redundant_distance(),
+              options_.redundant_time())) {
+    plan.skipped = LoopDecision::SKIPPED_REDUNDANT;
+    return plan;
+  }
+  const bool near_searched =
+      memory != nullptr &&
+      HasNear(memory->searched, pair, options_.search_spacing(),
+              options_.redundant_time());
+  // A robot that stands still would cost too much.
+  const bool near_searched_fully =
+      memory != nullptr &&
+      HasNear(memory->searched_fully, pair, options_.full_search_spacing(),
+              std::numeric_limits<double>::infinity());
+  if (near_searched && (near_searched_fully || !options_.global_search())) {
+    plan.skipped = LoopDecision::SKIPPED_SPACING;
+    return plan;
+  }
+
   const double distance = pair.predicted.translation().norm();
-  const absl::optional<UncertainPose> way = BestWay(pair);
+  const absl::optional<UncertainPose> way =
+      pair.anchor.has_value() ? ways_.Between(*pair.anchor, pair.node)
+                              : absl::nullopt;
   if (!way.has_value()) {
     plan.out_of_reach = distance > reach_;
     plan.linear_window = default_linear_window_;
@@ -120,19 +120,7 @@ SearchPlan SearchPlanner::PlanAlone(const SearchPair& pair) const {
   if (way.has_value() &&
       plan.translation_sigma < options_.informative_sigma()) {
     plan.skipped = LoopDecision::SKIPPED_UNINFORMATIVE;
-    return plan;
-  }
-  const auto memory = submaps_.find(
-      std::make_pair(pair.submap_trajectory_id, pair.submap_index));
-  if (memory == submaps_.end()) return plan;
-  if (HasNear(memory->second.accepted, pair.node,
-              options_.redundant_distance())) {
-    plan.skipped = LoopDecision::SKIPPED_REDUNDANT;
-  } else if (plan.full_submap
-                 ? HasNear(memory->second.searched_fully, pair.node,
-                           options_.full_search_spacing())
-                 : HasNear(memory->second.searched, pair.node,
-                           options_.search_spacing())) {
+  } else if (plan.full_submap ? near_searched_fully : near_searched) {
     plan.skipped = LoopDecision::SKIPPED_SPACING;
   }
   return plan;
@@ -161,9 +149,9 @@ std::vector<SearchPlan> SearchPlanner::Plan(
     of_node[pairs[i].node].push_back(i);
     SubmapMemory& memory = submaps_[std::make_pair(
         pairs[i].submap_trajectory_id, pairs[i].submap_index)];
-    NodeSet& searched =
+    Nodes& searched =
         plans[i].full_submap ? memory.searched_fully : memory.searched;
-    searched.insert(pairs[i].node);
+    searched.emplace(pairs[i].node, pairs[i].node_time);
     if (searched.size() > kMaxNodesPerSubmap) searched.erase(searched.begin());
   }
   const size_t cap = static_cast<size_t>(options_.max_searches_per_node());
@@ -202,14 +190,32 @@ std::vector<SearchPlan> SearchPlanner::Plan(
 
 void SearchPlanner::AddAcceptedLoop(const int submap_trajectory_id,
                                     const int submap_index,
-                                    const LoopEdge& loop) {
-  NodeSet& accepted =
+                                    const LoopEdge& loop,
+                                    const int64_t node_time) {
+  Nodes& accepted =
       submaps_[std::make_pair(submap_trajectory_id, submap_index)].accepted;
-  accepted.insert(loop.b);
+  accepted.emplace(loop.b, node_time);
   if (accepted.size() > kMaxNodesPerSubmap) accepted.erase(accepted.begin());
-  accepted_loops_[loop.b] = loop;
-  if (accepted_loops_.size() > kMaxLoops) {
-    accepted_loops_.erase(accepted_loops_.begin());
+  ways_.Add(loop);
+}
+
+void SearchPlanner::ForgetLoops(const int trajectory_id,
+                                const int submap_trajectory_id,
+                                const int last_node_index) {
+  const auto is_old = [&](const NodeKey& node) {
+    return node.trajectory_id == trajectory_id &&
+           node.node_index <= last_node_index;
+  };
+  // Between trajectories the anchor is the submap itself.
+  ways_.RemoveIf([&](const LoopEdge& loop) {
+    return is_old(loop.b) && loop.a.trajectory_id == -1 - submap_trajectory_id;
+  });
+  for (auto& submap : submaps_) {
+    if (submap.first.first != submap_trajectory_id) continue;
+    Nodes& accepted = submap.second.accepted;
+    for (auto it = accepted.begin(); it != accepted.end();) {
+      it = is_old(it->first) ? accepted.erase(it) : std::next(it);
+    }
   }
 }
 

@@ -5,13 +5,13 @@
 // around the prediction.
 //
 //   window     `window_sigmas` standard deviations of the most certain way from
-//              the submap to the node: along the trajectory, or over a recent
-//              accepted loop. A node that has just closed a loop is searched
-//              closely, one that has gone far since is searched widely, and one
-//              that may be anywhere in the whole submap.
+//              the submap to the node, along the trajectory and over accepted
+//              loops (loop_ways.h). A node that has just closed a loop is
+//              searched closely, one that has gone far since is searched
+//              widely, and one that may be anywhere in the whole submap.
 //   spacing    A submap is searched again after some way only; after an
-//              accepted loop after a longer one; not at all while the way to it
-//              is known better than a loop could tell.
+//              accepted loop after a longer one or some time; not at all while
+//              the way to it is known better than a loop could tell.
 //   cap        Of the pairs of one node that are left the most promising are
 //              searched: much to be learnt, and near enough to overlap.
 //
@@ -20,14 +20,14 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_SEARCH_PLANNER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_SEARCH_PLANNER_H_
 
-#include <deque>
+#include <cstdint>
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/loop_ways.h"
 #include "cartographer_ext/loop_closure/path_uncertainty.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/loop_decision.pb.h"
@@ -42,7 +42,8 @@ struct SearchPair {
   // A node of the submap; absent where none is known.
   absl::optional<NodeKey> anchor;
   NodeKey node;
-  Pose2 predicted;  // (submap <- node)
+  int64_t node_time = 0;  // host ticks, 100 ns
+  Pose2 predicted;        // (submap <- node)
 };
 
 struct SearchPlan {
@@ -78,8 +79,12 @@ class SearchPlanner {
 
   // (anchor <- node) of a loop that was accepted.
   void AddAcceptedLoop(int submap_trajectory_id, int submap_index,
-                       const LoopEdge& loop);
+                       const LoopEdge& loop, int64_t node_time);
   void DeleteSubmap(int submap_trajectory_id, int submap_index);
+  // Accepted loops of nodes of a trajectory up to an index with submaps of
+  // another one no longer tell where a node is.
+  void ForgetLoops(int trajectory_id, int submap_trajectory_id,
+                   int last_node_index);
 
  private:
   struct NodeLess {
@@ -88,19 +93,19 @@ class SearchPlanner {
              std::make_pair(b.trajectory_id, b.node_index);
     }
   };
-  using NodeSet = std::set<NodeKey, NodeLess>;
+  // With their times.
+  using Nodes = std::map<NodeKey, int64_t, NodeLess>;
   struct SubmapMemory {
-    NodeSet searched;
-    NodeSet searched_fully;
-    NodeSet accepted;
+    Nodes searched;
+    Nodes searched_fully;
+    Nodes accepted;
   };
 
   // Whether a node of `nodes` is nearer to `node` than `distance` metres of
-  // travel.
-  bool HasNear(const NodeSet& nodes, const NodeKey& node,
-               double distance) const;
-  absl::optional<UncertainPose> BestWay(const SearchPair& pair) const;
-  SearchPlan PlanAlone(const SearchPair& pair) const;
+  // travel and `duration` seconds.
+  bool HasNear(const Nodes& nodes, const SearchPair& pair, double distance,
+               double duration) const;
+  SearchPlan PlanAlone(const SearchPair& pair);
   // Larger is better.
   double Promise(const SearchPair& pair, const SearchPlan& plan) const;
 
@@ -111,8 +116,7 @@ class SearchPlanner {
   const double default_angular_window_;
   const PathUncertainty* const paths_;
   std::map<std::pair<int, int>, SubmapMemory> submaps_;
-  // By node, the newest of each stretch only.
-  std::map<NodeKey, LoopEdge, NodeLess> accepted_loops_;
+  LoopWays ways_;
 };
 
 }  // namespace loop_closure

@@ -13,9 +13,12 @@
 //
 //   reference pose k   = candidate (submap <- node)
 //                        * (node <- local) * (local <- node k)
-//   local cost c(i, j) = clipped mean difference of the range signatures
-//   S_t                = 1 - D / path length        (dtw.h)
+//   local cost c(i, j) = how far scan i and the map disagree at reference pose
+//   j S_t                = 1 - D / path length        (dtw.h)
 //
+// Two local costs: the clipped mean difference of range signatures, which sum
+// up sectors of a scan (range_signature.h), and the disagreement of the beams
+// themselves (beam_agreement.h), which tells more and costs less.
 // The reference is sampled `oversampling` times finer than the query, and
 // warping within the band absorbs the error of the odometry's scale. In the
 // textbook's symmetric warping the samples between two nodes have to be matched
@@ -30,10 +33,10 @@
 
 #include <vector>
 
-#include "absl/types/optional.h"
+#include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/beam_agreement.h"
 #include "cartographer_ext/loop_closure/node_history.h"
-#include "cartographer_ext/loop_closure/occupancy_view.h"
 #include "cartographer_ext/loop_closure/range_signature.h"
 
 namespace cartographer_ext {
@@ -44,20 +47,21 @@ enum class WarpingStep {
   kAsymmetric,  // one reference sample for each node of the query
 };
 
+enum class ScanComparison {
+  kSectors,  // range signatures
+  kBeams,
+};
+
 struct TemporalVerificationOptions {
+  ScanComparison comparison = ScanComparison::kBeams;
   RangeSignatureOptions signature;
+  BeamAgreementOptions beams;
   int oversampling = 2;  // reference samples per step of the query, > 0
   WarpingStep step = WarpingStep::kAsymmetric;
   // Half width of the Sakoe-Chiba band in steps of the query; negative: no
   // band. Symmetric warping takes at least 0.5, less would leave no way.
   double band = 1.;
   int minimum_length = 3;  // nodes of the query, > 0
-};
-
-// A map that predicts, and where it lies.
-struct ReferenceMap {
-  const OccupancyView* view = nullptr;
-  Pose2 view_from_submap;  // (frame of the view <- frame of the candidate)
 };
 
 enum class TemporalOutcome {
@@ -74,9 +78,16 @@ struct TemporalResult {
   double travelled = 0.;  // metres from the first to the last compared node
 };
 
+// Puts into a node of the history what the comparison needs of its scan; points
+// in the frame of the node, metres.
+void DescribeScan(const TemporalVerificationOptions& options,
+                  const std::vector<Eigen::Vector2f>& points,
+                  HistoryNode* node);
+
 // `query`: nodes of one trajectory, oldest first, the last is the candidate's
 // node. `candidate`: (frame of the candidate <- last node). `maps`: the submap
 // first, then its neighbours; each fills what those before it do not know.
+// Their views have to know distances where beams are compared.
 TemporalResult VerifySequence(const TemporalVerificationOptions& options,
                               const std::vector<const HistoryNode*>& query,
                               const Pose2& candidate,

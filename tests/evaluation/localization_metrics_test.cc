@@ -136,6 +136,16 @@ TEST(LocalizationMetricsTest, CarriedRobotsBeginAnew) {
   EXPECT_EQ(metrics.num_wrong_jumps(), 0);
 }
 
+TEST(LocalizationMetricsTest, LocalSlamMaySettle) {
+  auto pairs = Drive(300);
+  Shift(0, 100, Pose2(20., 0., 0.), &pairs);
+  // Half a second after the start, and again after two.
+  Shift(5, 100, Pose2(0., 0.8, 0.), &pairs);
+  EXPECT_EQ(Judge(pairs).num_wrong_jumps(), 0);
+  Shift(20, 100, Pose2(0., 0.8, 0.), &pairs);
+  EXPECT_EQ(Judge(pairs).num_wrong_jumps(), 1);
+}
+
 TEST(LocalizationMetricsTest, TwoPosesAreTheLeast) {
   EXPECT_FALSE(
       ComputeLocalizationMetrics(Drive(1), LocalizationOptions()).ok());

@@ -3,6 +3,7 @@
 #include "cartographer_ext/loop_closure/compatible_subset.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -94,6 +95,49 @@ TEST_F(CompatibleSubsetTest, NeighbouringNodesAreOnePieceOfEvidence) {
   EXPECT_THAT(Accepted(decisions), IsEmpty());
   EXPECT_EQ(decisions[0].reason, SubsetReason::kUnsupported);
   EXPECT_EQ(subset.num_clusters(), 0);
+}
+
+TEST_F(CompatibleSubsetTest, BetweenRunsPlacesCountNotSubmaps) {
+  CompatibleSubset subset(options_, &paths_);
+  // Node i of run 1 in the submap that begins at node a of run 0.
+  const auto found = [this](const int64_t id, const int a, const int i,
+                            const double prior_sigma) {
+    LoopEvidence loop = Loop(id, a, 0.);
+    loop.edge.b = NodeKey{1, i};
+    loop.edge.pose.pose = Between(True(a), True(i));
+    loop.prior_sigma = prior_sigma;
+    return loop;
+  };
+  const double unknown = std::numeric_limits<double>::infinity();
+  // One node in four submaps is one place.
+  for (int s = 0; s < 4; ++s) subset.Add(found(s, 20 * s, 30, unknown));
+  EXPECT_EQ(subset.num_clusters(), 4);
+  EXPECT_THAT(subset.Decide(), IsEmpty());
+  // Four places are needed where nothing was predicted.
+  subset.Add(found(4, 20, 45, unknown));
+  subset.Add(found(5, 40, 60, unknown));
+  EXPECT_THAT(subset.Decide(), IsEmpty());
+  subset.Add(found(6, 60, 75, unknown));
+  const auto decisions = subset.Decide();
+  EXPECT_THAT(Accepted(decisions), ElementsAre(0, 1, 2, 3, 4, 5, 6));
+  EXPECT_EQ(decisions[0].support, 3);
+}
+
+TEST_F(CompatibleSubsetTest, ForgottenLoopsNoLongerCount) {
+  CompatibleSubset subset(options_, &paths_);
+  subset.Add(Loop(1, 10, 0.));
+  subset.Add(Loop(2, 30, 0.));
+  EXPECT_EQ(subset.Decide().size(), 2u);
+  subset.Add(Loop(3, 31, 0.));
+  subset.ForgetAccepted(
+      [](const LoopEvidence& loop) { return loop.edge.a.node_index < 20; });
+  EXPECT_EQ(subset.num_clusters(), 1);
+  subset.ForgetAccepted([](const LoopEvidence&) { return true; });
+  // What still waits is no longer accepted for its company.
+  EXPECT_EQ(subset.num_clusters(), 1);
+  EXPECT_THAT(Accepted(subset.Decide()), IsEmpty());
+  EXPECT_EQ(subset.num_undecided(), 1);
+  EXPECT_THAT(subset.AcceptedLoops(), IsEmpty());
 }
 
 TEST_F(CompatibleSubsetTest, BadlyPredictedPlacesNeedMore) {

@@ -3,6 +3,7 @@
 #include "cartographer_ext/loop_closure/constraint_information.h"
 
 #include <cmath>
+#include <limits>
 
 #include "gtest/gtest.h"
 
@@ -60,6 +61,32 @@ TEST(ConstraintInformationTest, DegenerateAndInvalidMatrices) {
   Eigen::Matrix3d nan = Eigen::Matrix3d::Identity();
   nan(1, 1) = std::nan("");
   EXPECT_EQ(ScalarWeights(nan).translation, 0.);
+}
+
+TEST(ConstraintInformationTest, FullInformationPullsLessAlongWhatIsOpen) {
+  const ConstraintWeights weights{100., 200.};
+  const Eigen::Matrix3d certain =
+      Eigen::Vector3d(0.04, 0.04, 0.01).asDiagonal();
+  // As certain as the weights stand for.
+  EXPECT_TRUE(FullInformation(weights, certain, certain)
+                  .isApprox(Eigen::Matrix3d(
+                      Eigen::Vector3d(1e4, 1e4, 4e4).asDiagonal())));
+  // Open along the diagonal of the plane: variance 0.04 + 0.36 there.
+  Eigen::Matrix3d open = certain;
+  open.topLeftCorner<2, 2>() += Eigen::Matrix2d::Constant(0.18);
+  const Eigen::Matrix3d information = FullInformation(weights, certain, open);
+  const Eigen::Vector3d along = Eigen::Vector3d(1., 1., 0.) / std::sqrt(2.);
+  const Eigen::Vector3d across = Eigen::Vector3d(1., -1., 0.) / std::sqrt(2.);
+  EXPECT_NEAR(along.dot(information * along), 1e4 * 0.04 / 0.40, 1e-6);
+  EXPECT_NEAR(across.dot(information * across), 1e4, 1e-6);
+  EXPECT_NEAR(information(2, 2), 4e4, 1e-6);
+  // Without inverse.
+  EXPECT_TRUE(
+      FullInformation(weights, certain, Eigen::Matrix3d::Zero()).isZero(0.));
+  EXPECT_TRUE(FullInformation(weights, certain,
+                              Eigen::Matrix3d::Constant(
+                                  std::numeric_limits<double>::quiet_NaN()))
+                  .isZero(0.));
 }
 
 }  // namespace

@@ -12,6 +12,16 @@ namespace cartographer_ext {
 namespace loop_closure {
 namespace {
 
+// The temporal score of a coordinate.
+double Score(const double coordinate) { return 1.02 - std::exp(-coordinate); }
+
+TEST(LoopMixtureTest, CoordinateByHand) {
+  EXPECT_NEAR(TemporalCoordinate(0.52), std::log(2.), 1e-12);
+  EXPECT_NEAR(TemporalCoordinate(1.), std::log(50.), 1e-12);
+  EXPECT_EQ(TemporalCoordinate(1.5), TemporalCoordinate(1.));
+  EXPECT_NEAR(TemporalCoordinate(Score(1.7)), 1.7, 1e-12);
+}
+
 TEST(LoopMixtureTest, DensityByHand) {
   MixtureComponent component;
   component.weight = 0.5;
@@ -30,9 +40,9 @@ TEST(LoopMixtureTest, RecoversTwoPopulationsAndIsCalibrated) {
   LoopMixture mixture(options);
   const auto draw = [&random](const bool is_true) {
     return is_true ? Eigen::Vector2d(random.Normal(0.75, 0.05),
-                                     random.Normal(0.9, 0.04))
+                                     Score(random.Normal(2.9, 0.4)))
                    : Eigen::Vector2d(random.Normal(0.58, 0.06),
-                                     random.Normal(0.65, 0.1));
+                                     Score(random.Normal(1.4, 0.5)));
   };
   for (int i = 0; i < 20000; ++i) {
     const Eigen::Vector2d s = draw(random.Uniform() < 0.3);
@@ -41,7 +51,7 @@ TEST(LoopMixtureTest, RecoversTwoPopulationsAndIsCalibrated) {
   EXPECT_GT(mixture.Fit(), 1);
   EXPECT_NEAR(mixture.components()[1].weight, 0.3, 0.03);
   EXPECT_NEAR(mixture.components()[1].mean.x(), 0.75, 0.01);
-  EXPECT_NEAR(mixture.components()[0].mean.y(), 0.65, 0.02);
+  EXPECT_NEAR(mixture.components()[0].mean.y(), 1.4, 0.05);
   // Reliability: of the candidates given probability p, p are true.
   double predicted = 0., actual = 0.;
   int count = 0;

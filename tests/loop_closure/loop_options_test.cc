@@ -77,12 +77,14 @@ TEST(LoopOptionsTest, DefaultsAgreeWithTheParts) {
             temporal_default.signature.num_sectors);
   EXPECT_EQ(temporal.signature.rays_per_sector,
             temporal_default.signature.rays_per_sector);
-  EXPECT_EQ(temporal.signature.max_range, temporal_default.signature.max_range);
-  EXPECT_EQ(temporal.signature.max_unknown,
-            temporal_default.signature.max_unknown);
-  EXPECT_EQ(temporal.signature.clip, temporal_default.signature.clip);
-  EXPECT_EQ(temporal.signature.minimum_overlap,
-            temporal_default.signature.minimum_overlap);
+  EXPECT_EQ(temporal.comparison, temporal_default.comparison);
+  EXPECT_EQ(temporal.beams.max_range, temporal_default.beams.max_range);
+  EXPECT_EQ(temporal.beams.max_unknown, temporal_default.beams.max_unknown);
+  EXPECT_EQ(temporal.beams.tolerance, temporal_default.beams.tolerance);
+  EXPECT_EQ(temporal.beams.clip, temporal_default.beams.clip);
+  EXPECT_EQ(temporal.beams.minimum_overlap,
+            temporal_default.beams.minimum_overlap);
+  EXPECT_EQ(temporal.beams.max_beams, temporal_default.beams.max_beams);
   EXPECT_EQ(temporal.oversampling, temporal_default.oversampling);
   EXPECT_EQ(temporal.step, temporal_default.step);
   EXPECT_EQ(temporal.band, temporal_default.band);
@@ -132,6 +134,7 @@ TEST(LoopOptionsTest, DefaultsAgreeWithTheParts) {
   EXPECT_EQ(subset.informative_sigma, subset_default.informative_sigma);
   EXPECT_EQ(subset.min_revisits, subset_default.min_revisits);
   EXPECT_EQ(subset.tolerance, subset_default.tolerance);
+  EXPECT_EQ(subset.predicted_tolerance, subset_default.predicted_tolerance);
   EXPECT_EQ(subset.single_strong_enabled, subset_default.single_strong_enabled);
   EXPECT_EQ(subset.single_strong_score, subset_default.single_strong_score);
   EXPECT_EQ(subset.single_strong_loops, subset_default.single_strong_loops);

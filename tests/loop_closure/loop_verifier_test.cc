@@ -49,6 +49,11 @@ class LoopVerifierTest : public testing::Test {
     options_.mutable_compatible_subset()->set_single_strong(false);
     // The robot turns round in one step.
     options_.mutable_path_noise()->set_free_radians(4.);
+    options_.mutable_temporal_verification()->set_comparison(
+        proto::LoopClosureOptions::TemporalVerification::SECTORS);
+    options_.mutable_temporal_verification()->set_max_range(10.);
+    options_.mutable_temporal_verification()->set_clip(1.);
+    options_.mutable_temporal_verification()->set_minimum_overlap(0.5);
     options_.mutable_fusion()->set_mode(
         proto::LoopClosureOptions::Fusion::AS_PRINTED);
   }
@@ -65,8 +70,8 @@ class LoopVerifierTest : public testing::Test {
       HistoryNode node;
       node.node_index = i;
       node.local_pose = True(i);
-      node.signature =
-          PredictSignature(verifier_->signature_options(), world_, True(i));
+      node.signature = PredictSignature(verifier_->temporal_options().signature,
+                                        world_, True(i));
       EXPECT_TRUE(verifier_->AddNode(0, node));
     }
   }
@@ -109,7 +114,7 @@ TEST_F(LoopVerifierTest, ConfirmedLoopsGoThroughAllStages) {
     EXPECT_EQ(decision.temporal().outcome(), LoopDecision::Temporal::SCORED);
     EXPECT_GT(decision.temporal().score(), 0.95);
     EXPECT_EQ(decision.temporal().window(), 12);
-    EXPECT_EQ(decision.temporal().threshold(), 0.4);
+    EXPECT_EQ(decision.temporal().threshold(), 0.5);
     EXPECT_EQ(decision.fusion().lambda(), 0.5);
     EXPECT_NEAR(decision.fusion().final_score(),
                 0.5 * (0.7 + decision.temporal().score()), 1e-12);
@@ -266,6 +271,87 @@ TEST_F(LoopVerifierTest, RepeatsExactly) {
       EXPECT_EQ(records, first);
     }
   }
+}
+
+TEST_F(LoopVerifierTest, TimesAndFullMatrixOnlyWhereAskedFor) {
+  for (const bool asked : {false, true}) {
+    options_.mutable_log()->set_times(asked);
+    options_.mutable_information()->set_full_matrix(asked);
+    MakeVerifier();
+    for (const int submap : {5, 3}) {
+      LoopCandidate candidate =
+          Candidate(submap, submap == 5 ? 100 : 120, 0., &world_);
+      candidate.search_seconds = 0.5;
+      candidate.refinement_seconds = 0.25;
+      // Nothing is known of the way along the corridor.
+      candidate.information = Eigen::Vector3d(0., 1e6, 1e6).asDiagonal();
+      verifier_->Process(candidate);
+    }
+    const std::vector<LoopOutcome> outcomes = verifier_->Decide();
+    ASSERT_EQ(outcomes.size(), 2u);
+    for (const LoopOutcome& outcome : outcomes) {
+      ASSERT_EQ(outcome.decision.has_times(), asked);
+      ASSERT_EQ(outcome.full_information.isZero(0.), !asked);
+      if (!asked) continue;
+      EXPECT_EQ(outcome.decision.times().search_seconds(), 0.5);
+      EXPECT_EQ(outcome.decision.times().refinement_seconds(), 0.25);
+      EXPECT_GT(outcome.decision.times().temporal_seconds(), 0.);
+      const double whole =
+          outcome.weights.translation * outcome.weights.translation;
+      // A loop has 0.05 m, the way along the corridor 0.3 m.
+      EXPECT_NEAR(outcome.full_information(0, 0),
+                  whole * 0.0025 / (0.0025 + 0.09), 1e-3 * whole);
+      EXPECT_NEAR(outcome.full_information(1, 1), whole, 0.02 * whole);
+    }
+  }
+}
+
+TEST_F(LoopVerifierTest, UnpredictedLoopsOfAnotherRunNeedMorePlaces) {
+  options_.mutable_compatible_subset()->set_single_strong(true);
+  MakeVerifier();
+  // Run 1 repeats the way of run 0, in whose submaps it is found.
+  for (int i = 0; i <= 60; ++i) {
+    HistoryNode node;
+    node.node_index = i;
+    node.local_pose = True(i);
+    node.signature = PredictSignature(verifier_->temporal_options().signature,
+                                      world_, True(i));
+    verifier_->AddNode(1, node);
+  }
+  for (int s = 0; s < 8; ++s) {
+    verifier_->AddSubmap(SubmapKey{0, s}, Pose2(5. * s, 0., 0.));
+  }
+  const auto found = [this](const int s, const int i) {
+    LoopCandidate candidate = Candidate(s, i, 0., &world_);
+    candidate.node.trajectory_id = 1;
+    candidate.unpredicted = true;
+    candidate.search.set_full_submap(true);
+    return candidate;
+  };
+  for (const int i : {10, 38}) {
+    verifier_->Process(found(1, i));
+    verifier_->Process(found(2, i));
+    EXPECT_THAT(verifier_->Decide(), IsEmpty()) << i;
+  }
+  verifier_->Process(found(4, 52));
+  EXPECT_EQ(verifier_->Decide().size(), 5u);
+  // Another one joins them.
+  verifier_->Process(found(4, 53));
+  EXPECT_EQ(verifier_->Decide().size(), 1u);
+  // Unless they are forgotten; what was found without a prediction waits.
+  verifier_->ForgetLoops(1, 0, 60);
+  verifier_->Process(found(4, 54));
+  LoopCandidate predicted = found(5, 55);
+  predicted.unpredicted = false;
+  predicted.search.set_full_submap(false);
+  verifier_->Process(predicted);
+  EXPECT_EQ(verifier_->num_undecided(), 2);
+  EXPECT_THAT(verifier_->Decide(), IsEmpty());
+  verifier_->ForgetLoops(1, 0, 60);
+  const std::vector<LoopOutcome> rejected = verifier_->Decide();
+  ASSERT_EQ(rejected.size(), 1u);
+  EXPECT_EQ(rejected[0].decision.reason(), LoopDecision::OUT_OF_DATE);
+  EXPECT_EQ(rejected[0].node.node_index, 55);
 }
 
 }  // namespace

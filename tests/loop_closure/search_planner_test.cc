@@ -137,13 +137,37 @@ TEST_F(SearchPlannerTest, AcceptedLoopsNarrowTheWindowAndRestTheSubmap) {
   loop.a = NodeKey{0, 10};
   loop.b = NodeKey{0, 150};
   loop.pose.covariance = LoopCovariance();
-  planner_->AddAcceptedLoop(0, 7, loop);
+  planner_->AddAcceptedLoop(0, 7, loop, 0);
   // 10 m before the loop, 9 m behind it, and the loop itself.
   const SearchPlan plan = PlanOne(Pair(1, 0, 159, 3.));
   EXPECT_NEAR(plan.translation_sigma, std::sqrt(0.1 + 0.09 + 0.01), 1e-12);
   EXPECT_EQ(PlanOne(Pair(7, 10, 154, 3.)).skipped,
             LoopDecision::SKIPPED_REDUNDANT);
   EXPECT_EQ(PlanOne(Pair(7, 10, 155, 3.)).skipped, LoopDecision::NONE);
+}
+
+TEST_F(SearchPlannerTest, AfterSomeTimeASubmapIsSearchedAgain) {
+  options_.set_redundant_time(10.);
+  MakePlanner();
+  SearchPair pair = Pair(0, 0, 100, 3.);
+  pair.node_time = 1000000000;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
+  pair.node.node_index = 101;
+  pair.node_time += 100000000;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_SPACING);
+  pair.node_time += 1;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
+
+  LoopEdge loop;
+  loop.a = NodeKey{0, 10};
+  loop.b = NodeKey{0, 150};
+  loop.pose.covariance = LoopCovariance();
+  planner_->AddAcceptedLoop(0, 7, loop, 1000000000);
+  pair = Pair(7, 10, 153, 3.);
+  pair.node_time = 1100000000;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_REDUNDANT);
+  pair.node_time = 1100000001;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
 }
 
 TEST_F(SearchPlannerTest, CapsTheSearchesOfANode) {
@@ -166,6 +190,39 @@ TEST_F(SearchPlannerTest, OneWholeSubmapANode) {
       planner_->Plan({Pair(0, 0, 200, 3.), Pair(1, 0, 200, 3.)});
   EXPECT_EQ(plans[0].skipped, LoopDecision::NONE);
   EXPECT_EQ(plans[1].skipped, LoopDecision::SKIPPED_BUDGET);
+}
+
+TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
+  // Run 1 in the map of run 0, whose submap 0 is known under an id of its own.
+  const NodeKey submap{-1, 0};
+  paths_.Add(submap, Pose2());
+  for (int i = 0; i <= 20; ++i) paths_.Add(NodeKey{1, i}, Pose2(i, 0., 0.));
+  options_.set_search_spacing(0.);
+  MakePlanner();
+  SearchPair pair;
+  pair.anchor = submap;
+  pair.node = NodeKey{1, 16};
+  // Nothing is known about it.
+  EXPECT_EQ(PlanOne(pair).linear_window, 7.);
+  LoopEdge loop;
+  loop.a = submap;
+  loop.b = NodeKey{1, 10};
+  loop.pose.covariance = LoopCovariance();
+  planner_->AddAcceptedLoop(0, 0, loop, 0);
+  pair.node = NodeKey{1, 20};
+  EXPECT_LT(PlanOne(pair).linear_window, 2.);
+  // Not up to there, or of another map.
+  planner_->ForgetLoops(1, 0, 9);
+  planner_->ForgetLoops(1, 3, 30);
+  planner_->ForgetLoops(2, 0, 30);
+  pair.node = NodeKey{1, 17};
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
+  pair.node = NodeKey{1, 12};
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_REDUNDANT);
+  planner_->ForgetLoops(1, 0, 10);
+  const SearchPlan plan = PlanOne(pair);
+  EXPECT_EQ(plan.skipped, LoopDecision::NONE);
+  EXPECT_EQ(plan.linear_window, 7.);
 }
 
 }  // namespace

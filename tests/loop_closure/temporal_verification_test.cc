@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "cartographer_ext/loop_closure/dtw.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -45,7 +46,9 @@ OccupancyView Corridor(double length, const std::vector<double>& niches,
 class TemporalVerificationTest : public testing::Test {
  protected:
   TemporalVerificationTest() : history_(1000) {
+    options_.comparison = ScanComparison::kSectors;
     options_.signature.max_range = 4.;
+    options_.beams.max_range = 8.;
     options_.oversampling = 2;
     options_.minimum_length = 4;
   }
@@ -57,11 +60,32 @@ class TemporalVerificationTest : public testing::Test {
       HistoryNode node;
       node.node_index = index++;
       node.local_pose = Pose2(0., scale * x, kPi / 2.);  // another frame
-      node.signature =
-          PredictSignature(options_.signature, world, Pose2(x, 0., 0.));
+      const Pose2 pose(x, 0., 0.);
+      if (options_.comparison == ScanComparison::kSectors) {
+        node.signature = PredictSignature(options_.signature, world, pose);
+      } else {
+        DescribeScan(options_, Scan(world, pose), &node);
+      }
       history_.Add(0, node);
     }
     last_ = index - 1;
+  }
+
+  // In the frame of the robot.
+  static std::vector<Eigen::Vector2f> Scan(const OccupancyView& world,
+                                           const Pose2& pose) {
+    RayOptions rays;
+    rays.max_range = 8.;
+    std::vector<Eigen::Vector2f> points;
+    for (int i = 0; i < 120; ++i) {
+      const double angle = 2. * kPi * i / 120.;
+      const double range =
+          CastRay(world, pose.translation(), pose.theta + angle, rays);
+      if (std::isnan(range) || range == rays.max_range) continue;
+      points.emplace_back(static_cast<float>(range * std::cos(angle)),
+                          static_cast<float>(range * std::sin(angle)));
+    }
+    return points;
   }
 
   TemporalResult Verify(const std::vector<ReferenceMap>& maps,
@@ -74,6 +98,7 @@ class TemporalVerificationTest : public testing::Test {
   TemporalVerificationOptions options_;
   NodeHistory history_;
   int last_ = 0;
+  const double candidate_x_ = 9.8;  // beside the true place
 };
 
 TEST_F(TemporalVerificationTest, TrueLoopScoresHigherThanLookAlike) {
@@ -143,6 +168,57 @@ TEST_F(TemporalVerificationTest, NeighboursContinueTheReference) {
       {{&late, Pose2()}, {&moved, Pose2(100., 0., 0.)}}, Pose2(10., 0., 0.));
   EXPECT_EQ(both.num_query, 12);
   EXPECT_GT(both.score, 0.9);
+}
+
+TEST_F(TemporalVerificationTest, BeamsTellLookAlikesApart) {
+  OccupancyView world =
+      Corridor(30., {5.5, 7., 8.5, 10., 15.5, 17.3, 18.2, 20.});
+  world.FindDistances(OccupancyView::kMaxReach);
+  const std::vector<ReferenceMap> maps = {{&world, Pose2()}};
+  options_.comparison = ScanComparison::kBeams;
+  Drive(world, 4., 10., 1.);
+  const TemporalResult same = Verify(maps, Pose2(10., 0., 0.));
+  ASSERT_EQ(same.outcome, TemporalOutcome::kScored);
+  EXPECT_EQ(same.num_query, 12);
+  EXPECT_GT(same.score, 0.99);
+  const TemporalResult other = Verify(maps, Pose2(20., 0., 0.));
+  ASSERT_EQ(other.outcome, TemporalOutcome::kScored);
+  EXPECT_GT(same.score - other.score, 0.05);
+  EXPECT_EQ(Verify(maps, Pose2(10., 40., 0.)).outcome,
+            TemporalOutcome::kUnknownWay);
+}
+
+// Costs that are only bounded do not change the result.
+TEST_F(TemporalVerificationTest, LazyCostsGiveTheCheapestWay) {
+  OccupancyView world = Corridor(30., {5.5, 8., 10.});
+  world.FindDistances(OccupancyView::kMaxReach);
+  const std::vector<ReferenceMap> maps = {{&world, Pose2()}};
+  options_.comparison = ScanComparison::kBeams;
+  for (const double scale : {1., 1.05, 0.9}) {
+    history_.DeleteTrajectory(0);
+    Drive(world, 4., 10., scale);
+    const auto query = history_.Sequence(0, last_, 12, 0.4, 1000);
+    const int n = static_cast<int>(query.size());
+    std::vector<double> cost;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < 2 * n - 1; ++j) {
+        const Pose2 pose = j % 2 == 0
+                               ? query[j / 2]->local_pose
+                               : Interpolate(query[j / 2 + 1]->local_pose,
+                                             query[j / 2]->local_pose, 0.5);
+        cost.push_back(PlacedMaps(maps, Pose2(candidate_x_, 0., 0.) *
+                                            query.back()->local_pose.Inverse() *
+                                            pose)
+                           .Disagreement(options_.beams, query[i]->beams));
+      }
+    }
+    const auto exhaustive = AsymmetricTimeWarping(n, 2 * n - 1, cost, 2., 4);
+    const TemporalResult lazy =
+        VerifySequence(options_, query, Pose2(candidate_x_, 0., 0.), maps);
+    ASSERT_TRUE(exhaustive.has_value());
+    ASSERT_EQ(lazy.num_query, n);
+    EXPECT_NEAR(lazy.score, exhaustive->score(), 1e-12);
+  }
 }
 
 TEST_F(TemporalVerificationTest, WithoutEvidenceThereIsNoScore) {

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "cartographer/mapping/2d/map_limits.h"
@@ -17,6 +19,14 @@ using cartographer::mapping::GridType;
 // Searches of a whole submap end here at the latest, with the best so far.
 // Usual ones need a hundredth of it.
 constexpr int64_t kMaxCandidates = 5000000;
+
+// Searches of many submaps look at about so many points at first, whose score
+// differs by so much from that of all.
+constexpr size_t kPointsToFind = 80;
+constexpr double kScoreOfSomeOff = 0.05;
+// Then all points are matched so near to the places found.
+constexpr double kClosestWindowMetres = 0.2;
+constexpr double kClosestWindowRadians = 0.02;
 
 SubmapMatch ToMatch(const scan_matching::SearchResult& result) {
   SubmapMatch match;
@@ -58,6 +68,44 @@ SubmapMatch SubmapMatcher::MatchFullSubmap(
     const double min_score) const {
   return ToMatch(
       matcher_.MatchFullSubmap(cloud, static_cast<float>(min_score), Budget()));
+}
+
+std::vector<SubmapRanking> MatchBestSubmaps(
+    const std::vector<const SubmapMatcher*>& submaps,
+    const cartographer::sensor::PointCloud& cloud, const double min_score,
+    const int num_best) {
+  // Some of the points find the places, all of them tell which is the best.
+  const scan_matching::PlanarCloud all = scan_matching::ToPlanarCloud(cloud);
+  scan_matching::PlanarCloud some;
+  const size_t stride = std::max<size_t>(1, all.x.size() / kPointsToFind);
+  for (size_t i = 0; i < all.x.size(); i += stride) {
+    some.x.push_back(all.x[i]);
+    some.y.push_back(all.y[i]);
+  }
+  std::vector<scan_matching::SearchTask> tasks(submaps.size());
+  for (size_t i = 0; i < submaps.size(); ++i) {
+    tasks[i].grid = &submaps[i]->search();
+    tasks[i].cloud = &some;
+    tasks[i].full_submap = true;
+    tasks[i].min_score = static_cast<float>(min_score - kScoreOfSomeOff);
+  }
+  scan_matching::SearchWindow window;
+  window.linear = kClosestWindowMetres;
+  window.angular = kClosestWindowRadians;
+  std::vector<SubmapRanking> ranking;
+  for (const scan_matching::SearchTaskResult& result :
+       scan_matching::MatchBestFew(tasks, num_best, Budget(), nullptr)) {
+    if (!result.result.found) continue;
+    const SubmapMatch match = ToMatch(submaps[result.task]->search().Match(
+        result.result.pose, all, window, static_cast<float>(min_score),
+        Budget()));
+    if (match.found) ranking.push_back(SubmapRanking{result.task, match});
+  }
+  std::stable_sort(ranking.begin(), ranking.end(),
+                   [](const SubmapRanking& a, const SubmapRanking& b) {
+                     return a.match.score > b.match.score;
+                   });
+  return ranking;
 }
 
 OccupancyView MakeOccupancyView(const Grid2D& grid) {

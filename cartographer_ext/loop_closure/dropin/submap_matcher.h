@@ -41,9 +41,27 @@ class SubmapMatcher {
   SubmapMatch MatchFullSubmap(const cartographer::sensor::PointCloud& cloud,
                               double min_score) const;
 
+  // For searches of several submaps at once.
+  const scan_matching::FastCorrelativeSearch2D& search() const {
+    return matcher_.search();
+  }
+
  private:
   const scan_matching::FastCorrelativeMatcher2D matcher_;
 };
+
+// The best poses of the scan anywhere in some of the submaps: of the
+// `num_best` submaps that fit best, best first. Submaps that turn out to fit
+// worse are left alone as soon as that is clear. Not exact: a part of the
+// points finds the places.
+struct SubmapRanking {
+  size_t submap = 0;  // index
+  SubmapMatch match;
+};
+std::vector<SubmapRanking> MatchBestSubmaps(
+    const std::vector<const SubmapMatcher*>& submaps,
+    const cartographer::sensor::PointCloud& cloud, double min_score,
+    int num_best);
 
 // Cells more likely occupied than not are occupied, other known ones free. Of a
 // TSDF those within one cell of the surface are occupied.

@@ -10,10 +10,12 @@
 #include "cartographer/common/time.h"
 #include "cartographer/mapping/internal/constraints/constraint_builder_2d.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/full_information.h"
 #include "cartographer_ext/loop_closure/constraint_information.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/match_information.h"
+#include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "glog/logging.h"
 
@@ -27,45 +29,13 @@ using cartographer::mapping::constraints::proto::ConstraintBuilderOptions;
 using cartographer::transform::Rigid2d;
 using proto::LoopDecision;
 
-Pose2 ToPose2(const Rigid2d& pose) {
-  return Pose2(pose.translation().x(), pose.translation().y(),
-               pose.normalized_angle());
-}
-
-Rigid2d ToRigid2d(const Pose2& pose) {
-  return Rigid2d(pose.translation(), pose.theta);
-}
+// Loops with another run that are remembered, oldest forgotten first.
+constexpr size_t kMaxForeignLoops = 20000;
 
 void ToProto(const Pose2& from, LoopDecision::Pose* const to) {
   to->set_x(from.x);
   to->set_y(from.y);
   to->set_theta(from.theta);
-}
-
-// (local <- tracking frame)
-Pose2 LocalPose(const VerifiedConstraintBuilder2D::NodeData& node) {
-  return ToPose2(cartographer::transform::Project2D(node.local_pose));
-}
-
-// (gravity-aligned frame <- tracking frame), a rotation.
-Pose2 FromRobot(const VerifiedConstraintBuilder2D::NodeData& node) {
-  const Pose2 aligned = ToPose2(cartographer::transform::Project2D(
-      node.local_pose * cartographer::transform::Rigid3d::Rotation(
-                            node.gravity_alignment.inverse())));
-  return Pose2(0., 0., NormalizeAngle(LocalPose(node).theta - aligned.theta));
-}
-
-// Points of the cloud in the tracking frame.
-std::vector<Eigen::Vector2f> PlanarPoints(
-    const VerifiedConstraintBuilder2D::NodeData& node) {
-  const Pose2 to_robot = FromRobot(node).Inverse();
-  std::vector<Eigen::Vector2f> points;
-  points.reserve(node.filtered_gravity_aligned_point_cloud.size());
-  for (const auto& point : node.filtered_gravity_aligned_point_cloud) {
-    const Eigen::Vector2d aligned = point.position.head<2>().cast<double>();
-    points.push_back((to_robot * aligned).cast<float>());
-  }
-  return points;
 }
 
 ConstraintWeights StockWeights(const ConstraintBuilderOptions& options) {
@@ -77,8 +47,6 @@ ConstraintWeights StockWeights(const ConstraintBuilderOptions& options) {
 
 }  // namespace
 
-constexpr int VerifiedConstraintBuilder2D::kUnknownNode;
-
 VerifiedConstraintBuilder2D::VerifiedConstraintBuilder2D(
     const ConstraintBuilderOptions& options,
     const proto::LoopClosureOptions& extension,
@@ -86,15 +54,9 @@ VerifiedConstraintBuilder2D::VerifiedConstraintBuilder2D(
     : options_(options),
       extension_(extension),
       thread_pool_(thread_pool),
-      ceres_scan_matcher_(options.ceres_scan_matcher_options()),
+      searcher_(options),
       verifier_(extension, StockWeights(options)),
-      planner_(extension.search(), LoopCovariance(extension),
-               options.max_constraint_distance(),
-               options.fast_correlative_scan_matcher_options()
-                   .linear_search_window(),
-               options.fast_correlative_scan_matcher_options()
-                   .angular_search_window(),
-               &verifier_.paths()),
+      planner_(options, extension, &verifier_.paths()),
       end_of_node_task_(absl::make_unique<Task>()),
       callback_task_(absl::make_unique<Task>()) {
   pending_id_ = DecisionRecorder::Global()->AddPending([this]() {
@@ -126,8 +88,9 @@ void VerifiedConstraintBuilder2D::RememberNode(const NodeId& node_id,
   history.node_index = node_id.node_index;
   history.time = cartographer::common::ToUniversal(node.time);
   history.local_pose = LocalPose(node);
-  history.signature =
-      SignatureFromPoints(verifier_.signature_options(), PlanarPoints(node));
+  if (extension_.temporal_verification().enabled()) {
+    DescribeScan(verifier_.temporal_options(), PlanarPoints(node), &history);
+  }
   const auto newest =
       newest_nodes_.emplace(node_id.trajectory_id, node_id.node_index).first;
   if (node_id.node_index >= newest->second) {
@@ -137,20 +100,21 @@ void VerifiedConstraintBuilder2D::RememberNode(const NodeId& node_id,
   verifier_.AddNode(node_id.trajectory_id, std::move(history));
 }
 
-VerifiedConstraintBuilder2D::SubmapEntry* VerifiedConstraintBuilder2D::Offer(
-    const SubmapId& submap_id, const Submap2D* const submap,
-    const NodeId& node_id, const NodeData& node) {
+SubmapEntry* VerifiedConstraintBuilder2D::Offer(const SubmapId& submap_id,
+                                                const Submap2D* const submap,
+                                                const NodeId& node_id,
+                                                const NodeData& node) {
   LOG_IF(WARNING, callback_ != nullptr)
       << "node " << node_id << " comes while a callback is due";
   RememberNode(node_id, node);
-  const auto inserted = submaps_.emplace(
-      std::piecewise_construct, std::forward_as_tuple(submap_id),
-      std::forward_as_tuple(options_.sampling_ratio()));
-  SubmapEntry* const entry = &inserted.first->second;
+  std::shared_ptr<SubmapEntry>& kept = submaps_[submap_id];
+  const bool is_new = kept == nullptr;
+  if (is_new) kept = std::make_shared<SubmapEntry>();
+  SubmapEntry* const entry = kept.get();
   entry->submap = submap;
   const auto newest = newest_nodes_.find(submap_id.trajectory_id);
-  if (inserted.second) {
-    entry->local_pose = ToPose2(ComputeSubmapPose(*submap));
+  if (is_new) {
+    entry->local_pose = PlanarPose(ComputeSubmapPose(*submap));
     entry->first_group = num_groups_;
     if (newest != newest_nodes_.end()) {
       entry->newest_node_at_first = newest->second;
@@ -159,7 +123,7 @@ VerifiedConstraintBuilder2D::SubmapEntry* VerifiedConstraintBuilder2D::Offer(
     verifier_.AddSubmap(
         SubmapKey{submap_id.trajectory_id, submap_id.submap_index},
         entry->local_pose);
-  } else if (entry->newest_node_bound == kUnknownNode &&
+  } else if (entry->newest_node_bound == SubmapEntry::kUnknownNode &&
              num_groups_ > entry->first_group &&
              node_id.trajectory_id == submap_id.trajectory_id) {
     // A later node of its own trajectory meets it as a complete one.
@@ -182,7 +146,7 @@ absl::optional<NodeKey> VerifiedConstraintBuilder2D::Anchor(
   const auto before = submaps_.find(
       SubmapId(submap_id.trajectory_id, submap_id.submap_index - 2));
   if (before != submaps_.end()) {
-    oldest = std::max(0, before->second.newest_node_at_first);
+    oldest = std::max(0, before->second->newest_node_at_first);
   }
   return verifier_.paths().Nearest(submap_id.trajectory_id,
                                    entry.local_pose.translation(), oldest,
@@ -195,9 +159,9 @@ void VerifiedConstraintBuilder2D::MaybeAddConstraint(
     const Rigid2d& initial_relative_pose) {
   absl::MutexLock lock(&mutex_);
   const SubmapEntry* const entry = Offer(submap_id, submap, node_id, *node);
-  pairs_.push_back(Pair{submap_id, node_id, node, false,
-                        ToPose2(initial_relative_pose), FromRobot(*node),
-                        Anchor(submap_id, *entry, node_id.trajectory_id)});
+  pairs_.push_back(OfferedPair{
+      submap_id, node_id, node, false, PlanarPose(initial_relative_pose),
+      FromRobot(*node), Anchor(submap_id, *entry, node_id.trajectory_id)});
 }
 
 void VerifiedConstraintBuilder2D::MaybeAddGlobalConstraint(
@@ -205,66 +169,43 @@ void VerifiedConstraintBuilder2D::MaybeAddGlobalConstraint(
     const NodeId& node_id, const NodeData* const node) {
   absl::MutexLock lock(&mutex_);
   const SubmapEntry* const entry = Offer(submap_id, submap, node_id, *node);
-  pairs_.push_back(Pair{submap_id, node_id, node, true, Pose2(),
-                        FromRobot(*node),
-                        Anchor(submap_id, *entry, node_id.trajectory_id)});
-}
-
-SearchPlan VerifiedConstraintBuilder2D::PlanLikeStock(const Pair& pair) {
-  SearchPlan plan;
-  const auto& window = options_.fast_correlative_scan_matcher_options();
-  plan.linear_window = window.linear_search_window();
-  plan.angular_window = window.angular_search_window();
-  plan.out_of_reach =
-      pair.predicted.translation().norm() > options_.max_constraint_distance();
-  if (!plan.out_of_reach && !submaps_.at(pair.submap_id).sampler.Pulse()) {
-    plan.skipped = LoopDecision::SKIPPED_SAMPLER;
-  }
-  return plan;
-}
-
-std::vector<SearchPlan> VerifiedConstraintBuilder2D::PlanPairs() {
-  std::vector<SearchPlan> plans(pairs_.size());
-  std::vector<SearchPair> local;
-  std::vector<size_t> local_index;
-  for (size_t i = 0; i < pairs_.size(); ++i) {
-    const Pair& pair = pairs_[i];
-    if (pair.is_global) {
-      plans[i].full_submap = true;
-    } else if (!extension_.search().enabled()) {
-      plans[i] = PlanLikeStock(pair);
-    } else {
-      SearchPair search;
-      search.submap_trajectory_id = pair.submap_id.trajectory_id;
-      search.submap_index = pair.submap_id.submap_index;
-      search.anchor = pair.anchor;
-      search.node =
-          NodeKey{pair.node_id.trajectory_id, pair.node_id.node_index};
-      search.predicted = pair.predicted;
-      local.push_back(search);
-      local_index.push_back(i);
-    }
-  }
-  const std::vector<SearchPlan> local_plans = planner_.Plan(local);
-  for (size_t k = 0; k < local.size(); ++k) {
-    plans[local_index[k]] = local_plans[k];
-  }
-  return plans;
+  pairs_.push_back(
+      OfferedPair{submap_id, node_id, node, true, Pose2(), FromRobot(*node),
+                  Anchor(submap_id, *entry, node_id.trajectory_id)});
 }
 
 void VerifiedConstraintBuilder2D::NotifyEndOfNode() {
   absl::MutexLock lock(&mutex_);
   {
     const StageMeter meter(ConstraintMetrics::Global()->planning_cpu);
-    const std::vector<SearchPlan> plans = PlanPairs();
-    for (size_t i = 0; i < pairs_.size(); ++i) {
-      if (plans[i].out_of_reach) continue;
-      candidates_.emplace_back(pairs_[i], plans[i],
-                               &submaps_.at(pairs_[i].submap_id));
-      if (plans[i].skipped == LoopDecision::NONE) {
-        Schedule(&candidates_.back());
+    std::vector<LostPlace> lost;
+    const std::vector<PlannedPair> planned_pairs = planner_.Plan(pairs_, &lost);
+    for (const LostPlace& place : lost) {
+      verifier_.ForgetLoops(place.trajectory_id, place.map_trajectory_id,
+                            place.last_node_index);
+      if (place.by_decisions) continue;
+      // What was followed has ended there.
+      forgotten_nodes_[std::make_pair(place.trajectory_id,
+                                      place.map_trajectory_id)] =
+          place.last_node_index;
+    }
+    std::map<int64_t, std::vector<PairCandidate*>> queries;
+    for (const PlannedPair& planned : planned_pairs) {
+      if (planned.plan.out_of_reach) continue;
+      const OfferedPair& pair = pairs_[planned.pair];
+      candidates_.emplace_back();
+      PairCandidate& candidate = candidates_.back();
+      candidate.pair = pair;
+      candidate.plan = planned.plan;
+      candidate.query = planned.query;
+      candidate.entry = submaps_.at(pair.submap_id);
+      if (planned.query >= 0) {
+        queries[planned.query].push_back(&candidate);
+      } else if (planned.plan.skipped == LoopDecision::NONE) {
+        Schedule(&candidate);
       }
     }
+    for (const auto& query : queries) ScheduleQuery(query.second);
     pairs_.clear();
     ++num_groups_;
   }
@@ -278,28 +219,64 @@ void VerifiedConstraintBuilder2D::NotifyEndOfNode() {
   end_of_node_task_ = absl::make_unique<Task>();
 }
 
-void VerifiedConstraintBuilder2D::Schedule(Candidate* const candidate) {
-  SubmapEntry* const entry = candidate->entry;
-  ScheduleMatcher(entry);
+void VerifiedConstraintBuilder2D::Schedule(PairCandidate* const candidate) {
+  ScheduleMatcher(candidate->entry);
   if (extension_.temporal_verification().enabled()) {
     ScheduleViews(candidate->pair.submap_id);
   }
   auto task = absl::make_unique<Task>();
-  task->SetWorkItem([this, candidate]() { Search(candidate); });
-  task->AddDependency(entry->matcher_task);
+  task->SetWorkItem([this, candidate]() { searcher_.Search(candidate); });
+  task->AddDependency(candidate->entry->matcher_task);
   end_of_node_task_->AddDependency(thread_pool_->Schedule(std::move(task)));
 }
 
-void VerifiedConstraintBuilder2D::ScheduleMatcher(SubmapEntry* const entry) {
+void VerifiedConstraintBuilder2D::ScheduleQuery(
+    const std::vector<PairCandidate*>& candidates) {
+  const OfferedPair& first = candidates.front()->pair;
+  const int trajectory_id = first.node_id.trajectory_id;
+  const int map_id = first.submap_id.trajectory_id;
+  const auto key = std::make_pair(trajectory_id, map_id);
+  std::unique_ptr<PlaceSearch>& places = places_[key];
+  if (places == nullptr) {
+    places = absl::make_unique<PlaceSearch>(
+        extension_.localization(), options_.global_localization_min_score());
+  }
+  queries_.emplace_back();
+  PlaceQuery* const query = &queries_.back();
+  query->candidates = candidates;
+  query->places = places.get();
+  query->is_known = planner_.localization()->IsKnown(trajectory_id, map_id);
+  const auto forgotten = forgotten_nodes_.find(key);
+  if (forgotten != forgotten_nodes_.end()) {
+    query->forget_up_to = forgotten->second;
+    forgotten_nodes_.erase(forgotten);
+  }
+  auto task = absl::make_unique<Task>();
+  task->SetWorkItem([this, query]() { searcher_.SearchPlace(query); });
+  // One after the other; they are few.
+  task->AddDependency(place_tasks_[key]);
+  for (PairCandidate* const candidate : candidates) {
+    ScheduleMatcher(candidate->entry);
+    if (extension_.temporal_verification().enabled()) {
+      ScheduleViews(candidate->pair.submap_id);
+    }
+    task->AddDependency(candidate->entry->matcher_task);
+  }
+  place_tasks_[key] = thread_pool_->Schedule(std::move(task));
+  end_of_node_task_->AddDependency(place_tasks_[key]);
+}
+
+void VerifiedConstraintBuilder2D::ScheduleMatcher(
+    const std::shared_ptr<SubmapEntry>& entry) {
   if (entry->has_matcher) return;
   entry->has_matcher = true;
   ConstraintMetrics::Global()->num_matchers->Set(++num_matchers_);
   auto task = absl::make_unique<Task>();
-  const Submap2D* const submap = entry->submap;
-  task->SetWorkItem([this, entry, submap]() {
+  task->SetWorkItem([this, entry]() {
     const StageMeter meter(ConstraintMetrics::Global()->build_cpu);
     entry->matcher = absl::make_unique<const SubmapMatcher>(
-        *submap->grid(), options_.fast_correlative_scan_matcher_options());
+        *entry->submap->grid(),
+        options_.fast_correlative_scan_matcher_options());
   });
   entry->matcher_task = thread_pool_->Schedule(std::move(task));
 }
@@ -309,64 +286,59 @@ void VerifiedConstraintBuilder2D::ScheduleViews(const SubmapId& submap_id) {
   for (int k = -reach; k <= reach; ++k) {
     const auto it = submaps_.find(
         SubmapId(submap_id.trajectory_id, submap_id.submap_index + k));
-    if (it == submaps_.end() || it->second.has_view) continue;
-    SubmapEntry* const entry = &it->second;
+    if (it == submaps_.end() || it->second->has_view) continue;
+    const std::shared_ptr<SubmapEntry> entry = it->second;
     entry->has_view = true;
     auto task = absl::make_unique<Task>();
-    const Submap2D* const submap = entry->submap;
-    task->SetWorkItem([entry, submap]() {
-      const StageMeter meter(ConstraintMetrics::Global()->build_cpu);
-      entry->view = absl::make_unique<const OccupancyView>(
-          MakeOccupancyView(*submap->grid()));
+    const TemporalVerificationOptions* const temporal =
+        &verifier_.temporal_options();
+    task->SetWorkItem([this, entry, temporal]() {
+      std::unique_ptr<OccupancyView> view;
+      {
+        const StageMeter meter(ConstraintMetrics::Global()->build_cpu);
+        view = absl::make_unique<OccupancyView>(
+            MakeOccupancyView(*entry->submap->grid()));
+        if (temporal->comparison == ScanComparison::kBeams) {
+          view->FindDistances(
+              DistanceReach(temporal->beams, view->resolution()));
+        }
+      }
+      // Verification may be under way.
+      absl::MutexLock lock(&mutex_);
+      entry->view = std::move(view);
     });
     end_of_node_task_->AddDependency(thread_pool_->Schedule(std::move(task)));
   }
 }
 
-void VerifiedConstraintBuilder2D::Search(Candidate* const candidate) const {
-  const ConstraintMetrics& metrics = *ConstraintMetrics::Global();
-  const SubmapEntry& entry = *candidate->entry;
-  const SearchPlan& plan = candidate->plan;
-  const auto& cloud =
-      candidate->pair.node->filtered_gravity_aligned_point_cloud;
-  SubmapMatch match;
-  {
-    const StageMeter meter(metrics.search_cpu);
-    if (plan.full_submap) {
-      metrics.searched_global->Increment();
-      match = entry.matcher->MatchFullSubmap(
-          cloud, options_.global_localization_min_score());
-    } else {
-      metrics.searched_local->Increment();
-      match = entry.matcher->Match(entry.local_pose * candidate->pair.predicted,
-                                   plan.linear_window, plan.angular_window,
-                                   cloud, options_.min_score());
-    }
+LoopCandidate VerifiedConstraintBuilder2D::StartCandidate(
+    const SubmapId& submap_id, const SubmapEntry& entry,
+    const bool with_maps) const {
+  LoopCandidate loop;
+  loop.submap = SubmapKey{submap_id.trajectory_id, submap_id.submap_index};
+  // Of another run: as old as can be.
+  loop.submap_age = 1e9;
+  loop.submap_local_pose = entry.local_pose;
+  loop.anchor = LoopVerifier::PathKey(loop.submap);
+  if (!with_maps) return loop;
+  const int reach = extension_.temporal_verification().num_neighbours();
+  for (int k = 0; k <= 2 * reach; ++k) {
+    // The submap, then its neighbours from near to far.
+    const int offset = k % 2 == 1 ? (k + 1) / 2 : -k / 2;
+    const auto it = submaps_.find(
+        SubmapId(submap_id.trajectory_id, submap_id.submap_index + offset));
+    if (it == submaps_.end() || it->second->view == nullptr) continue;
+    loop.maps.push_back(ReferenceMap{it->second->view.get(), entry.local_pose});
   }
-  candidate->score = match.score;
-  if (!match.found) return;
-  (plan.full_submap ? metrics.found_global : metrics.found_local)->Increment();
-  metrics.grid_scores->Observe(match.score);
-  candidate->found = true;
-  candidate->matched = Between(entry.local_pose, match.pose);
-
-  const StageMeter meter(metrics.refinement_cpu);
-  Rigid2d pose = ToRigid2d(match.pose);
-  ceres::Solver::Summary unused_summary;
-  ceres_scan_matcher_.Match(pose.translation(), pose, cloud,
-                            *entry.submap->grid(), &pose, &unused_summary);
-  candidate->refined = Between(entry.local_pose, ToPose2(pose));
-  candidate->information = MatchInformation(*entry.submap->grid(), cloud,
-                                            ToPose2(pose), entry.local_pose);
+  return loop;
 }
 
 LoopCandidate VerifiedConstraintBuilder2D::MakeLoopCandidate(
-    const Candidate& candidate) const {
-  const Pair& pair = candidate.pair;
+    const PairCandidate& candidate) const {
+  const OfferedPair& pair = candidate.pair;
   const SubmapEntry& entry = *candidate.entry;
-  LoopCandidate loop;
-  loop.submap =
-      SubmapKey{pair.submap_id.trajectory_id, pair.submap_id.submap_index};
+  LoopCandidate loop = StartCandidate(pair.submap_id, entry,
+                                      candidate.found && candidate.query < 0);
   loop.node = NodeKey{pair.node_id.trajectory_id, pair.node_id.node_index};
   loop.node_time = cartographer::common::ToUniversal(pair.node->time);
   if (pair.submap_id.trajectory_id == pair.node_id.trajectory_id &&
@@ -376,16 +348,14 @@ LoopCandidate VerifiedConstraintBuilder2D::MakeLoopCandidate(
                 proto::LoopClosureOptions::TemporalVerification::NODES
             ? pair.node_id.node_index - entry.newest_node_at_first
             : 1e-7 * static_cast<double>(loop.node_time - entry.time_at_first);
-  } else {
-    // Of another run: as old as can be.
-    loop.submap_age = 1e9;
   }
-  loop.submap_local_pose = entry.local_pose;
   loop.anchor = pair.anchor;
   loop.refined = candidate.refined * pair.from_robot;
   loop.constraint_pose = candidate.refined;
   loop.grid_score = candidate.score;
   loop.information = candidate.information;
+  loop.search_seconds = candidate.search_seconds;
+  loop.refinement_seconds = candidate.refinement_seconds;
   LoopDecision::Search& search = loop.search;
   search.set_full_submap(candidate.plan.full_submap);
   search.set_linear_window(candidate.plan.linear_window);
@@ -396,24 +366,88 @@ LoopCandidate VerifiedConstraintBuilder2D::MakeLoopCandidate(
     ToProto(pair.predicted * pair.from_robot, search.mutable_predicted());
   }
   if (!candidate.found) return loop;
+  search.set_grid_score(candidate.score);
+  if (candidate.query >= 0) return loop;
   ToProto(candidate.matched * pair.from_robot, search.mutable_matched());
   ToProto(loop.refined, search.mutable_refined());
-  const int reach = extension_.temporal_verification().num_neighbours();
-  for (int k = 0; k <= 2 * reach; ++k) {
-    // The submap, then its neighbours from near to far.
-    const int offset = k % 2 == 1 ? (k + 1) / 2 : -k / 2;
-    const auto it = submaps_.find(SubmapId(
-        pair.submap_id.trajectory_id, pair.submap_id.submap_index + offset));
-    if (it == submaps_.end() || it->second.view == nullptr) continue;
-    loop.maps.push_back(ReferenceMap{it->second.view.get(), entry.local_pose});
+  return loop;
+}
+
+void VerifiedConstraintBuilder2D::VerifyQuery(const PlaceQuery& query) {
+  const OfferedPair& first = query.candidates.front()->pair;
+  const int trajectory_id = first.node_id.trajectory_id;
+  const int map_id = first.submap_id.trajectory_id;
+  const PlaceResult& result = query.result;
+  if (query.is_known && result.decided && !first.is_global) {
+    // By the submap that was matched: the host may have moved others.
+    for (const PairCandidate* const candidate : query.candidates) {
+      const OfferedPair& pair = candidate->pair;
+      if (pair.submap_id.submap_index != result.decided_submap) continue;
+      planner_.localization()->AddDecision(
+          NodeKey{trajectory_id, pair.node_id.node_index}, map_id,
+          query.places->IsSamePlace(
+              candidate->entry->local_pose * pair.predicted,
+              result.decided_pose));
+    }
   }
+  for (const PlacedNode& placed : result.placed) {
+    const SubmapId submap_id(map_id, placed.submap_index);
+    const auto kept = submaps_.find(submap_id);
+    if (kept == submaps_.end()) continue;
+    const SubmapEntry& entry = *kept->second;
+    LoopCandidate loop = StartCandidate(submap_id, entry, true);
+    loop.node = NodeKey{trajectory_id, placed.node_index};
+    loop.node_time = placed.time;
+    loop.constraint_pose = Between(entry.local_pose, placed.refined);
+    loop.refined = loop.constraint_pose * placed.from_robot;
+    loop.grid_score = placed.score;
+    loop.information = placed.information;
+    loop.unpredicted = true;
+    loop.search.set_full_submap(true);
+    ToProto(Between(entry.local_pose, placed.matched) * placed.from_robot,
+            loop.search.mutable_matched());
+    ToProto(loop.refined, loop.search.mutable_refined());
+    verifier_.Process(loop);
+  }
+}
+
+void VerifiedConstraintBuilder2D::TakeBackLoops(const int trajectory_id,
+                                                const int map_id) {
+  const int last =
+      planner_.localization()->LastNodeBeforeLost(trajectory_id, map_id);
+  auto& loops = foreign_loops_[std::make_pair(trajectory_id, map_id)];
+  const auto old =
+      std::stable_partition(loops.begin(), loops.end(),
+                            [last](const std::pair<int, ConstraintBits>& loop) {
+                              return loop.first > last;
+                            });
+  for (auto it = old; it != loops.end(); ++it) {
+    RememberFullInformation(it->second, Eigen::Matrix3d::Zero());
+  }
+  loops.erase(old, loops.end());
+}
+
+absl::optional<LoopEdge> VerifiedConstraintBuilder2D::MakeLoopEdge(
+    const LoopOutcome& outcome) const {
+  if (!outcome.anchor.has_value()) return absl::nullopt;
+  const auto anchor_pose = verifier_.paths().LocalPose(*outcome.anchor);
+  if (!anchor_pose.has_value()) return absl::nullopt;
+  LoopEdge loop;
+  loop.a = *outcome.anchor;
+  loop.b = outcome.node;
+  loop.pose.pose =
+      Between(*anchor_pose, outcome.submap_local_pose) * outcome.pose;
+  loop.pose.covariance = LoopCovariance(extension_);
   return loop;
 }
 
 VerifiedConstraintBuilder2D::Result VerifiedConstraintBuilder2D::Verify() {
   const ConstraintMetrics& metrics = *ConstraintMetrics::Global();
   const StageMeter meter(metrics.verification_cpu);
-  for (const Candidate& candidate : candidates_) {
+  // Those of nodes that were complete when the callback was asked for; the
+  // tasks of others may be under way.
+  for (size_t i = 0; i < num_candidates_due_; ++i) {
+    const PairCandidate& candidate = candidates_[i];
     const LoopCandidate loop = MakeLoopCandidate(candidate);
     if (candidate.plan.skipped != LoopDecision::NONE) {
       verifier_.Dismiss(loop, candidate.plan.skipped);
@@ -423,7 +457,10 @@ VerifiedConstraintBuilder2D::Result VerifiedConstraintBuilder2D::Verify() {
       verifier_.Process(loop);
     }
   }
-  candidates_.clear();
+  for (size_t i = 0; i < num_queries_due_; ++i) VerifyQuery(queries_[i]);
+  queries_.erase(queries_.begin(), queries_.begin() + num_queries_due_);
+  candidates_.erase(candidates_.begin(),
+                    candidates_.begin() + num_candidates_due_);
   Result result;
   DecisionRecorder::Decisions decisions;
   for (const LoopOutcome& outcome : verifier_.Decide()) {
@@ -433,23 +470,24 @@ VerifiedConstraintBuilder2D::Result VerifiedConstraintBuilder2D::Verify() {
     const SubmapId submap_id(outcome.submap.trajectory_id,
                              outcome.submap.submap_index);
     const NodeId node_id(outcome.node.trajectory_id, outcome.node.node_index);
-    result.push_back(Constraint{
-        submap_id, node_id,
-        Constraint::Pose{cartographer::transform::Embed3D(
-                             ToRigid2d(outcome.constraint_pose)),
-                         outcome.weights.translation, outcome.weights.rotation},
-        Constraint::INTER_SUBMAP});
-    if (!outcome.anchor.has_value()) continue;
-    const auto anchor_pose = verifier_.paths().LocalPose(*outcome.anchor);
-    if (!anchor_pose.has_value()) continue;
-    LoopEdge loop;
-    loop.a = *outcome.anchor;
-    loop.b = outcome.node;
-    loop.pose.pose =
-        Between(*anchor_pose, outcome.submap_local_pose) * outcome.pose;
-    loop.pose.covariance = LoopCovariance(extension_);
-    planner_.AddAcceptedLoop(outcome.submap.trajectory_id,
-                             outcome.submap.submap_index, loop);
+    const Constraint::Pose pose{
+        cartographer::transform::Embed3D(ToRigid2d(outcome.constraint_pose)),
+        outcome.weights.translation, outcome.weights.rotation};
+    result.push_back(
+        Constraint{submap_id, node_id, pose, Constraint::INTER_SUBMAP});
+    if (!outcome.full_information.isZero(0.)) {
+      RememberFullInformation(BitsOf(pose), outcome.full_information);
+    }
+    if (planner_.AddAcceptedLoop(submap_id, outcome.node,
+                                 outcome.decision.node_time(),
+                                 MakeLoopEdge(outcome))) {
+      TakeBackLoops(node_id.trajectory_id, submap_id.trajectory_id);
+    }
+    if (submap_id.trajectory_id == node_id.trajectory_id) continue;
+    auto& loops = foreign_loops_[std::make_pair(node_id.trajectory_id,
+                                                submap_id.trajectory_id)];
+    loops.emplace_back(node_id.node_index, BitsOf(pose));
+    if (loops.size() > kMaxForeignLoops) loops.pop_front();
   }
   metrics.undecided->Set(verifier_.num_undecided());
   DecisionRecorder::Global()->Record(decisions);
@@ -461,6 +499,8 @@ void VerifiedConstraintBuilder2D::WhenDone(
   absl::MutexLock lock(&mutex_);
   CHECK(callback_ == nullptr) << "WhenDone was called twice";
   callback_ = callback;
+  num_candidates_due_ = candidates_.size();
+  num_queries_due_ = queries_.size();
   callback_task_->SetWorkItem([this]() { CallBack(); });
   thread_pool_->Schedule(std::move(callback_task_));
   callback_task_ = absl::make_unique<Task>();
@@ -488,14 +528,25 @@ void VerifiedConstraintBuilder2D::DeleteScanMatcher(const SubmapId& submap_id) {
   LOG_IF(WARNING, callback_ != nullptr)
       << "submap " << submap_id << " is forgotten while pairs are under way";
   const auto it = submaps_.find(submap_id);
-  const int newest_node =
-      it == submaps_.end() ? kUnknownNode : it->second.newest_node_bound;
+  const int newest_node = it == submaps_.end() ? SubmapEntry::kUnknownNode
+                                               : it->second->newest_node_bound;
   verifier_.DeleteSubmap(
       SubmapKey{submap_id.trajectory_id, submap_id.submap_index});
   verifier_.DeleteNodes(submap_id.trajectory_id, newest_node);
-  planner_.DeleteSubmap(submap_id.trajectory_id, submap_id.submap_index);
+  for (const auto& places : places_) {
+    if (places.first.first != submap_id.trajectory_id) continue;
+    int& forgotten = forgotten_nodes_.emplace(places.first, -1).first->second;
+    forgotten = std::max(forgotten, newest_node);
+  }
+  planner_.DeleteSubmap(submap_id);
+  // The host does not delete between the pairs of a node.
+  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
+                              [&](const OfferedPair& pair) {
+                                return pair.submap_id == submap_id;
+                              }),
+               pairs_.end());
   if (it == submaps_.end()) return;
-  if (it->second.has_matcher) {
+  if (it->second->has_matcher) {
     ConstraintMetrics::Global()->num_matchers->Set(--num_matchers_);
   }
   submaps_.erase(it);

@@ -5,10 +5,11 @@
 // threads, another way to constraints.
 //
 //   offered    Nodes are remembered, pairs wait for the end of their node.
-//   planned    At the end of a node SearchPlanner chooses which of its pairs
+//   planned    At the end of a node PairPlanner chooses which of its pairs
 //              are searched and how widely; the others get their record.
 //   searched   Each in a task of its own: correlative search, refinement,
-//              information of the match.
+//              information of the match. All submaps of another run, where the
+//              place in it is not known (MapLocalization), in one task.
 //   verified   In the task behind WhenDone, pair by pair in the order they were
 //              offered: LoopVerifier. What it accepts, now or of earlier
 //              rounds, is reported; what lacks evidence waits for the next
@@ -30,31 +31,32 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
 #include "absl/types/optional.h"
-#include "cartographer/common/fixed_ratio_sampler.h"
 #include "cartographer/common/task.h"
 #include "cartographer/common/thread_pool.h"
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/mapping/id.h"
-#include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/proto/pose_graph/constraint_builder_options.pb.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/metrics/family_factory.h"
 #include "cartographer/transform/rigid_transform.h"
-#include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
+#include "cartographer_ext/common/full_information.h"
+#include "cartographer_ext/loop_closure/dropin/pair_planner.h"
+#include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
+#include "cartographer_ext/loop_closure/dropin/place_search.h"
 #include "cartographer_ext/loop_closure/loop_verifier.h"
-#include "cartographer_ext/loop_closure/search_planner.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 
 namespace cartographer_ext {
@@ -99,55 +101,6 @@ class VerifiedConstraintBuilder2D {
       cartographer::metrics::FamilyFactory* family_factory);
 
  private:
-  static constexpr int kUnknownNode = std::numeric_limits<int>::max();
-
-  // What is kept of each submap between nodes.
-  struct SubmapEntry {
-    explicit SubmapEntry(const double sampling_ratio)
-        : sampler(sampling_ratio) {}
-    cartographer::common::FixedRatioSampler sampler;
-    const Submap2D* submap = nullptr;
-    Pose2 local_pose;  // (local <- submap)
-    // The newest node of its trajectory when it was first offered, -1 without
-    // one, and its time.
-    int newest_node_at_first = -1;
-    int64_t time_at_first = 0;
-    int64_t first_group = 0;
-    // No node of the submap is newer.
-    int newest_node_bound = kUnknownNode;
-    std::unique_ptr<const SubmapMatcher> matcher;  // null until the task ran
-    std::weak_ptr<cartographer::common::Task> matcher_task;
-    bool has_matcher = false;
-    std::unique_ptr<const OccupancyView> view;
-    bool has_view = false;
-  };
-
-  // A pair that was offered.
-  struct Pair {
-    SubmapId submap_id;
-    NodeId node_id;
-    const NodeData* node;
-    bool is_global;
-    Pose2 predicted;   // (submap <- node), gravity-aligned
-    Pose2 from_robot;  // (gravity-aligned <- tracking frame), a rotation
-    absl::optional<NodeKey> anchor;
-  };
-
-  // A pair with its plan, and what its task finds.
-  struct Candidate {
-    Candidate(const Pair& pair_in, const SearchPlan& plan_in,
-              SubmapEntry* const entry_in)
-        : pair(pair_in), plan(plan_in), entry(entry_in) {}
-    Pair pair;
-    SearchPlan plan;
-    SubmapEntry* entry;
-    bool found = false;
-    double score = 0.;
-    Pose2 matched;  // (submap <- node), gravity-aligned
-    Pose2 refined;
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  };
-
   SubmapEntry* Offer(const SubmapId& submap_id, const Submap2D* submap,
                      const NodeId& node_id, const NodeData& node)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -157,17 +110,27 @@ class VerifiedConstraintBuilder2D {
                                  const SubmapEntry& entry,
                                  int trajectory_id) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::vector<SearchPlan> PlanPairs() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  SearchPlan PlanLikeStock(const Pair& pair)
+  void Schedule(PairCandidate* candidate) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void ScheduleQuery(const std::vector<PairCandidate*>& candidates)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Schedule(Candidate* candidate) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void ScheduleMatcher(SubmapEntry* entry)
+  void ScheduleMatcher(const std::shared_ptr<SubmapEntry>& entry)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ScheduleViews(const SubmapId& submap_id)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Run in the candidate's task; touches nothing but the candidate.
-  void Search(Candidate* candidate) const;
-  LoopCandidate MakeLoopCandidate(const Candidate& candidate) const
+  LoopCandidate MakeLoopCandidate(const PairCandidate& candidate) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // What is the same for all candidates of a submap.
+  LoopCandidate StartCandidate(const SubmapId& submap_id,
+                               const SubmapEntry& entry, bool with_maps) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void VerifyQuery(const PlaceQuery& query)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // A run has found its place again: what told its place before it was lost is
+  // given no information, so that the optimisation goes without it.
+  void TakeBackLoops(int trajectory_id, int map_id)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // (anchor <- node)
+  absl::optional<LoopEdge> MakeLoopEdge(const LoopOutcome& outcome) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   Result Verify() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void CallBack() ABSL_LOCKS_EXCLUDED(mutex_);
@@ -176,20 +139,34 @@ class VerifiedConstraintBuilder2D {
       options_;
   const proto::LoopClosureOptions extension_;
   cartographer::common::ThreadPoolInterface* const thread_pool_;
-  const cartographer::mapping::scan_matching::CeresScanMatcher2D
-      ceres_scan_matcher_;
+  const PairSearcher searcher_;
   int64_t pending_id_ = 0;
 
   absl::Mutex mutex_;
   LoopVerifier verifier_ ABSL_GUARDED_BY(mutex_);
-  SearchPlanner planner_ ABSL_GUARDED_BY(mutex_);
-  std::map<SubmapId, SubmapEntry> submaps_ ABSL_GUARDED_BY(mutex_);
+  PairPlanner planner_ ABSL_GUARDED_BY(mutex_);
+  std::map<SubmapId, std::shared_ptr<SubmapEntry>> submaps_
+      ABSL_GUARDED_BY(mutex_);
   std::map<int, int> newest_nodes_ ABSL_GUARDED_BY(mutex_);
   std::map<int, int64_t> newest_times_ ABSL_GUARDED_BY(mutex_);
   // Of the node that is not complete yet.
-  std::vector<Pair> pairs_ ABSL_GUARDED_BY(mutex_);
+  std::vector<OfferedPair> pairs_ ABSL_GUARDED_BY(mutex_);
   // Of all complete nodes since the last callback; they stay where they are.
-  std::deque<Candidate> candidates_ ABSL_GUARDED_BY(mutex_);
+  // The first so many belong to the callback that is due.
+  size_t num_candidates_due_ ABSL_GUARDED_BY(mutex_) = 0;
+  size_t num_queries_due_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::deque<PairCandidate> candidates_ ABSL_GUARDED_BY(mutex_);
+  std::deque<PlaceQuery> queries_ ABSL_GUARDED_BY(mutex_);
+  // By run and map, with the task of the last query of each.
+  std::map<std::pair<int, int>, std::unique_ptr<PlaceSearch>> places_
+      ABSL_GUARDED_BY(mutex_);
+  std::map<std::pair<int, int>, std::weak_ptr<cartographer::common::Task>>
+      place_tasks_ ABSL_GUARDED_BY(mutex_);
+  // Accepted loops of each run in each map, node index and constraint.
+  std::map<std::pair<int, int>, std::deque<std::pair<int, ConstraintBits>>>
+      foreign_loops_ ABSL_GUARDED_BY(mutex_);
+  // Up to these nodes places are to be forgotten.
+  std::map<std::pair<int, int>, int> forgotten_nodes_ ABSL_GUARDED_BY(mutex_);
   int64_t num_groups_ ABSL_GUARDED_BY(mutex_) = 0;
   std::function<void(const Result&)> callback_ ABSL_GUARDED_BY(mutex_);
   std::unique_ptr<cartographer::common::Task> end_of_node_task_

@@ -19,6 +19,7 @@
 #include "gtest/gtest.h"
 #include "tests/host/mapping_test_helpers.h"
 #include "tests/host/slam_test_helpers.h"
+#include "tests/loop_closure/dropin/random_order_pool.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -129,6 +130,55 @@ class VerifiedConstraintBuilder2DTest : public testing::Test {
       if (i % 10 == 9) results.push_back(Collect(builder));
     }
     return results;
+  }
+
+  // All calls from several threads at once, in any order; nothing is asked but
+  // that everything is called back and counted, and that nothing of a submap
+  // that is deleted meanwhile is missed.
+  void MixAllCalls(cartographer::common::ThreadPoolInterface* const pool,
+                   const uint64_t seed) {
+    Builder builder(StockOptions(), Defaults(), pool);
+    constexpr int kThreads = 3;
+    constexpr int kNodesEach = 20;
+    std::vector<std::thread> threads;
+    for (int t = 0; t < kThreads; ++t) {
+      threads.emplace_back([this, &builder, seed, t]() {
+        Random random(1000 * seed + t);
+        for (int k = 0; k < kNodesEach; ++k) {
+          const int i = static_cast<int>(random.Uniform() * kNumNodes);
+          const int s = static_cast<int>(random.Uniform() * 3);
+          const double choice = random.Uniform();
+          if (choice < 0.3) {
+            // Of another run: looked for everywhere.
+            for (int other = 0; other < 3; ++other) {
+              builder.MaybeAddGlobalConstraint(SubmapId{1, other},
+                                               submaps_[other].get(),
+                                               NodeId{0, i}, &nodes_[i]);
+            }
+          } else if (choice < 0.4) {
+            builder.MaybeAddConstraint(SubmapId{1, s}, submaps_[s].get(),
+                                       NodeId{0, i}, &nodes_[i],
+                                       Relative(s, i));
+          } else {
+            Offer(&builder, s, i);
+          }
+          builder.NotifyEndOfNode();
+          builder.GetNumFinishedNodes();
+          if (random.Uniform() < 0.1) {
+            builder.DeleteScanMatcher(
+                SubmapId{static_cast<int>(random.Uniform() * 2), s});
+          }
+        }
+      });
+    }
+    // Only one callback may be due at a time.
+    threads.emplace_back([&builder]() {
+      for (int k = 0; k < 5; ++k) Collect(&builder);
+    });
+    for (std::thread& thread : threads) thread.join();
+    Collect(&builder);
+    EXPECT_EQ(builder.GetNumFinishedNodes(), kThreads * kNodesEach);
+    for (int s = 0; s < 3; ++s) builder.DeleteScanMatcher(SubmapId{0, s});
   }
 
   host::ValueConversionTables tables_;
@@ -354,33 +404,23 @@ TEST_F(VerifiedConstraintBuilder2DTest, CallbacksMayReenter) {
   }
 }
 
-// All calls from several threads at once; nothing is asked but that everything
-// is called back and counted.
 TEST_F(VerifiedConstraintBuilder2DTest, SurvivesCallsFromManyThreads) {
   cartographer::common::ThreadPool pool(3);
-  Builder builder(StockOptions(), Defaults(), &pool);
-  std::vector<std::thread> threads;
-  for (int t = 0; t < 4; ++t) {
-    threads.emplace_back([this, &builder, t]() {
-      Random random(t);
-      for (int k = 0; k < 25; ++k) {
-        const int i = static_cast<int>(random.Uniform() * kNumNodes);
-        const int s = static_cast<int>(random.Uniform() * 3);
-        if (random.Uniform() < 0.2) {
-          builder.MaybeAddGlobalConstraint(SubmapId{1, s}, submaps_[s].get(),
-                                           NodeId{0, i}, &nodes_[i]);
-        } else {
-          Offer(&builder, s, i);
-        }
-        builder.NotifyEndOfNode();
-        builder.GetNumFinishedNodes();
-      }
-    });
+  MixAllCalls(&pool, 1);
+}
+
+TEST_F(VerifiedConstraintBuilder2DTest, SurvivesTasksInAnyOrder) {
+  for (const uint64_t seed : {2, 3}) {
+    test::RandomOrderPool pool(3, seed);
+    MixAllCalls(&pool, seed);
   }
-  for (std::thread& thread : threads) thread.join();
-  Collect(&builder);
-  EXPECT_EQ(builder.GetNumFinishedNodes(), 100);
-  for (int s = 0; s < 3; ++s) builder.DeleteScanMatcher(SubmapId{0, s});
+}
+
+TEST_F(VerifiedConstraintBuilder2DTest, OneThreadIsEnough) {
+  cartographer::common::ThreadPool pool(1);
+  MixAllCalls(&pool, 4);
+  test::RandomOrderPool random_pool(1, 5);
+  MixAllCalls(&random_pool, 5);
 }
 
 }  // namespace

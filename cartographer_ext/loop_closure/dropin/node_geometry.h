@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The host's poses and nodes as the loop closure takes them. A node of the host
+// stands for the gravity-aligned frame, which does not turn with the robot.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_
+
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer/mapping/trajectory_node.h"
+#include "cartographer/transform/rigid_transform.h"
+#include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/pose2.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+inline Pose2 PlanarPose(const cartographer::transform::Rigid2d& pose) {
+  return Pose2(pose.translation().x(), pose.translation().y(),
+               pose.normalized_angle());
+}
+
+inline cartographer::transform::Rigid2d ToRigid2d(const Pose2& pose) {
+  return cartographer::transform::Rigid2d(pose.translation(), pose.theta);
+}
+
+// (local <- tracking frame)
+inline Pose2 LocalPose(
+    const cartographer::mapping::TrajectoryNode::Data& node) {
+  return PlanarPose(cartographer::transform::Project2D(node.local_pose));
+}
+
+// (gravity-aligned frame <- tracking frame), a rotation.
+inline Pose2 FromRobot(
+    const cartographer::mapping::TrajectoryNode::Data& node) {
+  const Pose2 aligned = PlanarPose(cartographer::transform::Project2D(
+      node.local_pose * cartographer::transform::Rigid3d::Rotation(
+                            node.gravity_alignment.inverse())));
+  return Pose2(0., 0., NormalizeAngle(LocalPose(node).theta - aligned.theta));
+}
+
+// Points of the cloud in the tracking frame.
+inline std::vector<Eigen::Vector2f> PlanarPoints(
+    const cartographer::mapping::TrajectoryNode::Data& node) {
+  const Pose2 to_robot = FromRobot(node).Inverse();
+  std::vector<Eigen::Vector2f> points;
+  points.reserve(node.filtered_gravity_aligned_point_cloud.size());
+  for (const auto& point : node.filtered_gravity_aligned_point_cloud) {
+    const Eigen::Vector2d aligned = point.position.head<2>().cast<double>();
+    points.push_back((to_robot * aligned).cast<float>());
+  }
+  return points;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_

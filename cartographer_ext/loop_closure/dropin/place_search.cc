@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/dropin/place_search.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "cartographer/mapping/internal/constraints/constraint_builder_2d.h"
+#include "cartographer_ext/loop_closure/dropin/match_information.h"
+#include "cartographer_ext/loop_closure/dropin/node_geometry.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using cartographer::mapping::Submap2D;
+using cartographer::mapping::constraints::ComputeSubmapPose;
+
+// A track is expected within this of where the motion of the run puts it.
+constexpr double kFollowMetres = 0.5;
+constexpr double kFollowRadians = 0.06;
+// A node of a place that was decided for is given out in so many submaps.
+constexpr size_t kSubmapsPerNode = 4;
+// Of so many nodes back, where the place is thought to be known.
+constexpr int kNodesWhenKnown = 5;
+
+PlaceTrackerOptions ToPlaceTrackerOptions(
+    const proto::LoopClosureOptions::Localization& from) {
+  PlaceTrackerOptions to;
+  to.max_nodes = from.max_nodes();
+  to.significance = from.significance();
+  return to;
+}
+
+// Whether a node at a pose in the local frame of the map may lie in a submap.
+bool Covers(const Submap2D& submap, const Pose2& pose) {
+  const auto& limits = submap.grid()->limits();
+  const auto& cells = limits.cell_limits();
+  const double x = limits.max().x() - pose.x;
+  const double y = limits.max().y() - pose.y;
+  return x >= 0. && y >= 0. && x <= limits.resolution() * cells.num_y_cells &&
+         y <= limits.resolution() * cells.num_x_cells;
+}
+
+}  // namespace
+
+PlaceSearch::PlaceSearch(const proto::LoopClosureOptions::Localization& options,
+                         const double min_score)
+    : options_(options),
+      min_score_(min_score),
+      tracker_(ToPlaceTrackerOptions(options)) {}
+
+PlaceResult PlaceSearch::Search(PlaceNode node,
+                                const std::vector<PlaceSubmap>& submaps,
+                                const bool is_known, const Refiner& refiner) {
+  PlaceResult result;
+  std::vector<const SubmapMatcher*> searched;
+  std::vector<int> searched_index;
+  for (const PlaceSubmap& submap : submaps) {
+    if (!submap.search) continue;
+    searched.push_back(submap.matcher);
+    searched_index.push_back(submap.submap_index);
+  }
+  const std::vector<SubmapRanking> ranking = MatchBestSubmaps(
+      searched, node.cloud, min_score_, options_.places_per_query());
+  const bool is_full =
+      static_cast<int>(ranking.size()) == options_.places_per_query();
+  result.scores.assign(searched.size(), 0.);
+  result.outscored.assign(searched.size(), is_full);
+  std::vector<PlaceMatch> found;
+  for (const SubmapRanking& ranked : ranking) {
+    result.scores[ranked.submap] = ranked.match.score;
+    result.outscored[ranked.submap] = false;
+    PlaceMatch match;
+    match.submap_index = searched_index[ranked.submap];
+    match.pose = ranked.match.pose;
+    match.score = ranked.match.score;
+    found.push_back(match);
+  }
+
+  // Places are followed along the way only.
+  const int node_index = node.node_index;
+  if (node_index <= newest_node_) return result;
+  newest_node_ = node_index;
+  const Pose2 local_pose = node.local_pose;
+  nodes_.emplace(node_index, std::move(node));
+  const auto match_nearby = [&](const int index, const Pose2& guess,
+                                const PlaceSubmap& submap,
+                                const double min_score) {
+    absl::optional<PlaceMatch> result_here;
+    if (!Covers(*submap.submap, guess)) return result_here;
+    const SubmapMatch match =
+        submap.matcher->Match(guess, kFollowMetres, kFollowRadians,
+                              nodes_.at(index).cloud, min_score);
+    if (!match.found) return result_here;
+    result_here = PlaceMatch();
+    result_here->submap_index = submap.submap_index;
+    result_here->pose = match.pose;
+    result_here->score = match.score;
+    return result_here;
+  };
+  const auto follow = [&](const int index, const Pose2& guess) {
+    absl::optional<PlaceMatch> best;
+    for (const PlaceSubmap& submap : submaps) {
+      const absl::optional<PlaceMatch> match = match_nearby(
+          index, guess, submap, best.has_value() ? best->score : 0.);
+      if (match.has_value()) best = match;
+    }
+    return best;
+  };
+  tracker_.AddNode(node_index, local_pose, found, follow);
+  while (!nodes_.empty() && nodes_.begin()->first < tracker_.oldest_node()) {
+    nodes_.erase(nodes_.begin());
+  }
+
+  const PlaceTracker::Decision decision = tracker_.Decide(
+      is_known ? kNodesWhenKnown : std::numeric_limits<int>::max());
+  result.significance = decision.significance;
+  result.decided = decision.decided && !decision.nodes.empty() &&
+                   decision.nodes.back() == node_index;
+  if (!result.decided) return result;
+  result.decided_pose = decision.matches.back().pose;
+  result.decided_submap = decision.matches.back().submap_index;
+  if (is_known) return result;
+  for (size_t k = 0; k < decision.nodes.size(); ++k) {
+    if (decision.nodes[k] <= last_given_out_) continue;
+    // In each of the submaps that know the place: those of one visit confirm
+    // each other, those of several visits lie too far apart for that.
+    const PlaceNode& from = nodes_.at(decision.nodes[k]);
+    std::vector<PlacedNode> here;
+    for (const PlaceSubmap& submap : submaps) {
+      const absl::optional<PlaceMatch> match = match_nearby(
+          from.node_index, decision.matches[k].pose, submap, min_score_);
+      if (!match.has_value()) continue;
+      PlacedNode placed;
+      placed.node_index = from.node_index;
+      placed.time = from.time;
+      placed.from_robot = from.from_robot;
+      placed.submap_index = submap.submap_index;
+      placed.matched = match->pose;
+      placed.score = match->score;
+      here.push_back(placed);
+    }
+    std::stable_sort(here.begin(), here.end(),
+                     [](const PlacedNode& a, const PlacedNode& b) {
+                       return a.score > b.score;
+                     });
+    if (here.size() > kSubmapsPerNode) here.resize(kSubmapsPerNode);
+    for (PlacedNode& placed : here) {
+      const auto submap = std::find_if(
+          submaps.begin(), submaps.end(), [&](const PlaceSubmap& candidate) {
+            return candidate.submap_index == placed.submap_index;
+          });
+      placed.refined = refiner(*submap->submap, from.cloud, placed.matched);
+      placed.information =
+          MatchInformation(*submap->submap->grid(), from.cloud, placed.refined,
+                           PlanarPose(ComputeSubmapPose(*submap->submap)));
+      result.placed.push_back(placed);
+    }
+  }
+  last_given_out_ = node_index;
+  return result;
+}
+
+void PlaceSearch::DeleteNodes(const int last_node_index) {
+  tracker_.DeleteNodes(last_node_index);
+  nodes_.erase(nodes_.begin(), nodes_.upper_bound(last_node_index));
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
