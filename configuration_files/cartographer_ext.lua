@@ -57,14 +57,23 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     maximum = 0.25,
   },
   constant_velocity = {
-    -- Standard deviation of the change of speed between two scans. [> 0 and
-    -- <= 100, m/s]
+    -- Standard deviation of the change of speed between two scans, at most.
+    -- [> 0 and <= 100, m/s]
     speed_noise = 0.5,
     -- The same of the turn rate. [> 0 and <= 100, rad/s]
     turn_rate_noise = 0.5,
     -- A velocity is believed for this long; over a longer gap nothing is
     -- known of the rest, and no turn is made up. [>= 0 and <= 10, s]
     max_time = 0.6,
+    -- That change for every second between the scans. Larger follows a robot
+    -- that is driven roughly. [> 0 and <= 1000, m/s^2]
+    acceleration_noise = 1,
+    -- The same of the turn rate. [> 0 and <= 1000, rad/s^2]
+    turn_acceleration_noise = 1,
+    -- A turn is expected to end by itself, with this time constant. Matters
+    -- where scans do not tell the turn, as within a round wall. [> 0 and <=
+    -- 1000000, s]
+    turn_time = 1,
   },
   fault_check = {
     -- Find out when odometry is stale, jumps, has the wrong sign or slips, do

@@ -60,6 +60,11 @@ MotionPredictorOptions ToMotionPredictorOptions(
   to.constant_velocity.speed_noise = options.constant_velocity().speed_noise();
   to.constant_velocity.turn_rate_noise =
       options.constant_velocity().turn_rate_noise();
+  to.constant_velocity.acceleration_noise =
+      options.constant_velocity().acceleration_noise();
+  to.constant_velocity.turn_acceleration_noise =
+      options.constant_velocity().turn_acceleration_noise();
+  to.constant_velocity.turn_time = options.constant_velocity().turn_time();
   to.constant_velocity.max_time = options.constant_velocity().max_time();
   to.check = ToOdometryCheckOptions(options.fault_check());
   to.imu = ToImuPredictorOptions(options.imu());

@@ -42,7 +42,9 @@ MotionPredictor::MotionPredictor(const MotionPredictorOptions& options)
     : options_(options),
       odometry_(options.odometry, options.time_offset),
       imu_(options.imu),
-      monitor_(options.check) {}
+      monitor_(options.check),
+      velocity_(options.constant_velocity, options.odometry.translation,
+                options.odometry.rotation) {}
 
 void MotionPredictor::AddOdometry(const double time, const Pose2& pose) {
   if (options_.use_odometry) odometry_.Add(time, pose);
@@ -55,12 +57,10 @@ void MotionPredictor::AddImu(const PlanarImuReading& reading) {
 Pose2 MotionPredictor::VelocityMotion(const double interval) const {
   // Beyond that nothing is known, least of all a turn.
   if (interval > options_.constant_velocity.max_time) return Pose2();
-  return Pose2(velocity_.x * interval, velocity_.y * interval,
-               velocity_.theta * interval);
+  return velocity_.Motion(interval);
 }
 
-Eigen::Matrix3d MotionPredictor::VelocityCovariance(
-    const double interval) const {
+Eigen::Matrix3d MotionPredictor::WideCovariance(const double interval) const {
   const double way = options_.odometry.translation +
                      options_.constant_velocity.speed_noise * interval;
   const double turn = options_.odometry.rotation +
@@ -83,7 +83,10 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
                           ? PredictionSource::kNothing
                           : PredictionSource::kConstantVelocity;
   prediction.motion = VelocityMotion(interval);
-  prediction.covariance = VelocityCovariance(interval);
+  prediction.covariance =
+      prediction.source == PredictionSource::kConstantVelocity
+          ? velocity_.MotionCovariance(interval)
+          : WideCovariance(interval);
   prediction.is_uncertain = prediction.source == PredictionSource::kNothing;
   if (prediction.is_uncertain) {
     prediction.unknown_way = options_.constant_velocity.speed_noise * interval;
@@ -93,7 +96,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
 
   ImuMotion imu;
   const bool has_imu = imu_.Predict(
-      last_time_, time, Eigen::Vector2d(velocity_.x, velocity_.y), &imu);
+      last_time_, time, Eigen::Vector2d(velocity().x, velocity().y), &imu);
   if (has_imu) {
     prediction.source = PredictionSource::kImu;
     prediction.motion = imu.motion;
@@ -125,7 +128,8 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
     return prediction;
   }
   prediction.unknown_way = prediction.unknown_turn = 0.;
-  const Eigen::Matrix3d covariance_without = prediction.covariance;
+  const Eigen::Matrix3d covariance_without =
+      has_imu ? prediction.covariance : WideCovariance(interval);
   prediction.source = PredictionSource::kOdometry;
   prediction.motion = odometry.motion;
   prediction.covariance = CovarianceOf(odometry, interval);
@@ -155,7 +159,7 @@ Eigen::Matrix3d MotionPredictor::CovarianceOf(const OdometryMotion& odometry,
                                               const double interval) const {
   Eigen::Matrix3d covariance = odometry.covariance;
   // Its end is a guess from the readings before.
-  if (odometry.is_late) covariance += VelocityCovariance(interval);
+  if (odometry.is_late) covariance += WideCovariance(interval);
   return covariance;
 }
 
@@ -219,13 +223,24 @@ OdometryState MotionPredictor::Compare(const double time,
   comparison.way_is_determined = not_compared_.way_is_determined;
   ImuMotion imu;
   if (imu_.Predict(compared_time_, time,
-                   Eigen::Vector2d(velocity_.x, velocity_.y), &imu)) {
+                   Eigen::Vector2d(velocity().x, velocity().y), &imu)) {
     comparison.has_inertial = imu_.bias_is_known();
     comparison.inertial_speed_change = imu.speed_change;
   }
   compared_time_ = time;
   not_compared_ = MatchedMotion();
   return monitor_.Add(comparison);
+}
+
+void MotionPredictor::UpdateVelocity(const double time,
+                                     const MatchedMotion& matched) {
+  const double interval = time - last_time_;
+  if (matched.from_velocity &&
+      interval <= options_.constant_velocity.max_time) {
+    velocity_.AddMatch(interval, matched.motion, matched.covariance);
+  } else if (interval >= kMinVelocityInterval) {
+    velocity_.Restart(interval, matched.motion);
+  }
 }
 
 OdometryState MotionPredictor::AddMatch(const double time,
@@ -248,10 +263,7 @@ OdometryState MotionPredictor::AddMatch(const double time,
   }
   imu_.AddMatch(last_time_, time, matched.motion);
 
-  if (interval >= kMinVelocityInterval) {
-    velocity_ = Pose2(matched.motion.x / interval, matched.motion.y / interval,
-                      matched.motion.theta / interval);
-  }
+  UpdateVelocity(time, matched);
   last_time_ = time;
   since_map_ = since_map_ * matched.motion;
   const bool is_far =

@@ -31,15 +31,10 @@
 #include "cartographer_ext/front_end/imu_predictor.h"
 #include "cartographer_ext/front_end/odometry_monitor.h"
 #include "cartographer_ext/front_end/odometry_predictor.h"
+#include "cartographer_ext/front_end/velocity_filter.h"
 
 namespace cartographer_ext {
 namespace front_end {
-
-struct ConstantVelocityOptions {
-  double speed_noise = 0.5;      // m/s
-  double turn_rate_noise = 0.5;  // rad/s
-  double max_time = 0.6;         // seconds
-};
 
 struct MotionPredictorOptions {
   bool use_odometry = true;
@@ -75,6 +70,10 @@ struct MatchedMotion {
   Pose2 motion;  // (robot at the last scan <- robot now)
   bool way_is_determined = true;
   bool turn_is_determined = true;
+  // Of the pose, in the frame of the robot at the last scan.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  // The match began with the prediction of the velocity alone.
+  bool from_velocity = false;
 };
 
 class MotionPredictor {
@@ -97,15 +96,17 @@ class MotionPredictor {
 
   double time_offset() const { return odometry_.time_offset(); }
   OdometryState odometry_state() const { return monitor_.state(); }
-  // Of the last match, robot's frame, per second; zero before the second one.
-  const Pose2& velocity() const { return velocity_; }
+  // Robot's frame, per second; zero before the second match.
+  const Pose2& velocity() const { return velocity_.velocity(); }
 
  private:
   Pose2 VelocityMotion(double interval) const;
-  Eigen::Matrix3d VelocityCovariance(double interval) const;
+  // Where the velocity is a mere guess.
+  Eigen::Matrix3d WideCovariance(double interval) const;
   bool PredictOdometry(double time, OdometryMotion* motion) const;
   // By odometry and IMU since the last scan that is in the map.
   void PredictFromMap(double time, MotionPrediction* prediction) const;
+  void UpdateVelocity(double time, const MatchedMotion& matched);
   OdometryState CheckOdometry(double time, const MatchedMotion& matched);
   // Odometry with `not_compared_`, up to `time`.
   OdometryState Compare(double time, bool has_odometry);
@@ -119,7 +120,7 @@ class MotionPredictor {
   OdometryMonitor monitor_;
   bool has_match_ = false;
   double last_time_ = 0.;
-  Pose2 velocity_;
+  VelocityFilter velocity_;
   // The last scan that had odometry, and the matched motion since then.
   bool has_anchor_ = false;
   double anchor_time_ = 0.;

@@ -34,6 +34,12 @@ TEST(FrontEndOptionsTest, DefaultsOfTheMessageAreThoseOfTheParts) {
             own.constant_velocity.speed_noise);
   EXPECT_EQ(from_message.constant_velocity.turn_rate_noise,
             own.constant_velocity.turn_rate_noise);
+  EXPECT_EQ(from_message.constant_velocity.acceleration_noise,
+            own.constant_velocity.acceleration_noise);
+  EXPECT_EQ(from_message.constant_velocity.turn_acceleration_noise,
+            own.constant_velocity.turn_acceleration_noise);
+  EXPECT_EQ(from_message.constant_velocity.turn_time,
+            own.constant_velocity.turn_time);
   EXPECT_EQ(from_message.constant_velocity.max_time,
             own.constant_velocity.max_time);
   EXPECT_EQ(from_message.check.enabled, own.check.enabled);

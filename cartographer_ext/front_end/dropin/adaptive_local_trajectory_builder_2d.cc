@@ -55,6 +55,15 @@ bool WayIsDetermined(const scan_matching::DegeneracyResult& degeneracy,
   return weight > kDetermined;
 }
 
+// A covariance in the frame of the map, as seen by the robot at `pose`.
+Eigen::Matrix3d InFrameOf(const Pose2& pose,
+                          const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+  turn.topLeftCorner<2, 2>() << c, s, -s, c;
+  return turn * covariance * turn.transpose();
+}
+
 }  // namespace
 
 AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
@@ -237,6 +246,10 @@ void AdaptiveLocalTrajectoryBuilder2D::MatchScan(
       WayIsDetermined(match.report.degeneracy, last_pose, match.pose);
   matched.turn_is_determined =
       match.report.degeneracy.rotation_weight > kDetermined;
+  matched.covariance = InFrameOf(last_pose, match.report.covariance);
+  matched.from_velocity =
+      prediction.source == PredictionSource::kConstantVelocity &&
+      !match.relocated;
   record->set_interval(has_pose_ ? seconds - last_seconds_ : 0.);
   const OdometryState state = predictor_.AddMatch(seconds, matched);
   pose_ = match.pose;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/front_end/dropin/adaptive_local_trajectory_builder_2d.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -155,6 +156,50 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, FollowsARobotWithoutOdometry) {
   EXPECT_LT(result.max_error, 0.06);
   EXPECT_LT(result.max_turn_error, 0.03);
   EXPECT_EQ(result.records.back().odometry(), MatchRecord::ABSENT);
+}
+
+// Half a round wall tells next to nothing of a turn about its centre. Whoever
+// begins one there by chance must not go on with it.
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedWithinARoundWall) {
+  LocalTrajectoryBuilderOptions2D stock = StockOptions();
+  stock.mutable_submaps_options()->set_num_range_data(4);
+  Random random(7);
+  std::vector<double> errors;
+  for (int run = 0; run < 21; ++run) {
+    AdaptiveLocalTrajectoryBuilder2D builder(stock, OwnOptions(), {"scan"});
+    const Pose2 start(random.Uniform(-1.5, 1.5), random.Uniform(0., 2.4),
+                      random.Uniform(-kPi, kPi));
+    const double heading = random.Uniform(-kPi, kPi);
+    Pose2 first, last, truth;
+    for (int i = 0; i < 40; ++i) {
+      const double way = 0.03 * i;
+      truth = Pose2(way * std::cos(heading), way * std::sin(heading), 0.);
+      const Pose2 to_robot = (start * truth).Inverse();
+      cartographer::sensor::TimedPointCloudData scan;
+      scan.time = test::At(0.1 * i);
+      scan.origin = Eigen::Vector3f::Zero();
+      for (double angle = 0.; angle < kPi; angle += 0.01) {
+        const double range = 5. + random.Normal(0., 0.005);
+        const Pose2 point = to_robot * Pose2(range * std::cos(angle),
+                                             range * std::sin(angle), 0.);
+        cartographer::sensor::TimedRangefinderPoint seen;
+        seen.position = Eigen::Vector3f(static_cast<float>(point.x),
+                                        static_cast<float>(point.y), 0.f);
+        seen.time = 0.f;
+        scan.ranges.push_back(seen);
+      }
+      const auto matched = builder.AddRangeData("scan", scan);
+      ASSERT_NE(matched, nullptr);
+      last = ToPose2(matched->local_pose);
+      if (i == 0) first = last;
+    }
+    const Pose2 error = Between(truth, Between(first, last));
+    errors.push_back(std::hypot(error.x, error.y));
+  }
+  std::sort(errors.begin(), errors.end());
+  // 1.17 m were driven.
+  EXPECT_LT(errors[10], 0.06);
+  EXPECT_LT(errors[18], 0.25);
 }
 
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedInAGap) {

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/velocity_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "Eigen/Cholesky"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+// Standard deviation of the turn rate before anything is known of it, rad/s:
+// robots seldom wake up turning fast.
+constexpr double kFirstTurnRate = 0.2;
+
+Eigen::Matrix3d Symmetric(const Eigen::Matrix3d& matrix) {
+  return 0.5 * (matrix + matrix.transpose());
+}
+
+// Of the change of the velocity over `interval`, per second squared.
+Eigen::Matrix3d Change(const ConstantVelocityOptions& options,
+                       const double interval) {
+  const double speed =
+      std::min(options.speed_noise, options.acceleration_noise * interval);
+  const double turn = std::min(options.turn_rate_noise,
+                               options.turn_acceleration_noise * interval);
+  return Eigen::Vector3d(speed * speed, speed * speed, turn * turn)
+      .asDiagonal();
+}
+
+Eigen::Matrix3d Largest(const ConstantVelocityOptions& options) {
+  return Eigen::Vector3d(options.speed_noise * options.speed_noise,
+                         options.speed_noise * options.speed_noise,
+                         options.turn_rate_noise * options.turn_rate_noise)
+      .asDiagonal();
+}
+
+}  // namespace
+
+VelocityFilter::VelocityFilter(const ConstantVelocityOptions& options,
+                               const double translation_sigma,
+                               const double rotation_sigma)
+    : options_(options),
+      pose_covariance_(Eigen::Vector3d(translation_sigma * translation_sigma,
+                                       translation_sigma * translation_sigma,
+                                       rotation_sigma * rotation_sigma)
+                           .asDiagonal()),
+      covariance_(Largest(options)) {
+  covariance_(2, 2) =
+      std::min(covariance_(2, 2), kFirstTurnRate * kFirstTurnRate);
+}
+
+Pose2 VelocityFilter::Motion(const double interval) const {
+  const double time = options_.turn_time;
+  return Pose2(velocity_.x * interval, velocity_.y * interval,
+               velocity_.theta * time * -std::expm1(-interval / time));
+}
+
+Eigen::Matrix3d VelocityFilter::VelocityCovariance(
+    const double interval) const {
+  return covariance_ + Change(options_, interval);
+}
+
+Eigen::Matrix3d VelocityFilter::MotionCovariance(const double interval) const {
+  return interval * interval * VelocityCovariance(interval) + pose_covariance_;
+}
+
+void VelocityFilter::AddMatch(const double interval, const Pose2& motion,
+                              const Eigen::Matrix3d& covariance) {
+  const Pose2 predicted = Motion(interval);
+  const Eigen::Vector3d off(motion.x - predicted.x, motion.y - predicted.y,
+                            NormalizeAngle(motion.theta - predicted.theta));
+  const Eigen::Matrix3d before = VelocityCovariance(interval);
+  const Eigen::Matrix3d p = MotionCovariance(interval);
+  const Eigen::Matrix3d gain = interval * p.ldlt().solve(before).transpose();
+  const Eigen::Vector3d change = gain * off;
+  const Eigen::Matrix3d after =
+      Symmetric(before - gain * (p - covariance) * gain.transpose());
+  if (!change.allFinite() || !after.allFinite()) {
+    Restart(interval, motion);
+    return;
+  }
+  velocity_.x += change.x();
+  velocity_.y += change.y();
+  velocity_.theta *= std::exp(-interval / options_.turn_time);
+  velocity_.theta += change.z();
+  covariance_ = after;
+  // Never surer than nothing, never less sure than at first.
+  const Eigen::Vector3d largest = Largest(options_).diagonal();
+  for (int k = 0; k < 3; ++k) {
+    if (after(k, k) >= 0. && after(k, k) <= largest(k)) continue;
+    covariance_.row(k).setZero();
+    covariance_.col(k).setZero();
+    covariance_(k, k) = largest(k);
+  }
+}
+
+void VelocityFilter::Restart(const double interval, const Pose2& motion) {
+  velocity_ =
+      Pose2(motion.x / interval, motion.y / interval, motion.theta / interval);
+  covariance_ = 2. / (interval * interval) * pose_covariance_;
+  const Eigen::Matrix3d largest = Largest(options_);
+  covariance_ = covariance_.cwiseMin(largest);
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext
