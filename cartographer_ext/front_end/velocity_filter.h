@@ -13,7 +13,9 @@
 // Where the scan leaves a direction open, C is P, d is nothing, and the
 // velocity stays what it was; where it tells little, d is mostly chance, and
 // the plain difference of two poses would make a lasting drift of it. Between
-// scans V grows by the change of speed that is to be expected.
+// scans V grows by the change of speed that is to be expected, and the turn rate
+// dies away: robots turn to go straight again, and a turn that was begun by
+// mistake where the scan does not tell (within a round wall) comes to an end.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_VELOCITY_FILTER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_VELOCITY_FILTER_H_
 
