@@ -13,9 +13,10 @@
 // Where the scan leaves a direction open, C is P, d is nothing, and the
 // velocity stays what it was; where it tells little, d is mostly chance, and
 // the plain difference of two poses would make a lasting drift of it. Between
-// scans V grows by the change of speed that is to be expected, and the turn rate
-// dies away: robots turn to go straight again, and a turn that was begun by
-// mistake where the scan does not tell (within a round wall) comes to an end.
+// scans V grows by the change of speed that is to be expected, and the turn
+// rate dies away: robots turn to go straight again, and a turn that was begun
+// by mistake where the scan does not tell (within a round wall) comes to an
+// end.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_VELOCITY_FILTER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_VELOCITY_FILTER_H_
 
@@ -50,7 +51,7 @@ class VelocityFilter {
   // P above.
   Eigen::Matrix3d MotionCovariance(double interval) const;
 
-  // The match at the end of `interval` (> 0) began at Motion(interval).
+  // The match at the end of `interval` (> 0) began at Motion(interval)
   // with MotionCovariance(interval); `covariance` is what it left, in the frame
   // of the robot before.
   void AddMatch(double interval, const Pose2& motion,
