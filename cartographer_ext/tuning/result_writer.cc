@@ -11,6 +11,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/types/optional.h"
 #include "cartographer_ext/evaluation/lua_value.h"
+#include "cartographer_ext/tuning/comparable_trials.h"
 #include "cartographer_ext/tuning/sensitivity.h"
 
 namespace cartographer_ext {
@@ -28,16 +29,6 @@ std::string Change(const double before, const double after) {
 absl::optional<double> ObjectiveOf(const absl::optional<Trial>& trial) {
   if (!trial.has_value() || !trial->ok) return absl::nullopt;
   return trial->objective;
-}
-
-// Trials that can be compared: on whole recordings.
-void WholeTrials(const TuneResult& result, std::vector<Point>* points,
-                 std::vector<double>* objectives) {
-  for (const Trial& trial : result.trials) {
-    if (!trial.ok || trial.fidelity != 1.) continue;
-    points->push_back(trial.point);
-    objectives->push_back(trial.objective);
-  }
 }
 
 // Our blocks may be one table in several places, and tables in them may be left
@@ -216,15 +207,17 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
                     ", confidence: ", Confidence(key, context.inputs.size()),
                     "\n");
   }
-  std::vector<Point> points;
-  std::vector<double> objectives;
-  WholeTrials(result, &points, &objectives);
-  absl::StrAppendFormat(&text,
-                        "\nSensitivity, from %d trials on whole recordings:\n"
-                        "  effect  trend  key\n",
-                        points.size());
+  const ComparableTrials trials = SelectComparable(result.trials);
+  if (trials.points.size() < kLeastTrialsForSensitivity) {
+    absl::StrAppendFormat(
+        &text, "\nSensitivity: not known from %s, it takes %d of a kind\n",
+        ToText(trials), kLeastTrialsForSensitivity);
+    return text;
+  }
+  absl::StrAppend(&text, "\nSensitivity, from ", ToText(trials),
+                  ":\n  effect  trend  key\n");
   auto sensitivities =
-      ComputeSensitivity(context.parameters, points, objectives);
+      ComputeSensitivity(context.parameters, trials.points, trials.objectives);
   std::stable_sort(sensitivities.begin(), sensitivities.end(),
                    [](const Sensitivity& a, const Sensitivity& b) {
                      return a.effect > b.effect;
@@ -277,12 +270,12 @@ nlohmann::ordered_json ToJson(const TuneResult& result,
          {"before", fold.before},
          {"after", fold.after}});
   }
-  std::vector<Point> points;
-  std::vector<double> objectives;
-  WholeTrials(result, &points, &objectives);
+  const ComparableTrials trials = SelectComparable(result.trials);
+  json["sensitivity_trials"] = {{"fidelity", trials.fidelity},
+                                {"count", trials.points.size()}};
   json["sensitivity"] = nlohmann::ordered_json::array();
-  for (const Sensitivity& sensitivity :
-       ComputeSensitivity(context.parameters, points, objectives)) {
+  for (const Sensitivity& sensitivity : ComputeSensitivity(
+           context.parameters, trials.points, trials.objectives)) {
     json["sensitivity"].push_back({{"key", sensitivity.key},
                                    {"effect", sensitivity.effect},
                                    {"trend", sensitivity.trend}});

@@ -11,7 +11,6 @@ namespace cartographer_ext {
 namespace tuning {
 namespace {
 
-constexpr int kLeastTrials = 8;
 constexpr int kGroups = 4;
 
 double Mean(const std::vector<double>& values) {
@@ -96,7 +95,7 @@ std::vector<Sensitivity> ComputeSensitivity(
     Sensitivity sensitivity;
     sensitivity.key = parameters[i].key;
     sensitivity.trials = static_cast<int>(points.size());
-    if (sensitivity.trials >= kLeastTrials) {
+    if (points.size() >= kLeastTrialsForSensitivity) {
       std::vector<int> groups;
       std::vector<double> units;
       for (const Point& point : points) {

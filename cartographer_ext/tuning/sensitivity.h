@@ -14,6 +14,7 @@
 #ifndef CARTOGRAPHER_EXT_TUNING_SENSITIVITY_H_
 #define CARTOGRAPHER_EXT_TUNING_SENSITIVITY_H_
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@
 
 namespace cartographer_ext {
 namespace tuning {
+
+constexpr size_t kLeastTrialsForSensitivity = 8;
 
 struct Sensitivity {
   std::string key;
@@ -30,7 +33,7 @@ struct Sensitivity {
 };
 
 // `points` and their `objectives`; in the order of the parameters. All zero
-// with fewer than 8 trials.
+// with fewer trials than that.
 std::vector<Sensitivity> ComputeSensitivity(
     const std::vector<Parameter>& parameters, const std::vector<Point>& points,
     const std::vector<double>& objectives);

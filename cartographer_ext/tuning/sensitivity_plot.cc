@@ -15,6 +15,7 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/evaluation/lua_value.h"
 #include "cartographer_ext/io/picture.h"
+#include "cartographer_ext/tuning/comparable_trials.h"
 #include "cartographer_ext/tuning/sensitivity.h"
 
 namespace cartographer_ext {
@@ -26,23 +27,21 @@ constexpr double kCellWidth = 360., kCellHeight = 250.;
 constexpr double kHeader = 40.;
 constexpr double kLeft = 62., kRight = 14., kTop = 40., kBottom = 34.;
 
-struct Data {
-  std::vector<Point> points;
-  std::vector<double> objectives;
+struct Data : ComparableTrials {
+  // Whether the objectives of the whole recordings are on the same scale.
+  bool has_whole() const { return fidelity == 1.; }
   double low = 0., high = 1.;  // of the objective's axis
   bool is_log = false;
 };
 
 Data Collect(const TuneResult& result) {
   Data data;
-  for (const Trial& trial : result.trials) {
-    if (!trial.ok || trial.fidelity != 1.) continue;
-    data.points.push_back(trial.point);
-    data.objectives.push_back(trial.objective);
-  }
+  static_cast<ComparableTrials&>(data) = SelectComparable(result.trials);
   std::vector<double> all = data.objectives;
-  all.push_back(result.baseline.objective);
-  all.push_back(result.best.objective);
+  if (data.has_whole()) {
+    all.push_back(result.baseline.objective);
+    all.push_back(result.best.objective);
+  }
   data.low = *std::min_element(all.begin(), all.end());
   data.high = *std::max_element(all.begin(), all.end());
   data.is_log = data.low > 0. && data.high > 4. * data.low;
@@ -92,15 +91,17 @@ class Cell {
     SetColor(io::palette::kGrey);
     const double dashes[] = {4., 3.};
     cairo_set_dash(cairo_, dashes, 2, 0.);
-    const double x = X(result.baseline.point[index_]);
-    cairo_move_to(cairo_, x, kTop);
-    cairo_line_to(cairo_, x, kTop + Height());
-    cairo_stroke(cairo_);
+    VerticalLine(X(result.baseline.point[index_]));
     cairo_set_dash(cairo_, dashes, 0, 0.);
     SetColor(io::palette::kVermilion);
     cairo_set_line_width(cairo_, 2.);
-    Dot(X(result.best.point[index_]), Y(result.best.objective), 5.);
-    cairo_stroke(cairo_);
+    const double x = X(result.best.point[index_]);
+    if (data_.has_whole()) {
+      Dot(x, Y(result.best.objective), 5.);
+      cairo_stroke(cairo_);
+    } else {
+      VerticalLine(x);
+    }
   }
 
  private:
@@ -118,6 +119,11 @@ class Cell {
   void Dot(const double x, const double y, const double radius) {
     cairo_new_sub_path(cairo_);
     cairo_arc(cairo_, x, y, radius, 0., 2. * kPi);
+  }
+  void VerticalLine(const double x) {
+    cairo_move_to(cairo_, x, kTop);
+    cairo_line_to(cairo_, x, kTop + Height());
+    cairo_stroke(cairo_);
   }
   void Text(const double x, const double y, const std::string& text,
             const double size) {
@@ -196,9 +202,9 @@ void DrawAll(cairo_t* const cairo, const TuneResult& result,
   cairo_set_font_size(cairo, 15.);
   cairo_move_to(cairo, 12., 26.);
   cairo_show_text(cairo,
-                  absl::StrFormat("%s: %.4g before, %.4g best of %d trials",
+                  absl::StrFormat("%s: %.4g before, %.4g best; dots: %s",
                                   context.objective, result.baseline.objective,
-                                  result.best.objective, data.points.size())
+                                  result.best.objective, ToText(data))
                       .c_str());
   for (size_t i = 0; i < order.size(); ++i) {
     cairo_save(cairo);

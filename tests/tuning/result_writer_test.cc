@@ -122,7 +122,7 @@ TEST(ResultWriterTest, TheTableNamesEveryKey) {
   EXPECT_THAT(text, HasSubstr("1 failed"));
   EXPECT_THAT(text, HasSubstr("A.score\n  0.5 -> 0.625"));
   EXPECT_THAT(text, HasSubstr("Held out   8 -> 6  -25.0 %"));
-  EXPECT_THAT(text, HasSubstr("Sensitivity, from 2 trials"));
+  EXPECT_THAT(text, HasSubstr("Sensitivity: not known from 2 trials on whole"));
 }
 
 TEST(ResultWriterTest, JsonHasTheAgreedKeys) {
