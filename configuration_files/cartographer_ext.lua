@@ -389,7 +389,7 @@ CARTOGRAPHER_EXT.constraint_builder = {
     min_final_score = 0.01,
     -- Candidates that the prior of the mixture counts as. Stronger is safer
     -- with few candidates. [> 0 and <= 100000]
-    prior_strength = 100,
+    prior_strength = 500,
     -- Candidates the mixture remembers. [>= 1 and <= 1000000]
     capacity = 500,
   },

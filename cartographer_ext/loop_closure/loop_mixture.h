@@ -50,7 +50,7 @@ struct LoopMixtureOptions {
   // Pseudo-observations per component, > 0. Few candidates are false, so it is
   // the prior above all that says what they are like; a weak one lets the
   // component of the false ones take over poor true ones.
-  double prior_strength = 100.;
+  double prior_strength = 500.;
   int capacity = 500;       // candidates remembered, > 0
   int max_iterations = 50;  // of EM per fit
   double tolerance = 1e-6;  // change of the mean log-posterior that stops EM

@@ -188,12 +188,17 @@ bool LoopVerifier::VerifyScores(const LoopCandidate& candidate,
                       &LoopDecision::Times::set_temporal_seconds);
     const int window =
         VariableWindow(ToVariableWindowOptions(options_), candidate.submap_age);
+    std::vector<const HistoryNode*> sequence = history_.Sequence(
+        candidate.node.trajectory_id, candidate.node.node_index, window,
+        options_.temporal_verification().spacing(), kScanPerNode * window);
+    sequence.erase(sequence.begin(),
+                   std::find_if(sequence.begin(), sequence.end(),
+                                [&](const HistoryNode* const node) {
+                                  return node->node_index >=
+                                         candidate.first_node_index;
+                                }));
     const TemporalResult result = VerifySequence(
-        temporal_options_,
-        history_.Sequence(
-            candidate.node.trajectory_id, candidate.node.node_index, window,
-            options_.temporal_verification().spacing(), kScanPerNode * window),
-        candidate.refined, candidate.maps);
+        temporal_options_, sequence, candidate.refined, candidate.maps);
     const double threshold =
         options_.dynamic_threshold().enabled()
             ? threshold_.Current()

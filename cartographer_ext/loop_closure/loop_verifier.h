@@ -73,6 +73,8 @@ struct LoopCandidate {
   std::vector<ReferenceMap> maps;
   // Found without a prediction, or not to be believed for it.
   bool unpredicted = false;
+  // The way to older nodes of the run is not to be believed.
+  int first_node_index = 0;
 };
 
 struct LoopOutcome {

@@ -143,6 +143,20 @@ TEST_F(LoopVerifierTest, AnotherWayScoresLow) {
   EXPECT_FALSE(outcomes[0].decision.has_innovation());
 }
 
+TEST_F(LoopVerifierTest, ComparesNothingFromBeforeTheFirstNode) {
+  MakeVerifier();
+  LoopCandidate candidate = Candidate(3, 120, 0., &world_);
+  candidate.first_node_index = 116;
+  verifier_->Process(candidate);
+  candidate.first_node_index = 120;
+  verifier_->Process(candidate);
+  const std::vector<LoopOutcome> outcomes = verifier_->Flush();
+  ASSERT_EQ(outcomes.size(), 2u);
+  EXPECT_EQ(outcomes[0].decision.temporal().num_query(), 5);
+  EXPECT_EQ(outcomes[1].decision.temporal().outcome(),
+            LoopDecision::Temporal::SHORT_HISTORY);
+}
+
 TEST_F(LoopVerifierTest, LowFinalScoreIsRejected) {
   options_.mutable_fusion()->set_min_final_score(0.95);
   MakeVerifier();

@@ -136,6 +136,7 @@ PlaceResult PlaceSearch::Search(PlaceNode node,
       if (!match.has_value()) continue;
       PlacedNode placed;
       placed.node_index = from.node_index;
+      placed.first_node_index = decision.nodes.front();
       placed.time = from.time;
       placed.from_robot = from.from_robot;
       placed.submap_index = submap.submap_index;

@@ -46,6 +46,9 @@ struct PlaceNode {
 // A node that belongs to the place that was decided for.
 struct PlacedNode {
   int node_index = 0;
+  // The first one that belongs to the place: the motion from those before may
+  // be wrong.
+  int first_node_index = 0;
   int64_t time = 0;
   Pose2 from_robot;
   int submap_index = 0;

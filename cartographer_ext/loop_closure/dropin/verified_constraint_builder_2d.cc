@@ -403,6 +403,7 @@ void VerifiedConstraintBuilder2D::VerifyQuery(const PlaceQuery& query) {
     loop.grid_score = placed.score;
     loop.information = placed.information;
     loop.unpredicted = true;
+    loop.first_node_index = placed.first_node_index;
     loop.search.set_full_submap(true);
     ToProto(Between(entry.local_pose, placed.matched) * placed.from_robot,
             loop.search.mutable_matched());

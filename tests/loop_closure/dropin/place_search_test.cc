@@ -101,6 +101,7 @@ TEST_F(PlaceSearchTest, DecidesAfterAFewNodesAndGivesThemOutOnce) {
     const int i = k / 2;
     EXPECT_EQ(placed.node_index, i);
     EXPECT_NE(placed.submap_index, result.placed[k ^ 1].submap_index);
+    EXPECT_EQ(placed.first_node_index, 0);
     EXPECT_EQ(placed.time, 100 + i);
     EXPECT_GT(placed.score, 0.5);
     EXPECT_LT(Between(Truth(i), placed.refined).translation().norm(), 0.1);
