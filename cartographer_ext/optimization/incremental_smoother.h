@@ -140,7 +140,7 @@ class IncrementalSmoother {
   SolverOptions EpochSolverOptions() const;
   void DecideLoops();
   void RebuildFactor(RobustSolver* batch);
-  std::vector<Candidate> FindCandidates(int first_edge) const;
+  std::vector<Candidate> FindCandidates(int first_edge, double majority) const;
   std::vector<int> ChooseSeeds(std::vector<Candidate> candidates) const;
   // Where the information is honest, true loops have chi2 around 3: the epochs'
   // kernel then weakens them and leaves some behind. True when most loops agree
@@ -148,10 +148,11 @@ class IncrementalSmoother {
   bool KernelIsNarrow() const;
   // At the end, where rejected loops are within reach.
   void TryWiderKernels(RobustSolver* solver);
-  // Whether enough loops back `poses` as a hypothesis.
-  bool IsSupported(const std::vector<Pose2>& poses) const;
+  // Whether enough loops, `majority` of all or more, back `poses` as a
+  // hypothesis.
+  bool IsSupported(const std::vector<Pose2>& poses, double majority) const;
   // True when a hypothesis was taken over into the poses.
-  bool TryHypotheses(int first_edge, RobustSolver* solver);
+  bool TryHypotheses(int first_edge, double majority, RobustSolver* solver);
 
   const SmootherOptions options_;
   std::vector<WhitenedEdge> edges_;

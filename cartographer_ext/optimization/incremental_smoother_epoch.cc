@@ -21,7 +21,12 @@ constexpr int kFinalPolishRounds = 30;
 constexpr int kMinRevisits = 3;
 constexpr int kManyLoops = 20;
 constexpr double kNearlyAll = 0.9;
-constexpr double kHypothesisMajority = 0.8;
+// Share of all loops that must agree with a hypothesis: at the end of an epoch,
+// where time presses, and at the end of the data.
+constexpr double kEpochMajority = 0.8;
+constexpr double kFinalMajority = 0.5;
+// Share of all loops that a hypothesis at the end of the data may bring in.
+constexpr double kFinalProspect = 0.1;
 // For what is not solved to the end; angles make the first step rough.
 constexpr double kWideGate = 4. * kChi2Gate;
 
@@ -86,7 +91,7 @@ void IncrementalSmoother::EndEpoch() {
   RebuildFactor(&batch);
   if (!status_.ok()) return;
   UpdateEstimate();
-  if (TryHypotheses(first_edge_of_epoch_, &batch)) {
+  if (TryHypotheses(first_edge_of_epoch_, kEpochMajority, &batch)) {
     DecideLoops();
     RebuildFactor(&batch);
     if (!status_.ok()) return;
@@ -124,7 +129,7 @@ SolverOptions IncrementalSmoother::EpochSolverOptions() const {
 }
 
 std::vector<IncrementalSmoother::Candidate> IncrementalSmoother::FindCandidates(
-    const int first_edge) const {
+    const int first_edge, const double majority) const {
   std::vector<int> rejected;
   for (int i = first_edge; i < static_cast<int>(edges_.size()); ++i) {
     if (edges_[i].is_loop && !accepted_[i]) rejected.push_back(i);
@@ -146,7 +151,8 @@ std::vector<IncrementalSmoother::Candidate> IncrementalSmoother::FindCandidates(
     candidate.innovation = residual.dot(candidate.gain);
     if (candidate.innovation < options_.gate) result.push_back(candidate);
   }
-  // Without the prospect of a majority the hypotheses need not be tried.
+  // Without the prospect of a majority the hypotheses need not be tried, nor,
+  // where a smaller one will do, for a few loops more.
   int loops = 0, agreeing = 0;
   for (size_t i = 0; i != edges_.size(); ++i) {
     loops += edges_[i].is_loop;
@@ -155,7 +161,12 @@ std::vector<IncrementalSmoother::Candidate> IncrementalSmoother::FindCandidates(
   const double prospect = tests == 0 ? 0.
                                      : static_cast<double>(result.size()) /
                                            tests * (loops - agreeing);
-  if (agreeing + prospect < kHypothesisMajority * loops) result.clear();
+  if (agreeing + prospect < majority * loops ||
+      (majority < kEpochMajority &&
+       agreeing + prospect < kEpochMajority * loops &&
+       prospect < kFinalProspect * loops)) {
+    result.clear();
+  }
   return result;
 }
 
@@ -219,10 +230,9 @@ std::vector<int> IncrementalSmoother::ChooseSeeds(
   return seeds;
 }
 
-bool IncrementalSmoother::IsSupported(const std::vector<Pose2>& poses) const {
-  if (!LoopsAgree(edges_, poses, options_.gate, kHypothesisMajority)) {
-    return false;
-  }
+bool IncrementalSmoother::IsSupported(const std::vector<Pose2>& poses,
+                                      const double majority) const {
+  if (!LoopsAgree(edges_, poses, options_.gate, majority)) return false;
   const int revisits = NewRevisits(edges_, poses_, poses, options_.gate);
   if (revisits >= kMinRevisits) return true;
   // A small map has few stretches; there nearly all of its loops must agree.
@@ -233,9 +243,11 @@ bool IncrementalSmoother::IsSupported(const std::vector<Pose2>& poses) const {
 }
 
 bool IncrementalSmoother::TryHypotheses(const int first_edge,
+                                        const double majority,
                                         RobustSolver* const batch) {
   if (options_.max_hypotheses <= 0) return false;
-  const std::vector<Candidate> candidates = FindCandidates(first_edge);
+  const std::vector<Candidate> candidates =
+      FindCandidates(first_edge, majority);
   if (candidates.empty()) return false;
   double lowest = TruncatedCost(edges_, poses_) - options_.gate;
   bool improved = false;
@@ -248,12 +260,12 @@ bool IncrementalSmoother::TryHypotheses(const int first_edge,
     batch->Solve(solver, &poses);
     edges_[seed].is_loop = true;
     // Most hypotheses stand alone; that shows before the polish.
-    if (!LoopsAgree(edges_, poses, kWideGate, kHypothesisMajority)) continue;
+    if (!LoopsAgree(edges_, poses, kWideGate, majority)) continue;
     batch->Solve(solver, &poses);
     PolishTruncated(options_.gate, options_.polish_rounds, batch, &poses,
                     nullptr);
     const double cost = TruncatedCost(edges_, poses);
-    if (cost < lowest && IsSupported(poses)) {
+    if (cost < lowest && IsSupported(poses, majority)) {
       lowest = cost;
       best = poses;
       improved = true;
@@ -270,7 +282,8 @@ void IncrementalSmoother::Finish() {
     return;
   }
   RobustSolver batch(edges_, RobustSolver::LastPoseLast());
-  for (int round = 0; round != kMaxFinalRounds && TryHypotheses(0, &batch);
+  for (int round = 0;
+       round != kMaxFinalRounds && TryHypotheses(0, kFinalMajority, &batch);
        ++round) {
     DecideLoops();
     RebuildFactor(&batch);

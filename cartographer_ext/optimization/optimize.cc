@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "cartographer_ext/optimization/joined_trajectories.h"
 #include "cartographer_ext/optimization/robust_solver.h"
 #include "cartographer_ext/optimization/switchable_constraints.h"
 
@@ -21,6 +22,8 @@ constexpr int kPolishRounds = 30;
 constexpr double kFixedSigma = 1e-5;
 // A map that has lost fewer loops than this is not folded.
 constexpr int kUnfolded = 20;
+// So many loops cost little whatever they fill.
+constexpr size_t kFewLoops = 500;
 // Relative difference of truncated costs of one and the same optimum.
 constexpr double kSame = 1e-6;
 
@@ -90,7 +93,7 @@ struct Member {
 bool HasFewLoops(const PoseGraph& graph) {
   size_t loops = 0;
   for (const PoseGraphEdge& edge : graph.edges) loops += edge.is_loop;
-  return 2 * loops <= graph.poses.size();
+  return loops <= kFewLoops || 2 * loops <= graph.poses.size();
 }
 
 bool RejectsSome(const std::vector<WhitenedEdge>& edges,
@@ -130,6 +133,9 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
   ReplayResult replay;
   const bool replayed = Replay(graph, options.smoother, &replay).ok();
   if (replayed) add("r_isam", replay.poses);
+  if (!replayed && JoinTrajectories(graph, options.smoother, &replay.poses)) {
+    add("joined", replay.poses);
+  }
   add_kernel("dcs", KernelType::kDcs, graph.poses);
   add_kernel("gm", KernelType::kGemanMcClure, graph.poses);
   add_kernel("acs", KernelType::kAcs, graph.poses);

@@ -6,6 +6,7 @@
 //
 // `auto` guards against the local minima which every single kernel has:
 //   1. an incremental replay of the graph (R-iSAM), which starts from nothing,
+//      or, of several trajectories, a replay of each (joined_trajectories.h),
 //      and DCS, GM and ACS from the graph's own poses;
 //   2. unless the replay and DCS end at the same cost: DCS from the replay, a
 //      second replay with a wider kernel, and with few loops GNC;

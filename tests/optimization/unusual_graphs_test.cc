@@ -121,6 +121,25 @@ TEST(UnusualGraphsTest, RingWithWrongLoops) {
   ExpectRight(world, 0.3);
 }
 
+// The drift of a round is many standard deviations of a loop.
+TEST(UnusualGraphsTest, ReplayOfARingKeepsItsLoops) {
+  const Eigen::Matrix3d information = Diagonal(1e4, 4e4);
+  for (const uint64_t seed : {1, 2, 3, 4, 5}) {
+    World world = Ring(0.01, information, seed);
+    const size_t num_right = world.graph.edges.size();
+    AddWrongLoops(15, information, &world.graph);
+    OptimizeOptions options;
+    options.method = "r_isam";
+    const auto result = Optimize(world.graph, options);
+    ASSERT_TRUE(result.ok());
+    int lost = 0;
+    for (size_t i = 0; i != num_right; ++i) lost += !result->accepted[i];
+    EXPECT_LE(lost, 2) << seed;
+    EXPECT_LT(AbsoluteTrajectoryError(result->poses, world.optimum), 0.1)
+        << seed;
+  }
+}
+
 TEST(UnusualGraphsTest, WithoutNoise) {
   World world = Ring(0., Diagonal(1e4, 4e4), 1);
   ExpectRight(world, 1e-9);
@@ -253,6 +272,56 @@ TEST(UnusualGraphsTest, TrajectoriesJoinedByLoops) {
     EXPECT_LT(AbsoluteTrajectoryError(result.second.poses, world.truth), 0.2)
         << result.first;
     EXPECT_FALSE(result.second.accepted.back()) << result.first;
+  }
+}
+
+// Two trajectories with wrong loops of their own, and three right loops and a
+// wrong one between them: no member alone is right for all of these.
+TEST(UnusualGraphsTest, TrajectoriesJoinedByFewLoops) {
+  const Eigen::Matrix3d information = Diagonal(1e4, 4e4);
+  for (const uint64_t seed : {1, 2, 3}) {
+    const World first = Ring(0.01, information, seed);
+    const World second = Ring(0.01, information, seed + 10);
+    PoseGraph graph = first.graph;
+    AddWrongLoops(30, information, &graph);
+    const int offset = graph.poses.size();
+    for (size_t i = 0; i != second.truth.size(); ++i) {
+      graph.ids.push_back(offset + 10000 + i);
+      graph.poses.push_back(Pose2(100., 0., 0.) * second.graph.poses[i]);
+    }
+    for (PoseGraphEdge edge : second.graph.edges) {
+      edge.from += offset;
+      edge.to += offset;
+      if (!edge.is_loop) graph.edges.push_back(edge);
+    }
+    const auto join = [&](const int from, const int to, const Pose2& z) {
+      PoseGraphEdge edge;
+      edge.from = from;
+      edge.to = offset + to;
+      edge.is_loop = true;
+      edge.measurement = z;
+      edge.information = information;
+      graph.edges.push_back(edge);
+    };
+    for (const int k : {3, 50, 90}) {
+      join(k, k,
+           Between(first.truth[k], Pose2(100., 0., 0.) * second.truth[k]));
+    }
+    join(10, 70, Pose2());
+    const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+    OptimizeOptions options;
+    options.adaptive_gate = false;
+    const auto best = Optimize(graph, options);
+    ASSERT_TRUE(best.ok());
+    EXPECT_FALSE(best->accepted.back());
+    for (size_t i = 2; i != 5; ++i) {
+      EXPECT_TRUE(best->accepted[graph.edges.size() - i]) << seed;
+    }
+    for (const auto& result : RunAll(graph, "r_isam")) {
+      EXPECT_LE(best->truncated_chi2,
+                (1. + 1e-9) * TruncatedCost(edges, result.second.poses))
+          << result.first << " " << seed;
+    }
   }
 }
 
