@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <utility>
 
 #include "glog/logging.h"
@@ -54,8 +55,10 @@ void ThreadPool::NotifyDependenciesCompleted(Task* const task) {
 
 void ThreadPool::DoWork() {
 #ifdef __linux__
-  // On Linux this concerns the calling thread alone.
-  CHECK_NE(nice(10), -1);
+  // On Linux this concerns the calling thread alone. -1 is a legal answer to
+  // programs that were started at -11.
+  errno = 0;
+  PCHECK(nice(10) != -1 || errno == 0);
 #endif
   const auto has_news = [this]() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
     return !ready_.empty() || !running_;
