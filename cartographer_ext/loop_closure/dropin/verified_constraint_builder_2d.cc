@@ -111,9 +111,10 @@ SubmapEntry* VerifiedConstraintBuilder2D::Offer(const SubmapId& submap_id,
   const bool is_new = kept == nullptr;
   if (is_new) kept = std::make_shared<SubmapEntry>();
   SubmapEntry* const entry = kept.get();
-  entry->submap = submap;
   const auto newest = newest_nodes_.find(submap_id.trajectory_id);
   if (is_new) {
+    // Not again: tasks read it.
+    entry->submap = submap;
     entry->local_pose = PlanarPose(ComputeSubmapPose(*submap));
     entry->first_group = num_groups_;
     if (newest != newest_nodes_.end()) {
