@@ -115,12 +115,14 @@ font-size:.85rem;white-space:pre-wrap;overflow-wrap:anywhere}
 main{max-width:none;padding:0}nav,.screen-only{display:none}
 .print-only{display:block}.pair.print-only{display:grid}
 h2{margin-top:22px}h2,h3,h2+p{break-after:avoid}
-tr,.scroll,pre,.verdict{break-inside:avoid}.scroll{overflow:visible}
+tr,.scroll,pre,.verdict,.tiles{break-inside:avoid}
+.verdict{font-size:9.5pt}.tiles{grid-template-columns:repeat(6,1fr)}
+.scroll{overflow:visible}
 table{font-size:8.5pt}th,td{padding:2px 7px 2px 0}.number{white-space:normal}
 .soft,figcaption,.legend{font-size:8.5pt;line-height:1.35}
 .grid3{grid-template-columns:repeat(3,1fr);gap:8px}
 .grid3 svg.map-figure{height:6.5cm}
-svg.map-figure{max-height:10.5cm}#map+figure svg.map-figure{max-height:17cm}}
+svg.map-figure{max-height:9.3cm}#map+figure svg.map-figure{max-height:17cm}}
 )css";
 }
 
