@@ -400,8 +400,11 @@ CARTOGRAPHER_EXT.constraint_builder = {
     alpha = 1.2,
     -- Exponent of the final score for the rotation. [>= 0 and <= 20]
     beta = 1.5,
-    -- The final score that leaves the weights as they are. [> 0 and <= 1]
-    reference_score = 1,
+    -- The final score that leaves the weights as they are: that of an
+    -- ordinary loop. Higher scores pull more. With 1 (the paper) every loop
+    -- pulls less than without confidence weights, in poor maps so much less
+    -- that they bend. [> 0 and <= 1]
+    reference_score = 0.6,
     -- Lower final scores count as this. [> 0 and <= 1]
     minimum_score = 0.001,
     -- Whether loops pull less along what their match leaves open, as the way

@@ -27,10 +27,10 @@ namespace cartographer_ext {
 namespace loop_closure {
 
 struct ConfidenceWeightOptions {
-  double alpha = 1.2;           // translation exponent, >= 0
-  double beta = 1.5;            // rotation exponent, >= 0
-  double reference_score = 1.;  // S_ref, > 0
-  double minimum_score = 1e-3;  // scores below count as this one, > 0
+  double alpha = 1.2;            // translation exponent, >= 0
+  double beta = 1.5;             // rotation exponent, >= 0
+  double reference_score = 0.6;  // S_ref, > 0
+  double minimum_score = 1e-3;   // scores below count as this one, > 0
 };
 
 struct ConstraintWeights {

@@ -21,6 +21,7 @@ TEST(ConstraintInformationTest, EquationElevenDoesNotDependOnU) {
 
 TEST(ConstraintInformationTest, WeightsAreSquareRootsOfInformation) {
   ConfidenceWeightOptions options;
+  options.reference_score = 1.;
   const ConstraintWeights stock{1.1e4, 1e5};
   const ConstraintWeights at_reference = ConfidenceWeights(options, stock, 1.);
   EXPECT_DOUBLE_EQ(at_reference.translation, 1.1e4);
