@@ -27,7 +27,7 @@ constexpr size_t kSubmapsPerNode = 4;
 constexpr int kNodesWhenKnown = 5;
 
 PlaceTrackerOptions ToPlaceTrackerOptions(
-    const proto::LoopClosureOptions::Localization& from) {
+    const proto::LocalizationOptions& from) {
   PlaceTrackerOptions to;
   to.max_nodes = from.max_nodes();
   to.significance = from.significance();
@@ -46,7 +46,7 @@ bool Covers(const Submap2D& submap, const Pose2& pose) {
 
 }  // namespace
 
-PlaceSearch::PlaceSearch(const proto::LoopClosureOptions::Localization& options,
+PlaceSearch::PlaceSearch(const proto::LocalizationOptions& options,
                          const double min_score)
     : options_(options),
       min_score_(min_score),

@@ -19,9 +19,9 @@
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/localization_options.pb.h"
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
 #include "cartographer_ext/loop_closure/place_tracker.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -81,8 +81,7 @@ class PlaceSearch {
       const cartographer::mapping::Submap2D& submap,
       const cartographer::sensor::PointCloud& cloud, const Pose2& pose)>;
 
-  PlaceSearch(const proto::LoopClosureOptions::Localization& options,
-              double min_score);
+  PlaceSearch(const proto::LocalizationOptions& options, double min_score);
 
   // The next node of the run; places are not followed to nodes that are older
   // than the one before. `is_known`: its place is thought to be known, and
@@ -98,7 +97,7 @@ class PlaceSearch {
   void DeleteNodes(int last_node_index);
 
  private:
-  const proto::LoopClosureOptions::Localization options_;
+  const proto::LocalizationOptions options_;
   const double min_score_;
   PlaceTracker tracker_;
   std::map<int, PlaceNode> nodes_;  // those of the tracker

@@ -7,6 +7,7 @@
 
 #include "absl/memory/memory.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
+#include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
 #include "tests/host/mapping_test_helpers.h"
@@ -75,7 +76,7 @@ class PlaceSearchTest : public testing::Test {
                              const Pose2& pose) { return pose; });
   }
 
-  proto::LoopClosureOptions::Localization options_;
+  proto::LocalizationOptions options_;
   host::ValueConversionTables tables_;
   std::vector<std::unique_ptr<Submap2D>> submaps_;
   std::vector<std::unique_ptr<const SubmapMatcher>> matchers_;
