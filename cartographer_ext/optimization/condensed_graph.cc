@@ -185,7 +185,10 @@ class Condenser {
 
   void AddOthers() {
     // By the poses that they join.
-    std::vector<std::pair<std::pair<int, int>, PoseGraphEdge>> trusted;
+    using Key = std::pair<std::pair<int, int>, int>;  // and number of the edge
+    std::vector<Key> keys;
+    std::vector<PoseGraphEdge> trusted;
+    trusted.reserve(graph_.edges.size());
     for (size_t i = 0; i != graph_.edges.size(); ++i) {
       if (is_neighbour_[i]) continue;
       PoseGraphEdge edge = graph_.edges[i];
@@ -203,18 +206,17 @@ class Condenser {
       if (edge.is_loop) {
         AddEdge(edge, i);
       } else {
-        trusted.push_back({{edge.from, edge.to}, edge});
+        keys.push_back({{edge.from, edge.to}, static_cast<int>(keys.size())});
+        trusted.push_back(edge);
       }
     }
-    using Entry = std::pair<std::pair<int, int>, PoseGraphEdge>;
-    std::stable_sort(
-        trusted.begin(), trusted.end(),
-        [](const Entry& a, const Entry& b) { return a.first < b.first; });
-    for (size_t k = 0; k != trusted.size(); ++k) {
-      if (k != 0 && trusted[k].first == trusted[k - 1].first) {
-        Merge(trusted[k].second, &result_.graph.edges.back());
+    std::sort(keys.begin(), keys.end());
+    for (size_t k = 0; k != keys.size(); ++k) {
+      const PoseGraphEdge& edge = trusted[keys[k].second];
+      if (k != 0 && keys[k].first == keys[k - 1].first) {
+        Merge(edge, &result_.graph.edges.back());
       } else {
-        AddEdge(trusted[k].second, -1);
+        AddEdge(edge, -1);
       }
     }
   }

@@ -78,10 +78,11 @@ RobustOptimizationProblem2D::Problem RobustOptimizationProblem2D::MakeProblem(
   std::map<SubmapId, NodeId> first_node;
   for (const Constraint& constraint : constraints) {
     if (constraint.tag != Constraint::INTRA_SUBMAP) continue;
-    const auto inserted =
-        first_node.emplace(constraint.submap_id, constraint.node_id);
-    if (!inserted.second && constraint.node_id < inserted.first->second) {
-      inserted.first->second = constraint.node_id;
+    const auto found = first_node.find(constraint.submap_id);
+    if (found == first_node.end()) {
+      first_node.emplace(constraint.submap_id, constraint.node_id);
+    } else if (constraint.node_id < found->second) {
+      found->second = constraint.node_id;
     }
   }
   std::map<NodeId, std::vector<SubmapId>> submaps_of_node;
@@ -112,8 +113,8 @@ RobustOptimizationProblem2D::Problem RobustOptimizationProblem2D::MakeProblem(
   // The stock problem holds the very first submap.
   if (!submaps.empty()) add_submap((*submaps.begin()).id);
   for (const auto& node : stock_.node_data()) {
-    vertex_of_node.emplace(
-        node.id,
+    vertex_of_node.emplace_hint(
+        vertex_of_node.end(), node.id,
         add_vertex(node.id.trajectory_id, ToPose2(node.data.global_pose_2d)));
     const auto of_node = submaps_of_node.find(node.id);
     if (of_node == submaps_of_node.end()) continue;
@@ -122,10 +123,16 @@ RobustOptimizationProblem2D::Problem RobustOptimizationProblem2D::MakeProblem(
   for (const auto& submap : submaps) add_submap(submap.id);
 
   const double scale = WeightScale(constraints, extension_.loop_sigma());
+  graph.edges.reserve(constraints.size() + graph.poses.size());
+  problem.constraint_of_edge.reserve(constraints.size() + graph.poses.size());
+  // Constraints of a node mostly follow each other.
+  auto node = vertex_of_node.end();
   for (size_t i = 0; i != constraints.size(); ++i) {
     const Constraint& constraint = constraints[i];
     const auto submap = vertex_of_submap.find(constraint.submap_id);
-    const auto node = vertex_of_node.find(constraint.node_id);
+    if (node == vertex_of_node.end() || !(node->first == constraint.node_id)) {
+      node = vertex_of_node.find(constraint.node_id);
+    }
     if (submap == vertex_of_submap.end() || node == vertex_of_node.end() ||
         !(constraint.pose.translation_weight > 0.) ||
         !(constraint.pose.rotation_weight > 0.)) {
@@ -149,14 +156,16 @@ RobustOptimizationProblem2D::Problem RobustOptimizationProblem2D::MakeProblem(
     if (!use_local_slam) break;
     const auto of_trajectory = nodes.trajectory(trajectory_id);
     auto previous = of_trajectory.begin();
+    // Both are in the order of the ids.
+    auto vertex = vertex_of_node.find((*previous).id);
     for (auto next = std::next(previous); next != of_trajectory.end();
-         previous = next, ++next) {
+         previous = next, ++next, ++vertex) {
       const auto first = *previous;
       const auto second = *next;
       if (second.id.node_index != first.id.node_index + 1) continue;
       PoseGraphEdge edge;
-      edge.from = vertex_of_node.at(first.id);
-      edge.to = vertex_of_node.at(second.id);
+      edge.from = vertex->second;
+      edge.to = std::next(vertex)->second;
       edge.measurement = ToPose2(first.data.local_pose_2d.inverse() *
                                  second.data.local_pose_2d);
       edge.information =
@@ -228,7 +237,8 @@ RobustOptimizationProblem2D::Select(
   for (size_t i = 0; i != problem.graph.edges.size(); ++i) {
     const int index = problem.constraint_of_edge[i];
     options.left_out_before[i] =
-        index >= 0 && left_out_.count(KeyOf(constraints[index])) != 0;
+        index >= 0 && problem.graph.edges[i].is_loop &&
+        left_out_.count(KeyOf(constraints[index])) != 0;
   }
   const LoopSelection selection =
       SelectLoops(problem.graph, problem.neighbours, options);
