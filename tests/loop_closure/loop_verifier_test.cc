@@ -121,9 +121,11 @@ TEST_F(LoopVerifierTest, ConfirmedLoopsGoThroughAllStages) {
     EXPECT_LT(decision.innovation().chi_square(), 1e-6);
     EXPECT_EQ(decision.subset().support(), 1);
     EXPECT_NEAR(outcome.weights.translation,
-                1000. * std::pow(decision.fusion().final_score(), 0.6), 1e-6);
+                1000. * std::pow(decision.fusion().final_score() / 0.6, 0.6),
+                1e-6);
     EXPECT_NEAR(outcome.weights.rotation,
-                2000. * std::pow(decision.fusion().final_score(), 0.75), 1e-6);
+                2000. * std::pow(decision.fusion().final_score() / 0.6, 0.75),
+                1e-6);
   }
   EXPECT_EQ(outcomes[0].decision.candidate(), 0);
   EXPECT_EQ(outcomes[0].decision.subset().num_tests(), 2);
