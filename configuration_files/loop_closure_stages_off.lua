@@ -19,3 +19,4 @@ loops.fusion.enabled = false
 loops.information.enabled = false
 loops.compatible_subset.enabled = false
 loops.innovation_veto.enabled = false
+loops.localization.enabled = false
