@@ -10,8 +10,8 @@
 #include "cartographer_ext/options/option_description.h"
 #include "cartographer_ext/scan_matcher_options.pb.h"
 #include "cartographer_ext/swaps.h"
-#include "gmock/gmock.h"
 #include "glog/logging.h"
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {

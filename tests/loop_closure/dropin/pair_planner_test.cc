@@ -149,7 +149,8 @@ TEST_F(PairPlannerTest, WatchesBesidesTheSearchAroundThePrediction) {
   LoopEdge loop;
   loop.a = LoopVerifier::PathKey(SubmapKey{0, 2});
   loop.b = NodeKey{1, 0};
-  EXPECT_FALSE(planner_->AddAcceptedLoop(SubmapId{0, 2}, NodeKey{1, 0}, 0, loop));
+  EXPECT_FALSE(
+      planner_->AddAcceptedLoop(SubmapId{0, 2}, NodeKey{1, 0}, 0, loop));
   EXPECT_TRUE(planner_->localization()->IsKnown(1, 0));
   const std::vector<PlannedPair> planned = Plan(WithMap(10, false));
   // In the order they were offered, some twice.
