@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/evaluation/golden_search.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +15,7 @@
 #include "cartographer/mapping/internal/2d/scan_matching/fast_correlative_scan_matcher_2d.h"
 #include "cartographer/sensor/compressed_point_cloud.h"
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/tokens.h"
 #include "cartographer_ext/scan_matching/dropin/fast_correlative_matcher_2d.h"
@@ -141,13 +140,6 @@ absl::StatusOr<std::map<std::string, int>> ReadHeader(
   return columns;
 }
 
-double ThreadCpuMicroseconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) +
-         1e-3 * static_cast<double>(now.tv_nsec);
-}
-
 Rigid2d ToRigid(const Pose2& pose) {
   return Rigid2d({pose.x, pose.y}, pose.theta);
 }
@@ -246,9 +238,9 @@ class Searcher {
 // Lowers `*minimum` to the CPU time that `run` takes.
 template <typename Function>
 void Time(double* const minimum, const Function& run) {
-  const double start = ThreadCpuMicroseconds();
+  const double start = ThreadCpuSeconds();
   run();
-  const double time = ThreadCpuMicroseconds() - start;
+  const double time = 1e6 * (ThreadCpuSeconds() - start);
   if (*minimum == 0. || time < *minimum) *minimum = time;
 }
 

@@ -35,8 +35,6 @@ int64_t StatusBytes(const std::string& key) {
 
 double ProcessCpuSeconds() { return Seconds(CLOCK_PROCESS_CPUTIME_ID); }
 
-double ThreadCpuSeconds() { return Seconds(CLOCK_THREAD_CPUTIME_ID); }
-
 int64_t PeakMemoryBytes() {
   rusage usage = {};
   if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;

@@ -11,9 +11,6 @@ namespace evaluation {
 // CPU seconds of all threads of this process so far, user and system.
 double ProcessCpuSeconds();
 
-// CPU seconds of the calling thread so far.
-double ThreadCpuSeconds();
-
 // Largest resident memory of this process so far, in bytes.
 int64_t PeakMemoryBytes();
 

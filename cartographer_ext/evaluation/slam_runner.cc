@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "cartographer/mapping/map_builder.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/evaluation/back_end_metrics.h"
 #include "cartographer_ext/evaluation/host_types.h"
 #include "cartographer_ext/evaluation/metrics_collector.h"

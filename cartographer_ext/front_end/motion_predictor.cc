@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cartographer_ext/common/planar_matrix.h"
+
 namespace cartographer_ext {
 namespace front_end {
 namespace {
@@ -174,11 +176,9 @@ void MotionPredictor::PredictFromMap(const double time,
   prediction->motion = since_map_.Inverse() * odometry.motion;
   prediction->since_last_scan = !(map_time_ < last_time_);
   // Into the frame of the last scan.
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  const double c = std::cos(since_map_.theta), s = std::sin(since_map_.theta);
-  turn.topLeftCorner<2, 2>() << c, s, -s, c;
-  prediction->covariance =
-      turn * CovarianceOf(odometry, time - last_time_) * turn.transpose();
+  const Eigen::Matrix3d rotation = PlanarRotation(since_map_.theta);
+  prediction->covariance = rotation.transpose() *
+                           CovarianceOf(odometry, time - last_time_) * rotation;
 }
 
 void MotionPredictor::AddToMap() {

@@ -7,6 +7,7 @@
 
 #include "Eigen/Eigenvalues"
 #include "Eigen/LU"
+#include "cartographer_ext/common/planar_matrix.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -16,10 +17,6 @@ namespace {
 constexpr double kSmallestSigma = 1e-5;
 // Nor worse: where a motion is not known at all.
 constexpr double kLargestSigma = 1e3;
-
-Eigen::Matrix3d Symmetric(const Eigen::Matrix3d& matrix) {
-  return 0.5 * (matrix + matrix.transpose());
-}
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "Eigen/Cholesky"
+#include "cartographer_ext/common/planar_matrix.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -14,10 +15,6 @@ namespace {
 // Standard deviation of the turn rate before anything is known of it, rad/s:
 // robots seldom wake up turning fast.
 constexpr double kFirstTurnRate = 0.2;
-
-Eigen::Matrix3d Symmetric(const Eigen::Matrix3d& matrix) {
-  return 0.5 * (matrix + matrix.transpose());
-}
 
 // Of the change of the velocity over `interval`, per second squared.
 Eigen::Matrix3d Change(const ConstantVelocityOptions& options,

@@ -144,7 +144,7 @@ class CompatibleSubset {
   int num_overturned() const { return num_overturned_; }
   // Whether the last clique search was exact.
   bool exact() const { return exact_; }
-  // The leaders of the accepted clusters, for `MostCertainWay`.
+  // The leaders of the accepted clusters.
   std::vector<LoopEdge> AcceptedLoops() const;
 
  private:

@@ -8,6 +8,7 @@
 #include "Eigen/Cholesky"
 #include "Eigen/Eigenvalues"
 #include "Eigen/LU"
+#include "cartographer_ext/common/planar_matrix.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -26,9 +27,7 @@ ConstraintWeights ConfidenceWeights(const ConfidenceWeightOptions& options,
 
 Eigen::Matrix3d PaperInformation(const double final_score, const double alpha,
                                  const double beta, const double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  Eigen::Matrix3d u = Eigen::Matrix3d::Identity();
-  u.topLeftCorner<2, 2>() << c, -s, s, c;
+  const Eigen::Matrix3d u = PlanarRotation(angle);
   const Eigen::Vector3d diagonal(std::pow(final_score, alpha),
                                  std::pow(final_score, alpha),
                                  std::pow(final_score, beta));
@@ -48,12 +47,12 @@ Eigen::Matrix3d FullInformation(const ConstraintWeights& weights,
   const Eigen::Matrix3d information =
       scale.asDiagonal() * factor.solve(Eigen::Matrix3d::Identity()) *
       scale.asDiagonal();
-  return 0.5 * (information + information.transpose());
+  return Symmetric(information);
 }
 
 ConstraintWeights ScalarWeights(const Eigen::Matrix3d& information) {
   ConstraintWeights weights;
-  const Eigen::Matrix3d h = 0.5 * (information + information.transpose());
+  const Eigen::Matrix3d h = Symmetric(information);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> whole(h);
   if (!h.allFinite() ||
       whole.eigenvalues()(0) < -1e-9 * std::abs(whole.eigenvalues()(2))) {

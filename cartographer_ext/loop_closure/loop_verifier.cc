@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "Eigen/LU"
+#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/loop_closure/dtw.h"
 #include "cartographer_ext/loop_closure/innovation_veto.h"
@@ -95,11 +96,8 @@ Eigen::Matrix3d OpenCovariance(const LoopCandidate& candidate) {
 // what the match leaves open.
 Eigen::Matrix3d MatchCovariance(const Eigen::Matrix3d& constant,
                                 const LoopCandidate& candidate) {
-  Eigen::Matrix3d to_node = Eigen::Matrix3d::Identity();
-  const double c = std::cos(candidate.refined.theta);
-  const double s = std::sin(candidate.refined.theta);
-  to_node.topLeftCorner<2, 2>() << c, s, -s, c;
-  return constant + to_node * OpenCovariance(candidate) * to_node.transpose();
+  const Eigen::Matrix3d rotation = PlanarRotation(candidate.refined.theta);
+  return constant + rotation.transpose() * OpenCovariance(candidate) * rotation;
 }
 
 // How well the search knew where to look: by the uncertainty of the way, or

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cartographer_ext/common/planar_matrix.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -129,26 +130,27 @@ absl::optional<UncertainPose> PathUncertainty::Between(const NodeKey& u,
       (to->sum - from->sum + drift * drift.transpose() +
        scale * scale.transpose()) *
       transport.transpose();
-  result.covariance = 0.5 * (covariance + covariance.transpose());
+  result.covariance = Symmetric(covariance);
   return result;
+}
+
+absl::optional<double> PathUncertainty::Difference(
+    const NodeKey& u, const NodeKey& v, double Entry::*const sum) const {
+  if (u.trajectory_id != v.trajectory_id) return absl::nullopt;
+  const Entry* const from = Find(u);
+  const Entry* const to = Find(v);
+  if (from == nullptr || to == nullptr) return absl::nullopt;
+  return std::abs(to->*sum - from->*sum);
 }
 
 absl::optional<double> PathUncertainty::Travelled(const NodeKey& u,
                                                   const NodeKey& v) const {
-  if (u.trajectory_id != v.trajectory_id) return absl::nullopt;
-  const Entry* const from = Find(u);
-  const Entry* const to = Find(v);
-  if (from == nullptr || to == nullptr) return absl::nullopt;
-  return std::abs(to->travelled - from->travelled);
+  return Difference(u, v, &Entry::travelled);
 }
 
 absl::optional<double> PathUncertainty::Effort(const NodeKey& u,
                                                const NodeKey& v) const {
-  if (u.trajectory_id != v.trajectory_id) return absl::nullopt;
-  const Entry* const from = Find(u);
-  const Entry* const to = Find(v);
-  if (from == nullptr || to == nullptr) return absl::nullopt;
-  return std::abs(to->effort - from->effort);
+  return Difference(u, v, &Entry::effort);
 }
 
 double PathUncertainty::EffortOf(const Eigen::Matrix3d& covariance) const {
@@ -195,31 +197,6 @@ absl::optional<NodeKey> PathUncertainty::Nearest(
 
 void PathUncertainty::DeleteTrajectory(const int trajectory_id) {
   trajectories_.erase(trajectory_id);
-}
-
-absl::optional<UncertainPose> MostCertainWay(const PathUncertainty& paths,
-                                             const std::vector<LoopEdge>& loops,
-                                             const NodeKey& a,
-                                             const NodeKey& b) {
-  absl::optional<UncertainPose> best = paths.Between(a, b);
-  const auto offer = [&](const NodeKey& from, const UncertainPose& loop,
-                         const NodeKey& to) {
-    const absl::optional<UncertainPose> before = paths.Between(a, from);
-    if (!before.has_value()) return;
-    const absl::optional<UncertainPose> after = paths.Between(to, b);
-    if (!after.has_value()) return;
-    const UncertainPose way = Compose(Compose(*before, loop), *after);
-    if (!best.has_value() ||
-        way.covariance.topLeftCorner<2, 2>().trace() <
-            best->covariance.topLeftCorner<2, 2>().trace()) {
-      best = way;
-    }
-  };
-  for (const LoopEdge& loop : loops) {
-    offer(loop.a, loop.pose, loop.b);
-    offer(loop.b, Invert(loop.pose), loop.a);
-  }
-  return best;
 }
 
 }  // namespace loop_closure

@@ -26,7 +26,6 @@
 #include <deque>
 #include <limits>
 #include <map>
-#include <vector>
 
 #include "Eigen/Core"
 #include "absl/types/optional.h"
@@ -110,6 +109,9 @@ class PathUncertainty {
   };
 
   const Entry* Find(const NodeKey& node) const;
+  // Of a prefix sum, without sign. Empty as `Between`.
+  absl::optional<double> Difference(const NodeKey& u, const NodeKey& v,
+                                    double Entry::*sum) const;
 
   const PathNoiseOptions options_;
   const size_t max_nodes_;
@@ -123,15 +125,6 @@ struct LoopEdge {
   NodeKey b;
   UncertainPose pose;
 };
-
-// The most certain of the ways (a <- b): along the trajectory, or over one of
-// `loops` in either direction. Ways over several loops would be more certain
-// still; leaving them out errs on the side of a larger uncertainty. Empty when
-// there is no way.
-absl::optional<UncertainPose> MostCertainWay(const PathUncertainty& paths,
-                                             const std::vector<LoopEdge>& loops,
-                                             const NodeKey& a,
-                                             const NodeKey& b);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Eigen/LU"
+#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/optimization/block_ldlt.h"
 #include "glog/logging.h"
 
@@ -20,18 +21,11 @@ struct Link {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-Eigen::Matrix3d Rotation(const double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  Eigen::Matrix3d result;
-  result << c, -s, 0., s, c, 0., 0., 0., 1.;
-  return result;
-}
-
 // Information matrices are in the frame of the measured end.
 Link ToLink(const PoseGraphEdge& edge) {
   Link link;
   link.measurement = edge.measurement;
-  const Eigen::Matrix3d rotation = Rotation(edge.measurement.theta);
+  const Eigen::Matrix3d rotation = PlanarRotation(edge.measurement.theta);
   Eigen::Matrix3d covariance;
   if (!InvertSpd(edge.information, &covariance)) {
     covariance = edge.information.inverse();
@@ -41,13 +35,13 @@ Link ToLink(const PoseGraphEdge& edge) {
 }
 
 Eigen::Matrix3d InformationOf(const Link& link) {
-  const Eigen::Matrix3d rotation = Rotation(link.measurement.theta);
+  const Eigen::Matrix3d rotation = PlanarRotation(link.measurement.theta);
   Eigen::Matrix3d information;
   if (!InvertSpd(link.covariance, &information)) {
     information = link.covariance.inverse();
   }
   information = rotation.transpose() * information * rotation;
-  return 0.5 * (information + information.transpose());
+  return Symmetric(information);
 }
 
 // (a <- c) from (a <- b) and (b <- c).
@@ -57,7 +51,7 @@ Link Compose(const Link& ab, const Link& bc) {
   Eigen::Matrix3d first = Eigen::Matrix3d::Identity();
   first(0, 2) = -(result.measurement.y - ab.measurement.y);
   first(1, 2) = result.measurement.x - ab.measurement.x;
-  const Eigen::Matrix3d second = Rotation(ab.measurement.theta);
+  const Eigen::Matrix3d second = PlanarRotation(ab.measurement.theta);
   result.covariance = first * ab.covariance * first.transpose() +
                       second * bc.covariance * second.transpose();
   return result;
@@ -67,7 +61,7 @@ Link Compose(const Link& ab, const Link& bc) {
 Link Inverse(const Link& link) {
   Link result;
   result.measurement = link.measurement.Inverse();
-  Eigen::Matrix3d jacobian = Rotation(result.measurement.theta);
+  Eigen::Matrix3d jacobian = PlanarRotation(result.measurement.theta);
   jacobian(0, 2) = -result.measurement.y;
   jacobian(1, 2) = result.measurement.x;
   result.covariance = jacobian * link.covariance * jacobian.transpose();

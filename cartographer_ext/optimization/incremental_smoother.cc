@@ -7,6 +7,7 @@
 
 #include "Eigen/Eigenvalues"
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/common/thread_time.h"
 
 namespace cartographer_ext {
 namespace optimization {

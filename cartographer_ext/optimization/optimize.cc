@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/optimization/joined_trajectories.h"
 #include "cartographer_ext/optimization/robust_solver.h"
 #include "cartographer_ext/optimization/switchable_constraints.h"

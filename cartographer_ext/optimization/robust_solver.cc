@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/robust_solver.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "cartographer_ext/common/thread_time.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -336,12 +335,6 @@ SolverSummary SolveRobust(const std::vector<WhitenedEdge>& edges,
                           const SolverOptions& options,
                           std::vector<Pose2>* const poses) {
   return RobustSolver(edges).Solve(options, poses);
-}
-
-double ThreadCpuSeconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return now.tv_sec + 1e-9 * now.tv_nsec;
 }
 
 }  // namespace optimization

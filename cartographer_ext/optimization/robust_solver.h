@@ -180,9 +180,6 @@ SolverSummary PolishAdapted(int max_rounds, RobustSolver* solver,
 double TruncatedCost(const std::vector<WhitenedEdge>& edges,
                      const std::vector<Pose2>& poses, double gate = kChi2Gate);
 
-// Processor time of the calling thread in seconds.
-double ThreadCpuSeconds();
-
 }  // namespace optimization
 }  // namespace cartographer_ext
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/optimization/robust_solver.h"
 
 namespace cartographer_ext {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "cartographer_ext/common/thread_time.h"
 #include "ceres/ceres.h"
 #include "ceres/version.h"
 #include "glog/logging.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "Eigen/Eigenvalues"
+#include "cartographer_ext/common/planar_matrix.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -21,10 +22,9 @@ double Belief(const double information, const double floor,
 DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
                                    const Eigen::Matrix3d& hessian) {
   DegeneracyResult result;
-  const Eigen::Matrix3d h =
-      hessian.allFinite()
-          ? Eigen::Matrix3d(0.5 * (hessian + hessian.transpose()))
-          : Eigen::Matrix3d(Eigen::Matrix3d::Zero());
+  const Eigen::Matrix3d h = hessian.allFinite()
+                                ? Symmetric(hessian)
+                                : Eigen::Matrix3d(Eigen::Matrix3d::Zero());
   const Eigen::Matrix2d a = h.topLeftCorner<2, 2>();
   const Eigen::Vector2d b = h.topRightCorner<2, 1>();
   const double c = h(2, 2);

@@ -9,6 +9,7 @@
 #include "Eigen/Cholesky"
 #include "Eigen/Eigenvalues"
 #include "Eigen/LU"
+#include "cartographer_ext/common/planar_matrix.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -112,15 +113,11 @@ bool InvertCovariance(const Eigen::Matrix3d& covariance,
   if (!(variances.minCoeff() > 0.)) return false;
   const Eigen::Vector3d scale = variances.cwiseSqrt().cwiseInverse();
   const Eigen::Matrix3d correlation =
-      scale.asDiagonal() *
-      Eigen::Matrix3d(0.5 * (covariance + covariance.transpose())) *
-      scale.asDiagonal();
+      scale.asDiagonal() * Symmetric(covariance) * scale.asDiagonal();
   const Eigen::LLT<Eigen::Matrix3d> factor(correlation);
   if (factor.info() != Eigen::Success) return false;
   const Eigen::Matrix3d inverse = factor.solve(Eigen::Matrix3d::Identity());
-  *information = scale.asDiagonal() *
-                 Eigen::Matrix3d(0.5 * (inverse + inverse.transpose())) *
-                 scale.asDiagonal();
+  *information = scale.asDiagonal() * Symmetric(inverse) * scale.asDiagonal();
   return information->allFinite();
 }
 

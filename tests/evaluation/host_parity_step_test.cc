@@ -27,12 +27,10 @@
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/evaluation/host_types.h"
-#include "cartographer_ext/evaluation/open_recording.h"
 #include "cartographer_ext/evaluation/scan_conversion.h"
-#include "cartographer_ext/evaluation/slam_configuration.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "gtest/gtest.h"
-#include "tests/test_data.h"
+#include "tests/evaluation/csail_made.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -214,31 +212,15 @@ class Stepper {
   Rigid3d last_node_pose_;
 };
 
-TEST(HostParityStepTest, LocalSlamOnCsail) {
-  const std::string log = test::SharedData("carmen/mit-csail.clf.xz");
-  const std::string reference =
-      test::SharedData("pbstream/csail-made-by-cartographer.pbstream");
-  CARTOGRAPHER_EXT_SKIP_WITHOUT(log);
-  CARTOGRAPHER_EXT_SKIP_WITHOUT(reference);
-  CARTOGRAPHER_EXT_SKIP_WITHOUT(
-      test::Golden("configs/csail-made-by-cartographer.lua"));
-  auto configuration =
-      LoadSlamConfiguration({test::Golden("configs"), "configuration_files"},
-                            "csail-made-by-cartographer.lua");
-  ASSERT_TRUE(configuration.ok()) << configuration.status();
-  configuration->sensors.odometry_source = "scan";
-  const auto source =
-      OpenRecording(log, ToSourceOptions(configuration->sensors), 0);
-  ASSERT_TRUE(source.ok()) << source.status();
-  const auto pbstream = io::ReadPbstream(reference);
-  ASSERT_TRUE(pbstream.ok()) << pbstream.status();
+using HostParityStepTest = CsailMadeTest;
 
+TEST_F(HostParityStepTest, LocalSlamOnCsail) {
   Stepper stepper(
-      configuration->trajectory_builder_options.trajectory_builder_2d_options(),
-      StoredNodes(*pbstream));
+      configuration_.trajectory_builder_options.trajectory_builder_2d_options(),
+      StoredNodes(pbstream_));
   io::SensorEvent event;
   while (true) {
-    const auto more = (*source)->Next(&event);
+    const auto more = source_->Next(&event);
     ASSERT_TRUE(more.ok()) << more.status();
     if (!*more) break;
     absl::visit(std::ref(stepper), event);

@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include "cartographer_ext/common/thread_time.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {

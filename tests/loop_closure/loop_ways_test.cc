@@ -3,6 +3,7 @@
 #include "cartographer_ext/loop_closure/loop_ways.h"
 
 #include <cmath>
+#include <vector>
 
 #include "gtest/gtest.h"
 
@@ -114,6 +115,39 @@ TEST_F(LoopWaysTest, OtherTrajectoriesAreReachedOverLoops) {
   ASSERT_TRUE(way.has_value());
   EXPECT_NEAR(way->covariance(0, 0), 3., 1e-6);
   EXPECT_NEAR(way->pose.x, 1., 1e-9);
+}
+
+TEST(LoopWaysOfOneLoopTest, ALoopMakesTheWayShort) {
+  PathNoiseOptions options;
+  options.translation_per_metre = 0.1;
+  options.translation_per_radian = 0.;
+  options.rotation_per_metre = 0.01;
+  options.rotation_per_radian = 0.1;
+  PathUncertainty paths(options, 200);
+  const auto key = [](const int index) { return NodeKey{0, index}; };
+  const auto way_over = [&paths](const std::vector<LoopEdge>& loops,
+                                 const NodeKey& a, const NodeKey& b) {
+    LoopWays ways(0., &paths);
+    for (const LoopEdge& loop : loops) ways.Add(loop);
+    return ways.Between(a, b);
+  };
+  for (int i = 0; i <= 100; ++i) paths.Add(key(i), Pose2(i, 0., 0.));
+  const UncertainPose direct = *way_over({}, key(1), key(99));
+  EXPECT_NEAR(direct.pose.x, 98., 1e-12);
+  LoopEdge loop;
+  loop.a = key(100);
+  loop.b = key(0);
+  loop.pose.pose = Pose2(0.5, 0., 0.);
+  loop.pose.covariance = 0.001 * Eigen::Matrix3d::Identity();
+  // 1 -> 0 along the way, 0 -> 100 over the loop, 100 -> 99 along the way.
+  const UncertainPose way = *way_over({loop}, key(1), key(99));
+  EXPECT_NEAR(way.pose.x, -1. - 0.5 - 1., 1e-12);
+  EXPECT_LT(way.covariance(0, 0), 0.03);
+  // Between trajectories a loop is the only way.
+  paths.Add(NodeKey{1, 0}, Pose2());
+  EXPECT_FALSE(way_over({loop}, key(1), NodeKey{1, 0}).has_value());
+  loop.b = NodeKey{1, 0};
+  EXPECT_TRUE(way_over({loop}, key(1), NodeKey{1, 0}).has_value());
 }
 
 }  // namespace

@@ -111,28 +111,6 @@ TEST(PathUncertaintyTest, NearestNodeAndMissingTrajectories) {
   EXPECT_FALSE(paths.LocalPose(Key(3)).has_value());
 }
 
-TEST(PathUncertaintyTest, ALoopMakesTheWayShort) {
-  PathUncertainty paths(Noise(), 200);
-  for (int i = 0; i <= 100; ++i) paths.Add(Key(i), Pose2(i, 0., 0.));
-  const UncertainPose direct = *MostCertainWay(paths, {}, Key(1), Key(99));
-  EXPECT_NEAR(direct.pose.x, 98., 1e-12);
-  LoopEdge loop;
-  loop.a = Key(100);
-  loop.b = Key(0);
-  loop.pose.pose = Pose2(0.5, 0., 0.);
-  loop.pose.covariance = 0.001 * Eigen::Matrix3d::Identity();
-  // 1 -> 0 along the way, 0 -> 100 over the loop, 100 -> 99 along the way.
-  const UncertainPose way = *MostCertainWay(paths, {loop}, Key(1), Key(99));
-  EXPECT_NEAR(way.pose.x, -1. - 0.5 - 1., 1e-12);
-  EXPECT_LT(way.covariance(0, 0), 0.03);
-  // Between trajectories a loop is the only way.
-  paths.Add(NodeKey{1, 0}, Pose2());
-  EXPECT_FALSE(
-      MostCertainWay(paths, {loop}, Key(1), NodeKey{1, 0}).has_value());
-  loop.b = NodeKey{1, 0};
-  EXPECT_TRUE(MostCertainWay(paths, {loop}, Key(1), NodeKey{1, 0}).has_value());
-}
-
 TEST(PathUncertaintyTest, DriftAndScaleAreTheSameAllAlong) {
   PathNoiseOptions options;
   options.translation_per_metre = 0.;

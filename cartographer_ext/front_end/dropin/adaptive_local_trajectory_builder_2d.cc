@@ -10,6 +10,7 @@
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
 #include "cartographer_ext/front_end/front_end_options.h"
 #include "cartographer_ext/front_end/match_record.h"
@@ -58,10 +59,8 @@ bool WayIsDetermined(const scan_matching::DegeneracyResult& degeneracy,
 // A covariance in the frame of the map, as seen by the robot at `pose`.
 Eigen::Matrix3d InFrameOf(const Pose2& pose,
                           const Eigen::Matrix3d& covariance) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
-  turn.topLeftCorner<2, 2>() << c, s, -s, c;
-  return turn * covariance * turn.transpose();
+  const Eigen::Matrix3d rotation = PlanarRotation(pose.theta);
+  return rotation.transpose() * covariance * rotation;
 }
 
 }  // namespace

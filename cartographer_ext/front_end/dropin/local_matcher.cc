@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/options/option_description.h"
 #include "cartographer_ext/scan_matching/dropin/real_time_matcher_2d.h"
@@ -61,9 +62,7 @@ proto::ScanMatcherOptions MatcherExtension(
 // Into the local frame.
 Prediction ToPrediction(const Pose2& last_pose, const Pose2& motion,
                         const Eigen::Matrix3d& covariance) {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  const double c = std::cos(last_pose.theta), s = std::sin(last_pose.theta);
-  rotation.topLeftCorner<2, 2>() << c, -s, s, c;
+  const Eigen::Matrix3d rotation = PlanarRotation(last_pose.theta);
   Prediction prediction;
   prediction.pose = last_pose * motion;
   prediction.covariance = rotation * covariance * rotation.transpose();

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/scan_matching/dropin/grid_cells.h"
 #include "cartographer_ext/scan_matching/occupied_space_cost.h"
 
@@ -36,9 +37,7 @@ Eigen::Matrix3d MatchInformation(const Grid2D& grid,
     return Eigen::Matrix3d::Zero();
   }
   // Moving (submap <- cloud) by d moves (grid <- cloud) by the rotated d.
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  const double c = std::cos(submap_pose.theta), s = std::sin(submap_pose.theta);
-  rotation.topLeftCorner<2, 2>() << c, -s, s, c;
+  const Eigen::Matrix3d rotation = PlanarRotation(submap_pose.theta);
   return rotation.transpose() * sums.hessian * rotation / variance;
 }
 

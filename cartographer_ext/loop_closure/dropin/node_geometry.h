@@ -1,21 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The host's poses and nodes as the loop closure takes them. A node of the host
-// stands for the gravity-aligned frame, which does not turn with the robot.
+// The host's ids, poses and nodes as the loop closure takes them. A node of the
+// host stands for the gravity-aligned frame, which does not turn with the
+// robot.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_
 
 #include <vector>
 
 #include "Eigen/Core"
+#include "cartographer/mapping/id.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/loop_verifier.h"
+#include "cartographer_ext/loop_closure/path_uncertainty.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
+
+inline NodeKey ToKey(const cartographer::mapping::NodeId& id) {
+  return NodeKey{id.trajectory_id, id.node_index};
+}
+
+inline SubmapKey ToKey(const cartographer::mapping::SubmapId& id) {
+  return SubmapKey{id.trajectory_id, id.submap_index};
+}
 
 inline Pose2 PlanarPose(const cartographer::transform::Rigid2d& pose) {
   return Pose2(pose.translation().x(), pose.translation().y(),

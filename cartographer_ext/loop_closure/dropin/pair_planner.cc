@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cartographer/common/time.h"
+#include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 
 namespace cartographer_ext {
@@ -22,7 +23,7 @@ SearchPair MakeSearchPair(const OfferedPair& pair) {
   search.submap_trajectory_id = pair.submap_id.trajectory_id;
   search.submap_index = pair.submap_id.submap_index;
   search.anchor = pair.anchor;
-  search.node = NodeKey{pair.node_id.trajectory_id, pair.node_id.node_index};
+  search.node = ToKey(pair.node_id);
   search.node_time = cartographer::common::ToUniversal(pair.node->time);
   search.predicted = pair.predicted;
   return search;
@@ -123,7 +124,7 @@ void PairPlanner::PlanForeign(const std::vector<OfferedPair>& pairs,
                               std::vector<LostPlace>* const lost) {
   const OfferedPair& first = pairs[group.front()];
   const int map_id = first.submap_id.trajectory_id;
-  const NodeKey node{first.node_id.trajectory_id, first.node_id.node_index};
+  const NodeKey node = ToKey(first.node_id);
   if (live_trajectories_.count(node.trajectory_id) == 0) {
     Skip(group, LoopDecision::SKIPPED_LOADED, planned);
     return;

@@ -129,35 +129,33 @@ PlaceResult PlaceSearch::Search(PlaceNode node,
     // In each of the submaps that know the place: those of one visit confirm
     // each other, those of several visits lie too far apart for that.
     const PlaceNode& from = nodes_.at(decision.nodes[k]);
-    std::vector<PlacedNode> here;
+    std::vector<std::pair<PlaceMatch, const Submap2D*>> here;
     for (const PlaceSubmap& submap : submaps) {
       const absl::optional<PlaceMatch> match = match_nearby(
           from.node_index, decision.matches[k].pose, submap, min_score_);
-      if (!match.has_value()) continue;
+      if (match.has_value()) here.emplace_back(*match, submap.submap);
+    }
+    std::stable_sort(here.begin(), here.end(),
+                     [](const std::pair<PlaceMatch, const Submap2D*>& a,
+                        const std::pair<PlaceMatch, const Submap2D*>& b) {
+                       return a.first.score > b.first.score;
+                     });
+    if (here.size() > kSubmapsPerNode) here.resize(kSubmapsPerNode);
+    for (const auto& match_and_submap : here) {
+      const PlaceMatch& match = match_and_submap.first;
+      const Submap2D& submap = *match_and_submap.second;
       PlacedNode placed;
       placed.node_index = from.node_index;
       placed.first_node_index = decision.nodes.front();
       placed.time = from.time;
       placed.from_robot = from.from_robot;
-      placed.submap_index = submap.submap_index;
-      placed.matched = match->pose;
-      placed.score = match->score;
-      here.push_back(placed);
-    }
-    std::stable_sort(here.begin(), here.end(),
-                     [](const PlacedNode& a, const PlacedNode& b) {
-                       return a.score > b.score;
-                     });
-    if (here.size() > kSubmapsPerNode) here.resize(kSubmapsPerNode);
-    for (PlacedNode& placed : here) {
-      const auto submap = std::find_if(
-          submaps.begin(), submaps.end(), [&](const PlaceSubmap& candidate) {
-            return candidate.submap_index == placed.submap_index;
-          });
-      placed.refined = refiner(*submap->submap, from.cloud, placed.matched);
+      placed.submap_index = match.submap_index;
+      placed.matched = match.pose;
+      placed.score = match.score;
+      placed.refined = refiner(submap, from.cloud, placed.matched);
       placed.information =
-          MatchInformation(*submap->submap->grid(), from.cloud, placed.refined,
-                           PlanarPose(ComputeSubmapPose(*submap->submap)));
+          MatchInformation(*submap.grid(), from.cloud, placed.refined,
+                           PlanarPose(ComputeSubmapPose(submap)));
       result.placed.push_back(placed);
     }
   }

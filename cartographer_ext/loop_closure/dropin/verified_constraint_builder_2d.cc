@@ -81,7 +81,7 @@ VerifiedConstraintBuilder2D::~VerifiedConstraintBuilder2D() {
 
 void VerifiedConstraintBuilder2D::RememberNode(const NodeId& node_id,
                                                const NodeData& node) {
-  if (verifier_.HasNode(NodeKey{node_id.trajectory_id, node_id.node_index})) {
+  if (verifier_.HasNode(ToKey(node_id))) {
     return;
   }
   HistoryNode history;
@@ -121,9 +121,7 @@ SubmapEntry* VerifiedConstraintBuilder2D::Offer(const SubmapId& submap_id,
       entry->newest_node_at_first = newest->second;
       entry->time_at_first = newest_times_.at(submap_id.trajectory_id);
     }
-    verifier_.AddSubmap(
-        SubmapKey{submap_id.trajectory_id, submap_id.submap_index},
-        entry->local_pose);
+    verifier_.AddSubmap(ToKey(submap_id), entry->local_pose);
   } else if (entry->newest_node_bound == SubmapEntry::kUnknownNode &&
              num_groups_ > entry->first_group &&
              node_id.trajectory_id == submap_id.trajectory_id) {
@@ -137,8 +135,7 @@ absl::optional<NodeKey> VerifiedConstraintBuilder2D::Anchor(
     const SubmapId& submap_id, const SubmapEntry& entry,
     const int trajectory_id) const {
   if (trajectory_id != submap_id.trajectory_id) {
-    return LoopVerifier::PathKey(
-        SubmapKey{submap_id.trajectory_id, submap_id.submap_index});
+    return LoopVerifier::PathKey(ToKey(submap_id));
   }
   if (entry.newest_node_at_first < 0) return absl::nullopt;
   // Two submaps are under way at a time, so that the nodes of this one are
@@ -221,13 +218,9 @@ void VerifiedConstraintBuilder2D::NotifyEndOfNode() {
 }
 
 void VerifiedConstraintBuilder2D::Schedule(PairCandidate* const candidate) {
-  ScheduleMatcher(candidate->entry);
-  if (extension_.temporal_verification().enabled()) {
-    ScheduleViews(candidate->pair.submap_id);
-  }
   auto task = absl::make_unique<Task>();
   task->SetWorkItem([this, candidate]() { searcher_.Search(candidate); });
-  task->AddDependency(candidate->entry->matcher_task);
+  AwaitSubmap(*candidate, task.get());
   end_of_node_task_->AddDependency(thread_pool_->Schedule(std::move(task)));
 }
 
@@ -256,15 +249,20 @@ void VerifiedConstraintBuilder2D::ScheduleQuery(
   task->SetWorkItem([this, query]() { searcher_.SearchPlace(query); });
   // One after the other; they are few.
   task->AddDependency(place_tasks_[key]);
-  for (PairCandidate* const candidate : candidates) {
-    ScheduleMatcher(candidate->entry);
-    if (extension_.temporal_verification().enabled()) {
-      ScheduleViews(candidate->pair.submap_id);
-    }
-    task->AddDependency(candidate->entry->matcher_task);
+  for (const PairCandidate* const candidate : candidates) {
+    AwaitSubmap(*candidate, task.get());
   }
   place_tasks_[key] = thread_pool_->Schedule(std::move(task));
   end_of_node_task_->AddDependency(place_tasks_[key]);
+}
+
+void VerifiedConstraintBuilder2D::AwaitSubmap(const PairCandidate& candidate,
+                                              Task* const task) {
+  ScheduleMatcher(candidate.entry);
+  if (extension_.temporal_verification().enabled()) {
+    ScheduleViews(candidate.pair.submap_id);
+  }
+  task->AddDependency(candidate.entry->matcher_task);
 }
 
 void VerifiedConstraintBuilder2D::ScheduleMatcher(
@@ -316,7 +314,7 @@ LoopCandidate VerifiedConstraintBuilder2D::StartCandidate(
     const SubmapId& submap_id, const SubmapEntry& entry,
     const bool with_maps) const {
   LoopCandidate loop;
-  loop.submap = SubmapKey{submap_id.trajectory_id, submap_id.submap_index};
+  loop.submap = ToKey(submap_id);
   // Of another run: as old as can be.
   loop.submap_age = 1e9;
   loop.submap_local_pose = entry.local_pose;
@@ -340,7 +338,7 @@ LoopCandidate VerifiedConstraintBuilder2D::MakeLoopCandidate(
   const SubmapEntry& entry = *candidate.entry;
   LoopCandidate loop = StartCandidate(pair.submap_id, entry,
                                       candidate.found && candidate.query < 0);
-  loop.node = NodeKey{pair.node_id.trajectory_id, pair.node_id.node_index};
+  loop.node = ToKey(pair.node_id);
   loop.node_time = cartographer::common::ToUniversal(pair.node->time);
   if (pair.submap_id.trajectory_id == pair.node_id.trajectory_id &&
       entry.newest_node_at_first >= 0) {
@@ -385,7 +383,7 @@ void VerifiedConstraintBuilder2D::VerifyQuery(const PlaceQuery& query) {
       const OfferedPair& pair = candidate->pair;
       if (pair.submap_id.submap_index != result.decided_submap) continue;
       planner_.localization()->AddDecision(
-          NodeKey{trajectory_id, pair.node_id.node_index}, map_id,
+          ToKey(pair.node_id), map_id,
           query.places->IsSamePlace(
               candidate->entry->local_pose * pair.predicted,
               result.decided_pose));
@@ -532,8 +530,7 @@ void VerifiedConstraintBuilder2D::DeleteScanMatcher(const SubmapId& submap_id) {
   const auto it = submaps_.find(submap_id);
   const int newest_node = it == submaps_.end() ? SubmapEntry::kUnknownNode
                                                : it->second->newest_node_bound;
-  verifier_.DeleteSubmap(
-      SubmapKey{submap_id.trajectory_id, submap_id.submap_index});
+  verifier_.DeleteSubmap(ToKey(submap_id));
   verifier_.DeleteNodes(submap_id.trajectory_id, newest_node);
   for (const auto& places : places_) {
     if (places.first.first != submap_id.trajectory_id) continue;

@@ -113,6 +113,10 @@ class VerifiedConstraintBuilder2D {
   void Schedule(PairCandidate* candidate) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ScheduleQuery(const std::vector<PairCandidate*>& candidates)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // What a search in the submap of the candidate needs, before `task`.
+  void AwaitSubmap(const PairCandidate& candidate,
+                   cartographer::common::Task* task)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ScheduleMatcher(const std::shared_ptr<SubmapEntry>& entry)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ScheduleViews(const SubmapId& submap_id)

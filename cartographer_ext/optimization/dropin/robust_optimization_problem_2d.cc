@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Only where the swap is selected; see the overlay.
+#include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/swaps.h"
 #ifdef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
 #include <algorithm>
