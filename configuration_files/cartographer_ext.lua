@@ -43,6 +43,11 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- How far beyond its last message odometry is extrapolated; later the
     -- prediction goes on without it. [>= 0 and <= 10, s]
     max_extrapolation = 0.3,
+    -- After a gap in the scans over which odometry is missing, too, scans are
+    -- left out for at most this long until odometry tells what the robot did
+    -- in the gap. 0: the first scan is matched at once, from a guess. [>= 0
+    -- and <= 10, s]
+    max_wait_after_gap = 0.5,
   },
   time_offset = {
     -- Estimate by how much scans are stamped later than the odometry of the

@@ -113,7 +113,12 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   }
 
   OdometryMotion odometry;
-  if (!PredictOdometry(time, &odometry)) return prediction;
+  if (!PredictOdometry(time, &odometry)) {
+    prediction.odometry_is_missing =
+        prediction.source == PredictionSource::kNothing &&
+        monitor_.IsTrusted() && PredictOdometry(last_time_, &odometry);
+    return prediction;
+  }
   const Pose2 without = prediction.motion;
   const bool expectation_is_known =
       has_imu || interval <= options_.constant_velocity.max_time;

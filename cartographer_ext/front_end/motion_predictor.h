@@ -61,6 +61,9 @@ struct MotionPrediction {
   // motions on trial, where nothing tells.
   double unknown_way = 0.;
   double unknown_turn = 0.;
+  // Odometry was there at the last scan, and will tell of the gap since then as
+  // soon as its next reading comes.
+  bool odometry_is_missing = false;
   // Other motions worth a try then.
   std::vector<Pose2> alternatives;
 };

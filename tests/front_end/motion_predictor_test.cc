@@ -65,6 +65,35 @@ TEST(MotionPredictorTest, OdometryBridgesAGapInTheScans) {
   EXPECT_FALSE(prediction.is_uncertain);
 }
 
+TEST(MotionPredictorTest, OdometryThatWillTellOfAGapIsMissed) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  predictor.AddMatch(0., Matched(Pose2()));
+  // There was none before.
+  EXPECT_FALSE(predictor.Predict(3.).odometry_is_missing);
+  for (int i = 1; i <= 10; ++i) {
+    predictor.AddOdometry(0.1 * i, Pose2(0.05 * i, 0., 0.));
+    predictor.AddMatch(0.1 * i, Matched(Pose2(0.05, 0., 0.)));
+  }
+  EXPECT_FALSE(predictor.Predict(1.1).odometry_is_missing);
+  // Velocity will do.
+  EXPECT_FALSE(predictor.Predict(1.5).odometry_is_missing);
+  const MotionPrediction prediction = predictor.Predict(4.);
+  EXPECT_EQ(prediction.source, PredictionSource::kNothing);
+  EXPECT_TRUE(prediction.odometry_is_missing);
+  predictor.AddOdometry(4.05, Pose2(0.5, 0., 0.8));
+  const MotionPrediction later = predictor.Predict(4.1);
+  EXPECT_FALSE(later.odometry_is_missing);
+  EXPECT_EQ(later.source, PredictionSource::kOdometry);
+  EXPECT_NEAR(later.motion.theta, 0.8, 1e-9);
+  // A match without it means that it is gone.
+  MotionPredictor other((MotionPredictorOptions()));
+  other.AddMatch(0., Matched(Pose2()));
+  for (int i = 0; i <= 10; ++i) other.AddOdometry(0.1 * i, Pose2());
+  other.AddMatch(1., Matched(Pose2()));
+  other.AddMatch(4., Matched(Pose2()));
+  EXPECT_FALSE(other.Predict(7.).odometry_is_missing);
+}
+
 TEST(MotionPredictorTest, AJumpWidensThePredictionAndOffersTheVelocity) {
   MotionPredictor predictor((MotionPredictorOptions()));
   for (int i = 0; i <= 10; ++i) {

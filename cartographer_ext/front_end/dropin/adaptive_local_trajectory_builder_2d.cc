@@ -163,7 +163,22 @@ AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
   if (assembler_.num_sweeps() < options_.num_accumulated_range_data()) {
     return nullptr;
   }
-  return MatchAndInsert(sweep.time, prediction, assembler_.Take(), alignment);
+  const AssembledScan scan = assembler_.Take();
+  if (WaitsForOdometry(seconds, prediction)) return nullptr;
+  return MatchAndInsert(sweep.time, prediction, scan, alignment);
+}
+
+bool AdaptiveLocalTrajectoryBuilder2D::WaitsForOdometry(
+    const double seconds, const MotionPrediction& prediction) {
+  if (!prediction.odometry_is_missing) {
+    waits_ = false;
+    return false;
+  }
+  if (!waits_) {
+    waits_ = true;
+    waits_since_ = seconds;
+  }
+  return seconds - waits_since_ < extension_.odometry().max_wait_after_gap();
 }
 
 PointCloud AdaptiveLocalTrajectoryBuilder2D::SelectFeatures(

@@ -14,8 +14,9 @@
 //     is in doubt.
 //  3. Evidence: one record a scan (match_recorder.h), and metrics.
 //
-// A gap in the scans is bridged by the motion over the gap; without odometry
-// and IMU no motion is made up, and the search looks around.
+// A gap in the scans is bridged by the motion over the gap. If odometry is
+// about to come, scans wait for it, that is, they are left out; without
+// odometry and IMU no motion is made up, and the search looks around.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_ADAPTIVE_LOCAL_TRAJECTORY_BUILDER_2D_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_ADAPTIVE_LOCAL_TRAJECTORY_BUILDER_2D_H_
 
@@ -66,7 +67,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   AdaptiveLocalTrajectoryBuilder2D& operator=(
       const AdaptiveLocalTrajectoryBuilder2D&) = delete;
 
-  // As the stock builder: null as long as nothing was matched.
+  // As the stock builder: null if nothing was matched.
   std::unique_ptr<MatchingResult> AddRangeData(
       const std::string& sensor_id,
       const cartographer::sensor::TimedPointCloudData& range_data);
@@ -85,6 +86,9 @@ class AdaptiveLocalTrajectoryBuilder2D {
   cartographer::sensor::PointCloud SelectFeatures(
       const cartographer::sensor::PointCloud& cloud) const;
 
+  // Whether a scan that follows a gap had better be left out, because odometry
+  // will tell of the gap soon.
+  bool WaitsForOdometry(double seconds, const MotionPrediction& prediction);
   std::unique_ptr<MatchingResult> MatchAndInsert(
       cartographer::common::Time time, const MotionPrediction& prediction,
       const AssembledScan& scan, const Eigen::Quaterniond& alignment);
@@ -118,6 +122,9 @@ class AdaptiveLocalTrajectoryBuilder2D {
   bool has_pose_ = false;
   double last_seconds_ = 0.;
   Pose2 pose_;  // (local <- gravity-aligned robot) at the last match
+  // Since when scans have been left out behind a gap.
+  bool waits_ = false;
+  double waits_since_ = 0.;
 };
 
 }  // namespace front_end

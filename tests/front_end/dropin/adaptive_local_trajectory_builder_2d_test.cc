@@ -72,6 +72,7 @@ struct RunOptions {
   std::function<Pose2(double)> path = Path;
   std::function<Pose2(double)> odometry = Path;
   std::function<bool(double)> has_scan = [](double) { return true; };
+  std::function<bool(double)> has_odometry = [](double) { return true; };
   bool use_odometry = true;
   double seconds = 40.;
   double max_range = 12.;
@@ -91,8 +92,10 @@ RunResult RunDrive(const RunOptions& options) {
   for (int i = 0; i <= static_cast<int>(10. * options.seconds); ++i) {
     const double t = 0.1 * i;
     while (options.use_odometry && next_odometry <= t) {
-      builder.AddOdometryData(
-          test::Odometry(next_odometry, options.odometry(next_odometry)));
+      if (options.has_odometry(next_odometry)) {
+        builder.AddOdometryData(
+            test::Odometry(next_odometry, options.odometry(next_odometry)));
+      }
       next_odometry += 0.05;
     }
     if (!options.has_scan(t)) continue;
@@ -215,6 +218,50 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedInAGap) {
   const RunResult with_odometry = RunDrive(options);
   EXPECT_LT(with_odometry.max_turn_error, 0.03);
   EXPECT_LT(with_odometry.max_error, 0.05);
+}
+
+// A hole in everything, in which the robot turns about, in the middle of a room
+// that looks the same then. Odometry comes back 0.15 s after the scans.
+RunOptions AHoleInEverything() {
+  RunOptions options;
+  options.walls = {{{-4., -3.}, {4., -3.}},
+                   {{4., -3.}, {4., 3.}},
+                   {{4., 3.}, {-4., 3.}},
+                   {{-4., 3.}, {-4., -3.}}};
+  options.path = [](const double t) {
+    return Pose2(0., 0., kPi * std::min(1., std::max(0., (t - 10.) / 3.)));
+  };
+  options.odometry = options.path;
+  options.seconds = 16.;
+  options.has_scan = [](const double t) { return t < 10.05 || t > 12.95; };
+  options.has_odometry = [](const double t) {
+    return t < 10.01 || (t > 13.12);
+  };
+  return options;
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, ScansBehindAGapWaitForOdometry) {
+  const RunResult result = RunDrive(AHoleInEverything());
+  // The scans at 13.0 and 13.1 s are left out.
+  EXPECT_EQ(result.matched, 101 + 31 - 2);
+  EXPECT_EQ(result.records.size(), result.matched);
+  EXPECT_LT(result.max_turn_error, 0.03);
+  EXPECT_LT(result.max_error, 0.05);
+  RunOptions hasty = AHoleInEverything();
+  hasty.own.mutable_odometry()->set_max_wait_after_gap(0.);
+  EXPECT_GT(RunDrive(hasty).max_turn_error, 3.);
+}
+
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, ScansBehindAGapDoNotWaitForEver) {
+  RunOptions options = AHoleInEverything();
+  options.has_odometry = [](const double t) { return t < 10.01; };
+  EXPECT_EQ(RunDrive(options).matched, 101 + 31 - 5);
+  options.own.mutable_odometry()->set_max_wait_after_gap(0.);
+  EXPECT_EQ(RunDrive(options).matched, 101 + 31);
+  // Without odometry nothing is waited for.
+  options.own = OwnOptions();
+  options.use_odometry = false;
+  EXPECT_EQ(RunDrive(options).matched, 101 + 31);
 }
 
 TEST(AdaptiveLocalTrajectoryBuilder2DTest,
