@@ -275,24 +275,35 @@ bool BlockLdlt::Factorize(const double lambda) {
   return true;
 }
 
-void BlockLdlt::Solve(Eigen::VectorXd* const rhs) const {
+template <typename Row, typename Rhs>
+void BlockLdlt::SolveRows(Rhs* const rhs) const {
   const int n = size();
-  std::vector<Eigen::Vector3d> x(n);
-  for (int j = 0; j != n; ++j) x[j] = rhs->segment<3>(3 * order_[j]);
+  std::vector<Row> x(n);
+  for (int j = 0; j != n; ++j)
+    x[j] = rhs->template middleRows<3>(3 * order_[j]);
   for (int j = 0; j != n; ++j) {
-    const Eigen::Vector3d value = x[j];
+    const Row value = x[j];
     for (int p = starts_[j]; p != starts_[j + 1]; ++p) {
       x[rows_[p]].noalias() -= blocks_[p] * value;
     }
   }
   for (int j = n - 1; j >= 0; --j) {
-    Eigen::Vector3d value = pivot_inverses_[j] * x[j];
+    Row value = pivot_inverses_[j] * x[j];
     for (int p = starts_[j]; p != starts_[j + 1]; ++p) {
       value.noalias() -= blocks_[p].transpose() * x[rows_[p]];
     }
     x[j] = value;
   }
-  for (int j = 0; j != n; ++j) rhs->segment<3>(3 * order_[j]) = x[j];
+  for (int j = 0; j != n; ++j)
+    rhs->template middleRows<3>(3 * order_[j]) = x[j];
+}
+
+void BlockLdlt::Solve(Eigen::VectorXd* const rhs) const {
+  SolveRows<Eigen::Vector3d>(rhs);
+}
+
+void BlockLdlt::Solve(Columns* const rhs) const {
+  SolveRows<Eigen::Matrix3d>(rhs);
 }
 
 }  // namespace optimization

@@ -71,6 +71,9 @@ class BlockLdlt {
   // Replaces the right hand side, 3 * size values in the order of the
   // variables, by the solution.
   void Solve(Eigen::VectorXd* rhs) const;
+  // The same for three right hand sides, the columns.
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  void Solve(Columns* rhs) const;
 
   int size() const { return order_.size(); }
   // Blocks below the diagonal of L.
@@ -91,6 +94,10 @@ class BlockLdlt {
     int index = 0;  // into blocks_
     bool transpose = false;
   };
+
+  // `Row` holds the three rows of one variable.
+  template <typename Row, typename Rhs>
+  void SolveRows(Rhs* rhs) const;
 
   std::vector<int> order_;     // position -> variable
   std::vector<int> position_;  // variable -> position

@@ -16,6 +16,9 @@ namespace {
 constexpr double kMaxLambda = 1e12;
 // A step that lowers the cost by less than this fraction is one of the last.
 constexpr double kSettling = 1e-3;
+// Such a step and all after it are small enough for the linearised graph to
+// tell where the weights will end.
+constexpr double kNearing = 1e-2;
 // Where a step gains so many times what the quadratic model promised, a loop is
 // being let go, and would be for many more such steps.
 constexpr double kShedding = 1.5;
@@ -65,6 +68,7 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
   double lambda = options.initial_lambda;
   bool done = poses_.size() < 2 || edges_.empty();
   bool settling = false;
+  std::vector<int> undecided;
   summary.converged = done;
   Eigen::VectorXd step;
   while (!done && summary.iterations < options.max_iterations) {
@@ -91,12 +95,14 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
       }
       step = -gradient_;
       factor_.Solve(&step);
+      const double predicted = PredictedDecrease(step, lambda);
+      const bool carried = CarryToTheLimit(undecided, now, &step);
+      undecided.clear();
       const double largest = step.cwiseAbs().maxCoeff();
       SetPoses(Stepped(from, step));
       // The shape of the literal ACS kernel is held during the step, so that
       // both costs are those of one function.
       Evaluate(&now.shapes, &next);
-      const double predicted = PredictedDecrease(step, lambda);
       const double decrease = now.cost - next.cost;
       if (decrease >= 0. && std::isfinite(next.cost)) {
         accepted = true;
@@ -110,7 +116,7 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
                largest < options.step_tolerance;
         summary.converged = done;
         settling = decrease <= kSettling * now.cost;
-        if (settling && !done && ratio > kShedding) {
+        if (settling && !done && !carried && ratio > kShedding) {
           Prolong(from, step, now.shapes, &next);
         }
         // A kernel with a moving shape is weighed anew; the cost reported
@@ -119,6 +125,9 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
           Evaluate(nullptr, &next);
         }
         std::swap(now, next);
+        if (decrease <= kNearing * next.cost) {
+          undecided = UndecidedLoops(next.weights, now.weights);
+        }
       } else {
         lambda = std::max(10. * lambda, 1e-8);
         if (largest < options.step_tolerance || lambda > kMaxLambda) {

@@ -19,6 +19,11 @@
 // optimum). What comes back often finds room in the fill of the factor; only
 // where it does not is the order of elimination worked out anew.
 //
+// Undecided edges: the weight of a loop near the gate follows its residual and
+// the residual the weight, a little in each iteration. Near the end, where few
+// loops still do that, both are carried to the limit at once, on the linearised
+// graph (robust_solver_undecided.cc).
+//
 // The first pose is held.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_ROBUST_SOLVER_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_ROBUST_SOLVER_H_
@@ -100,6 +105,10 @@ class RobustSolver {
   void Evaluate(const std::vector<double>* held_shapes, Evaluation* result);
   void Prolong(const std::vector<Pose2>& from, Eigen::VectorXd step,
                const std::vector<double>& held_shapes, Evaluation* reached);
+  std::vector<int> UndecidedLoops(const std::vector<double>& before,
+                                  const std::vector<double>& now) const;
+  bool CarryToTheLimit(const std::vector<int>& loops, const Evaluation& now,
+                       Eigen::VectorXd* step) const;
   bool UpdatePattern(const std::vector<double>& weights);
   void AddToPattern(const std::vector<int>& edges,
                     std::vector<std::pair<int, int>>* pairs);

@@ -85,6 +85,12 @@ TEST(BlockLdltTest, SolvesLikeADenseFactorisation) {
       Eigen::VectorXd actual = rhs;
       factor.Solve(&actual);
       EXPECT_LT((actual - expected).norm(), 1e-9 * (1. + expected.norm()));
+      BlockLdlt::Columns columns(3 * size, 3);
+      columns << rhs, -rhs, 2. * rhs;
+      factor.Solve(&columns);
+      EXPECT_LT((columns.col(0) - actual).norm(), 1e-12 * actual.norm());
+      EXPECT_LT((columns.col(1) + actual).norm(), 1e-12 * actual.norm());
+      EXPECT_LT((columns.col(2) - 2. * actual).norm(), 1e-12 * actual.norm());
     }
   }
 }

@@ -3,6 +3,8 @@
 #include "cartographer_ext/optimization/robust_solver.h"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "cartographer_ext/optimization/graph_metrics.h"
 #include "cartographer_ext/optimization/outlier_generator.h"
@@ -146,6 +148,54 @@ TEST_F(RobustSolverTest, EndsWhereMoreStepsWouldGainNothing) {
                 1e-5 * further.final_cost)
         << KernelName(type);
     EXPECT_LE(further.final_cost, summary.final_cost);
+  }
+}
+
+// Two steps of 1 m along x with a variance of 0.01 m^2 each and a loop of the
+// same stiffness which says 2 m + `excess`. With d the part of the excess that
+// the odometry takes, d / 0.02 = omega((excess - d)^2 / 0.02) (excess - d) /
+// 0.02.
+PoseGraph StretchedChain(const double excess) {
+  PoseGraph graph;
+  for (int i = 0; i != 3; ++i) {
+    graph.ids.push_back(i);
+    graph.poses.push_back(Pose2(i, 0., 0.));
+  }
+  const std::vector<std::pair<int, int>> pairs = {{0, 1}, {1, 2}, {0, 2}};
+  for (const std::pair<int, int>& ends : pairs) {
+    PoseGraphEdge edge;
+    edge.from = ends.first;
+    edge.to = ends.second;
+    edge.is_loop = ends.second == ends.first + 2;
+    edge.measurement =
+        Pose2(ends.second - ends.first + (edge.is_loop ? excess : 0.), 0., 0.);
+    edge.information =
+        (edge.is_loop ? 50. : 100.) * Eigen::Matrix3d::Identity();
+    graph.edges.push_back(edge);
+  }
+  return graph;
+}
+
+TEST(UndecidedLoopsTest, ALoopNearTheGateIsSettledAtOnce) {
+  for (const double excess : {0.5, 0.55, 0.57, 0.6, 0.65}) {
+    const PoseGraph graph = StretchedChain(excess);
+    SolverOptions options;
+    options.kernel = DefaultKernel(KernelType::kAcs);
+    std::vector<Pose2> poses = graph.poses;
+    const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+    const SolverSummary summary = SolveRobust(edges, options, &poses);
+    EXPECT_TRUE(summary.converged);
+    // Reweighting until nothing moves any more.
+    double d = 0.;
+    for (int i = 0; i != 10000; ++i) {
+      const double rest = excess - d;
+      const double weight = EvaluateKernel(options.kernel, 50. * rest * rest,
+                                           AcsShape(options.kernel))
+                                .weight;
+      d = excess * weight / (1. + weight);
+    }
+    EXPECT_NEAR(poses[2].x - 2., d, 2e-3) << excess;
+    EXPECT_LE(summary.iterations, 6) << excess;
   }
 }
 
