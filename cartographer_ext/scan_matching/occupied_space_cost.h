@@ -21,7 +21,7 @@
 // c = u(f_row)^T P u(f_column) with P the 4 x 4 cells around the point, and the
 // derivatives have u' in place of one u. The solver evaluates a scan a few
 // times at nearly the same pose, so P is kept as long as the point stays in its
-// cell; reading the 16 cells is most of the work.
+// cell. The arithmetic is done for several points at once (bicubic_kernels.h).
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_OCCUPIED_SPACE_COST_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_OCCUPIED_SPACE_COST_H_
 
@@ -31,24 +31,10 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/scan_matching/bicubic_kernels.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
-
-// Weights of four neighbouring cells, and their derivatives by the fraction.
-struct CubicWeights {
-  Eigen::Array4d value;
-  Eigen::Array4d slope;
-
-  explicit CubicWeights(const double f) {
-    const double f2 = f * f;
-    const double f3 = f2 * f;
-    value << 0.5 * (-f + 2. * f2 - f3), 0.5 * (2. - 5. * f2 + 3. * f3),
-        0.5 * (f + 4. * f2 - 3. * f3), 0.5 * (f3 - f2);
-    slope << 0.5 * (-1. + 4. * f - 3. * f2), 0.5 * (-10. * f + 9. * f2),
-        0.5 * (1. + 8. * f - 9. * f2), 0.5 * (3. * f2 - 2. * f);
-  }
-};
 
 // Sums over the points of a scan at one pose.
 struct OccupiedSpaceSums {
@@ -71,28 +57,39 @@ class OccupiedSpaceCost {
   static constexpr float kOutside = 0.9f;
 
   // `points` in metres, in the frame of the node. `cells` must outlive this.
-  OccupiedSpaceCost(const Cells* cells, std::vector<Eigen::Vector2d> points)
+  OccupiedSpaceCost(const Cells* cells, std::vector<Eigen::Vector2d> points,
+                    const BicubicKernels& kernels = BestBicubicKernels())
       : cells_(*cells),
         points_(std::move(points)),
+        kernels_(kernels),
         cells_per_metre_(1. / cells->resolution()),
-        patches_(points_.size()) {}
+        // An odd number of half cache lines.
+        stride_((static_cast<int>(points_.size()) + 3) / 8 * 8 + 4),
+        arrays_(static_cast<size_t>(kNumArrays) * stride_),
+        patches_(points_.size()) {
+    for (size_t i = 0; i != points_.size(); ++i) {
+      Array(kPointX)[i] = points_[i].x();
+      Array(kPointY)[i] = points_[i].y();
+    }
+  }
 
   const std::vector<Eigen::Vector2d>& points() const { return points_; }
 
-  // At the pose (grid <- node). Not const: patches are kept.
+  // At the pose (grid <- node). Not const: cells are kept.
   OccupiedSpaceSums Evaluate(const Pose2& pose) {
+    Sample(pose);
+    const double* const costs = Array(kCost);
+    const double* const row_slopes = Array(kRowSlope);
+    const double* const column_slopes = Array(kColumnSlope);
+    const double* const turned_x = Array(kTurnedX);
+    const double* const turned_y = Array(kTurnedY);
     OccupiedSpaceSums sums;
     double h00 = 0., h01 = 0., h02 = 0., h11 = 0., h12 = 0., h22 = 0.;
-    const double cosine = std::cos(pose.theta);
-    const double sine = std::sin(pose.theta);
     for (size_t i = 0; i != points_.size(); ++i) {
-      // The point turned into the frame of the grid, without translation.
-      const double turned_x = cosine * points_[i].x() - sine * points_[i].y();
-      const double turned_y = sine * points_[i].x() + cosine * points_[i].y();
-      double cost, per_x, per_y;
-      Sample(turned_x + pose.x, turned_y + pose.y, &patches_[i], &cost, &per_x,
-             &per_y);
-      const double per_theta = per_y * turned_x - per_x * turned_y;
+      const double cost = costs[i];
+      const double per_x = -cells_per_metre_ * row_slopes[i];
+      const double per_y = -cells_per_metre_ * column_slopes[i];
+      const double per_theta = per_y * turned_x[i] - per_x * turned_y[i];
       sums.squares += cost * cost;
       sums.gradient.x() += cost * per_x;
       sums.gradient.y() += cost * per_y;
@@ -143,81 +140,112 @@ class OccupiedSpaceCost {
   // Cost at one place of the grid, and its derivatives per metre.
   void CostAt(const double x, const double y, double* const cost,
               double* const per_x, double* const per_y) const {
-    Patch patch;
-    Sample(x, y, &patch, cost, per_x, per_y);
+    OccupiedSpaceCost place(&cells_, {Eigen::Vector2d(x, y)}, kernels_);
+    place.Sample(Pose2());
+    *cost = *place.Array(kCost);
+    *per_x = -cells_per_metre_ * *place.Array(kRowSlope);
+    *per_y = -cells_per_metre_ * *place.Array(kColumnSlope);
   }
 
  private:
-  // The 4 x 4 cells from (row - 1, column - 1) on, row by row.
+  // The 4 x 4 cells from (row - 1, column - 1) on that are kept of a point.
   struct Patch {
     int row = kNoRow;
     int column = 0;
-    Eigen::Matrix<float, 4, 4, Eigen::ColMajor> cells;
+    bool is_outside = false;
   };
   static constexpr int kNoRow = -1000000;
 
-  void Sample(const double x, const double y, Patch* const patch,
-              double* const cost, double* const per_x,
-              double* const per_y) const {
-    const double row = (cells_.max_x() - x) * cells_per_metre_ - 0.5;
-    const double column = (cells_.max_y() - y) * cells_per_metre_ - 0.5;
-    // None of the 16 cells is inside; also catches what is not a number and
-    // what does not fit an integer.
-    if (!(row >= -2. && row < cells_.num_rows() + 1. && column >= -2. &&
-          column < cells_.num_columns() + 1.)) {
-      *cost = kOutside;
-      *per_x = 0.;
-      *per_y = 0.;
-      return;
-    }
-    const double whole_row = std::floor(row);
-    const double whole_column = std::floor(column);
-    Load(static_cast<int>(whole_row), static_cast<int>(whole_column), patch);
-    const CubicWeights by_row(row - whole_row);
-    const CubicWeights by_column(column - whole_column);
-    // Column j of the matrix holds the four cells of grid column j.
-    Eigen::Array4d value = Eigen::Array4d::Zero();
-    Eigen::Array4d slope = Eigen::Array4d::Zero();
-    for (int j = 0; j != 4; ++j) {
-      const Eigen::Array4d cells =
-          patch->cells.col(j).array().template cast<double>();
-      value += by_column.value(j) * cells;
-      slope += by_column.slope(j) * cells;
-    }
-    *cost = (by_row.value * value).sum();
-    *per_x = -cells_per_metre_ * (by_row.slope * value).sum();
-    *per_y = -cells_per_metre_ * (by_row.value * slope).sum();
+  // Of one element a point, and at the end the 16 cells, column by column.
+  enum ArrayName {
+    kPointX,
+    kPointY,
+    kTurnedX,
+    kTurnedY,
+    kRow,
+    kColumn,
+    kCost,
+    kRowSlope,
+    kColumnSlope,
+    kCells,
+    kNumArrays = kCells + 16
+  };
+  double* Array(const int name) {
+    return arrays_.data() + static_cast<size_t>(name) * stride_;
   }
 
-  void Load(const int row, const int column, Patch* const patch) const {
+  // Costs of all points at a pose, and their slopes per cell.
+  void Sample(const Pose2& pose) {
+    const int num_points = static_cast<int>(points_.size());
+    double* const rows = Array(kRow);
+    double* const columns = Array(kColumn);
+    kernels_.find_places(
+        GridFrame{cells_.max_x(), cells_.max_y(), cells_per_metre_},
+        std::cos(pose.theta), std::sin(pose.theta), pose.x, pose.y,
+        Array(kPointX), Array(kPointY), num_points,
+        PointPlaces{Array(kTurnedX), Array(kTurnedY), rows, columns});
+    const double end_row = cells_.num_rows() + 1.;
+    const double end_column = cells_.num_columns() + 1.;
+    bool any_outside = false;
+    for (int i = 0; i != num_points; ++i) {
+      // Otherwise none of the 16 cells is inside; also catches what is not a
+      // number and what does not fit an integer.
+      const bool is_inside = rows[i] >= -2. && rows[i] < end_row &&
+                             columns[i] >= -2. && columns[i] < end_column;
+      patches_[i].is_outside = !is_inside;
+      any_outside = any_outside || !is_inside;
+      if (!is_inside) {
+        rows[i] = columns[i] = 0.;
+        continue;
+      }
+      const int row = Floor(rows[i]);
+      const int column = Floor(columns[i]);
+      rows[i] -= row;
+      columns[i] -= column;
+      Load(row, column, i);
+    }
+    kernels_.interpolate(Array(kCells), stride_, rows, columns, num_points,
+                         Array(kCost), Array(kRowSlope), Array(kColumnSlope));
+    for (int i = 0; any_outside && i != num_points; ++i) {
+      if (!patches_[i].is_outside) continue;
+      Array(kCost)[i] = kOutside;
+      Array(kRowSlope)[i] = Array(kColumnSlope)[i] = 0.;
+    }
+  }
+
+  static int Floor(const double x) {
+    const int cut = static_cast<int>(x);
+    return cut - (x < cut);
+  }
+
+  void Load(const int row, const int column, const int point) {
+    Patch* const patch = &patches_[point];
     if (patch->row == row && patch->column == column) return;
     patch->row = row;
     patch->column = column;
+    double* const cells = Array(kCells) + point;
     const int num_rows = cells_.num_rows();
     const int num_columns = cells_.num_columns();
-    if (row >= 1 && row + 2 < num_rows && column >= 1 &&
-        column + 2 < num_columns) {
-      for (int i = 0; i != 4; ++i) {
-        for (int j = 0; j != 4; ++j) {
-          patch->cells(i, j) = cells_.Cost(row - 1 + i, column - 1 + j);
-        }
-      }
-      return;
-    }
+    const bool is_whole = row >= 1 && row + 2 < num_rows && column >= 1 &&
+                          column + 2 < num_columns;
     for (int i = 0; i != 4; ++i) {
       for (int j = 0; j != 4; ++j) {
         const int r = row - 1 + i;
         const int c = column - 1 + j;
-        patch->cells(i, j) = r >= 0 && r < num_rows && c >= 0 && c < num_columns
-                                 ? cells_.Cost(r, c)
-                                 : kOutside;
+        cells[(4 * j + i) * stride_] =
+            is_whole || (r >= 0 && r < num_rows && c >= 0 && c < num_columns)
+                ? cells_.Cost(r, c)
+                : kOutside;
       }
     }
   }
 
   const Cells& cells_;
   const std::vector<Eigen::Vector2d> points_;
+  const BicubicKernels& kernels_;
   const double cells_per_metre_;
+  const int stride_;
+  std::vector<double> arrays_;
   std::vector<Patch> patches_;
 };
 

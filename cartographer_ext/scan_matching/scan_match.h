@@ -135,9 +135,12 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
     // A start that a search has found may be far from the prediction.
     prior.pose = start;
   }
-  OccupiedSpaceSums sums;
+  bool is_first = true;
+  double squares_at_start = 0.;
   const auto evaluate = [&](const Pose2& pose) {
-    sums = cost.Evaluate(pose);
+    const OccupiedSpaceSums sums = cost.Evaluate(pose);
+    if (is_first) squares_at_start = sums.squares;
+    is_first = false;
     PoseCost result;
     result.cost = 0.5 * scale * sums.squares + prior.Cost(pose);
     result.gradient = scale * sums.gradient +
@@ -201,11 +204,10 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
       report->covariance.setIdentity();
     }
   }
-  const auto stock_cost = [&](const Pose2& pose) {
-    return 0.5 * scale * cost.Evaluate(pose).squares + stock_prior.Cost(pose);
-  };
-  report->initial_cost = stock_cost(start);
-  report->final_cost = stock_cost(result);
+  report->initial_cost =
+      0.5 * scale * squares_at_start + stock_prior.Cost(start);
+  report->final_cost =
+      0.5 * scale * cost.Evaluate(result).squares + stock_prior.Cost(result);
   report->iterations = solution.iterations;
   report->converged = solution.converged;
   report->match = Pose2(match.x, match.y, NormalizeAngle(match.theta));
