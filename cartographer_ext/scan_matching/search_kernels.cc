@@ -120,9 +120,21 @@ void SplitColumns(const uint8_t* const source, const int count,
   for (int i = 0; i != count; ++i) target[plane * (i % 8) + i / 8] = source[i];
 }
 
-constexpr SearchKernels kPlain = {"plain",       &FindCells, &AddRows,
-                                  &MoveSums,     &SumValues, &FindPlaces,
-                                  &SplitColumns, &AddSquares};
+// Added before cutting off what follows the point.
+constexpr float kAlmostOne = 0.999f;
+
+void RoundUp(const float* const values, const float largest, const float scale,
+             const int count, uint8_t* const bytes) {
+  for (int i = 0; i != count; ++i) {
+    const float steps = (largest - values[i]) * scale;
+    bytes[i] = static_cast<uint8_t>(
+        std::min(255.f, std::max(0.f, steps) + kAlmostOne));
+  }
+}
+
+constexpr SearchKernels kPlain = {"plain",       &FindCells,  &AddRows,
+                                  &MoveSums,     &SumValues,  &FindPlaces,
+                                  &SplitColumns, &AddSquares, &RoundUp};
 
 #ifdef CARTOGRAPHER_EXT_X86_KERNELS
 
@@ -219,9 +231,31 @@ void SplitColumnsSse2(const uint8_t* const source, const int count,
   SplitColumns(source + i, count - i, plane, target + i / 8);
 }
 
+void RoundUpSse2(const float* const values, const float largest,
+                 const float scale, const int count, uint8_t* const bytes) {
+  const __m128 zero = _mm_setzero_ps();
+  int i = 0;
+  for (; i + 16 <= count; i += 16) {
+    __m128i whole[4];
+    for (int j = 0; j != 4; ++j) {
+      const __m128 steps = _mm_mul_ps(
+          _mm_sub_ps(_mm_set1_ps(largest), _mm_loadu_ps(values + i + 4 * j)),
+          _mm_set1_ps(scale));
+      // NaN becomes the second operand.
+      whole[j] = _mm_cvttps_epi32(_mm_min_ps(
+          _mm_add_ps(_mm_max_ps(steps, zero), _mm_set1_ps(kAlmostOne)),
+          _mm_set1_ps(255.f)));
+    }
+    Store16(_mm_packus_epi16(_mm_packs_epi32(whole[0], whole[1]),
+                             _mm_packs_epi32(whole[2], whole[3])),
+            bytes + i);
+  }
+  RoundUp(values + i, largest, scale, count - i, bytes + i);
+}
+
 constexpr SearchKernels kSse2 = {
-    "sse2",     &FindCells,  &AddRowsSse2,      &MoveSumsSse2,
-    &SumValues, &FindPlaces, &SplitColumnsSse2, &AddSquaresSse2};
+    "sse2",      &FindCells,        &AddRowsSse2,    &MoveSumsSse2, &SumValues,
+    &FindPlaces, &SplitColumnsSse2, &AddSquaresSse2, &RoundUpSse2};
 
 // round((max - world) / resolution - 0.5) of four.
 __attribute__((target("avx2"))) inline __m128i FourIndices(
@@ -440,7 +474,8 @@ __attribute__((target("avx2"))) int FindPlacesAvx2(
 
 constexpr SearchKernels kAvx2 = {
     "avx2",         &FindCellsAvx2,  &AddRowsAvx2,      &MoveSumsAvx2,
-    &SumValuesAvx2, &FindPlacesAvx2, &SplitColumnsSse2, &AddSquaresAvx2};
+    &SumValuesAvx2, &FindPlacesAvx2, &SplitColumnsSse2, &AddSquaresAvx2,
+    &RoundUpSse2};
 
 #endif  // CARTOGRAPHER_EXT_X86_KERNELS
 

@@ -66,6 +66,11 @@ struct SearchKernels {
   // i, j < 8, modulo 65536. Returns the largest sum.
   int (*add_squares)(const uint8_t* cells, int stride, const int32_t* offsets,
                      int count, uint16_t* sums);
+
+  // bytes[i] = min(255, max(0, scale * (largest - values[i])) + 0.999), cut off
+  // to a whole number, for i < count. NaN becomes 0.
+  void (*round_up)(const float* values, float largest, float scale, int count,
+                   uint8_t* bytes);
 };
 
 // The fastest set of this machine.

@@ -217,6 +217,28 @@ TEST_P(SearchKernelsTest, SquaresUseAllSixteenBits) {
       65535);
 }
 
+TEST_P(SearchKernelsTest, RoundsUpToBytes) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> values = {0.9f, 0.1f,  0.5f,   0.8f,
+                               nan,  1e30f, -1e30f, 0.89999f};
+  std::vector<uint8_t> bytes(8);
+  kernels_.round_up(values.data(), 0.9f, 10.f, 8, bytes.data());
+  // 0, 8, 4 and 1 steps; bounds.
+  EXPECT_EQ(bytes, (std::vector<uint8_t>{0, 8, 4, 1, 0, 0, 255, 0}));
+  for (int count = 0; count != 50; ++count) {
+    values.resize(count);
+    for (float& value : values) {
+      value = static_cast<float>(random_.Uniform(0., 1.));
+    }
+    if (count > 20) values[7] = nan;
+    bytes.assign(count + 1, 77);
+    std::vector<uint8_t> expected = bytes;
+    kernels_.round_up(values.data(), 0.9f, 318.75f, count, bytes.data());
+    plain_.round_up(values.data(), 0.9f, 318.75f, count, expected.data());
+    ASSERT_EQ(bytes, expected);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Sets, SearchKernelsTest, ::testing::ValuesIn(AllSearchKernels()),
     [](const ::testing::TestParamInfo<const SearchKernels*>& info) {

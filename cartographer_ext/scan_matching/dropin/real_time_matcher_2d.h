@@ -49,11 +49,16 @@ class ProbabilityGridView : public ProbabilityView {
   void CopyRow(const int y, const int x_begin, const int x_end,
                uint8_t* values) const override {
     constexpr float kSteps = 255.f / (kMaxProbability - kMinProbability);
-    for (int x = x_begin; x != x_end; ++x) {
-      const float steps =
-          (kMaxProbability - grid_.GetCorrespondenceCost({x, y})) * kSteps;
-      *values++ =
-          static_cast<uint8_t>(std::min(255.f, std::max(0.f, steps) + 0.999f));
+    constexpr int kAtOnce = 64;
+    float costs[kAtOnce];
+    const SearchKernels& kernels = BestSearchKernels();
+    for (int begin = x_begin; begin < x_end; begin += kAtOnce) {
+      const int count = std::min(kAtOnce, x_end - begin);
+      for (int i = 0; i != count; ++i) {
+        costs[i] = grid_.GetCorrespondenceCost({begin + i, y});
+      }
+      kernels.round_up(costs, kMaxProbability, kSteps, count, values);
+      values += count;
     }
   }
 
