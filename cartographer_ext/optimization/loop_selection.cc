@@ -10,6 +10,7 @@
 #include "cartographer_ext/optimization/condensed_graph.h"
 #include "cartographer_ext/optimization/incremental_smoother.h"
 #include "cartographer_ext/optimization/robust_solver.h"
+#include "cartographer_ext/optimization/stretch_bend.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -21,6 +22,9 @@ constexpr double kMany = 0.25;
 constexpr double kMost = 0.5;
 // Longest stretch of the condensed chain.
 constexpr int kMaxSteps = 10;
+// Of the odometry gate; what is below by the condensed graph and its stretches
+// is not looked at in the whole graph, which moves the vertices a little.
+constexpr double kSurelyStraight = 0.5;
 // Tolerances of the relative decrease of the cost: for starts and decisions by
 // a wide margin, and for what is final.
 constexpr double kRough = 1e-3;
@@ -326,17 +330,19 @@ bool IsSettled(const PoseGraph& graph, const std::vector<int>& neighbours,
   return true;
 }
 
-// Whether one step of a stretch may be beyond the gate. A stretch of n steps
+// The stretches of which one step may be beyond the gate. A stretch of n steps
 // with the whole of its bend in one has n times its chi2 there.
-bool MayBeBent(const CondensedGraph& condensed, const std::vector<double>& chi2,
-               const LoopSelectionOptions& options) {
+std::vector<int> MaybeBent(const CondensedGraph& condensed,
+                           const std::vector<double>& chi2,
+                           const LoopSelectionOptions& options) {
+  std::vector<int> result;
   for (size_t k = 0; k != condensed.chain.size(); ++k) {
     if (chi2[condensed.chain[k]] * condensed.chain_steps[k] >
         options.odometry_gate) {
-      return true;
+      result.push_back(k);
     }
   }
-  return false;
+  return result;
 }
 
 }  // namespace
@@ -370,7 +376,11 @@ LoopSelection SelectLoops(const PoseGraph& graph,
     selection.accepted[loop_of_edge[i]] = state.accepted[i];
     selection.chi2[loop_of_edge[i]] = chi2[i];
   }
-  if (!options.odometry_check || !MayBeBent(condensed, chi2, options)) {
+  if (!options.odometry_check) return selection;
+  const std::vector<int> maybe_bent = MaybeBent(condensed, chi2, options);
+  if (maybe_bent.empty() ||
+      LargestBend(graph, neighbours, condensed, state.poses, maybe_bent) <
+          kSurelyStraight * options.odometry_gate) {
     return selection;
   }
   Selector checker(graph, options);

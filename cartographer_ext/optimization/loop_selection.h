@@ -20,10 +20,10 @@
 //   3. Odometry check with rollback (improved graph optimisation 2024, section
 //      3.4): where the winner bends the trajectory between neighbouring poses
 //      beyond the gate (looked at in the whole graph where the condensed one
-//      leaves that open), the loop to blame is the one with the largest chi2
-//      among those which span the place. It is switched off, the graph is
-//      solved again from the poses before, and the result is kept only if it
-//      has fewer such places.
+//      and the steps within its stretches leave that open), the loop to blame
+//      is the one with the largest chi2 among those which span the place. It is
+//      switched off, the graph is solved again from the poses before, and the
+//      result is kept only if it has fewer such places.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_LOOP_SELECTION_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_LOOP_SELECTION_H_
 
