@@ -11,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/optimization/joined_trajectories.h"
+#include "cartographer_ext/optimization/polish_near.h"
 #include "cartographer_ext/optimization/robust_solver.h"
 #include "cartographer_ext/optimization/switchable_constraints.h"
 
@@ -190,6 +191,20 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     AddSummary(
         PolishAdapted(kPolishRounds, &solver, &result->poses, &result->weights),
         result);
+    const double enough = (1. + kSame) * best->truncated_cost;
+    if (options.lowest_cost && TruncatedCost(edges, result->poses) > enough) {
+      const std::vector<Pose2> adapted = result->poses;
+      result->poses = best->poses;
+      result->member = best->name;
+      for (size_t i = 0; i != edges.size(); ++i) {
+        result->weights[i] =
+            !edges[i].is_loop || Chi2(edges[i], best->poses[edges[i].from],
+                                      best->poses[edges[i].to]) < kChi2Gate;
+      }
+      AddSummary(
+          PolishNear(edges, adapted, enough, &result->poses, &result->weights),
+          result);
+    }
   }
   result->accepted.assign(edges.size(), true);
   for (size_t i = 0; i != edges.size(); ++i) {

@@ -39,6 +39,9 @@ DEFINE_bool(adaptive_gate, true,
             "auto, r_isam: decide in the end by a gate narrowed to the scale "
             "of the loops that agree. Never for a pbstream, whose weights are "
             "relative.");
+DEFINE_bool(lowest_cost, false,
+            "auto: end with the lowest truncated cost of all, as near to what "
+            "the adapted gate says as that permits.");
 DEFINE_bool(dead_reckoning, false,
             "Start from chained odometry instead of the file's poses.");
 DEFINE_string(output_filename, "",
@@ -219,6 +222,7 @@ absl::Status Run() {
   // Weights of a map are relative; their scale is a guess.
   options.adaptive_gate = FLAGS_adaptive_gate && !input->pbstream.has_value();
   options.smoother.adaptive_gate = options.adaptive_gate;
+  options.lowest_cost = FLAGS_lowest_cost;
   if (FLAGS_dead_reckoning) {
     input->graph.poses = optimization::DeadReckoning(input->graph);
   }

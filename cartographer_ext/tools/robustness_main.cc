@@ -51,6 +51,9 @@ DEFINE_bool(adaptive_gate, true,
             "auto, r_isam: decide in the end by a gate narrowed to the scale "
             "of the loops that agree. Off: auto keeps what has the lowest "
             "truncated cost.");
+DEFINE_bool(lowest_cost, false,
+            "auto: end with the lowest truncated cost of all, as near to what "
+            "the adapted gate says as that permits.");
 DEFINE_double(max_seconds, 1e9,
               "Limit of the processor time of one solution by sc.");
 DEFINE_string(journal_filename, "",
@@ -133,6 +136,7 @@ absl::Status Run() {
   options.optimize.max_seconds = FLAGS_max_seconds;
   options.optimize.adaptive_gate = FLAGS_adaptive_gate;
   options.optimize.smoother.adaptive_gate = FLAGS_adaptive_gate;
+  options.optimize.lowest_cost = FLAGS_lowest_cost;
   const auto norm = optimization::CovarianceNormFromName(FLAGS_norm);
   if (!norm.ok()) return norm.status();
   options.optimize.norm = *norm;
