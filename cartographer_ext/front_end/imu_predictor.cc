@@ -108,15 +108,23 @@ void ImuPredictor::AddMatch(const double from, const double to,
     standing_since_ = from;
     sum_.setZero();
     num_summed_ = 0;
+    newest_sum_.setZero();
+    num_newest_ = 0;
   }
+  sum_ += newest_sum_;
+  num_summed_ += num_newest_;
+  newest_sum_.setZero();
+  num_newest_ = 0;
   for (auto it = std::lower_bound(readings_.begin(), readings_.end(), from,
                                   IsEarlier);
        it != readings_.end() && it->time < to; ++it) {
-    sum_ += Eigen::Vector3d(it->acceleration.x(), it->acceleration.y(),
-                            it->yaw_rate);
-    ++num_summed_;
+    newest_sum_ += Eigen::Vector3d(it->acceleration.x(), it->acceleration.y(),
+                                   it->yaw_rate);
+    ++num_newest_;
   }
-  if (to - standing_since_ < options_.standing_time || num_summed_ == 0) return;
+  if (from - standing_since_ < options_.standing_time || num_summed_ == 0) {
+    return;
+  }
   const Eigen::Vector3d mean = sum_ / num_summed_;
   bias_.acceleration = mean.head<2>();
   bias_.yaw_rate = mean.z();

@@ -57,11 +57,14 @@ class ImuPredictor {
   std::deque<PlanarImuReading> readings_;
   ImuBias bias_;
   bool bias_is_known_ = false;
-  // Sums over the readings since the robot stopped.
+  // Sums over the readings since the robot stopped. Those of the newest
+  // interval wait for the next one: in it the robot may have set off.
   double standing_since_ = 0.;
   bool is_standing_ = false;
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   int num_summed_ = 0;
+  Eigen::Vector3d newest_sum_ = Eigen::Vector3d::Zero();
+  int num_newest_ = 0;
 };
 
 }  // namespace front_end

@@ -18,6 +18,11 @@ constexpr double kMinVelocityInterval = 0.02;
 constexpr double kMaxWaySinceMap = 1.;
 constexpr double kMaxTurnSinceMap = 1.;
 constexpr double kMaxTimeSinceMap = 10.;
+// Wheels that moved less between two scans stand still; matches of a robot that
+// stands are off by less: metres, radians.
+constexpr double kStandingWheels = 1e-3;
+constexpr double kStandingMatchWay = 0.02;
+constexpr double kStandingMatchTurn = 0.01;
 
 double Squared(const double x) { return x * x; }
 
@@ -191,6 +196,16 @@ void MotionPredictor::AddToMap() {
   since_map_ = Pose2();
 }
 
+bool MotionPredictor::Stands(const double time, const Pose2& match) const {
+  OdometryMotion odometry;
+  return monitor_.IsTrusted() && PredictOdometry(time, &odometry) &&
+         !odometry.is_late &&
+         std::hypot(odometry.motion.x, odometry.motion.y) < kStandingWheels &&
+         std::abs(odometry.motion.theta) < kStandingWheels &&
+         std::hypot(match.x, match.y) < kStandingMatchWay &&
+         std::abs(match.theta) < kStandingMatchTurn;
+}
+
 OdometryState MotionPredictor::CheckOdometry(const double time,
                                              const MatchedMotion& matched) {
   since_anchor_ = since_anchor_ * matched.motion;
@@ -266,7 +281,8 @@ OdometryState MotionPredictor::AddMatch(const double time,
   if (state == OdometryState::kOk && matched.turn_is_determined) {
     odometry_.AddMatch(last_time_, time, matched.motion);
   }
-  imu_.AddMatch(last_time_, time, matched.motion);
+  imu_.AddMatch(last_time_, time,
+                Stands(time, matched.motion) ? Pose2() : matched.motion);
 
   UpdateVelocity(time, matched);
   last_time_ = time;

@@ -107,6 +107,8 @@ class MotionPredictor {
   // Where the velocity is a mere guess.
   Eigen::Matrix3d WideCovariance(double interval) const;
   bool PredictOdometry(double time, OdometryMotion* motion) const;
+  // Whether the wheels stand still; a match may move a little all the same.
+  bool Stands(double time, const Pose2& match) const;
   // By odometry and IMU since the last scan that is in the map.
   void PredictFromMap(double time, MotionPrediction* prediction) const;
   void UpdateVelocity(double time, const MatchedMotion& matched);

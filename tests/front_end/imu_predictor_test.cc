@@ -69,6 +69,22 @@ TEST(ImuPredictorTest, LearnsTheBiasWhileStandingAndOnlyThen) {
   EXPECT_NEAR(motion.motion.x, 0., 1e-9);
 }
 
+// The robot sets off within an interval that still looks like standing.
+TEST(ImuPredictorTest, SettingOffIsNoBias) {
+  ImuPredictorOptions options;
+  options.standing_time = 1.;
+  ImuPredictor predictor(options);
+  for (int i = 0; i <= 300; ++i) {
+    predictor.Add(Reading(0.01 * i, 0., i < 155 ? 0.02 : 0.3));
+  }
+  for (int i = 0; i < 16; ++i) {
+    predictor.AddMatch(0.1 * i, 0.1 * (i + 1), Pose2());
+  }
+  predictor.AddMatch(1.6, 1.7, Pose2(0., 0., 0.03));
+  ASSERT_TRUE(predictor.bias_is_known());
+  EXPECT_NEAR(predictor.bias().yaw_rate, 0.02, 1e-9);
+}
+
 TEST(ImuPredictorTest, UncertaintyGrowsWithTime) {
   ImuPredictor predictor((ImuPredictorOptions()));
   for (int i = 0; i <= 300; ++i) predictor.Add(Reading(0.01 * i, 0., 0.));

@@ -129,6 +129,36 @@ TEST(MotionPredictorTest, TheTurnIsWeighedBetweenOdometryAndImu) {
   EXPECT_LT(prediction.covariance(2, 2), 1e-6);
 }
 
+// Where the scan hardly tells the turn, matches of a robot that stands jitter;
+// the wheels tell that it stands, and the gyroscope's bias is learnt.
+TEST(MotionPredictorTest, WheelsThatStandTellTheBiasOfTheImu) {
+  for (const bool wheels_turn : {false, true}) {
+    MotionPredictorOptions options;
+    options.imu.yaw_rate_bias_noise = 1e-4;
+    MotionPredictor predictor(options);
+    const double bias = 0.01;
+    for (int i = 0; i <= 40; ++i) {
+      const double t = 0.1 * i;
+      for (int k = 0; k < 10; ++k) {
+        PlanarImuReading reading;
+        reading.time = t + 0.01 * k;
+        reading.yaw_rate = bias;
+        predictor.AddImu(reading);
+      }
+      predictor.AddOdometry(t, Pose2(0., 0., wheels_turn ? 0.002 * i : 0.));
+      // 0.05 rad/s are not standing by themselves.
+      predictor.AddMatch(t, Matched(Pose2(0., 0., i % 2 ? 0.005 : -0.005)));
+    }
+    predictor.AddOdometry(4.05, Pose2(0., 0., wheels_turn ? 0.081 : 0.));
+    const MotionPrediction prediction = predictor.Predict(4.05);
+    if (wheels_turn) {
+      EXPECT_GT(std::abs(prediction.motion.theta), 2e-4);
+    } else {
+      EXPECT_NEAR(prediction.motion.theta, 0., 1e-5);
+    }
+  }
+}
+
 TEST(MotionPredictorTest, ImuAloneWhereThereIsNoOdometry) {
   MotionPredictor predictor((MotionPredictorOptions()));
   for (int i = 0; i <= 200; ++i) {
