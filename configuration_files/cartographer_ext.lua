@@ -293,6 +293,13 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- place visited twice without going far is closed twice. Not for searches
     -- of a whole submap. [>= 0 and <= 1e+09, s]
     redundant_time = 10,
+    -- Where scans typically fit the submap that has just ended with less than
+    -- this (bushes, clutter), min_score and global_localization_min_score are
+    -- lowered in proportion. 0: never. [>= 0 and <= 1]
+    fit_reference = 0.65,
+    -- They are lowered to this part of them at most. Smaller finds more loops
+    -- outdoors and costs more. [> 0 and <= 1]
+    least_fit_scale = 0.85,
   },
   temporal_verification = {
     -- Compares the last nodes with what the submap predicts along the same

@@ -117,6 +117,14 @@ MapLocalizationOptions ToMapLocalizationOptions(
   return to;
 }
 
+TypicalFitOptions ToTypicalFitOptions(const LoopClosureOptions& options) {
+  TypicalFitOptions to;
+  to.reference =
+      options.search().enabled() ? options.search().fit_reference() : 0.;
+  to.least_scale = options.search().least_fit_scale();
+  return to;
+}
+
 CompatibleSubsetOptions ToCompatibleSubsetOptions(
     const LoopClosureOptions& options) {
   const auto& from = options.compatible_subset();

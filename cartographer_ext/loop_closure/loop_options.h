@@ -15,6 +15,7 @@
 #include "cartographer_ext/loop_closure/path_uncertainty.h"
 #include "cartographer_ext/loop_closure/score_fusion.h"
 #include "cartographer_ext/loop_closure/temporal_verification.h"
+#include "cartographer_ext/loop_closure/typical_fit.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 
 namespace cartographer_ext {
@@ -40,6 +41,7 @@ MapLocalizationOptions ToMapLocalizationOptions(
 CompatibleSubsetOptions ToCompatibleSubsetOptions(
     const proto::LoopClosureOptions& options);
 InnovationOptions ToInnovationOptions(const proto::LoopClosureOptions& options);
+TypicalFitOptions ToTypicalFitOptions(const proto::LoopClosureOptions& options);
 
 // Of a loop itself; (metres, metres, radians) squared.
 Eigen::Matrix3d LoopCovariance(const proto::LoopClosureOptions& options);

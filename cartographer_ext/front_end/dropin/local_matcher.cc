@@ -10,6 +10,7 @@
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/options/option_description.h"
+#include "cartographer_ext/scan_matching/dropin/mean_score.h"
 #include "cartographer_ext/scan_matching/dropin/real_time_matcher_2d.h"
 
 namespace cartographer_ext {
@@ -17,7 +18,6 @@ namespace front_end {
 namespace {
 
 using cartographer::mapping::Grid2D;
-using cartographer::mapping::GridType;
 using cartographer::sensor::PointCloud;
 using cartographer::transform::Rigid2d;
 using scan_matching::Prediction;
@@ -85,25 +85,6 @@ double Contradiction(const Pose2& predicted, const Pose2& found) {
   return std::min(1., std::max({0., way, turn}));
 }
 
-double MeanScore(const Pose2& pose, const PointCloud& cloud,
-                 const Grid2D& grid) {
-  if (cloud.empty()) return 0.;
-  const bool is_tsdf = grid.GetGridType() == GridType::TSDF;
-  const float c = static_cast<float>(std::cos(pose.theta));
-  const float s = static_cast<float>(std::sin(pose.theta));
-  const float x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
-  double sum = 0.;
-  for (const auto& point : cloud) {
-    const Eigen::Vector3f& p = point.position;
-    const Eigen::Array2i cell = grid.limits().GetCellIndex(
-        Eigen::Vector2f(x + c * p.x() - s * p.y(), y + s * p.x() + c * p.y()));
-    const double cost = grid.GetCorrespondenceCost(cell);
-    sum += is_tsdf ? 1. - std::abs(cost) / grid.GetMaxCorrespondenceCost()
-                   : 1. - cost;
-  }
-  return sum / static_cast<double>(cloud.size());
-}
-
 LocalMatcher::LocalMatcher(
     const proto::FrontEndOptions& options,
     const stock_proto::CeresScanMatcherOptions2D& matcher_options)
@@ -119,7 +100,7 @@ LocalMatch LocalMatcher::MatchFrom(const Prediction& prediction,
   matcher_.MatchWithPrediction(prediction, ToRigid(initial), cloud, grid, &pose,
                                &match.report);
   match.pose = FromRigid(pose);
-  match.score = MeanScore(match.pose, cloud, grid);
+  match.score = scan_matching::MeanScore(match.pose, cloud, grid);
   return match;
 }
 

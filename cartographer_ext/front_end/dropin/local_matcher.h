@@ -77,12 +77,6 @@ class LocalMatcher {
 // off) to 1 (15 cm or 5 degrees and more).
 double Contradiction(const Pose2& predicted, const Pose2& found);
 
-// Mean over the points of 1 - |cost| / largest cost on a TSDF, of the
-// probability of their cells otherwise; 0 without points.
-double MeanScore(const Pose2& pose,
-                 const cartographer::sensor::PointCloud& cloud,
-                 const cartographer::mapping::Grid2D& grid);
-
 }  // namespace front_end
 }  // namespace cartographer_ext
 

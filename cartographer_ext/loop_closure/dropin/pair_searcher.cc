@@ -38,12 +38,14 @@ void PairSearcher::Search(PairCandidate* const candidate) const {
     if (plan.full_submap) {
       metrics.searched_global->Increment();
       match = entry.matcher->MatchFullSubmap(
-          cloud, options_.global_localization_min_score());
+          cloud,
+          candidate->floor_scale * options_.global_localization_min_score());
     } else {
       metrics.searched_local->Increment();
-      match = entry.matcher->Match(entry.local_pose * candidate->pair.predicted,
-                                   plan.linear_window, plan.angular_window,
-                                   cloud, options_.min_score());
+      match =
+          entry.matcher->Match(entry.local_pose * candidate->pair.predicted,
+                               plan.linear_window, plan.angular_window, cloud,
+                               candidate->floor_scale * options_.min_score());
     }
     candidate->search_seconds = meter.seconds();
   }

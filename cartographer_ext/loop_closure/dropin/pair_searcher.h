@@ -54,6 +54,7 @@ struct PairCandidate {
   SearchPlan plan;
   int64_t query = -1;  // searched together with others where not negative
   std::shared_ptr<SubmapEntry> entry;
+  double floor_scale = 1.;  // of the smallest score that counts
   bool found = false;
   double score = 0.;
   Pose2 matched;  // (submap <- node), gravity-aligned

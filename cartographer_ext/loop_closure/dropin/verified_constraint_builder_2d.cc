@@ -17,6 +17,7 @@
 #include "cartographer_ext/loop_closure/dropin/match_information.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
+#include "cartographer_ext/scan_matching/dropin/mean_score.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -38,6 +39,9 @@ void ToProto(const Pose2& from, LoopDecision::Pose* const to) {
   to->set_theta(from.theta);
 }
 
+// Scans so little further on still see what a submap ends with, metres.
+constexpr double kWayBehindSubmap = 3.;
+
 ConstraintWeights StockWeights(const ConstraintBuilderOptions& options) {
   ConstraintWeights weights;
   weights.translation = options.loop_closure_translation_weight();
@@ -57,6 +61,7 @@ VerifiedConstraintBuilder2D::VerifiedConstraintBuilder2D(
       searcher_(options),
       verifier_(extension, StockWeights(options)),
       planner_(options, extension, &verifier_.paths()),
+      typical_fit_(ToTypicalFitOptions(extension)),
       end_of_node_task_(absl::make_unique<Task>()),
       callback_task_(absl::make_unique<Task>()) {
   pending_id_ = DecisionRecorder::Global()->AddPending([this]() {
@@ -131,6 +136,26 @@ SubmapEntry* VerifiedConstraintBuilder2D::Offer(const SubmapId& submap_id,
   return entry;
 }
 
+void VerifiedConstraintBuilder2D::MeasureFit(const OfferedPair& pair,
+                                             const SubmapEntry& entry) {
+  if (pair.submap_id.trajectory_id != pair.node_id.trajectory_id ||
+      entry.newest_node_at_first < 0) {
+    return;
+  }
+  const absl::optional<double> travelled = verifier_.paths().Travelled(
+      NodeKey{pair.submap_id.trajectory_id, entry.newest_node_at_first},
+      ToKey(pair.node_id));
+  if (pair.node_id.node_index <= entry.newest_node_at_first ||
+      !travelled.has_value() || *travelled > kWayBehindSubmap) {
+    return;
+  }
+  typical_fit_.Add(pair.node_id.trajectory_id,
+                   scan_matching::MeanScore(
+                       LocalPose(*pair.node) * pair.from_robot.Inverse(),
+                       pair.node->filtered_gravity_aligned_point_cloud,
+                       *entry.submap->grid()));
+}
+
 absl::optional<NodeKey> VerifiedConstraintBuilder2D::Anchor(
     const SubmapId& submap_id, const SubmapEntry& entry,
     const int trajectory_id) const {
@@ -160,6 +185,7 @@ void VerifiedConstraintBuilder2D::MaybeAddConstraint(
   pairs_.push_back(OfferedPair{
       submap_id, node_id, node, false, PlanarPose(initial_relative_pose),
       FromRobot(*node), Anchor(submap_id, *entry, node_id.trajectory_id)});
+  MeasureFit(pairs_.back(), *entry);
 }
 
 void VerifiedConstraintBuilder2D::MaybeAddGlobalConstraint(
@@ -197,6 +223,9 @@ void VerifiedConstraintBuilder2D::NotifyEndOfNode() {
       candidate.plan = planned.plan;
       candidate.query = planned.query;
       candidate.entry = submaps_.at(pair.submap_id);
+      if (pair.submap_id.trajectory_id == pair.node_id.trajectory_id) {
+        candidate.floor_scale = typical_fit_.Scale(pair.node_id.trajectory_id);
+      }
       if (planned.query >= 0) {
         queries[planned.query].push_back(&candidate);
       } else if (planned.plan.skipped == LoopDecision::NONE) {

@@ -57,6 +57,7 @@
 #include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
 #include "cartographer_ext/loop_closure/dropin/place_search.h"
 #include "cartographer_ext/loop_closure/loop_verifier.h"
+#include "cartographer_ext/loop_closure/typical_fit.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 
 namespace cartographer_ext {
@@ -106,6 +107,9 @@ class VerifiedConstraintBuilder2D {
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void RememberNode(const NodeId& node_id, const NodeData& node)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // How a node fits a submap of its run that ended right before it.
+  void MeasureFit(const OfferedPair& pair, const SubmapEntry& entry)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::optional<NodeKey> Anchor(const SubmapId& submap_id,
                                  const SubmapEntry& entry,
                                  int trajectory_id) const
@@ -149,6 +153,7 @@ class VerifiedConstraintBuilder2D {
   absl::Mutex mutex_;
   LoopVerifier verifier_ ABSL_GUARDED_BY(mutex_);
   PairPlanner planner_ ABSL_GUARDED_BY(mutex_);
+  TypicalFit typical_fit_ ABSL_GUARDED_BY(mutex_);
   std::map<SubmapId, std::shared_ptr<SubmapEntry>> submaps_
       ABSL_GUARDED_BY(mutex_);
   std::map<int, int> newest_nodes_ ABSL_GUARDED_BY(mutex_);

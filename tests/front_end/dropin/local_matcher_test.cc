@@ -13,6 +13,7 @@
 #include "cartographer/mapping/internal/2d/local_trajectory_builder_options_2d.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/options/option_description.h"
+#include "cartographer_ext/scan_matching/dropin/mean_score.h"
 #include "gtest/gtest.h"
 #include "tests/front_end/dropin/simulated_room.h"
 
@@ -135,10 +136,11 @@ TEST_F(LocalMatcherTest, WithoutSearchItStaysWithThePrediction) {
 }
 
 TEST_F(LocalMatcherTest, NoPointsHaveNoScore) {
-  EXPECT_EQ(
-      MeanScore(Pose2(), PointCloud(), *submaps_->submaps().front()->grid()),
-      0.);
-  EXPECT_GT(MeanScore(Pose2(), Cloud(), *submaps_->submaps().front()->grid()),
+  EXPECT_EQ(scan_matching::MeanScore(Pose2(), PointCloud(),
+                                     *submaps_->submaps().front()->grid()),
+            0.);
+  EXPECT_GT(scan_matching::MeanScore(Pose2(), Cloud(),
+                                     *submaps_->submaps().front()->grid()),
             0.6);
 }
 

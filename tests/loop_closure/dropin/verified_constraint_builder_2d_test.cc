@@ -255,6 +255,46 @@ TEST_F(VerifiedConstraintBuilder2DTest, FindsThePoseOfTheGravityAlignedNode) {
   }
 }
 
+// Scans of which half hits things that are not in the map, as between bushes.
+TEST_F(VerifiedConstraintBuilder2DTest, FloorFollowsWhatScansReach) {
+  for (Builder::NodeData& node : nodes_) {
+    cartographer::sensor::PointCloud half;
+    for (size_t i = 0; i < node.filtered_gravity_aligned_point_cloud.size();
+         ++i) {
+      cartographer::sensor::RangefinderPoint point =
+          node.filtered_gravity_aligned_point_cloud[i];
+      if (i % 2 == 0) point.position *= 3.f;
+      half.push_back(point);
+    }
+    node.filtered_gravity_aligned_point_cloud = half;
+  }
+  auto stock_options = StockOptions();
+  auto options = StagesOff();
+  options.mutable_search()->set_enabled(true);
+  options.mutable_search()->set_informative_sigma(0.);
+  options.mutable_search()->set_search_spacing(0.);
+  std::vector<size_t> found;
+  for (const double reference : {0., 0.65}) {
+    cartographer::common::ThreadPool pool(2);
+    options.mutable_search()->set_fit_reference(reference);
+    Builder builder(stock_options, options, &pool);
+    found.push_back(0);
+    for (const Builder::Result& result : Drive(&builder)) {
+      found.back() += result.size();
+      for (const Builder::Constraint& constraint : result) {
+        const Rigid2d error =
+            cartographer::transform::Project2D(constraint.pose.zbar_ij)
+                .inverse() *
+            Relative(constraint.submap_id.submap_index,
+                     constraint.node_id.node_index);
+        EXPECT_LT(error.translation().norm(), 0.05);
+      }
+    }
+  }
+  EXPECT_EQ(found[0], 0u);
+  EXPECT_GT(found[1], 50u);
+}
+
 TEST_F(VerifiedConstraintBuilder2DTest, EveryCandidateHasOneRecord) {
   DecisionRecorder::Global()->Start(100000);
   int64_t accepted = 0;
