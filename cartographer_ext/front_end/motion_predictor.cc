@@ -18,6 +18,9 @@ constexpr double kMinVelocityInterval = 0.02;
 constexpr double kMaxWaySinceMap = 1.;
 constexpr double kMaxTurnSinceMap = 1.;
 constexpr double kMaxTimeSinceMap = 10.;
+// Changes of the speed that the bias of the accelerometer may feign are none:
+// added up they would soon be metres a second. Standard deviations.
+constexpr double kAccelerationGate = 2.;
 // Wheels that moved less between two scans stand still; matches of a robot that
 // stands are off by less: metres, radians.
 constexpr double kStandingWheels = 1e-3;
@@ -105,16 +108,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   const bool has_imu = imu_.Predict(
       last_time_, time, Eigen::Vector2d(velocity().x, velocity().y), &imu);
   if (has_imu) {
-    prediction.source = PredictionSource::kImu;
-    prediction.motion = imu.motion;
-    prediction.covariance =
-        imu.covariance + OdometryCovariance(options_.odometry, Pose2());
-    // The speed at the start is that of a match.
-    const double way = 0.2 * options_.constant_velocity.speed_noise * interval;
-    prediction.covariance(0, 0) += Squared(way);
-    prediction.covariance(1, 1) += Squared(way);
-    prediction.is_uncertain = interval > options_.constant_velocity.max_time;
-    prediction.unknown_way = prediction.unknown_turn = 0.;
+    PredictInertially(interval, imu, &prediction);
   }
 
   OdometryMotion odometry;
@@ -165,6 +159,41 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
     PredictFromMap(time, &prediction);
   }
   return prediction;
+}
+
+double MotionPredictor::SpeedChange(const double interval,
+                                    const ImuMotion& imu) const {
+  const double least =
+      kAccelerationGate * options_.imu.acceleration_bias_noise * interval;
+  return imu_.bias_is_known() && std::abs(imu.speed_change) > least
+             ? imu.speed_change
+             : 0.;
+}
+
+void MotionPredictor::PredictInertially(
+    const double interval, const ImuMotion& imu,
+    MotionPrediction* const prediction) const {
+  prediction->source = PredictionSource::kImu;
+  prediction->unknown_way = prediction->unknown_turn = 0.;
+  const Eigen::Matrix3d at_rest =
+      OdometryCovariance(options_.odometry, Pose2());
+  prediction->is_uncertain = interval > options_.constant_velocity.max_time;
+  if (prediction->is_uncertain) {
+    prediction->motion = imu.motion;
+    prediction->covariance = imu.covariance + at_rest;
+    // The speed at the start is that of a match.
+    const double way = 0.2 * options_.constant_velocity.speed_noise * interval;
+    prediction->covariance(0, 0) += Squared(way);
+    prediction->covariance(1, 1) += Squared(way);
+    return;
+  }
+  prediction->motion = velocity_.Motion(interval);
+  prediction->motion.x += 0.5 * interval * SpeedChange(interval, imu);
+  prediction->motion.theta = imu.motion.theta;
+  prediction->covariance.setZero();
+  prediction->covariance.topLeftCorner<2, 2>() =
+      velocity_.MotionCovariance(interval).topLeftCorner<2, 2>();
+  prediction->covariance(2, 2) = imu.covariance(2, 2) + at_rest(2, 2);
 }
 
 Eigen::Matrix3d MotionPredictor::CovarianceOf(const OdometryMotion& odometry,
@@ -253,11 +282,15 @@ OdometryState MotionPredictor::Compare(const double time,
 }
 
 void MotionPredictor::UpdateVelocity(const double time,
-                                     const MatchedMotion& matched) {
+                                     const MatchedMotion& matched,
+                                     const double speed_change) {
   const double interval = time - last_time_;
   if (matched.from_velocity &&
       interval <= options_.constant_velocity.max_time) {
-    velocity_.AddMatch(interval, matched.motion, matched.covariance);
+    Pose2 motion = matched.motion;
+    motion.x -= 0.5 * interval * speed_change;
+    velocity_.AddMatch(interval, motion, matched.covariance);
+    velocity_.Accelerate(speed_change);
   } else if (interval >= kMinVelocityInterval) {
     velocity_.Restart(interval, matched.motion);
   }
@@ -281,10 +314,15 @@ OdometryState MotionPredictor::AddMatch(const double time,
   if (state == OdometryState::kOk && matched.turn_is_determined) {
     odometry_.AddMatch(last_time_, time, matched.motion);
   }
+  ImuMotion imu;
+  const double speed_change =
+      imu_.Predict(last_time_, time, Eigen::Vector2d::Zero(), &imu)
+          ? SpeedChange(interval, imu)
+          : 0.;
   imu_.AddMatch(last_time_, time,
                 Stands(time, matched.motion) ? Pose2() : matched.motion);
 
-  UpdateVelocity(time, matched);
+  UpdateVelocity(time, matched, speed_change);
   last_time_ = time;
   since_map_ = since_map_ * matched.motion;
   const bool is_far =

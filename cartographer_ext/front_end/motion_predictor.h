@@ -8,7 +8,9 @@
 //   odometry and IMU   the way from odometry, the turn from both, weighed by
 //                      their variances
 //   odometry alone     its motion over the interval
-//   IMU alone          preintegrated from the velocity of the last scans
+//   IMU alone          the turn from the IMU, the way from the velocity of
+//                      the last scans and the accelerations since then; over a
+//                      long gap both preintegrated
 //   neither            constant velocity for a while, then no motion
 //
 // Odometry that the monitor has found at fault is not used as long as the
@@ -75,7 +77,7 @@ struct MatchedMotion {
   bool turn_is_determined = true;
   // Of the pose, in the frame of the robot at the last scan.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  // The match began with the prediction of the velocity alone.
+  // The match began with a prediction of the velocity, with or without IMU.
   bool from_velocity = false;
 };
 
@@ -111,7 +113,14 @@ class MotionPredictor {
   bool Stands(double time, const Pose2& match) const;
   // By odometry and IMU since the last scan that is in the map.
   void PredictFromMap(double time, MotionPrediction* prediction) const;
-  void UpdateVelocity(double time, const MatchedMotion& matched);
+  // Forwards, metres a second, over an interval; zero where the bias of the
+  // accelerometer may be all there is.
+  double SpeedChange(double interval, const ImuMotion& imu) const;
+  // Without odometry: the turn of the IMU, and the way of the velocity.
+  void PredictInertially(double interval, const ImuMotion& imu,
+                         MotionPrediction* prediction) const;
+  void UpdateVelocity(double time, const MatchedMotion& matched,
+                      double speed_change);
   OdometryState CheckOdometry(double time, const MatchedMotion& matched);
   // Odometry with `not_compared_`, up to `time`.
   OdometryState Compare(double time, bool has_odometry);

@@ -56,6 +56,8 @@ class VelocityFilter {
   // of the robot before.
   void AddMatch(double interval, const Pose2& motion,
                 const Eigen::Matrix3d& covariance);
+  // An accelerometer told a change of the speed forwards, metres a second.
+  void Accelerate(double speed_change) { velocity_.x += speed_change; }
   // It began elsewhere: the velocity is the difference of the poses.
   void Restart(double interval, const Pose2& motion);
 

@@ -159,6 +159,33 @@ TEST(MotionPredictorTest, WheelsThatStandTellTheBiasOfTheImu) {
   }
 }
 
+// Without odometry the way comes from the velocity that the matches have shown;
+// what the bias of the accelerometer may feign is left out, a robot that brakes
+// is not.
+TEST(MotionPredictorTest, SmallAccelerationsAreTakenForBias) {
+  for (const double acceleration : {-0.05, -1.}) {
+    MotionPredictor predictor((MotionPredictorOptions()));
+    for (int i = 0; i <= 420; ++i) {
+      PlanarImuReading reading;
+      reading.time = 0.01 * i;
+      // Stands for two seconds.
+      reading.acceleration.x() = i < 400 ? 0.02 : 0.02 + acceleration;
+      predictor.AddImu(reading);
+    }
+    MatchedMotion matched = Matched(Pose2());
+    matched.from_velocity = true;
+    matched.covariance = 1e-6 * Eigen::Matrix3d::Identity();
+    for (int i = 0; i <= 40; ++i) {
+      if (i > 20) matched.motion.x = 0.05;
+      predictor.AddMatch(0.1 * i, matched);
+    }
+    EXPECT_NEAR(predictor.velocity().x, 0.5, 0.01);
+    const MotionPrediction prediction = predictor.Predict(4.1);
+    EXPECT_EQ(prediction.source, PredictionSource::kImu);
+    EXPECT_NEAR(prediction.motion.x, acceleration < -0.5 ? 0.045 : 0.05, 1e-3);
+  }
+}
+
 TEST(MotionPredictorTest, ImuAloneWhereThereIsNoOdometry) {
   MotionPredictor predictor((MotionPredictorOptions()));
   for (int i = 0; i <= 200; ++i) {

@@ -262,7 +262,8 @@ void AdaptiveLocalTrajectoryBuilder2D::MatchScan(
       match.report.degeneracy.rotation_weight > kDetermined;
   matched.covariance = InFrameOf(last_pose, match.report.covariance);
   matched.from_velocity =
-      prediction.source == PredictionSource::kConstantVelocity &&
+      (prediction.source == PredictionSource::kConstantVelocity ||
+       prediction.source == PredictionSource::kImu) &&
       !match.relocated;
   record->set_interval(has_pose_ ? seconds - last_seconds_ : 0.);
   const OdometryState state = predictor_.AddMatch(seconds, matched);
