@@ -200,6 +200,34 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- [>= 1e-09 and <= 1]
     min_ratio = 0.0001,
   },
+  calibration = {
+    -- Learn what the way of odometry must be multiplied with, from scans that
+    -- tell the way, for where they do not (a blank corridor).
+    estimate_way = true,
+    -- The same of the turn: its scale (wheel base), and what a robot with
+    -- unequal wheels turns on every metre. Scans seldom leave the turn open,
+    -- so that it matters less.
+    estimate_turn = false,
+    -- That number before anything is learnt, or for ever without estimate.
+    -- The run of another day reports one. [>= 0.5 and <= 2]
+    way_scale = 1,
+    -- Standard deviation of it: 0.02 for a robot as it comes, 0.002 after a
+    -- calibration with a tape. Smaller learns less. [> 0 and <= 1]
+    way_sigma = 0.02,
+    -- What the turn of odometry is multiplied with at first. [>= 0.5 and <=
+    -- 2]
+    turn_scale = 1,
+    -- Standard deviation of it. [> 0 and <= 1]
+    turn_sigma = 0.03,
+    -- What is added to the turn of odometry for every metre forward at first.
+    -- [>= -1 and <= 1, rad/m]
+    turn_per_metre = 0,
+    -- Standard deviation of it. [> 0 and <= 1, rad/m]
+    turn_per_metre_sigma = 0.02,
+    -- Nothing that is learnt is applied farther than this from the first
+    -- values (of the scales, and in rad/m). [>= 0 and <= 0.4]
+    max_deviation = 0.1,
+  },
 }
 
 -- Scan matching that knows which directions the scan determines.

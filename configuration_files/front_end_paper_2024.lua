@@ -16,6 +16,7 @@ TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext =
 
 TRAJECTORY_BUILDER_2D.cartographer_ext.features.enabled = true
 TRAJECTORY_BUILDER_2D.cartographer_ext.time_offset.estimate = false
+TRAJECTORY_BUILDER_2D.cartographer_ext.calibration.estimate_way = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.fault_check.enabled = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.search.enabled = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.wall_filling.enabled = false

@@ -106,6 +106,10 @@ MatchCounts CountMatches(const std::vector<MatchRecord>& records) {
       ++counts.slip_suspected;
     }
     counts.time_offset = record.time_offset();
+    counts.way_scale = record.way_scale();
+    counts.way_scale_sigma = record.way_scale_sigma();
+    counts.turn_scale = record.turn_scale();
+    counts.turn_per_metre = record.turn_per_metre();
   }
   return counts;
 }

@@ -44,7 +44,12 @@ struct MatchCounts {
   int64_t relocated = 0;
   int64_t odometry_faults = 0;  // stale, jumping, wrong sign, slipping
   int64_t slip_suspected = 0;
-  double time_offset = 0.;  // of the last scan, seconds
+  // Of the last scan: seconds, and the calibration of odometry.
+  double time_offset = 0.;
+  double way_scale = 0.;
+  double way_scale_sigma = 0.;
+  double turn_scale = 0.;
+  double turn_per_metre = 0.;  // radians
 };
 
 MatchCounts CountMatches(const std::vector<proto::MatchRecord>& records);

@@ -18,6 +18,21 @@ OdometryNoiseOptions ToOdometryNoiseOptions(
   return to;
 }
 
+OdometryCalibrationOptions ToOdometryCalibrationOptions(
+    const proto::FrontEndOptions::Calibration& from) {
+  OdometryCalibrationOptions to;
+  to.estimate_way = from.estimate_way();
+  to.estimate_turn = from.estimate_turn();
+  to.way_scale = from.way_scale();
+  to.way_sigma = from.way_sigma();
+  to.turn_scale = from.turn_scale();
+  to.turn_sigma = from.turn_sigma();
+  to.turn_per_metre = from.turn_per_metre();
+  to.turn_per_metre_sigma = from.turn_per_metre_sigma();
+  to.max_deviation = from.max_deviation();
+  return to;
+}
+
 OdometryCheckOptions ToOdometryCheckOptions(
     const proto::FrontEndOptions::FaultCheck& from) {
   OdometryCheckOptions to;
@@ -57,6 +72,7 @@ MotionPredictorOptions ToMotionPredictorOptions(
   to.time_offset.initial = options.time_offset().initial();
   to.time_offset.minimum = options.time_offset().minimum();
   to.time_offset.maximum = options.time_offset().maximum();
+  to.calibration = ToOdometryCalibrationOptions(options.calibration());
   to.constant_velocity.speed_noise = options.constant_velocity().speed_noise();
   to.constant_velocity.turn_rate_noise =
       options.constant_velocity().turn_rate_noise();

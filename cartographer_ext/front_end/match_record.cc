@@ -23,7 +23,8 @@ constexpr char kHead[] =
     "long_axis_degrees,sigma_theta_degrees,degeneracy,weak_direction_degrees,"
     "information_ratio,disagreement_x,disagreement_y,"
     "disagreement_theta_degrees,chi_square,odometry,source,searched,score,"
-    "time_offset,interval\n";
+    "time_offset,interval,way_scale,way_scale_sigma,turn_scale,"
+    "turn_scale_sigma,turn_per_metre_degrees,turn_per_metre_sigma_degrees\n";
 constexpr int64_t kTicksPerSecond = 10000000;
 constexpr int64_t kUnixEpochSeconds = 719162LL * 86400LL;
 
@@ -129,6 +130,16 @@ void SetPrediction(const PredictionSource source, const OdometryState state,
   record->set_odometry(ToProto(state));
 }
 
+void SetCalibration(const OdometryCalibration& calibration,
+                    MatchRecord* const record) {
+  record->set_way_scale(calibration.way_scale());
+  record->set_way_scale_sigma(calibration.way_sigma());
+  record->set_turn_scale(calibration.turn_scale());
+  record->set_turn_scale_sigma(calibration.turn_sigma());
+  record->set_turn_per_metre(calibration.turn_per_metre());
+  record->set_turn_per_metre_sigma(calibration.turn_per_metre_sigma());
+}
+
 Eigen::Matrix3d Covariance(const MatchRecord& record) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   if (record.covariance_size() != 6) return covariance;
@@ -167,7 +178,7 @@ std::string RecordCsv(const std::vector<MatchRecord>& records) {
             MatchRecord::Degeneracy_Name(record.degeneracy())),
         RadToDeg(record.weak_direction()));
     absl::StrAppendFormat(
-        &table, "%.4g,%.5f,%.5f,%.4f,%.4g,%s,%s,%d,%.4f,%.4f,%.4f\n",
+        &table, "%.4g,%.5f,%.5f,%.4f,%.4g,%s,%s,%d,%.4f,%.4f,%.4f,",
         record.information_ratio(), record.disagreement_x(),
         record.disagreement_y(), RadToDeg(record.disagreement_theta()),
         record.chi_square(),
@@ -176,6 +187,11 @@ std::string RecordCsv(const std::vector<MatchRecord>& records) {
         absl::AsciiStrToLower(MatchRecord::Source_Name(record.source())),
         record.searched() ? 1 : 0, record.score(), record.time_offset(),
         record.interval());
+    absl::StrAppendFormat(&table, "%.6f,%.6f,%.6f,%.6f,%.5f,%.5f\n",
+                          record.way_scale(), record.way_scale_sigma(),
+                          record.turn_scale(), record.turn_scale_sigma(),
+                          RadToDeg(record.turn_per_metre()),
+                          RadToDeg(record.turn_per_metre_sigma()));
   }
   return table;
 }

@@ -15,6 +15,7 @@
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
+#include "cartographer_ext/front_end/odometry_calibration.h"
 #include "cartographer_ext/match_record.pb.h"
 #include "cartographer_ext/scan_matching/match_report.h"
 
@@ -26,6 +27,9 @@ void SetReport(const scan_matching::MatchReport& report,
                proto::MatchRecord* record);
 void SetPrediction(PredictionSource source, OdometryState state,
                    proto::MatchRecord* record);
+
+void SetCalibration(const OdometryCalibration& calibration,
+                    proto::MatchRecord* record);
 
 // Of (x, y, theta); zero where the record has none.
 Eigen::Matrix3d Covariance(const proto::MatchRecord& record);

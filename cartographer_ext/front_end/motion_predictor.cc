@@ -50,7 +50,7 @@ void WeighTurns(const ImuMotion& imu, OdometryMotion* const odometry) {
 
 MotionPredictor::MotionPredictor(const MotionPredictorOptions& options)
     : options_(options),
-      odometry_(options.odometry, options.time_offset),
+      odometry_(options.odometry, options.time_offset, options.calibration),
       imu_(options.imu),
       monitor_(options.check),
       velocity_(options.constant_velocity, options.odometry.translation,
@@ -254,6 +254,9 @@ OdometryState MotionPredictor::CheckOdometry(const double time,
   not_compared_.motion = not_compared_.motion * matched.motion;
   not_compared_.way_is_determined =
       not_compared_.way_is_determined && matched.way_is_determined;
+  not_compared_.turn_is_determined =
+      not_compared_.turn_is_determined && matched.turn_is_determined;
+  not_compared_.covariance = matched.covariance;
   return Compare(time, has_odometry);
 }
 
@@ -276,9 +279,22 @@ OdometryState MotionPredictor::Compare(const double time,
     comparison.has_inertial = imu_.bias_is_known();
     comparison.inertial_speed_change = imu.speed_change;
   }
+  const OdometryState state = monitor_.Add(comparison);
+
+  CalibrationInterval interval;
+  interval.time = time;
+  interval.interval = comparison.interval;
+  interval.odometry = odometry.raw;
+  interval.match = not_compared_.motion;
+  interval.is_sound = state == OdometryState::kOk;
+  interval.way_is_determined = not_compared_.way_is_determined;
+  interval.turn_is_determined = not_compared_.turn_is_determined;
+  interval.covariance = not_compared_.covariance;
+  odometry_.Calibrate(interval);
+
   compared_time_ = time;
   not_compared_ = MatchedMotion();
-  return monitor_.Add(comparison);
+  return state;
 }
 
 void MotionPredictor::UpdateVelocity(const double time,

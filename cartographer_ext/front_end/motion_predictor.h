@@ -31,6 +31,7 @@
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/front_end/imu_predictor.h"
+#include "cartographer_ext/front_end/odometry_calibration.h"
 #include "cartographer_ext/front_end/odometry_monitor.h"
 #include "cartographer_ext/front_end/odometry_predictor.h"
 #include "cartographer_ext/front_end/velocity_filter.h"
@@ -42,6 +43,7 @@ struct MotionPredictorOptions {
   bool use_odometry = true;
   OdometryNoiseOptions odometry;
   TimeOffsetOptions time_offset;
+  OdometryCalibrationOptions calibration;
   ConstantVelocityOptions constant_velocity;
   OdometryCheckOptions check;
   ImuPredictorOptions imu;
@@ -100,6 +102,9 @@ class MotionPredictor {
   void AddToMap();
 
   double time_offset() const { return odometry_.time_offset(); }
+  const OdometryCalibration& calibration() const {
+    return odometry_.calibration();
+  }
   OdometryState odometry_state() const { return monitor_.state(); }
   // Robot's frame, per second; zero before the second match.
   const Pose2& velocity() const { return velocity_.velocity(); }

@@ -45,11 +45,13 @@ Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
   return covariance;
 }
 
-OdometryPredictor::OdometryPredictor(const OdometryNoiseOptions& noise,
-                                     const TimeOffsetOptions& offset)
+OdometryPredictor::OdometryPredictor(
+    const OdometryNoiseOptions& noise, const TimeOffsetOptions& offset,
+    const OdometryCalibrationOptions& calibration)
     : noise_(noise),
       buffer_(kBufferSeconds, kMaxReadings, noise.max_extrapolation),
-      offset_(offset) {}
+      offset_(offset),
+      calibration_(calibration) {}
 
 bool OdometryPredictor::Predict(const double from, const double to,
                                 OdometryMotion* const motion) const {
@@ -67,9 +69,11 @@ bool OdometryPredictor::Predict(const double from, const double to,
       return false;
     }
   }
-  motion->motion = Between(begin.pose, end.pose);
+  motion->raw = Between(begin.pose, end.pose);
+  motion->motion = calibration_.Correct(motion->raw);
   motion->frozen = begin.frozen || end.frozen;
-  motion->covariance = OdometryCovariance(noise_, motion->motion);
+  motion->covariance = OdometryCovariance(noise_, motion->motion) +
+                       calibration_.Covariance(motion->raw);
   return true;
 }
 

@@ -13,6 +13,7 @@
 //   along    translation + per_metre |d|
 //   across   the same, and d / 2 times that of the turn
 //   turn     rotation + per_radian |a| + per_metre |d|
+// Besides, what the calibration leaves unknown.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_PREDICTOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_PREDICTOR_H_
 
@@ -21,6 +22,7 @@
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/front_end/odometry_buffer.h"
+#include "cartographer_ext/front_end/odometry_calibration.h"
 #include "cartographer_ext/front_end/time_offset.h"
 
 namespace cartographer_ext {
@@ -36,7 +38,8 @@ struct OdometryNoiseOptions {
 };
 
 struct OdometryMotion {
-  Pose2 motion;  // (robot at `from` <- robot at `to`)
+  Pose2 motion;  // (robot at `from` <- robot at `to`), corrected
+  Pose2 raw;     // the same as it came
   // Of (x, y, theta) of the motion, in the frame of the robot at `from`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   bool frozen = false;  // one pose is repeated at the start or the end
@@ -53,7 +56,8 @@ Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
 class OdometryPredictor {
  public:
   OdometryPredictor(const OdometryNoiseOptions& noise,
-                    const TimeOffsetOptions& offset);
+                    const TimeOffsetOptions& offset,
+                    const OdometryCalibrationOptions& calibration);
 
   bool Add(double time, const Pose2& pose) { return buffer_.Add(time, pose); }
 
@@ -66,6 +70,12 @@ class OdometryPredictor {
   // for matches that are sure of the turn.
   void AddMatch(double from, double to, const Pose2& match);
 
+  // What a match says of the scales; see there.
+  void Calibrate(const CalibrationInterval& interval) {
+    calibration_.Add(interval);
+  }
+
+  const OdometryCalibration& calibration() const { return calibration_; }
   // Scan minus odometry stamp, seconds.
   double time_offset() const { return offset_.offset(); }
 
@@ -80,6 +90,7 @@ class OdometryPredictor {
   const OdometryNoiseOptions noise_;
   OdometryBuffer buffer_;
   TimeOffsetEstimator offset_;
+  OdometryCalibration calibration_;
   std::deque<MatchedTurn> pending_;
 };
 

@@ -242,7 +242,11 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
                           {"relocated", counts.relocated},
                           {"odometry_faults", counts.odometry_faults},
                           {"slip_suspected", counts.slip_suspected},
-                          {"time_offset", counts.time_offset}};
+                          {"time_offset", counts.time_offset},
+                          {"way_scale", counts.way_scale},
+                          {"way_scale_sigma", counts.way_scale_sigma},
+                          {"turn_scale", counts.turn_scale},
+                          {"turn_per_metre", counts.turn_per_metre}};
   }
   if (!run.decisions.empty()) {
     const evaluation::DecisionCounts counts =

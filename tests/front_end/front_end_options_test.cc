@@ -30,6 +30,20 @@ TEST(FrontEndOptionsTest, DefaultsOfTheMessageAreThoseOfTheParts) {
   EXPECT_EQ(from_message.time_offset.initial, own.time_offset.initial);
   EXPECT_EQ(from_message.time_offset.minimum, own.time_offset.minimum);
   EXPECT_EQ(from_message.time_offset.maximum, own.time_offset.maximum);
+  EXPECT_EQ(from_message.calibration.estimate_way,
+            own.calibration.estimate_way);
+  EXPECT_EQ(from_message.calibration.estimate_turn,
+            own.calibration.estimate_turn);
+  EXPECT_EQ(from_message.calibration.way_scale, own.calibration.way_scale);
+  EXPECT_EQ(from_message.calibration.way_sigma, own.calibration.way_sigma);
+  EXPECT_EQ(from_message.calibration.turn_scale, own.calibration.turn_scale);
+  EXPECT_EQ(from_message.calibration.turn_sigma, own.calibration.turn_sigma);
+  EXPECT_EQ(from_message.calibration.turn_per_metre,
+            own.calibration.turn_per_metre);
+  EXPECT_EQ(from_message.calibration.turn_per_metre_sigma,
+            own.calibration.turn_per_metre_sigma);
+  EXPECT_EQ(from_message.calibration.max_deviation,
+            own.calibration.max_deviation);
   EXPECT_EQ(from_message.constant_velocity.speed_noise,
             own.constant_velocity.speed_noise);
   EXPECT_EQ(from_message.constant_velocity.turn_rate_noise,
@@ -86,6 +100,8 @@ TEST(FrontEndOptionsTest, ValuesArrive) {
   message.mutable_odometry()->set_enabled(false);
   message.mutable_odometry()->set_rotation_noise_per_metre(0.5);
   message.mutable_time_offset()->set_maximum(0.4);
+  message.mutable_calibration()->set_estimate_turn(true);
+  message.mutable_calibration()->set_way_scale(1.03);
   message.mutable_fault_check()->set_gate(7.);
   message.mutable_imu()->set_standing_time(3.);
   message.mutable_features()->set_num_neighbors(6);
@@ -95,6 +111,9 @@ TEST(FrontEndOptionsTest, ValuesArrive) {
   EXPECT_FALSE(options.use_odometry);
   EXPECT_EQ(options.odometry.rotation_per_metre, 0.5);
   EXPECT_EQ(options.time_offset.maximum, 0.4);
+  EXPECT_TRUE(options.calibration.estimate_way);
+  EXPECT_TRUE(options.calibration.estimate_turn);
+  EXPECT_EQ(options.calibration.way_scale, 1.03);
   EXPECT_EQ(options.check.gate, 7.);
   EXPECT_EQ(options.imu.standing_time, 3.);
   const AdaptiveFeatureOptions features = ToAdaptiveFeatureOptions(message);

@@ -40,6 +40,10 @@ MatchRecord Example() {
   SetReport(report, &record);
   SetPrediction(PredictionSource::kOdometry, OdometryState::kSlipping, &record);
   record.set_score(0.625);
+  OdometryCalibrationOptions calibration;
+  calibration.way_scale = 1.02;
+  calibration.turn_per_metre = kPi / 180.;
+  SetCalibration(OdometryCalibration(calibration), &record);
   return record;
 }
 
@@ -108,6 +112,10 @@ TEST(MatchRecordTest, Csv) {
   EXPECT_EQ(cell("odometry"), "slipping");
   EXPECT_EQ(cell("source"), "odometry");
   EXPECT_EQ(cell("score"), "0.6250");
+  EXPECT_EQ(cell("way_scale"), "1.020000");
+  EXPECT_EQ(cell("way_scale_sigma"), "0.020000");
+  EXPECT_EQ(cell("turn_scale"), "1.000000");
+  EXPECT_EQ(cell("turn_per_metre_degrees"), "1.00000");
 }
 
 TEST(MatchRecordTest, EveryStateHasItsName) {

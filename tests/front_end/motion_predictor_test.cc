@@ -372,6 +372,34 @@ TEST(MotionPredictorTest, AStaleBurstIsToldAndBridged) {
   EXPECT_LT(result.mean_error, 0.01);
 }
 
+// 0.5 m/s, odometry 3 % short, scans every 0.1 s; `told` of them tell the way.
+double ForeseenWay(const bool told) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  double odometry_time = 0.;
+  for (int i = 0; i <= 500; ++i) {
+    for (; odometry_time <= 0.1 * i + 0.06; odometry_time += 0.05) {
+      predictor.AddOdometry(odometry_time,
+                            Pose2(0.5 * odometry_time / 1.03, 0., 0.));
+    }
+    MatchedMotion matched = Matched(Pose2(0.05, 0., 0.));
+    matched.way_is_determined = told;
+    matched.covariance = Eigen::Vector3d(1e-5, 1e-5, 1e-6).asDiagonal();
+    predictor.AddMatch(0.1 * i, matched);
+    predictor.AddToMap();
+  }
+  for (; odometry_time <= 51.1; odometry_time += 0.05) {
+    predictor.AddOdometry(odometry_time,
+                          Pose2(0.5 * odometry_time / 1.03, 0., 0.));
+  }
+  return predictor.Predict(51.).motion.x;
+}
+
+TEST(MotionPredictorTest, TheScaleOfOdometryIsLearnt) {
+  EXPECT_NEAR(ForeseenWay(true), 0.5, 0.0015);
+  // A match that is odometry's own does not confirm it, nor deny it.
+  EXPECT_NEAR(ForeseenWay(false), 0.5 / 1.03, 1e-9);
+}
+
 }  // namespace
 }  // namespace front_end
 }  // namespace cartographer_ext

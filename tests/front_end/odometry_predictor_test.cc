@@ -18,13 +18,21 @@ TimeOffsetOptions Fixed(const double offset) {
   return options;
 }
 
+OdometryCalibrationOptions NoCalibration() {
+  OdometryCalibrationOptions options;
+  options.estimate_way = false;
+  options.estimate_turn = false;
+  return options;
+}
+
 // A circle of radius 1 m at 0.5 rad/s.
 Pose2 OnCircle(const double t) {
   return Pose2(std::sin(0.5 * t), 1. - std::cos(0.5 * t), 0.5 * t);
 }
 
 TEST(OdometryPredictorTest, TheMotionBetweenTheScansItself) {
-  OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.));
+  OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.),
+                              NoCalibration());
   for (int i = 0; i <= 100; ++i) predictor.Add(0.05 * i, OnCircle(0.05 * i));
   OdometryMotion motion;
   ASSERT_TRUE(predictor.Predict(1., 4., &motion));
@@ -35,7 +43,8 @@ TEST(OdometryPredictorTest, TheMotionBetweenTheScansItself) {
 }
 
 TEST(OdometryPredictorTest, TheClockOffsetShiftsBothEnds) {
-  OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.1));
+  OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.1),
+                              NoCalibration());
   // Stands until t = 1, then turns at 1 rad/s.
   for (int i = 0; i <= 60; ++i) {
     const double t = 0.05 * i;
@@ -66,10 +75,26 @@ TEST(OdometryPredictorTest, CovarianceByHand) {
   EXPECT_NEAR(turned(1, 1), covariance(0, 0), 1e-12);
 }
 
+TEST(OdometryPredictorTest, TheCalibrationHasItsShare) {
+  OdometryCalibrationOptions calibration;
+  calibration.way_scale = 1.02;
+  calibration.way_sigma = 0.5;
+  calibration.estimate_turn = false;
+  OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.), calibration);
+  predictor.Add(0., Pose2());
+  predictor.Add(1., Pose2(1., 0., 0.));
+  OdometryMotion motion;
+  ASSERT_TRUE(predictor.Predict(0., 1., &motion));
+  EXPECT_EQ(motion.raw.x, 1.);
+  EXPECT_EQ(motion.motion.x, 1.02);
+  // 0.01 m and 0.1 a metre; the scale, of the way as it came.
+  EXPECT_NEAR(motion.covariance(0, 0), 0.112 * 0.112 + 0.25, 1e-12);
+}
+
 TEST(OdometryPredictorTest, NoPredictionWithoutReadingsAround) {
   OdometryNoiseOptions noise;
   noise.max_extrapolation = 0.3;
-  OdometryPredictor predictor(noise, Fixed(0.));
+  OdometryPredictor predictor(noise, Fixed(0.), NoCalibration());
   OdometryMotion motion;
   EXPECT_FALSE(predictor.Predict(0., 1., &motion));
   predictor.Add(1., Pose2());
@@ -81,7 +106,8 @@ TEST(OdometryPredictorTest, NoPredictionWithoutReadingsAround) {
 }
 
 TEST(OdometryPredictorTest, AGapInTheScansIsBridged) {
-  OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.));
+  OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.),
+                              NoCalibration());
   for (int i = 0; i <= 100; ++i) predictor.Add(0.1 * i, OnCircle(0.1 * i));
   OdometryMotion motion;
   ASSERT_TRUE(predictor.Predict(2., 8., &motion));
@@ -89,7 +115,8 @@ TEST(OdometryPredictorTest, AGapInTheScansIsBridged) {
 }
 
 TEST(OdometryPredictorTest, LearnsTheOffsetFromMatches) {
-  OdometryPredictor predictor{OdometryNoiseOptions(), TimeOffsetOptions()};
+  OdometryPredictor predictor(OdometryNoiseOptions(), TimeOffsetOptions(),
+                              NoCalibration());
   const double offset = 0.12;
   const auto heading = [](const double t) { return 0.6 * std::sin(2. * t); };
   double next_odometry = 0.;

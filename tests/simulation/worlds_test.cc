@@ -125,12 +125,11 @@ TEST_P(WorldsTest, FirstScansSeeTheWalls) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, WorldsTest,
-                         testing::Values("ri_corridor", "factory_shelves",
-                                         "four_corridor_building",
-                                         "featureless_corridor",
-                                         "corridor_one_door", "office",
-                                         "l_corner", "circular_room"));
+INSTANTIATE_TEST_SUITE_P(
+    All, WorldsTest,
+    testing::Values("ri_corridor", "factory_shelves", "four_corridor_building",
+                    "featureless_corridor", "corridor_one_door", "office",
+                    "l_corner", "circular_room", "hall_and_corridor"));
 
 double Measure(const Simulation& simulation, const std::string& name) {
   for (const KeyDistance& distance : simulation.world().key_distances) {
@@ -176,6 +175,18 @@ TEST(WorldLengthsTest, FeaturelessCorridorHidesItsEnds) {
     seen += here.pose.x < range || here.pose.x > 100. - range;
   }
   EXPECT_LT(seen, 0.35 * scans);
+}
+
+TEST(WorldLengthsTest, HallAndCorridor) {
+  const auto simulation = RunWorld("hall_and_corridor", 1);
+  ASSERT_NE(simulation, nullptr);
+  EXPECT_NEAR(
+      simulation->plan().Cast(Eigen::Vector2d(20., 4.), {1., 0.}, 200.).range,
+      92., 1e-6);
+  // The end is never in range.
+  for (const TruePose& here : TrueTrajectory(*simulation)) {
+    EXPECT_LT(here.pose.x, 112. - simulation->world().laser.max_range);
+  }
 }
 
 TEST(WorldLengthsTest, Shelves) {

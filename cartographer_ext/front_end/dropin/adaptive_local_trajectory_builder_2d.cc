@@ -278,6 +278,7 @@ void AdaptiveLocalTrajectoryBuilder2D::MatchScan(
   record->set_searched(match.searched);
   record->set_score(match.score);
   record->set_time_offset(predictor_.time_offset());
+  SetCalibration(predictor_.calibration(), record);
 }
 
 std::unique_ptr<AdaptiveLocalTrajectoryBuilder2D::InsertionResult>

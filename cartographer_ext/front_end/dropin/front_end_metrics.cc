@@ -28,6 +28,7 @@ struct Handles {
   metrics::Counter* relocated = metrics::Counter::Null();
   metrics::Histogram* scores = metrics::Histogram::Null();
   metrics::Gauge* time_offset = metrics::Gauge::Null();
+  metrics::Gauge* way_scale = metrics::Gauge::Null();
 
   Handles() { scans.fill(metrics::Counter::Null()); }
 };
@@ -69,6 +70,11 @@ void RegisterFrontEndMetrics(metrics::FamilyFactory* const family_factory) {
           ->NewGaugeFamily(absl::StrCat(kPrefix, "time_offset"),
                            "Seconds from odometry to scan stamps")
           ->Add({});
+  handles->way_scale =
+      family_factory
+          ->NewGaugeFamily(absl::StrCat(kPrefix, "way_scale"),
+                           "What the way of odometry is multiplied with")
+          ->Add({});
 }
 
 void CountMatch(const MatchRecord& record) {
@@ -86,6 +92,7 @@ void CountMatch(const MatchRecord& record) {
   }
   handles->scores->Observe(record.score());
   handles->time_offset->Set(record.time_offset());
+  handles->way_scale->Set(record.way_scale());
 }
 
 }  // namespace front_end

@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/odometry_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cartographer_ext/common/random.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+constexpr double kStep = 0.1;  // seconds
+
+OdometryCalibrationOptions WayAndTurn() {
+  OdometryCalibrationOptions options;
+  options.estimate_turn = true;
+  return options;
+}
+
+// A filter of the way alone.
+CalibrationFilter WayFilter(const double sigma, const double floor,
+                            const CalibrationFilter::Noise& noise) {
+  return CalibrationFilter(Eigen::Vector2d(1., 0.), Eigen::Vector2d(sigma, 0.),
+                           Eigen::Vector2d(floor, 0.), noise);
+}
+
+TEST(CalibrationFilterTest, TwoMetresByHand) {
+  CalibrationFilter filter = WayFilter(0.02, 0., {0.01, 0., 0., 4.});
+  // Odometry 1 m, match 1.02 m. Units of 1e-4: y has 1 + 4 of variance, 4 of
+  // them with the scale; the match adds 1. Gains 4/6 and 5/6.
+  EXPECT_TRUE(filter.Add(Eigen::Vector2d(1., 0.), 1., 1.02, 0.));
+  EXPECT_NEAR(filter.value(0), 1. + 0.02 * 4. / 6., 1e-12);
+  EXPECT_NEAR(filter.sigma(0), std::sqrt(4e-4 / 3.), 1e-12);
+  // Then y is 1/300 m behind the match, with variance 5/6, 2/3 of that with the
+  // scale, 4/3. Odometry 1 m, match 1 m: expected is 1.01 m, 3.5 and 2 of
+  // variance, gain 2/4.5.
+  EXPECT_TRUE(filter.Add(Eigen::Vector2d(1., 0.), 1., 1., 0.));
+  EXPECT_NEAR(filter.value(0), 1. + 0.02 * 4. / 6. - 0.01 * 2. / 4.5, 1e-12);
+  EXPECT_NEAR(filter.sigma(0), std::sqrt(4e-4 / 9.), 1e-12);
+  EXPECT_EQ(filter.value(1), 0.);
+  EXPECT_EQ(filter.sigma(1), 0.);
+}
+
+TEST(CalibrationFilterTest, MatchesAreComparedOverAllTheWayBetweenThem) {
+  CalibrationFilter filter = WayFilter(0.1, 0., {0.01, 0., 0., 4.});
+  // Only the last match tells where the robot is.
+  for (int i = 0; i < 10; ++i) {
+    filter.Add(Eigen::Vector2d(1., 0.), 1., 1.01, i == 9 ? 0. : 1000.);
+  }
+  // 1 cm at each end over 10 m, and the first value.
+  const double expected = std::sqrt(1. / (1. / 0.01 + 100. / 2e-4));
+  EXPECT_NEAR(filter.sigma(0), expected, 1e-6);
+  EXPECT_NEAR(filter.value(0), 1.01, 1e-5);
+}
+
+TEST(CalibrationFilterTest, WhatAMetreAddsIsNotForgotten) {
+  CalibrationFilter filter = WayFilter(0.1, 0., {1e-6, 0.01, 0., 4.});
+  for (int i = 0; i < 25; ++i) {
+    filter.Add(Eigen::Vector2d(1., 0.), 1., 1., 0.);
+  }
+  // 1 cm per root metre: 5 cm in 25 m.
+  EXPECT_NEAR(filter.sigma(0), 0.05 / 25., 2e-5);
+}
+
+TEST(CalibrationFilterTest, AContradictionBeginsAnew) {
+  CalibrationFilter filter = WayFilter(0.02, 0., {0.01, 0., 0., 4.});
+  filter.Add(Eigen::Vector2d(1., 0.), 1., 1.02, 0.);
+  const double value = filter.value(0), sigma = filter.sigma(0);
+  EXPECT_FALSE(filter.Add(Eigen::Vector2d(1., 0.), 1., 1.5, 0.));
+  EXPECT_FALSE(filter.Add(Eigen::Vector2d(1., 0.), 1., std::nan(""), 0.));
+  EXPECT_EQ(filter.value(0), value);
+  EXPECT_EQ(filter.sigma(0), sigma);
+  // The half metre is forgotten.
+  EXPECT_TRUE(filter.Add(Eigen::Vector2d(1., 0.), 1., value, 0.));
+  EXPECT_NEAR(filter.value(0), value, 1e-12);
+}
+
+TEST(CalibrationFilterTest, NeverBetterThanTheFloor) {
+  CalibrationFilter filter = WayFilter(0.02, 0.001, {0.01, 0., 0., 4.});
+  for (int i = 0; i < 1000; ++i) {
+    filter.Add(Eigen::Vector2d(1., 0.), 1., 1., 0.);
+  }
+  EXPECT_GT(filter.sigma(0), 0.001);
+  EXPECT_NEAR(filter.sigma(0), 0.001, 1e-6);
+  // And never worse than at first.
+  CalibrationFilter wanders = WayFilter(0.02, 0.001, {1000., 0., 0.01, 4.});
+  for (int i = 0; i < 1000; ++i) {
+    wanders.Add(Eigen::Vector2d(1., 0.), 1., 1., 0.);
+  }
+  EXPECT_NEAR(wanders.sigma(0), 0.02, 1e-5);
+  EXPECT_LE(wanders.sigma(0), 0.02);
+}
+
+// A robot whose odometry is wrong by constant factors.
+class Robot {
+ public:
+  Robot(const uint64_t seed, const double way_scale, const double turn_scale,
+        const double turn_per_metre)
+      : random_(seed),
+        way_scale_(way_scale),
+        turn_scale_(turn_scale),
+        turn_per_metre_(turn_per_metre) {}
+
+  // 0.5 m/s on a winding way; odometry goes `slip` times as far.
+  CalibrationInterval Step(const double slip = 1.) {
+    time_ += kStep;
+    const double way = 0.5 * kStep;
+    const double turn = 0.5 * kStep * std::sin(0.3 * time_);
+    CalibrationInterval interval;
+    interval.time = time_;
+    interval.interval = kStep;
+    // The errors of the matched poses are not those of motions.
+    const double way_error = random_.Normal(0., 0.004);
+    const double turn_error = random_.Normal(0., 0.001);
+    interval.match =
+        Arc(way + way_error - way_error_, turn + turn_error - turn_error_);
+    way_error_ = way_error;
+    turn_error_ = turn_error;
+    const double odometry_way =
+        way / way_scale_ * slip + random_.Normal(0., 0.003 * std::sqrt(way));
+    interval.odometry = Arc(
+        odometry_way, (turn - turn_per_metre_ * odometry_way) / turn_scale_ +
+                          random_.Normal(0., 0.01 * std::sqrt(way)));
+    interval.covariance = Eigen::Vector3d(1.6e-5, 1.6e-5, 1e-6).asDiagonal();
+    return interval;
+  }
+
+ private:
+  static Pose2 Arc(const double way, const double turn) {
+    return Pose2(way * std::cos(0.5 * turn), way * std::sin(0.5 * turn), turn);
+  }
+
+  Random random_;
+  const double way_scale_;
+  const double turn_scale_;
+  const double turn_per_metre_;
+  double time_ = 100.;
+  double way_error_ = 0.;
+  double turn_error_ = 0.;
+};
+
+TEST(OdometryCalibrationTest, FindsTheScalesAndHowSureTheyAre) {
+  double way = 0., turn = 0., per_metre = 0.;
+  constexpr int kRuns = 30;
+  for (int run = 0; run < kRuns; ++run) {
+    Robot robot(run + 1, 1.03, 0.97, -0.02);
+    OdometryCalibration calibration(WayAndTurn());
+    for (int i = 0; i < 1000; ++i) calibration.Add(robot.Step());  // 50 m
+    EXPECT_NEAR(calibration.way_scale(), 1.03, 0.004);
+    EXPECT_NEAR(calibration.turn_scale(), 0.97, 0.02);
+    EXPECT_NEAR(calibration.turn_per_metre(), -0.02, 0.006);
+    EXPECT_LT(calibration.way_sigma(), 0.002);
+    way += std::pow((calibration.way_scale() - 1.03) / calibration.way_sigma(),
+                    2) /
+           kRuns;
+    turn +=
+        std::pow((calibration.turn_scale() - 0.97) / calibration.turn_sigma(),
+                 2) /
+        kRuns;
+    per_metre += std::pow((calibration.turn_per_metre() + 0.02) /
+                              calibration.turn_per_metre_sigma(),
+                          2) /
+                 kRuns;
+  }
+  // Not surer than it may be; it reckons with worse wheels and matches.
+  EXPECT_LT(way, 1.2);
+  EXPECT_LT(turn, 1.2);
+  EXPECT_LT(per_metre, 1.2);
+}
+
+TEST(OdometryCalibrationTest, ASlipIsKeptOut) {
+  Robot robot(5, 1., 1., 0.), same(5, 1., 1., 0.);
+  OdometryCalibration calibration(WayAndTurn());
+  OdometryCalibration warned(WayAndTurn());
+  for (int i = 0; i < 800; ++i) {
+    // Every 20 s wheels slip for 2 s by a tenth, and nothing is said until it
+    // has lasted a second.
+    const int phase = i % 200;
+    CalibrationInterval interval = robot.Step(phase >= 180 ? 1.1 : 1.);
+    calibration.Add(interval);
+    interval.is_sound = phase < 190;
+    warned.Add(interval);
+  }
+  EXPECT_NEAR(warned.way_scale(), 1., 0.003);
+  // So it was the warning that helped.
+  EXPECT_LT(calibration.way_scale(), 0.995);
+}
+
+TEST(OdometryCalibrationTest, WhereTheScanDoesNotTellNothingIsLearnt) {
+  Robot robot(6, 1.03, 0.97, 0.01);
+  const OdometryCalibrationOptions options = WayAndTurn();
+  OdometryCalibration no_way(options), no_turn(options), uncertain(options);
+  for (int i = 0; i < 600; ++i) {
+    CalibrationInterval interval = robot.Step();
+    interval.way_is_determined = i % 5 != 0;
+    no_way.Add(interval);
+    interval.way_is_determined = true;
+    interval.turn_is_determined = i % 5 != 0;
+    no_turn.Add(interval);
+    interval.turn_is_determined = true;
+    interval.covariance.diagonal().setConstant(0.01);
+    uncertain.Add(interval);
+  }
+  EXPECT_EQ(no_way.way_scale(), 1.);
+  EXPECT_NEAR(no_way.way_sigma(), options.way_sigma, 1e-12);
+  EXPECT_LT(no_way.turn_scale(), 0.99);
+  EXPECT_GT(no_turn.way_scale(), 1.02);
+  EXPECT_EQ(no_turn.turn_scale(), 1.);
+  EXPECT_EQ(no_turn.turn_per_metre(), 0.);
+  EXPECT_EQ(uncertain.way_scale(), 1.);
+  EXPECT_EQ(uncertain.turn_scale(), 1.);
+}
+
+TEST(OdometryCalibrationTest, GapsAndStandingTellNothing) {
+  Robot robot(7, 1.03, 1., 0.);
+  OdometryCalibration gaps(WayAndTurn());
+  OdometryCalibration stands(WayAndTurn());
+  Random random(8);
+  for (int i = 0; i < 600; ++i) {
+    CalibrationInterval interval = robot.Step();
+    if (i % 15 == 0) interval.interval = 1.5;
+    gaps.Add(interval);
+    interval.interval = kStep;
+    interval.odometry = Pose2();
+    interval.match = Pose2(random.Normal(0., 0.001), 0., 0.);
+    stands.Add(interval);
+  }
+  EXPECT_EQ(gaps.way_scale(), 1.);
+  EXPECT_EQ(stands.way_scale(), 1.);
+}
+
+TEST(OdometryCalibrationTest, NothingIsAppliedBeyondTheLimit) {
+  OdometryCalibrationOptions options = WayAndTurn();
+  options.max_deviation = 0.02;
+  Robot robot(9, 1.05, 1., 0.05);
+  OdometryCalibration calibration(options);
+  for (int i = 0; i < 1000; ++i) calibration.Add(robot.Step());
+  EXPECT_EQ(calibration.way_scale(), 1.02);
+  EXPECT_EQ(calibration.turn_per_metre(), 0.02);
+}
+
+TEST(OdometryCalibrationTest, CorrectsAMotionByHand) {
+  OdometryCalibrationOptions options;
+  options.way_scale = 1.1;
+  options.turn_scale = 0.9;
+  options.turn_per_metre = 0.05;
+  const OdometryCalibration calibration(options);
+  // 2 m straight on become 2.2 m on an arc of 0.1 rad.
+  const Pose2 straight = calibration.Correct(Pose2(2., 0., 0.));
+  EXPECT_NEAR(straight.theta, 0.1, 1e-12);
+  EXPECT_NEAR(straight.x, 2.2 * std::cos(0.05), 1e-12);
+  EXPECT_NEAR(straight.y, 2.2 * std::sin(0.05), 1e-12);
+  // Backwards it turns the other way.
+  EXPECT_NEAR(calibration.Correct(Pose2(-2., 0., 0.)).theta, -0.1, 1e-12);
+  EXPECT_NEAR(calibration.Correct(Pose2(0., 0., 1.)).theta, 0.9, 1e-12);
+}
+
+TEST(OdometryCalibrationTest, WhatIsUnknownByHand) {
+  OdometryCalibrationOptions options = WayAndTurn();
+  options.way_sigma = 0.02;
+  options.turn_sigma = 0.1;
+  options.turn_per_metre_sigma = 0.01;
+  const Eigen::Matrix3d straight =
+      OdometryCalibration(options).Covariance(Pose2(2., 0., 0.));
+  // Along 0.02 * 2 m; turn 0.01 * 2 m, across half of the way times that.
+  EXPECT_NEAR(straight(0, 0), 0.04 * 0.04, 1e-12);
+  EXPECT_NEAR(straight(1, 1), 0.02 * 0.02, 1e-12);
+  EXPECT_NEAR(straight(2, 2), 0.02 * 0.02, 1e-12);
+  EXPECT_NEAR(straight(0, 1), 0., 1e-12);
+  const Eigen::Matrix3d turn =
+      OdometryCalibration(options).Covariance(Pose2(0., 0., 0.5));
+  EXPECT_NEAR(turn(2, 2), 0.05 * 0.05, 1e-12);
+  EXPECT_NEAR(turn(0, 0), 0., 1e-12);
+}
+
+TEST(OdometryCalibrationTest, OffChangesNothing) {
+  OdometryCalibrationOptions options;
+  options.estimate_way = false;
+  options.estimate_turn = false;
+  Robot robot(10, 1.03, 0.97, 0.01);
+  OdometryCalibration calibration(options);
+  for (int i = 0; i < 300; ++i) calibration.Add(robot.Step());
+  const Pose2 motion(0.3, -0.02, 0.4);
+  const Pose2 corrected = calibration.Correct(motion);
+  EXPECT_EQ(corrected.x, motion.x);
+  EXPECT_EQ(corrected.y, motion.y);
+  EXPECT_EQ(corrected.theta, motion.theta);
+  EXPECT_TRUE(calibration.Covariance(motion).isZero(0.));
+}
+
+}  // namespace
+}  // namespace front_end
+}  // namespace cartographer_ext
