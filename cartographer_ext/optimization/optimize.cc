@@ -70,6 +70,7 @@ void RunGnc(const std::vector<WhitenedEdge>& edges,
             const OptimizeOptions& options, OptimizeResult* const result) {
   GncOptions gnc;
   if (options.parameter > 0.) gnc.truncation = options.parameter;
+  gnc.max_seconds = options.max_seconds;
   AddSummary(SolveGnc(edges, gnc, &result->poses, &result->weights), result);
 }
 

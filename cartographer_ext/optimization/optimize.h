@@ -36,7 +36,7 @@ struct OptimizeOptions {
   double parameter = 0.;
   CovarianceNorm norm = CovarianceNorm::kSpectral;  // acs_paper
   int max_iterations = 200;
-  double max_seconds = 1e9;  // sc: processor time
+  double max_seconds = 1e9;  // sc, gnc_tls: processor time
   bool prune = true;
   // auto: end with the gate narrowed to the scale of the accepted loops
   // (AdaptiveGate). For graphs whose information matrices are only a guess,

@@ -32,7 +32,11 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
   SolverSummary total = solver->Solve(inner, poses);
   const double c = options.truncation;
   double mu = -1.;
-  for (int outer = 0; outer != options.max_outer_iterations; ++outer) {
+  const auto in_time = [&] {
+    return ThreadCpuSeconds() - start <= options.max_seconds;
+  };
+  for (int outer = 0; outer != options.max_outer_iterations && in_time();
+       ++outer) {
     const std::vector<double> chi2 = Chi2OfEdges(edges, *poses);
     if (mu < 0.) {
       double largest = 0.;
@@ -58,12 +62,16 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
     if (total.converged) break;
     mu *= options.mu_step;
   }
-  inner.max_iterations = 20;
-  inner.cost_tolerance = 1e-7;
-  const SolverSummary last = solver->Solve(inner, poses);
-  total.iterations += last.iterations;
-  total.analyses += last.analyses;
-  total.final_cost = last.final_cost;
+  if (in_time()) {
+    inner.max_iterations = 20;
+    inner.cost_tolerance = 1e-7;
+    const SolverSummary last = solver->Solve(inner, poses);
+    total.iterations += last.iterations;
+    total.analyses += last.analyses;
+    total.final_cost = last.final_cost;
+  } else {
+    total.converged = false;
+  }
   if (weights != nullptr) *weights = inner.edge_weights;
   total.cpu_seconds = ThreadCpuSeconds() - start;
   return total;

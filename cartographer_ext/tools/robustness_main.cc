@@ -55,7 +55,7 @@ DEFINE_bool(lowest_cost, false,
             "auto: end with the lowest truncated cost of all, as near to what "
             "the adapted gate says as that permits.");
 DEFINE_double(max_seconds, 1e9,
-              "Limit of the processor time of one solution by sc.");
+              "Limit of the processor time of one solution by sc or gnc_tls.");
 DEFINE_string(journal_filename, "",
               "Every finished run is added here at once; a sweep started again "
               "with the same journal leaves out what it holds.");

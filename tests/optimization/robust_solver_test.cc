@@ -318,6 +318,20 @@ TEST_F(RobustSolverTest, GncFindsTheInliers) {
   EXPECT_LT(AbsoluteTrajectoryError(poses, optimum_), 0.05);
 }
 
+TEST_F(RobustSolverTest, GncEndsInTime) {
+  GncOptions options;
+  options.max_seconds = 0.;
+  std::vector<Pose2> poses = world_.graph.poses;
+  std::vector<double> weights;
+  const SolverSummary summary = SolveGnc(dirty_, options, &poses, &weights);
+  EXPECT_FALSE(summary.converged);
+  // The first solution only: all loops in force.
+  EXPECT_LE(summary.iterations, options.inner_iterations);
+  EXPECT_EQ(weights, std::vector<double>(dirty_.size(), 1.));
+  options.max_seconds = 1e9;
+  EXPECT_TRUE(SolveGnc(dirty_, options, &poses, &weights).converged);
+}
+
 TEST(RobustSolverEdgeCasesTest, TrivialGraphs) {
   std::vector<Pose2> poses = {Pose2(1., 2., 3.)};
   const SolverSummary summary = SolveRobust({}, SolverOptions(), &poses);
