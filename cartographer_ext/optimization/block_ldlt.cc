@@ -59,6 +59,12 @@ void ReserveForMore(const size_t size,
 
 }  // namespace
 
+void CopyLowerTriangle(Eigen::Matrix3d* const block) {
+  (*block)(0, 1) = (*block)(1, 0);
+  (*block)(0, 2) = (*block)(2, 0);
+  (*block)(1, 2) = (*block)(2, 1);
+}
+
 bool InvertSpd(const Eigen::Matrix3d& block, Eigen::Matrix3d* const inverse) {
   const double a = block(0, 0), b = block(1, 0), c = block(2, 0);
   const double d = block(1, 1), e = block(2, 1), f = block(2, 2);
@@ -259,6 +265,8 @@ bool BlockLdlt::Factorize(const double lambda) {
       }
       k = next_in_list;
     }
+    // What is asymmetric by rounding would grow from column to column.
+    CopyLowerTriangle(&pivot);
     pivots_[j] = pivot;
     if (!InvertSpd(pivot, &pivot_inverses_[j])) return false;
     for (int p = starts_[j]; p != starts_[j + 1]; ++p) {

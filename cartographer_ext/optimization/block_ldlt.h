@@ -38,6 +38,10 @@ inline void AddProduct(const double* a, const double* b, double* y) {
   }
 }
 
+// Makes a block symmetric by what is below its diagonal, all that InvertSpd
+// reads.
+void CopyLowerTriangle(Eigen::Matrix3d* block);
+
 // Inverse of a symmetric positive definite block; false when it is not.
 bool InvertSpd(const Eigen::Matrix3d& block, Eigen::Matrix3d* inverse);
 

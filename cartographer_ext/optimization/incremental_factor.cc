@@ -111,6 +111,7 @@ bool IncrementalFactor::Update(const LinearFactor& factor,
     work_[j].setZero();
     const Eigen::Matrix3d middle_head = middle * head.transpose();
     column.pivot.noalias() += head * middle_head;
+    CopyLowerTriangle(&column.pivot);
     if (!InvertSpd(column.pivot, &column.pivot_inverse)) {
       ok = false;
       for (const int row : column.rows) work_[row].setZero();
@@ -126,6 +127,7 @@ bool IncrementalFactor::Update(const LinearFactor& factor,
     work_rhs.noalias() -= column.rhs.transpose() * head;
     column.rhs.noalias() += gain.transpose() * work_rhs.transpose();
     middle.noalias() -= gain * middle_head.transpose();
+    CopyLowerTriangle(&middle);
     last_update_blocks_ += column.rows.size();
     if (column.rows.empty()) break;
     j = column.rows.front();
