@@ -124,6 +124,7 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     member.truncated_cost = TruncatedCost(edges, member.poses);
     members.push_back(std::move(member));
   };
+  double lowest_of_kernels = std::numeric_limits<double>::infinity();
   const auto add_kernel = [&](const std::string& name, const KernelType type,
                               const std::vector<Pose2>& start) {
     SolverOptions solver_options;
@@ -131,6 +132,8 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     solver_options.max_iterations = options.max_iterations;
     std::vector<Pose2> poses = start;
     AddSummary(solver.Solve(solver_options, &poses), result);
+    lowest_of_kernels =
+        std::min(lowest_of_kernels, TruncatedCost(edges, poses));
     add(name, std::move(poses));
   };
   ReplayResult replay;
@@ -192,7 +195,10 @@ void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     AddSummary(
         PolishAdapted(kPolishRounds, &solver, &result->poses, &result->weights),
         result);
-    const double enough = (1. + kSame) * best->truncated_cost;
+    // Half way to what a kernel alone reaches, to stay below others, too.
+    const double enough =
+        best->truncated_cost +
+        0.5 * std::max(0., lowest_of_kernels - best->truncated_cost);
     if (options.lowest_cost && TruncatedCost(edges, result->poses) > enough) {
       const std::vector<Pose2> adapted = result->poses;
       result->poses = best->poses;

@@ -42,9 +42,8 @@ struct OptimizeOptions {
   // (AdaptiveGate). For graphs whose information matrices are only a guess,
   // such as those of Cartographer, it would cost right loops.
   bool adaptive_gate = true;
-  // auto with adaptive_gate: no truncated cost above the lowest of all members
-  // but for one in a million, and of such maps one near that of the adapted
-  // gate (polish_near.h).
+  // auto with adaptive_gate: no truncated cost above that of any single kernel,
+  // and of such maps one near that of the adapted gate (polish_near.h).
   bool lowest_cost = false;
   SmootherOptions smoother;
 };

@@ -3,6 +3,7 @@
 //
 // All methods on graphs unlike the data sets: they end, with finite poses and
 // weights in [0, 1], and where the answer is clear they find it.
+#include <algorithm>
 #include <cmath>
 
 #include "cartographer_ext/optimization/graph_metrics.h"
