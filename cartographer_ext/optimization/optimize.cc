@@ -26,6 +26,8 @@ constexpr double kFixedSigma = 1e-5;
 constexpr int kUnfolded = 20;
 // So many loops cost little whatever they fill.
 constexpr size_t kFewLoops = 500;
+// The fill of more is bounded by memory alone.
+constexpr size_t kManyLoops = 5000;
 // Relative difference of truncated costs of one and the same optimum.
 constexpr double kSame = 1e-6;
 
@@ -96,7 +98,8 @@ struct Member {
 bool HasFewLoops(const PoseGraph& graph) {
   size_t loops = 0;
   for (const PoseGraphEdge& edge : graph.edges) loops += edge.is_loop;
-  return loops <= kFewLoops || 2 * loops <= graph.poses.size();
+  return loops <= kFewLoops ||
+         (loops <= kManyLoops && 2 * loops <= graph.poses.size());
 }
 
 bool RejectsSome(const std::vector<WhitenedEdge>& edges,

@@ -14,7 +14,9 @@
 //   4. those near the lowest truncated cost stay. Each true loop lost costs the
 //      gate, so a folded map loses this comparison by a wide margin;
 //   5. these are polished with the gate adapted to the scale of the accepted
-//      loops, and the one with the lowest cost truncated there is taken.
+//      loops, and the one with the lowest cost truncated there is taken;
+//   6. where that costs more than half of what separates the lowest of (4) from
+//      the best single kernel, the lowest is taken, brought near to (5).
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OPTIMIZE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OPTIMIZE_H_
 
@@ -44,7 +46,7 @@ struct OptimizeOptions {
   bool adaptive_gate = true;
   // auto with adaptive_gate: no truncated cost above that of any single kernel,
   // and of such maps one near that of the adapted gate (polish_near.h).
-  bool lowest_cost = false;
+  bool lowest_cost = true;
   SmootherOptions smoother;
 };
 

@@ -39,7 +39,7 @@ DEFINE_bool(adaptive_gate, true,
             "auto, r_isam: decide in the end by a gate narrowed to the scale "
             "of the loops that agree. Never for a pbstream, whose weights are "
             "relative.");
-DEFINE_bool(lowest_cost, false,
+DEFINE_bool(lowest_cost, true,
             "auto: end with the lowest truncated cost of all, as near to what "
             "the adapted gate says as that permits.");
 DEFINE_bool(dead_reckoning, false,

@@ -72,6 +72,7 @@ TEST_F(PolishNearTest, StaysWhereNoTieIsWeakEnough) {
 
 TEST_F(PolishNearTest, AutoHasTheLowestCostAndTheShape) {
   OptimizeOptions options;
+  options.lowest_cost = false;
   const auto adapted = Optimize(graph_, options);
   ASSERT_TRUE(adapted.ok());
   options.lowest_cost = true;
