@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 namespace {
+
+// A step with n candidates compares up to n^2 / 2 pairs; so many pairs count as
+// one more step.
+constexpr int64_t kPairsPerStep = 1024;
 
 class Search {
  public:
@@ -105,7 +110,9 @@ class Search {
 
   void Expand(const std::vector<int>& candidates, const double weight,
               std::vector<int>* const current) {
-    if (++result_.steps > options_.max_steps) {
+    const int64_t num = static_cast<int64_t>(candidates.size());
+    result_.steps += 1 + num * num / kPairsPerStep;
+    if (result_.steps > options_.max_steps) {
       stopped_ = true;
       return;
     }
@@ -137,6 +144,30 @@ class Search {
   bool stopped_ = false;
 };
 
+// The vertices that hang together by missing edges, ascending. Two vertices of
+// different sets are joined, so that maximum cliques of the sets make one of
+// the whole graph. Loops mostly agree: the sets are many and small.
+std::vector<std::vector<int>> SplitByConflicts(
+    const CompatibilityGraph& graph) {
+  std::vector<std::vector<int>> sets;
+  std::vector<int> open(graph.num_vertices());
+  std::iota(open.begin(), open.end(), 0);
+  while (!open.empty()) {
+    std::vector<int> set = {open.front()};
+    open.erase(open.begin());
+    for (size_t i = 0; i < set.size(); ++i) {
+      const auto rest = std::stable_partition(
+          open.begin(), open.end(),
+          [&](const int v) { return graph.HasEdge(set[i], v); });
+      set.insert(set.end(), rest, open.end());
+      open.erase(rest, open.end());
+    }
+    std::sort(set.begin(), set.end());
+    sets.push_back(std::move(set));
+  }
+  return sets;
+}
+
 }  // namespace
 
 CompatibilityGraph::CompatibilityGraph(const int num_vertices)
@@ -163,12 +194,34 @@ MaxCliqueResult MaxWeightClique(const CompatibilityGraph& graph,
                                 const MaxCliqueOptions& options) {
   CHECK_EQ(weights.size(), static_cast<size_t>(graph.num_vertices()));
   for (const double weight : weights) CHECK_GT(weight, 0.);
-  if (graph.num_vertices() == 0) {
-    MaxCliqueResult empty;
-    empty.exact = true;
-    return empty;
+  std::vector<std::vector<int>> sets = SplitByConflicts(graph);
+  // The large ones share what the small ones leave.
+  std::stable_sort(sets.begin(), sets.end(),
+                   [](const std::vector<int>& a, const std::vector<int>& b) {
+                     return a.size() < b.size();
+                   });
+  MaxCliqueResult result;
+  result.exact = true;
+  MaxCliqueOptions left = options;
+  for (const std::vector<int>& set : sets) {
+    const int n = static_cast<int>(set.size());
+    CompatibilityGraph part(n);
+    std::vector<double> part_weights(n);
+    for (int i = 0; i < n; ++i) {
+      part_weights[i] = weights[set[i]];
+      for (int j = 0; j < i; ++j) {
+        if (graph.HasEdge(set[i], set[j])) part.AddEdge(i, j);
+      }
+    }
+    const MaxCliqueResult clique = Search(part, part_weights, left).Run();
+    for (const int v : clique.vertices) result.vertices.push_back(set[v]);
+    result.weight += clique.weight;
+    result.exact = result.exact && clique.exact;
+    result.steps += clique.steps;
+    left.max_steps = std::max<int64_t>(0, options.max_steps - result.steps);
   }
-  return Search(graph, weights, options).Run();
+  std::sort(result.vertices.begin(), result.vertices.end());
+  return result;
 }
 
 }  // namespace loop_closure

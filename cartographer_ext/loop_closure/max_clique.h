@@ -8,9 +8,10 @@
 //
 // Vertices are loops, edges join compatible pairs, weights count the distinct
 // revisits a vertex stands for (consecutive nodes matched to one submap are one
-// piece of evidence, not many). Exact branch and bound with a greedy colouring
-// bound, started from a greedy clique, stopped after a fixed number of steps so
-// that the result does not depend on the speed of the machine.
+// piece of evidence, not many). Loops that no chain of contradictions connects
+// are decided apart from each other. Exact branch and bound with a greedy
+// colouring bound, started from a greedy clique, stopped after a fixed amount
+// of work so that the result does not depend on the speed of the machine.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_MAX_CLIQUE_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_MAX_CLIQUE_H_
 
@@ -44,7 +45,9 @@ class CompatibilityGraph {
 };
 
 struct MaxCliqueOptions {
-  int64_t max_steps = 1000000;  // search nodes; deterministic cap
+  // Search nodes; one with many candidates counts for several. Deterministic
+  // cap.
+  int64_t max_steps = 1000000;
 };
 
 struct MaxCliqueResult {

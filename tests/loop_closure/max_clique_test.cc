@@ -100,8 +100,37 @@ TEST(MaxCliqueTest, FindsAPlantedCliqueAmongManyAndRespectsTheCap) {
   capped.max_steps = 10;
   const MaxCliqueResult partial = MaxWeightClique(hard, weights, capped);
   EXPECT_FALSE(partial.exact);
-  EXPECT_LE(partial.steps, 11);
+  // One with all candidates counts for many.
+  EXPECT_LE(partial.steps, 10 + 1 + n * n / 1024);
   EXPECT_GT(partial.weight, 1.);  // the heuristic start is kept
+}
+
+// A hundred loops without contradiction, and a hundred rings of five of which
+// only two each go together: 2^100 maximum cliques.
+TEST(MaxCliqueTest, ContradictionsApartFromEachOtherAreDecidedApart) {
+  const int n = 600;
+  CompatibilityGraph graph(n);
+  const auto contradict = [](const int u, const int v) {
+    if (v < 100 || (u - 100) / 5 != (v - 100) / 5) return false;
+    const int distance = v - u;
+    return u >= 100 && (distance == 1 || distance == 4);
+  };
+  for (int u = 0; u < n; ++u) {
+    for (int v = u + 1; v < n; ++v) {
+      if (!contradict(u, v)) graph.AddEdge(u, v);
+    }
+  }
+  const MaxCliqueResult result =
+      MaxWeightClique(graph, std::vector<double>(n, 1.), {});
+  EXPECT_TRUE(result.exact);
+  EXPECT_EQ(result.weight, 300.);
+  EXPECT_EQ(result.vertices.size(), 300u);
+  EXPECT_LT(result.steps, 5000);
+  for (size_t i = 0; i < result.vertices.size(); ++i) {
+    for (size_t j = i + 1; j < result.vertices.size(); ++j) {
+      EXPECT_TRUE(graph.HasEdge(result.vertices[i], result.vertices[j]));
+    }
+  }
 }
 
 }  // namespace
