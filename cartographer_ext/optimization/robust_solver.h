@@ -142,6 +142,9 @@ struct GncOptions {
   double mu_step = 1.4;
   int max_outer_iterations = 100;
   int inner_iterations = 4;
+  // Each round starts from the given poses instead of from the last solution,
+  // which with many outliers is folded in the first rounds.
+  bool restart = true;
   // Processor time. Asked after each round, so that the rounds of the first,
   // full graphs may exceed it; what it ends has not converged.
   double max_seconds = 1e9;

@@ -29,6 +29,7 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
   inner.max_iterations = options.inner_iterations;
   inner.cost_tolerance = 1e-4;
   inner.edge_weights.assign(edges.size(), 1.);
+  const std::vector<Pose2> given = *poses;
   SolverSummary total = solver->Solve(inner, poses);
   const double c = options.truncation;
   double mu = -1.;
@@ -53,6 +54,7 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
       inner.edge_weights[i] = weight;
       binary = binary && (weight < 1e-4 || weight > 1. - 1e-4);
     }
+    if (options.restart) *poses = given;
     const SolverSummary summary = solver->Solve(inner, poses);
     total.iterations += summary.iterations;
     total.analyses += summary.analyses;
@@ -64,7 +66,7 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
   }
   if (in_time()) {
     inner.max_iterations = 20;
-    inner.cost_tolerance = 1e-7;
+    inner.cost_tolerance = 1e-12;
     const SolverSummary last = solver->Solve(inner, poses);
     total.iterations += last.iterations;
     total.analyses += last.analyses;

@@ -318,6 +318,25 @@ TEST_F(RobustSolverTest, GncFindsTheInliers) {
   EXPECT_LT(AbsoluteTrajectoryError(poses, optimum_), 0.05);
 }
 
+// Half as many grouped wrong loops as poses fold the first solution; rounds
+// that start from it stay folded.
+TEST_F(RobustSolverTest, GncStartsEachRoundFromTheGivenPoses) {
+  std::vector<PoseGraphEdge> edges = world_.graph.edges;
+  OutlierOptions outliers;
+  outliers.type = OutlierType::kRandomGrouped;
+  outliers.count = 120;
+  test::AppendOutliers(world_.graph, outliers, &edges);
+  const std::vector<WhitenedEdge> dirty = Whiten(edges);
+  GncOptions options;
+  std::vector<Pose2> poses = world_.graph.poses;
+  SolveGnc(dirty, options, &poses, nullptr);
+  EXPECT_LT(AbsoluteTrajectoryError(poses, optimum_), 0.01);
+  options.restart = false;
+  poses = world_.graph.poses;
+  SolveGnc(dirty, options, &poses, nullptr);
+  EXPECT_GT(AbsoluteTrajectoryError(poses, optimum_), 0.1);
+}
+
 TEST_F(RobustSolverTest, GncEndsInTime) {
   GncOptions options;
   options.max_seconds = 0.;
