@@ -14,7 +14,7 @@ void TypicalFit::Add(const int trajectory_id, const double fit) {
 
 double TypicalFit::Scale(const int trajectory_id) const {
   const auto found = fits_.find(trajectory_id);
-  if (options_.reference <= 0. || found == fits_.end() ||
+  if (!is_on() || found == fits_.end() ||
       found->second.size() < options_.min_fits) {
     return 1.;
   }

@@ -33,6 +33,8 @@ class TypicalFit {
  public:
   explicit TypicalFit(const TypicalFitOptions& options) : options_(options) {}
 
+  // Otherwise there is no need to measure fits.
+  bool is_on() const { return options_.reference > 0.; }
   // `fit`: mean probability under the points of a scan, in [0, 1].
   void Add(int trajectory_id, double fit);
   // By which floors of scores are multiplied, in [least_scale, 1].

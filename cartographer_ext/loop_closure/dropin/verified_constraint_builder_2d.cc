@@ -138,17 +138,16 @@ SubmapEntry* VerifiedConstraintBuilder2D::Offer(const SubmapId& submap_id,
 
 void VerifiedConstraintBuilder2D::MeasureFit(const OfferedPair& pair,
                                              const SubmapEntry& entry) {
-  if (pair.submap_id.trajectory_id != pair.node_id.trajectory_id ||
-      entry.newest_node_at_first < 0) {
+  if (!typical_fit_.is_on() ||
+      pair.submap_id.trajectory_id != pair.node_id.trajectory_id ||
+      entry.newest_node_at_first < 0 ||
+      pair.node_id.node_index <= entry.newest_node_at_first) {
     return;
   }
   const absl::optional<double> travelled = verifier_.paths().Travelled(
       NodeKey{pair.submap_id.trajectory_id, entry.newest_node_at_first},
       ToKey(pair.node_id));
-  if (pair.node_id.node_index <= entry.newest_node_at_first ||
-      !travelled.has_value() || *travelled > kWayBehindSubmap) {
-    return;
-  }
+  if (!travelled.has_value() || *travelled > kWayBehindSubmap) return;
   typical_fit_.Add(pair.node_id.trajectory_id,
                    scan_matching::MeanScore(
                        LocalPose(*pair.node) * pair.from_robot.Inverse(),
@@ -223,9 +222,6 @@ void VerifiedConstraintBuilder2D::NotifyEndOfNode() {
       candidate.plan = planned.plan;
       candidate.query = planned.query;
       candidate.entry = submaps_.at(pair.submap_id);
-      if (pair.submap_id.trajectory_id == pair.node_id.trajectory_id) {
-        candidate.floor_scale = typical_fit_.Scale(pair.node_id.trajectory_id);
-      }
       if (planned.query >= 0) {
         queries[planned.query].push_back(&candidate);
       } else if (planned.plan.skipped == LoopDecision::NONE) {
@@ -247,6 +243,10 @@ void VerifiedConstraintBuilder2D::NotifyEndOfNode() {
 }
 
 void VerifiedConstraintBuilder2D::Schedule(PairCandidate* const candidate) {
+  const OfferedPair& pair = candidate->pair;
+  if (pair.submap_id.trajectory_id == pair.node_id.trajectory_id) {
+    candidate->floor_scale = typical_fit_.Scale(pair.node_id.trajectory_id);
+  }
   auto task = absl::make_unique<Task>();
   task->SetWorkItem([this, candidate]() { searcher_.Search(candidate); });
   AwaitSubmap(*candidate, task.get());
