@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cartographer_ext/common/planar_matrix.h"
+#include "cartographer_ext/common/squared.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -26,8 +27,6 @@ constexpr double kAccelerationGate = 2.;
 constexpr double kStandingWheels = 1e-3;
 constexpr double kStandingMatchWay = 0.02;
 constexpr double kStandingMatchTurn = 0.01;
-
-double Squared(const double x) { return x * x; }
 
 // The second moment of being off by all of `difference`.
 Eigen::Matrix3d Spread(const Pose2& difference) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cartographer_ext/common/planar_matrix.h"
+#include "cartographer_ext/common/squared.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -38,8 +39,6 @@ constexpr double kMaxTurnSigma = 0.006;
 // What is seen of odometry may have begun this long ago, seconds.
 constexpr double kSettleTime = 3.;
 constexpr size_t kMaxPending = 100;
-
-double Squared(const double x) { return x * x; }
 
 double Clamped(const double value, const double initial, const double most) {
   return std::min(initial + most, std::max(initial - most, value));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "cartographer_ext/common/squared.h"
+
 namespace cartographer_ext {
 namespace front_end {
 namespace {
@@ -21,8 +23,6 @@ constexpr size_t kMaxPending = 20;
 constexpr double kMaxLateness = 1.25;
 // ... if that is not longer than this, seconds.
 constexpr double kMaxUsualInterval = 0.8;
-
-double Squared(const double x) { return x * x; }
 
 }  // namespace
 

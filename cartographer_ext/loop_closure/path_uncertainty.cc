@@ -7,13 +7,12 @@
 #include <limits>
 
 #include "cartographer_ext/common/planar_matrix.h"
+#include "cartographer_ext/common/squared.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 namespace {
-
-double Square(const double x) { return x * x; }
 
 // Covariance of one step, in the frame of its end.
 Eigen::Matrix3d StepCovariance(const PathNoiseOptions& options,
@@ -23,12 +22,12 @@ Eigen::Matrix3d StepCovariance(const PathNoiseOptions& options,
       has_jumps ? std::max(0., metres - options.free_metres) : 0.;
   const double round =
       has_jumps ? std::max(0., radians - options.free_radians) : 0.;
-  const double translation = Square(options.translation_per_metre) * metres +
-                             Square(options.translation_per_radian) * radians +
-                             Square(far);
-  const double rotation = Square(options.rotation_per_metre) * metres +
-                          Square(options.rotation_per_radian) * radians +
-                          Square(round);
+  const double translation = Squared(options.translation_per_metre) * metres +
+                             Squared(options.translation_per_radian) * radians +
+                             Squared(far);
+  const double rotation = Squared(options.rotation_per_metre) * metres +
+                          Squared(options.rotation_per_radian) * radians +
+                          Squared(round);
   return Eigen::Vector3d(translation, translation, rotation).asDiagonal();
 }
 
@@ -156,9 +155,9 @@ absl::optional<double> PathUncertainty::Effort(const NodeKey& u,
 double PathUncertainty::EffortOf(const Eigen::Matrix3d& covariance) const {
   // Each of the two kinds in metres of driving.
   return covariance(0, 0) /
-             Square(std::max(options_.translation_per_metre, kLeastNoise)) +
+             Squared(std::max(options_.translation_per_metre, kLeastNoise)) +
          covariance(2, 2) /
-             Square(std::max(options_.rotation_per_metre, kLeastNoise));
+             Squared(std::max(options_.rotation_per_metre, kLeastNoise));
 }
 
 absl::optional<Pose2> PathUncertainty::LocalPose(const NodeKey& node) const {
