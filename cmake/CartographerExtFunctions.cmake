@@ -41,11 +41,17 @@ function(cartographer_ext_add_cartographer_tree tree)
   add_subdirectory("${tree}" "${CMAKE_BINARY_DIR}/cartographer" EXCLUDE_FROM_ALL)
 endfunction()
 
-# cartographer_ext_module(<name> [PATTERN glob...] [EXCLUDE regex] LINK libs...)
-# One static library `cartographer_ext_<name>` from the sources of the current folder.
+# cartographer_ext_module(<name> [INCLUDE regex] [EXCLUDE regex] LINK libs...)
+# One static library `cartographer_ext_<name>` from the sources of the current folder; that of a core module from those of its
+# subfolders, too.
 function(cartographer_ext_module name)
   cmake_parse_arguments(ARG "" "EXCLUDE;INCLUDE" "LINK" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cc")
+  if(name IN_LIST CARTOGRAPHER_EXT_CORE_MODULES)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cc")
+    list(FILTER sources EXCLUDE REGEX "/dropin/")
+  else()
+    file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cc")
+  endif()
   if(ARG_EXCLUDE)
     list(FILTER sources EXCLUDE REGEX "${ARG_EXCLUDE}")
   endif()

@@ -30,8 +30,9 @@ get_filename_component(CARTOGRAPHER_EXT_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSO
 set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder ceres_scan_matcher optimization_problem local_trajectory_builder
     full_information)
 
-# Modules whose sources need no host; they are compiled once as objects and become part of the target.
-set(CARTOGRAPHER_EXT_CORE_MODULES common options optimization loop_closure scan_matching front_end)
+# Modules whose sources need no host; they are compiled once, with those of their subfolders but dropin/, as objects and
+# become part of the target.
+set(CARTOGRAPHER_EXT_CORE_MODULES common options uncertainty optimization loop_closure scan_matching front_end)
 
 # The modules whose dropin/ folders hold the class behind a swap and what it uses; full_information needs none.
 set(CARTOGRAPHER_EXT_MODULES_OF_constraint_builder loop_closure scan_matching)
@@ -117,7 +118,8 @@ function(cartographer_ext_add_core_objects module)
   if(TARGET cartographer_ext_${module}_objects)
     return()
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${module}/*.cc")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${module}/*.cc")
+  list(FILTER sources EXCLUDE REGEX "/dropin/")
   if(NOT sources)
     return()
   endif()
