@@ -13,18 +13,16 @@ namespace cartographer_ext {
 namespace loop_closure {
 namespace {
 
-LoopEdge Reversed(const LoopEdge& edge) {
-  LoopEdge reversed;
+uncertainty::LoopEdge Reversed(const uncertainty::LoopEdge& edge) {
+  uncertainty::LoopEdge reversed;
   reversed.a = edge.b;
   reversed.b = edge.a;
   reversed.pose = Invert(edge.pose);
   return reversed;
 }
 
-// Negative ids are those of submaps, see LoopVerifier::PathKey.
-bool SameTrajectory(const LoopEdge& edge) {
-  return edge.a.trajectory_id == edge.b.trajectory_id ||
-         edge.a.trajectory_id == -1 - edge.b.trajectory_id;
+bool SameTrajectory(const uncertainty::LoopEdge& edge) {
+  return edge.a.trajectory_id() == edge.b.trajectory_id();
 }
 
 // Standard deviation along the worst direction.
@@ -37,29 +35,33 @@ double WorstTranslationSigma(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-CompatibleSubset::CompatibleSubset(const CompatibleSubsetOptions& options,
-                                   const PathUncertainty* const paths)
+CompatibleSubset::CompatibleSubset(
+    const CompatibleSubsetOptions& options,
+    const uncertainty::PathUncertainty* const paths)
     : options_(options), paths_(CHECK_NOTNULL(paths)) {
   CHECK_GT(options.max_clusters, 0);
   CHECK_GE(options.min_revisits, 1);
 }
 
-CompatibleSubset::Relation CompatibleSubset::Relate(const LoopEdge& u,
-                                                    const LoopEdge& v) const {
-  LoopEdge other = v;
-  if (u.a.trajectory_id != v.a.trajectory_id) other = Reversed(v);
-  const absl::optional<UncertainPose> path_b = paths_->Between(u.b, other.b);
-  const absl::optional<UncertainPose> path_a = paths_->Between(other.a, u.a);
+CompatibleSubset::Relation CompatibleSubset::Relate(
+    const uncertainty::LoopEdge& u, const uncertainty::LoopEdge& v) const {
+  uncertainty::LoopEdge other = v;
+  if (!u.a.InSequenceWith(v.a)) other = Reversed(v);
+  const absl::optional<uncertainty::UncertainPose> path_b =
+      paths_->Between(u.b, other.b);
+  const absl::optional<uncertainty::UncertainPose> path_a =
+      paths_->Between(other.a, u.a);
   if (!path_a.has_value() || !path_b.has_value()) return Relation::kUntestable;
-  const CycleResult cycle =
-      TestCycle(options_.cycle, u.pose, *path_b, other.pose, *path_a);
+  const uncertainty::CycleResult cycle = uncertainty::TestCycle(
+      options_.cycle, u.pose, *path_b, other.pose, *path_a);
   if (!cycle.compatible) return Relation::kContradicts;
   return WorstTranslationSigma(cycle.covariance) <= options_.informative_sigma
              ? Relation::kSupports
              : Relation::kVague;
 }
 
-bool CompatibleSubset::SameRevisit(const LoopEdge& u, const LoopEdge& v) const {
+bool CompatibleSubset::SameRevisit(const uncertainty::LoopEdge& u,
+                                   const uncertainty::LoopEdge& v) const {
   const absl::optional<double> a = paths_->Travelled(u.a, v.a);
   const absl::optional<double> b = paths_->Travelled(u.b, v.b);
   return a.has_value() && b.has_value() && *a <= options_.revisit_distance &&
@@ -98,8 +100,8 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
 
 // How many support a cluster, all of them or those of the subset.
 int CompatibleSubset::Support(const int index, const bool of_subset) const {
-  const LoopEdge& edge = clusters_[index].leader.edge;
-  std::vector<NodeKey> nodes;
+  const uncertainty::LoopEdge& edge = clusters_[index].leader.edge;
+  std::vector<uncertainty::VertexId> vertices;
   for (int j = 0; j < num_clusters(); ++j) {
     if (j == index || (of_subset && !clusters_[j].in_subset) ||
         relations_[std::max(index, j)][std::min(index, j)] !=
@@ -107,23 +109,20 @@ int CompatibleSubset::Support(const int index, const bool of_subset) const {
       continue;
     }
     // The end in the same run.
-    const LoopEdge& other = clusters_[j].leader.edge;
-    nodes.push_back(other.b.trajectory_id == edge.b.trajectory_id ? other.b
-                                                                  : other.a);
+    const uncertainty::LoopEdge& other = clusters_[j].leader.edge;
+    vertices.push_back(other.b.InSequenceWith(edge.b) ? other.b : other.a);
   }
-  if (SameTrajectory(edge)) return static_cast<int>(nodes.size());
-  std::sort(nodes.begin(), nodes.end(), [](const NodeKey& a, const NodeKey& b) {
-    return std::make_pair(a.trajectory_id, a.node_index) <
-           std::make_pair(b.trajectory_id, b.node_index);
-  });
-  std::vector<NodeKey> places = {edge.b};
-  for (const NodeKey& node : nodes) {
-    const bool is_near =
-        std::any_of(places.begin(), places.end(), [&](const NodeKey& place) {
-          const absl::optional<double> way = paths_->Travelled(place, node);
-          return way.has_value() && *way <= options_.revisit_distance;
+  if (SameTrajectory(edge)) return static_cast<int>(vertices.size());
+  std::sort(vertices.begin(), vertices.end());
+  std::vector<uncertainty::VertexId> places = {edge.b};
+  for (const uncertainty::VertexId& vertex : vertices) {
+    const bool is_near = std::any_of(
+        places.begin(), places.end(), [&](const uncertainty::VertexId& place) {
+          const absl::optional<double> distance =
+              paths_->Travelled(place, vertex);
+          return distance.has_value() && *distance <= options_.revisit_distance;
         });
-    if (!is_near) places.push_back(node);
+    if (!is_near) places.push_back(vertex);
   }
   return static_cast<int>(places.size()) - 1;
 }
@@ -354,8 +353,8 @@ int CompatibleSubset::num_undecided() const {
   return count;
 }
 
-std::vector<LoopEdge> CompatibleSubset::AcceptedLoops() const {
-  std::vector<LoopEdge> loops;
+std::vector<uncertainty::LoopEdge> CompatibleSubset::AcceptedLoops() const {
+  std::vector<uncertainty::LoopEdge> loops;
   for (const Cluster& cluster : clusters_) {
     if (cluster.accepted) loops.push_back(cluster.leader.edge);
   }

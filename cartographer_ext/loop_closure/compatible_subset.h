@@ -42,16 +42,17 @@
 #include <functional>
 #include <vector>
 
-#include "cartographer_ext/loop_closure/cycle_consistency.h"
 #include "cartographer_ext/loop_closure/max_clique.h"
-#include "cartographer_ext/loop_closure/path_uncertainty.h"
+#include "cartographer_ext/uncertainty/cycle_consistency.h"
+#include "cartographer_ext/uncertainty/loop_edge.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
 struct LoopEvidence {
   int64_t id = 0;  // of the caller, unique
-  LoopEdge edge;
+  uncertainty::LoopEdge edge;
   double score = 0.;  // the fused score, in [0, 1]
   // How well the place was predicted before the search, one standard deviation
   // in metres; infinity without a prediction.
@@ -59,7 +60,7 @@ struct LoopEvidence {
 };
 
 struct CompatibleSubsetOptions {
-  CycleConsistencyOptions cycle;
+  uncertainty::CycleConsistencyOptions cycle;
   // Loops nearer than this along the trajectory, on both sides, are one
   // revisit.
   double revisit_distance = 5.;  // metres, >= 0
@@ -114,7 +115,7 @@ class CompatibleSubset {
  public:
   // `paths` has to outlive this and to know the nodes of the loops added.
   CompatibleSubset(const CompatibleSubsetOptions& options,
-                   const PathUncertainty* paths);
+                   const uncertainty::PathUncertainty* paths);
 
   void Add(const LoopEvidence& loop);
 
@@ -145,7 +146,7 @@ class CompatibleSubset {
   // Whether the last clique search was exact.
   bool exact() const { return exact_; }
   // The leaders of the accepted clusters.
-  std::vector<LoopEdge> AcceptedLoops() const;
+  std::vector<uncertainty::LoopEdge> AcceptedLoops() const;
 
  private:
   enum class Relation : char {
@@ -168,8 +169,10 @@ class CompatibleSubset {
     int rival_support = -1;  // of the strongest rival, -1 without one
   };
 
-  Relation Relate(const LoopEdge& u, const LoopEdge& v) const;
-  bool SameRevisit(const LoopEdge& u, const LoopEdge& v) const;
+  Relation Relate(const uncertainty::LoopEdge& u,
+                  const uncertainty::LoopEdge& v) const;
+  bool SameRevisit(const uncertainty::LoopEdge& u,
+                   const uncertainty::LoopEdge& v) const;
   int Support(int index, bool of_subset) const;
   void Solve();
   bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;
@@ -179,7 +182,7 @@ class CompatibleSubset {
   void MakeRoom();
 
   const CompatibleSubsetOptions options_;
-  const PathUncertainty* const paths_;
+  const uncertainty::PathUncertainty* const paths_;
   std::vector<Cluster> clusters_;  // in the order of their leaders
   // relations_[i][j] for j < i.
   std::vector<std::vector<Relation>> relations_;

@@ -6,14 +6,15 @@ namespace cartographer_ext {
 namespace loop_closure {
 
 InnovationResult TestInnovation(const InnovationOptions& options,
-                                const UncertainPose& prior,
-                                const UncertainPose& loop) {
+                                const uncertainty::UncertainPose& prior,
+                                const uncertainty::UncertainPose& loop) {
   // The cycle test with certain, empty paths asks the same.
-  CycleConsistencyOptions cycle;
-  cycle.test = CycleTest::kChiSquare;
+  uncertainty::CycleConsistencyOptions cycle;
+  cycle.test = uncertainty::CycleTest::kChiSquare;
   cycle.chi_square_bound = options.chi_square_bound;
-  const CycleResult test = TestCycle(cycle, Invert(prior), UncertainPose(),
-                                     Invert(loop), UncertainPose());
+  const uncertainty::CycleResult test =
+      uncertainty::TestCycle(cycle, Invert(prior), uncertainty::UncertainPose(),
+                             Invert(loop), uncertainty::UncertainPose());
   InnovationResult result;
   result.innovation = test.error;
   result.chi_square = test.chi_square;

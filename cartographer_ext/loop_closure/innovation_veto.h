@@ -15,7 +15,7 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_INNOVATION_VETO_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_INNOVATION_VETO_H_
 
-#include "cartographer_ext/loop_closure/cycle_consistency.h"
+#include "cartographer_ext/uncertainty/cycle_consistency.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -31,8 +31,8 @@ struct InnovationResult {
 };
 
 InnovationResult TestInnovation(const InnovationOptions& options,
-                                const UncertainPose& prior,
-                                const UncertainPose& loop);
+                                const uncertainty::UncertainPose& prior,
+                                const uncertainty::UncertainPose& loop);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

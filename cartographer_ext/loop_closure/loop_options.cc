@@ -92,9 +92,10 @@ ConfidenceWeightOptions ToConfidenceWeightOptions(
   return to;
 }
 
-PathNoiseOptions ToPathNoiseOptions(const LoopClosureOptions& options) {
+uncertainty::PathNoiseOptions ToPathNoiseOptions(
+    const LoopClosureOptions& options) {
   const auto& from = options.path_noise();
-  PathNoiseOptions to;
+  uncertainty::PathNoiseOptions to;
   to.translation_per_metre = from.translation_per_metre();
   to.translation_per_radian = from.translation_per_radian();
   to.rotation_per_metre = from.rotation_per_metre();
@@ -131,8 +132,8 @@ CompatibleSubsetOptions ToCompatibleSubsetOptions(
   CompatibleSubsetOptions to;
   to.cycle.test =
       from.test() == LoopClosureOptions::CompatibleSubset::FIXED_BOUND
-          ? CycleTest::kFixedBound
-          : CycleTest::kChiSquare;
+          ? uncertainty::CycleTest::kFixedBound
+          : uncertainty::CycleTest::kChiSquare;
   to.cycle.chi_square_bound = from.chi_square_bound();
   to.cycle.translation_bound = from.translation_bound();
   to.cycle.rotation_bound = from.rotation_bound();

@@ -12,11 +12,11 @@
 #include "cartographer_ext/loop_closure/innovation_veto.h"
 #include "cartographer_ext/loop_closure/loop_mixture.h"
 #include "cartographer_ext/loop_closure/map_localization.h"
-#include "cartographer_ext/loop_closure/path_uncertainty.h"
 #include "cartographer_ext/loop_closure/score_fusion.h"
 #include "cartographer_ext/loop_closure/temporal_verification.h"
 #include "cartographer_ext/loop_closure/typical_fit.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -35,7 +35,8 @@ LoopMixtureOptions ToLoopMixtureOptions(
     const proto::LoopClosureOptions& options);
 ConfidenceWeightOptions ToConfidenceWeightOptions(
     const proto::LoopClosureOptions& options);
-PathNoiseOptions ToPathNoiseOptions(const proto::LoopClosureOptions& options);
+uncertainty::PathNoiseOptions ToPathNoiseOptions(
+    const proto::LoopClosureOptions& options);
 MapLocalizationOptions ToMapLocalizationOptions(
     const proto::LoopClosureOptions& options);
 CompatibleSubsetOptions ToCompatibleSubsetOptions(

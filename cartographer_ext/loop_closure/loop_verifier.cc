@@ -163,15 +163,17 @@ LoopVerifier::LoopVerifier(const proto::LoopClosureOptions& options,
       subset_(ToCompatibleSubsetOptions(options), &paths_) {}
 
 bool LoopVerifier::AddNode(const int trajectory_id, HistoryNode node) {
-  paths_.Add(NodeKey{trajectory_id, node.node_index}, node.local_pose);
+  paths_.Add(uncertainty::NodeId{trajectory_id, node.node_index},
+             node.local_pose);
   return history_.Add(trajectory_id, std::move(node));
 }
 
-void LoopVerifier::AddSubmap(const SubmapKey& submap, const Pose2& local_pose) {
-  paths_.Add(PathKey(submap), local_pose);
+void LoopVerifier::AddSubmap(const uncertainty::SubmapId& submap,
+                             const Pose2& local_pose) {
+  paths_.Add(submap, local_pose);
 }
 
-bool LoopVerifier::HasNode(const NodeKey& node) const {
+bool LoopVerifier::HasNode(const uncertainty::NodeId& node) const {
   return history_.Contains(node.trajectory_id, node.node_index);
 }
 
@@ -274,7 +276,7 @@ bool LoopVerifier::PassesVeto(const LoopCandidate& candidate,
   if (!anchor.has_value()) return true;
   const auto prior = paths_.Between(*anchor, candidate.node);
   if (!prior.has_value()) return true;
-  UncertainPose loop;
+  uncertainty::UncertainPose loop;
   loop.pose = Between(*paths_.LocalPose(*anchor), candidate.submap_local_pose) *
               candidate.refined;
   loop.covariance = MatchCovariance(LoopCovariance(options_), candidate);
@@ -321,7 +323,7 @@ void LoopVerifier::Dismiss(const LoopCandidate& candidate,
 }
 
 void LoopVerifier::Process(const LoopCandidate& candidate) {
-  paths_.Add(PathKey(candidate.submap), candidate.submap_local_pose);
+  paths_.Add(candidate.submap, candidate.submap_local_pose);
   LoopOutcome outcome = MakeOutcome(candidate);
   LoopDecision& decision = outcome.decision;
   const int64_t number = decision.candidate();
@@ -355,12 +357,12 @@ void LoopVerifier::Process(const LoopCandidate& candidate) {
   }
   LoopEvidence evidence;
   evidence.id = number;
-  evidence.edge.a = PathKey(candidate.submap);
+  evidence.edge.a = candidate.submap;
   evidence.edge.b = candidate.node;
   evidence.edge.pose.pose = candidate.refined;
   // Within a trajectory the way runs along the nodes, which know about jumps.
   if (candidate.anchor.has_value() &&
-      candidate.anchor->trajectory_id == candidate.node.trajectory_id) {
+      candidate.anchor->IsNodeOf(candidate.node.trajectory_id)) {
     const auto anchor_pose = paths_.LocalPose(*candidate.anchor);
     if (anchor_pose.has_value()) {
       evidence.edge.a = *candidate.anchor;
@@ -472,13 +474,13 @@ void LoopVerifier::ForgetLoops(const int trajectory_id,
       },
       LoopDecision::OUT_OF_DATE);
   subset_.ForgetAccepted([&](const LoopEvidence& evidence) {
-    return evidence.edge.b.trajectory_id == trajectory_id &&
-           evidence.edge.b.node_index <= last_node_index &&
-           evidence.edge.a.trajectory_id == -1 - submap_trajectory_id;
+    return evidence.edge.b.IsNodeOf(trajectory_id) &&
+           evidence.edge.b.index() <= last_node_index &&
+           evidence.edge.a.IsSubmapOf(submap_trajectory_id);
   });
 }
 
-void LoopVerifier::DeleteSubmap(const SubmapKey& submap) {
+void LoopVerifier::DeleteSubmap(const uncertainty::SubmapId& submap) {
   Withdraw(
       [&](const LoopOutcome& outcome) {
         return outcome.submap.trajectory_id == submap.trajectory_id &&

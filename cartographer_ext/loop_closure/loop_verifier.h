@@ -33,30 +33,26 @@
 #include "cartographer_ext/loop_closure/dynamic_threshold.h"
 #include "cartographer_ext/loop_closure/loop_mixture.h"
 #include "cartographer_ext/loop_closure/node_history.h"
-#include "cartographer_ext/loop_closure/path_uncertainty.h"
 #include "cartographer_ext/loop_closure/score_fusion.h"
 #include "cartographer_ext/loop_closure/temporal_verification.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/loop_decision.pb.h"
+#include "cartographer_ext/uncertainty/ids.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
-struct SubmapKey {
-  int trajectory_id = 0;
-  int submap_index = 0;
-};
-
 // What the search found, after the refinement.
 struct LoopCandidate {
-  SubmapKey submap;
-  NodeKey node;
+  uncertainty::SubmapId submap;
+  uncertainty::NodeId node;
   int64_t node_time = 0;    // host ticks
   double submap_age = 0.;   // seconds or nodes, as `age_unit` says
   Pose2 submap_local_pose;  // (local frame of its trajectory <- submap)
-  // A node of the submap, for the veto; where absent the node is taken whose
-  // local position is nearest to the submap's.
-  absl::optional<NodeKey> anchor;
+  // A node of the submap, or the submap itself, for the veto; where absent the
+  // node is taken whose local position is nearest to the submap's.
+  absl::optional<uncertainty::VertexId> anchor;
   Pose2 refined;  // (submap <- node)
   // The same as the host's constraint wants it, whose frame of a node may be
   // turned against the robot's; only handed through.
@@ -78,9 +74,9 @@ struct LoopCandidate {
 };
 
 struct LoopOutcome {
-  SubmapKey submap;
-  NodeKey node;
-  absl::optional<NodeKey> anchor;
+  uncertainty::SubmapId submap;
+  uncertainty::NodeId node;
+  absl::optional<uncertainty::VertexId> anchor;
   Pose2 submap_local_pose;
   Pose2 pose;                 // (submap <- node)
   Pose2 constraint_pose;      // of the candidate
@@ -106,8 +102,8 @@ class LoopVerifier {
   // For every node offered, before any sampler. True when it was new.
   bool AddNode(int trajectory_id, HistoryNode node);
   // For every submap offered; the order of the calls does not matter.
-  void AddSubmap(const SubmapKey& submap, const Pose2& local_pose);
-  bool HasNode(const NodeKey& node) const;
+  void AddSubmap(const uncertainty::SubmapId& submap, const Pose2& local_pose);
+  bool HasNode(const uncertainty::NodeId& node) const;
   // How `AddNode` wants scans described (DescribeScan).
   const TemporalVerificationOptions& temporal_options() const {
     return temporal_options_;
@@ -130,7 +126,7 @@ class LoopVerifier {
                    int last_node_index);
 
   // Rejects what is undecided or not yet handed out for a submap.
-  void DeleteSubmap(const SubmapKey& submap);
+  void DeleteSubmap(const uncertainty::SubmapId& submap);
   // The same for nodes of a trajectory up to an index.
   void DeleteNodes(int trajectory_id, int last_node_index);
 
@@ -138,11 +134,7 @@ class LoopVerifier {
   // Records of what waits, in candidate order, as UNDECIDED.
   std::vector<proto::LoopDecision> Undecided() const;
 
-  const PathUncertainty& paths() const { return paths_; }
-  // Submaps share the paths with the nodes, under negative trajectory ids.
-  static NodeKey PathKey(const SubmapKey& submap) {
-    return NodeKey{-1 - submap.trajectory_id, submap.submap_index};
-  }
+  const uncertainty::PathUncertainty& paths() const { return paths_; }
 
  private:
   LoopOutcome MakeOutcome(const LoopCandidate& candidate);
@@ -158,8 +150,8 @@ class LoopVerifier {
   const ConstraintWeights stock_weights_;
   const TemporalVerificationOptions temporal_options_;
   NodeHistory history_;
-  // Ways between nodes, and between submaps under trajectory ids of their own.
-  PathUncertainty paths_;
+  // Between nodes and between submaps.
+  uncertainty::PathUncertainty paths_;
   DynamicThreshold threshold_;
   ScoreFusion fusion_;
   LoopMixture mixture_;

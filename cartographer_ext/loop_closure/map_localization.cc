@@ -9,16 +9,17 @@
 
 namespace cartographer_ext {
 namespace loop_closure {
-MapLocalization::MapLocalization(const MapLocalizationOptions& options,
-                                 const PathUncertainty* const paths)
+MapLocalization::MapLocalization(
+    const MapLocalizationOptions& options,
+    const uncertainty::PathUncertainty* const paths)
     : options_(options), paths_(CHECK_NOTNULL(paths)) {}
 
 // Also where the way is not known any more: it is a long one then.
-bool MapLocalization::Farther(const NodeKey& node, const int before,
+bool MapLocalization::Farther(const uncertainty::NodeId& node, const int before,
                               const double distance) const {
   if (before < 0) return true;
   const absl::optional<double> travelled =
-      paths_->Travelled(NodeKey{node.trajectory_id, before}, node);
+      paths_->Travelled(uncertainty::NodeId{node.trajectory_id, before}, node);
   return !travelled.has_value() || *travelled >= distance;
 }
 
@@ -29,7 +30,7 @@ void MapLocalization::BecomeLost(State* const state) const {
   state->last_before_lost = state->last_accepted;
 }
 
-MapLocalization::Plan MapLocalization::PlanNode(const NodeKey& node,
+MapLocalization::Plan MapLocalization::PlanNode(const uncertainty::NodeId& node,
                                                 const int map_trajectory_id,
                                                 const bool is_predicted) {
   const auto inserted = states_.emplace(
@@ -64,7 +65,7 @@ MapLocalization::Plan MapLocalization::PlanNode(const NodeKey& node,
   return plan;
 }
 
-bool MapLocalization::AddAcceptedLoop(const NodeKey& node,
+bool MapLocalization::AddAcceptedLoop(const uncertainty::NodeId& node,
                                       const int map_trajectory_id) {
   State& state = states_[std::make_pair(node.trajectory_id, map_trajectory_id)];
   // One that waited since before the run was lost tells nothing new.
@@ -78,7 +79,7 @@ bool MapLocalization::AddAcceptedLoop(const NodeKey& node,
   return again;
 }
 
-void MapLocalization::AddDecision(const NodeKey& node,
+void MapLocalization::AddDecision(const uncertainty::NodeId& node,
                                   const int map_trajectory_id,
                                   const bool agrees) {
   State& state = states_[std::make_pair(node.trajectory_id, map_trajectory_id)];

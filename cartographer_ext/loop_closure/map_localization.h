@@ -31,7 +31,7 @@
 #include <utility>
 
 #include "absl/types/optional.h"
-#include "cartographer_ext/loop_closure/path_uncertainty.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -56,16 +56,18 @@ class MapLocalization {
 
   // `paths` has to outlive this and to know the nodes.
   MapLocalization(const MapLocalizationOptions& options,
-                  const PathUncertainty* paths);
+                  const uncertainty::PathUncertainty* paths);
 
   // For each node that is offered to submaps of `map_trajectory_id`, in order.
   // `is_predicted`: the host says where it is.
-  Plan PlanNode(const NodeKey& node, int map_trajectory_id, bool is_predicted);
+  Plan PlanNode(const uncertainty::NodeId& node, int map_trajectory_id,
+                bool is_predicted);
 
   // True when the run knows its place again, by this loop, after it was lost.
-  bool AddAcceptedLoop(const NodeKey& node, int map_trajectory_id);
+  bool AddAcceptedLoop(const uncertainty::NodeId& node, int map_trajectory_id);
   // Whether it was decided for the place that was predicted.
-  void AddDecision(const NodeKey& node, int map_trajectory_id, bool agrees);
+  void AddDecision(const uncertainty::NodeId& node, int map_trajectory_id,
+                   bool agrees);
 
   bool IsKnown(int trajectory_id, int map_trajectory_id) const;
   // The last node from before that, -1 without.
@@ -83,11 +85,12 @@ class MapLocalization {
     int last_before_lost = -1;
   };
 
-  bool Farther(const NodeKey& node, int before, double distance) const;
+  bool Farther(const uncertainty::NodeId& node, int before,
+               double distance) const;
   void BecomeLost(State* state) const;
 
   const MapLocalizationOptions options_;
-  const PathUncertainty* const paths_;
+  const uncertainty::PathUncertainty* const paths_;
   std::map<std::pair<int, int>, State> states_;
 };
 

@@ -39,7 +39,7 @@ SearchPlanner::SearchPlanner(const proto::LoopClosureOptions::Search& options,
                              const double reach,
                              const double default_linear_window,
                              const double default_angular_window,
-                             const PathUncertainty* const paths)
+                             const uncertainty::PathUncertainty* const paths)
     : options_(options),
       loop_covariance_(loop_covariance),
       reach_(reach),
@@ -94,7 +94,7 @@ SearchPlan SearchPlanner::PlanAlone(const SearchPair& pair) {
   }
 
   const double distance = pair.predicted.translation().norm();
-  const absl::optional<UncertainPose> way =
+  const absl::optional<uncertainty::UncertainPose> way =
       pair.anchor.has_value() ? ways_.Between(*pair.anchor, pair.node)
                               : absl::nullopt;
   if (!way.has_value()) {
@@ -139,7 +139,7 @@ double SearchPlanner::Promise(const SearchPair& pair,
 std::vector<SearchPlan> SearchPlanner::Plan(
     const std::vector<SearchPair>& pairs) {
   std::vector<SearchPlan> plans(pairs.size());
-  std::map<NodeKey, std::vector<size_t>, NodeLess> of_node;
+  std::map<uncertainty::NodeId, std::vector<size_t>> of_node;
   for (size_t i = 0; i < pairs.size(); ++i) {
     // One by one, since the searches of a burst space each other out.
     plans[i] = PlanAlone(pairs[i]);
@@ -190,7 +190,7 @@ std::vector<SearchPlan> SearchPlanner::Plan(
 
 void SearchPlanner::AddAcceptedLoop(const int submap_trajectory_id,
                                     const int submap_index,
-                                    const LoopEdge& loop,
+                                    const uncertainty::LoopEdge& loop,
                                     const int64_t node_time) {
   Nodes& accepted =
       submaps_[std::make_pair(submap_trajectory_id, submap_index)].accepted;
@@ -202,13 +202,12 @@ void SearchPlanner::AddAcceptedLoop(const int submap_trajectory_id,
 void SearchPlanner::ForgetLoops(const int trajectory_id,
                                 const int submap_trajectory_id,
                                 const int last_node_index) {
-  const auto is_old = [&](const NodeKey& node) {
-    return node.trajectory_id == trajectory_id &&
-           node.node_index <= last_node_index;
+  const auto is_old = [&](const uncertainty::VertexId& node) {
+    return node.IsNodeOf(trajectory_id) && node.index() <= last_node_index;
   };
   // Between trajectories the anchor is the submap itself.
-  ways_.RemoveIf([&](const LoopEdge& loop) {
-    return is_old(loop.b) && loop.a.trajectory_id == -1 - submap_trajectory_id;
+  ways_.RemoveIf([&](const uncertainty::LoopEdge& loop) {
+    return is_old(loop.b) && loop.a.IsSubmapOf(submap_trajectory_id);
   });
   for (auto& submap : submaps_) {
     if (submap.first.first != submap_trajectory_id) continue;

@@ -6,9 +6,10 @@
 //
 //   window     `window_sigmas` standard deviations of the most certain way from
 //              the submap to the node, along the trajectory and over accepted
-//              loops (loop_ways.h). A node that has just closed a loop is
-//              searched closely, one that has gone far since is searched
-//              widely, and one that may be anywhere in the whole submap.
+//              loops (least_uncertain_paths.h). A node that has just closed a
+//              loop is searched closely, one that has gone far since is
+//              searched widely, and one that may be anywhere in the whole
+//              submap.
 //   spacing    A submap is searched again after some way only; after an
 //              accepted loop after a longer one or some time; not at all while
 //              the way to it is known better than a loop could tell.
@@ -27,10 +28,12 @@
 
 #include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/loop_closure/loop_ways.h"
-#include "cartographer_ext/loop_closure/path_uncertainty.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/loop_decision.pb.h"
+#include "cartographer_ext/uncertainty/ids.h"
+#include "cartographer_ext/uncertainty/least_uncertain_paths.h"
+#include "cartographer_ext/uncertainty/loop_edge.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -39,9 +42,9 @@ struct SearchPair {
   // Of the submap.
   int submap_trajectory_id = 0;
   int submap_index = 0;
-  // A node of the submap; absent where none is known.
-  absl::optional<NodeKey> anchor;
-  NodeKey node;
+  // A node of the submap, or the submap itself; absent where none is known.
+  absl::optional<uncertainty::VertexId> anchor;
+  uncertainty::NodeId node;
   int64_t node_time = 0;  // host ticks, 100 ns
   Pose2 predicted;        // (submap <- node)
 };
@@ -68,7 +71,7 @@ class SearchPlanner {
   SearchPlanner(const proto::LoopClosureOptions::Search& options,
                 const Eigen::Matrix3d& loop_covariance, double reach,
                 double default_linear_window, double default_angular_window,
-                const PathUncertainty* paths);
+                const uncertainty::PathUncertainty* paths);
 
   SearchPlanner(const SearchPlanner&) = delete;
   SearchPlanner& operator=(const SearchPlanner&) = delete;
@@ -79,7 +82,7 @@ class SearchPlanner {
 
   // (anchor <- node) of a loop that was accepted.
   void AddAcceptedLoop(int submap_trajectory_id, int submap_index,
-                       const LoopEdge& loop, int64_t node_time);
+                       const uncertainty::LoopEdge& loop, int64_t node_time);
   void DeleteSubmap(int submap_trajectory_id, int submap_index);
   // Accepted loops of nodes of a trajectory up to an index with submaps of
   // another one no longer tell where a node is.
@@ -87,14 +90,8 @@ class SearchPlanner {
                    int last_node_index);
 
  private:
-  struct NodeLess {
-    bool operator()(const NodeKey& a, const NodeKey& b) const {
-      return std::make_pair(a.trajectory_id, a.node_index) <
-             std::make_pair(b.trajectory_id, b.node_index);
-    }
-  };
   // With their times.
-  using Nodes = std::map<NodeKey, int64_t, NodeLess>;
+  using Nodes = std::map<uncertainty::VertexId, int64_t>;
   struct SubmapMemory {
     Nodes searched;
     Nodes searched_fully;
@@ -114,9 +111,9 @@ class SearchPlanner {
   const double reach_;
   const double default_linear_window_;
   const double default_angular_window_;
-  const PathUncertainty* const paths_;
+  const uncertainty::PathUncertainty* const paths_;
   std::map<std::pair<int, int>, SubmapMemory> submaps_;
-  LoopWays ways_;
+  uncertainty::LeastUncertainPaths ways_;
 };
 
 }  // namespace loop_closure

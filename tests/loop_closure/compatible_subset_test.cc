@@ -22,11 +22,11 @@ using testing::IsEmpty;
 // 200 - i are at one place. Trajectory 1 repeats it in a frame of its own.
 class CompatibleSubsetTest : public testing::Test {
  protected:
-  CompatibleSubsetTest() : paths_(PathNoiseOptions(), 1000) {
+  CompatibleSubsetTest() : paths_(uncertainty::PathNoiseOptions(), 1000) {
     options_.single_strong_enabled = false;
     for (int i = 0; i <= 200; ++i) {
-      paths_.Add(NodeKey{0, i}, True(i));
-      paths_.Add(NodeKey{1, i}, Pose2(7., -3., 1.) * True(i));
+      paths_.Add(uncertainty::NodeId{0, i}, True(i));
+      paths_.Add(uncertainty::NodeId{1, i}, Pose2(7., -3., 1.) * True(i));
     }
   }
 
@@ -39,8 +39,8 @@ class CompatibleSubsetTest : public testing::Test {
   LoopEvidence Loop(int64_t id, int i, double offset, double score = 0.6) {
     LoopEvidence loop;
     loop.id = id;
-    loop.edge.a = NodeKey{0, i};
-    loop.edge.b = NodeKey{0, 200 - i};
+    loop.edge.a = uncertainty::NodeId{0, i};
+    loop.edge.b = uncertainty::NodeId{0, 200 - i};
     loop.edge.pose.pose =
         Pose2(offset, 0., 0.) * Between(True(i), True(200 - i));
     loop.edge.pose.covariance =
@@ -59,7 +59,7 @@ class CompatibleSubsetTest : public testing::Test {
   }
 
   CompatibleSubsetOptions options_;
-  PathUncertainty paths_;
+  uncertainty::PathUncertainty paths_;
 };
 
 TEST_F(CompatibleSubsetTest, TwoRevisitsConfirmEachOther) {
@@ -103,7 +103,7 @@ TEST_F(CompatibleSubsetTest, BetweenRunsPlacesCountNotSubmaps) {
   const auto found = [this](const int64_t id, const int a, const int i,
                             const double prior_sigma) {
     LoopEvidence loop = Loop(id, a, 0.);
-    loop.edge.b = NodeKey{1, i};
+    loop.edge.b = uncertainty::NodeId{1, i};
     loop.edge.pose.pose = Between(True(a), True(i));
     loop.prior_sigma = prior_sigma;
     return loop;
@@ -130,7 +130,7 @@ TEST_F(CompatibleSubsetTest, ForgottenLoopsNoLongerCount) {
   EXPECT_EQ(subset.Decide().size(), 2u);
   subset.Add(Loop(3, 31, 0.));
   subset.ForgetAccepted(
-      [](const LoopEvidence& loop) { return loop.edge.a.node_index < 20; });
+      [](const LoopEvidence& loop) { return loop.edge.a.index() < 20; });
   EXPECT_EQ(subset.num_clusters(), 1);
   subset.ForgetAccepted([](const LoopEvidence&) { return true; });
   // What still waits is no longer accepted for its company.
@@ -261,10 +261,10 @@ TEST_F(CompatibleSubsetTest, WhatWouldCloseAnywayDoesNotSupport) {
 TEST_F(CompatibleSubsetTest, LoopsBetweenTrajectoriesInEitherDirection) {
   CompatibleSubset subset(options_, &paths_);
   LoopEvidence forth = Loop(1, 10, 0.);
-  forth.edge.b = NodeKey{1, 190};
+  forth.edge.b = uncertainty::NodeId{1, 190};
   LoopEvidence back = Loop(2, 30, 0.);
-  back.edge.a = NodeKey{1, 170};
-  back.edge.b = NodeKey{0, 30};
+  back.edge.a = uncertainty::NodeId{1, 170};
+  back.edge.b = uncertainty::NodeId{0, 30};
   back.edge.pose = Invert(back.edge.pose);
   subset.Add(forth);
   subset.Add(back);
@@ -273,7 +273,7 @@ TEST_F(CompatibleSubsetTest, LoopsBetweenTrajectoriesInEitherDirection) {
   // Loops without a way between them neither help nor hinder each other.
   CompatibleSubset apart(options_, &paths_);
   LoopEvidence elsewhere = Loop(1, 10, 0.);
-  elsewhere.edge.a.trajectory_id = 2;
+  elsewhere.edge.a = uncertainty::NodeId{2, elsewhere.edge.a.index()};
   apart.Add(elsewhere);
   apart.Add(Loop(2, 10, 0.));
   EXPECT_THAT(apart.Decide(), IsEmpty());
@@ -286,7 +286,7 @@ TEST_F(CompatibleSubsetTest, WithdrawnLoopsAreForgotten) {
   subset.Add(Loop(1, 10, 0.));
   subset.Add(Loop(2, 11, 0.));
   EXPECT_THAT(subset.Withdraw([](const LoopEvidence& loop) {
-    return loop.edge.a.node_index == 10;
+    return loop.edge.a.index() == 10;
   }),
               ElementsAre(1));
   EXPECT_EQ(subset.num_clusters(), 1);

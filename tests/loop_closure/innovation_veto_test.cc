@@ -10,8 +10,9 @@ namespace cartographer_ext {
 namespace loop_closure {
 namespace {
 
-UncertainPose Make(const Pose2& pose, double sigma_xy, double sigma_theta) {
-  UncertainPose result;
+uncertainty::UncertainPose Make(const Pose2& pose, double sigma_xy,
+                                double sigma_theta) {
+  uncertainty::UncertainPose result;
   result.pose = pose;
   result.covariance = Eigen::Vector3d(sigma_xy * sigma_xy, sigma_xy * sigma_xy,
                                       sigma_theta * sigma_theta)
@@ -20,8 +21,8 @@ UncertainPose Make(const Pose2& pose, double sigma_xy, double sigma_theta) {
 }
 
 TEST(InnovationVetoTest, AgreementIsNeverVetoed) {
-  const UncertainPose prior = Make(Pose2(3., 2., 0.4), 0.5, 0.1);
-  const UncertainPose loop = Make(Pose2(3., 2., 0.4), 0.03, 0.01);
+  const uncertainty::UncertainPose prior = Make(Pose2(3., 2., 0.4), 0.5, 0.1);
+  const uncertainty::UncertainPose loop = Make(Pose2(3., 2., 0.4), 0.03, 0.01);
   const InnovationResult result = TestInnovation({}, prior, loop);
   EXPECT_NEAR(result.chi_square, 0., 1e-12);
   EXPECT_FALSE(result.vetoed);
@@ -29,8 +30,8 @@ TEST(InnovationVetoTest, AgreementIsNeverVetoed) {
 
 TEST(InnovationVetoTest, ChiSquareByHand) {
   // Variances 0.09 + 0.16 = 0.25 along x, where the loop differs by 2 m.
-  const UncertainPose prior = Make(Pose2(0., 0., 0.), 0.3, 0.1);
-  const UncertainPose loop = Make(Pose2(2., 0., 0.), 0.4, 0.1);
+  const uncertainty::UncertainPose prior = Make(Pose2(0., 0., 0.), 0.3, 0.1);
+  const uncertainty::UncertainPose loop = Make(Pose2(2., 0., 0.), 0.4, 0.1);
   const InnovationResult result = TestInnovation({}, prior, loop);
   EXPECT_NEAR(result.innovation.x, 2., 1e-12);
   EXPECT_NEAR(result.chi_square, 16., 1e-9);
@@ -41,7 +42,7 @@ TEST(InnovationVetoTest, ChiSquareByHand) {
 }
 
 TEST(InnovationVetoTest, HeadingAloneCanVeto) {
-  const UncertainPose prior = Make(Pose2(1., 0., 3.), 1., 0.1);
+  const uncertainty::UncertainPose prior = Make(Pose2(1., 0., 3.), 1., 0.1);
   EXPECT_FALSE(
       TestInnovation({}, prior, Make(Pose2(1., 0., -3.), 0.1, 0.01)).vetoed);
   const InnovationResult turned =
@@ -51,7 +52,7 @@ TEST(InnovationVetoTest, HeadingAloneCanVeto) {
 }
 
 TEST(InnovationVetoTest, CertainPosesAllowNothing) {
-  const UncertainPose prior = Make(Pose2(), 0., 0.);
+  const uncertainty::UncertainPose prior = Make(Pose2(), 0., 0.);
   const InnovationResult result =
       TestInnovation({}, prior, Make(Pose2(0.1, 0., 0.), 0., 0.));
   EXPECT_TRUE(std::isinf(result.chi_square));

@@ -116,7 +116,7 @@ TEST(LoopOptionsTest, DefaultsAgreeWithTheParts) {
   EXPECT_EQ(weights.minimum_score, weights_default.minimum_score);
 
   const auto noise = ToPathNoiseOptions(defaults);
-  const PathNoiseOptions noise_default;
+  const uncertainty::PathNoiseOptions noise_default;
   EXPECT_EQ(noise.translation_per_metre, noise_default.translation_per_metre);
   EXPECT_EQ(noise.translation_per_radian, noise_default.translation_per_radian);
   EXPECT_EQ(noise.rotation_per_metre, noise_default.rotation_per_metre);
@@ -159,7 +159,7 @@ TEST(LoopOptionsTest, ChoicesArePassedOn) {
             ThresholdDirection::kAsPrinted);
   EXPECT_EQ(ToScoreFusionOptions(options).mode, FusionMode::kProperPosterior);
   EXPECT_EQ(ToCompatibleSubsetOptions(options).cycle.test,
-            CycleTest::kFixedBound);
+            uncertainty::CycleTest::kFixedBound);
 }
 
 TEST(LoopOptionsTest, WindowOfThePaperAndCovarianceOfALoop) {

@@ -81,8 +81,8 @@ class LoopVerifierTest : public testing::Test {
   LoopCandidate Candidate(int s, int i, double offset,
                           const OccupancyView* map) {
     LoopCandidate candidate;
-    candidate.submap = SubmapKey{0, s};
-    candidate.node = NodeKey{0, i};
+    candidate.submap = uncertainty::SubmapId{0, s};
+    candidate.node = uncertainty::NodeId{0, i};
     candidate.submap_local_pose = Pose2(5. * s, 0., 0.);
     candidate.refined =
         Pose2(offset, 0., 0.) * Between(candidate.submap_local_pose, True(i));
@@ -99,8 +99,8 @@ class LoopVerifierTest : public testing::Test {
 
 TEST_F(LoopVerifierTest, ConfirmedLoopsGoThroughAllStages) {
   MakeVerifier();
-  EXPECT_TRUE(verifier_->HasNode(NodeKey{0, 3}));
-  EXPECT_FALSE(verifier_->HasNode(NodeKey{0, 300}));
+  EXPECT_TRUE(verifier_->HasNode(uncertainty::NodeId{0, 3}));
+  EXPECT_FALSE(verifier_->HasNode(uncertainty::NodeId{0, 300}));
   verifier_->Process(Candidate(5, 100, 0., &world_));
   EXPECT_THAT(verifier_->Decide(), IsEmpty());
   EXPECT_EQ(verifier_->num_undecided(), 1);
@@ -238,7 +238,7 @@ TEST_F(LoopVerifierTest, NothingIsAcceptedForWhatIsDeleted) {
   verifier_->Process(Candidate(5, 100, 0., &world_));
   verifier_->Process(Candidate(3, 120, 0., &world_));
   verifier_->Process(Candidate(1, 140, 0., &world_));
-  verifier_->DeleteSubmap(SubmapKey{0, 5});
+  verifier_->DeleteSubmap(uncertainty::SubmapId{0, 5});
   verifier_->DeleteNodes(0, 125);
   verifier_->DeleteNodes(1, 1000);
   std::vector<LoopDecision::Reason> reasons;
@@ -335,7 +335,7 @@ TEST_F(LoopVerifierTest, UnpredictedLoopsOfAnotherRunNeedMorePlaces) {
     verifier_->AddNode(1, node);
   }
   for (int s = 0; s < 8; ++s) {
-    verifier_->AddSubmap(SubmapKey{0, s}, Pose2(5. * s, 0., 0.));
+    verifier_->AddSubmap(uncertainty::SubmapId{0, s}, Pose2(5. * s, 0., 0.));
   }
   const auto found = [this](const int s, const int i) {
     LoopCandidate candidate = Candidate(s, i, 0., &world_);

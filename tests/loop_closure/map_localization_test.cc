@@ -13,9 +13,9 @@ namespace {
 // Run 1, a node every metre along a line, in the map of run 0.
 class MapLocalizationTest : public testing::Test {
  protected:
-  MapLocalizationTest() : paths_(PathNoiseOptions(), 1000) {
+  MapLocalizationTest() : paths_(uncertainty::PathNoiseOptions(), 1000) {
     for (int i = 0; i <= 300; ++i) {
-      paths_.Add(NodeKey{1, i}, Pose2(i, 0., 0.));
+      paths_.Add(uncertainty::NodeId{1, i}, Pose2(i, 0., 0.));
     }
     options_.query_spacing = 5.;
     options_.watch_spacing = 10.;
@@ -25,17 +25,18 @@ class MapLocalizationTest : public testing::Test {
   }
 
   MapLocalization::Plan Plan(const int node, const bool is_predicted) {
-    return localization_->PlanNode(NodeKey{1, node}, 0, is_predicted);
+    return localization_->PlanNode(uncertainty::NodeId{1, node}, 0,
+                                   is_predicted);
   }
   bool Accept(const int node) {
-    return localization_->AddAcceptedLoop(NodeKey{1, node}, 0);
+    return localization_->AddAcceptedLoop(uncertainty::NodeId{1, node}, 0);
   }
   void Decided(const int node, const bool agrees) {
-    localization_->AddDecision(NodeKey{1, node}, 0, agrees);
+    localization_->AddDecision(uncertainty::NodeId{1, node}, 0, agrees);
   }
 
   MapLocalizationOptions options_;
-  PathUncertainty paths_;
+  uncertainty::PathUncertainty paths_;
   std::unique_ptr<MapLocalization> localization_;
 };
 
@@ -48,7 +49,8 @@ TEST_F(MapLocalizationTest, WithoutPredictionTheWholeMapIsSearchedNowAndThen) {
     EXPECT_FALSE(plan.newly_lost);
   }
   // The same for each map.
-  EXPECT_TRUE(localization_->PlanNode(NodeKey{1, 31}, 2, false).everywhere);
+  EXPECT_TRUE(
+      localization_->PlanNode(uncertainty::NodeId{1, 31}, 2, false).everywhere);
 }
 
 TEST_F(MapLocalizationTest, WhatAnOperatorSaysIsBelievedForAWhile) {
@@ -126,12 +128,12 @@ TEST_F(MapLocalizationTest, DecisionsTellThatThePlaceIsAnotherOne) {
 }
 
 TEST_F(MapLocalizationTest, AWayThatIsForgottenIsALongOne) {
-  PathUncertainty short_memory(PathNoiseOptions(), 3);
+  uncertainty::PathUncertainty short_memory(uncertainty::PathNoiseOptions(), 3);
   MapLocalization localization(options_, &short_memory);
   for (int i = 0; i < 6; ++i) {
-    short_memory.Add(NodeKey{1, i}, Pose2(0.1 * i, 0., 0.));
-    localization.PlanNode(NodeKey{1, i}, 0, true);
-    if (i == 0) localization.AddAcceptedLoop(NodeKey{1, 0}, 0);
+    short_memory.Add(uncertainty::NodeId{1, i}, Pose2(0.1 * i, 0., 0.));
+    localization.PlanNode(uncertainty::NodeId{1, i}, 0, true);
+    if (i == 0) localization.AddAcceptedLoop(uncertainty::NodeId{1, 0}, 0);
   }
   EXPECT_FALSE(localization.IsKnown(1, 0));
 }

@@ -21,7 +21,7 @@ class SearchPlannerTest : public testing::Test {
  protected:
   SearchPlannerTest() : paths_(Noise(), 1000) {
     for (int i = 0; i <= 200; ++i) {
-      paths_.Add(NodeKey{0, i}, Pose2(i, 0., 0.));
+      paths_.Add(uncertainty::NodeId{0, i}, Pose2(i, 0., 0.));
     }
     proto::LoopClosureOptions options;
     options::SetDefaults(&options);
@@ -36,8 +36,8 @@ class SearchPlannerTest : public testing::Test {
     options_.set_informative_sigma(0.15);
   }
 
-  static PathNoiseOptions Noise() {
-    PathNoiseOptions noise;
+  static uncertainty::PathNoiseOptions Noise() {
+    uncertainty::PathNoiseOptions noise;
     noise.translation_per_metre = 0.1;
     noise.translation_per_radian = 0.;
     noise.rotation_per_metre = 0.;
@@ -59,8 +59,8 @@ class SearchPlannerTest : public testing::Test {
   static SearchPair Pair(int s, int anchor, int node, double x) {
     SearchPair pair;
     pair.submap_index = s;
-    pair.anchor = NodeKey{0, anchor};
-    pair.node = NodeKey{0, node};
+    pair.anchor = uncertainty::NodeId{0, anchor};
+    pair.node = uncertainty::NodeId{0, node};
     pair.predicted = Pose2(x, 0., 0.);
     return pair;
   }
@@ -69,7 +69,7 @@ class SearchPlannerTest : public testing::Test {
     return planner_->Plan({pair}).front();
   }
 
-  PathUncertainty paths_;
+  uncertainty::PathUncertainty paths_;
   proto::LoopClosureOptions::Search options_;
   std::unique_ptr<SearchPlanner> planner_;
 };
@@ -133,9 +133,9 @@ TEST_F(SearchPlannerTest, SpacesSearchesOfASubmap) {
 
 TEST_F(SearchPlannerTest, AcceptedLoopsNarrowTheWindowAndRestTheSubmap) {
   MakePlanner();
-  LoopEdge loop;
-  loop.a = NodeKey{0, 10};
-  loop.b = NodeKey{0, 150};
+  uncertainty::LoopEdge loop;
+  loop.a = uncertainty::NodeId{0, 10};
+  loop.b = uncertainty::NodeId{0, 150};
   loop.pose.covariance = LoopCovariance();
   planner_->AddAcceptedLoop(0, 7, loop, 0);
   // 10 m before the loop, 9 m behind it, and the loop itself.
@@ -158,9 +158,9 @@ TEST_F(SearchPlannerTest, AfterSomeTimeASubmapIsSearchedAgain) {
   pair.node_time += 1;
   EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
 
-  LoopEdge loop;
-  loop.a = NodeKey{0, 10};
-  loop.b = NodeKey{0, 150};
+  uncertainty::LoopEdge loop;
+  loop.a = uncertainty::NodeId{0, 10};
+  loop.b = uncertainty::NodeId{0, 150};
   loop.pose.covariance = LoopCovariance();
   planner_->AddAcceptedLoop(0, 7, loop, 1000000000);
   pair = Pair(7, 10, 153, 3.);
@@ -193,31 +193,32 @@ TEST_F(SearchPlannerTest, OneWholeSubmapANode) {
 }
 
 TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
-  // Run 1 in the map of run 0, whose submap 0 is known under an id of its own.
-  const NodeKey submap{-1, 0};
+  // Run 1 in the map of run 0.
+  const uncertainty::SubmapId submap{0, 0};
   paths_.Add(submap, Pose2());
-  for (int i = 0; i <= 20; ++i) paths_.Add(NodeKey{1, i}, Pose2(i, 0., 0.));
+  for (int i = 0; i <= 20; ++i)
+    paths_.Add(uncertainty::NodeId{1, i}, Pose2(i, 0., 0.));
   options_.set_search_spacing(0.);
   MakePlanner();
   SearchPair pair;
   pair.anchor = submap;
-  pair.node = NodeKey{1, 16};
+  pair.node = uncertainty::NodeId{1, 16};
   // Nothing is known about it.
   EXPECT_EQ(PlanOne(pair).linear_window, 7.);
-  LoopEdge loop;
+  uncertainty::LoopEdge loop;
   loop.a = submap;
-  loop.b = NodeKey{1, 10};
+  loop.b = uncertainty::NodeId{1, 10};
   loop.pose.covariance = LoopCovariance();
   planner_->AddAcceptedLoop(0, 0, loop, 0);
-  pair.node = NodeKey{1, 20};
+  pair.node = uncertainty::NodeId{1, 20};
   EXPECT_LT(PlanOne(pair).linear_window, 2.);
   // Not up to there, or of another map.
   planner_->ForgetLoops(1, 0, 9);
   planner_->ForgetLoops(1, 3, 30);
   planner_->ForgetLoops(2, 0, 30);
-  pair.node = NodeKey{1, 17};
+  pair.node = uncertainty::NodeId{1, 17};
   EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
-  pair.node = NodeKey{1, 12};
+  pair.node = uncertainty::NodeId{1, 12};
   EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_REDUNDANT);
   planner_->ForgetLoops(1, 0, 10);
   const SearchPlan plan = PlanOne(pair);

@@ -16,17 +16,17 @@
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/loop_verifier.h"
-#include "cartographer_ext/loop_closure/path_uncertainty.h"
+#include "cartographer_ext/uncertainty/ids.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
-inline NodeKey ToKey(const cartographer::mapping::NodeId& id) {
-  return NodeKey{id.trajectory_id, id.node_index};
+inline uncertainty::NodeId ToKey(const cartographer::mapping::NodeId& id) {
+  return uncertainty::NodeId{id.trajectory_id, id.node_index};
 }
 
-inline SubmapKey ToKey(const cartographer::mapping::SubmapId& id) {
-  return SubmapKey{id.trajectory_id, id.submap_index};
+inline uncertainty::SubmapId ToKey(const cartographer::mapping::SubmapId& id) {
+  return uncertainty::SubmapId{id.trajectory_id, id.submap_index};
 }
 
 inline Pose2 PlanarPose(const cartographer::transform::Rigid2d& pose) {

@@ -43,7 +43,7 @@ void Skip(const std::vector<size_t>& group, const LoopDecision::Reason reason,
 
 PairPlanner::PairPlanner(const ConstraintBuilderOptions& options,
                          const proto::LoopClosureOptions& extension,
-                         const PathUncertainty* const paths)
+                         const uncertainty::PathUncertainty* const paths)
     : options_(options),
       extension_(extension),
       search_planner_(extension.search(), LoopCovariance(extension),
@@ -124,7 +124,7 @@ void PairPlanner::PlanForeign(const std::vector<OfferedPair>& pairs,
                               std::vector<LostPlace>* const lost) {
   const OfferedPair& first = pairs[group.front()];
   const int map_id = first.submap_id.trajectory_id;
-  const NodeKey node = ToKey(first.node_id);
+  const uncertainty::NodeId node = ToKey(first.node_id);
   if (live_trajectories_.count(node.trajectory_id) == 0) {
     Skip(group, LoopDecision::SKIPPED_LOADED, planned);
     return;
@@ -201,9 +201,10 @@ std::vector<PlannedPair> PairPlanner::Plan(
   return planned;
 }
 
-bool PairPlanner::AddAcceptedLoop(const SubmapId& submap_id,
-                                  const NodeKey& node, const int64_t node_time,
-                                  const absl::optional<LoopEdge>& loop) {
+bool PairPlanner::AddAcceptedLoop(
+    const SubmapId& submap_id, const uncertainty::NodeId& node,
+    const int64_t node_time,
+    const absl::optional<uncertainty::LoopEdge>& loop) {
   if (loop.has_value()) {
     search_planner_.AddAcceptedLoop(submap_id.trajectory_id,
                                     submap_id.submap_index, *loop, node_time);

@@ -30,9 +30,9 @@
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/map_localization.h"
-#include "cartographer_ext/loop_closure/path_uncertainty.h"
 #include "cartographer_ext/loop_closure/search_planner.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -45,7 +45,7 @@ struct OfferedPair {
   bool is_global = false;  // nothing is predicted
   Pose2 predicted;         // (submap <- node), gravity-aligned
   Pose2 from_robot;        // (gravity-aligned <- tracking frame), a rotation
-  absl::optional<NodeKey> anchor;
+  absl::optional<uncertainty::VertexId> anchor;
 };
 
 // What is to be done with it.
@@ -71,7 +71,8 @@ class PairPlanner {
   PairPlanner(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
-      const proto::LoopClosureOptions& extension, const PathUncertainty* paths);
+      const proto::LoopClosureOptions& extension,
+      const uncertainty::PathUncertainty* paths);
 
   // The pairs that were offered when one node was added: those of this node
   // first, then older ones with a submap that has become complete. The same
@@ -83,8 +84,8 @@ class PairPlanner {
   // (anchor <- node) of a loop that was accepted, if the anchor is known. True
   // as MapLocalization::AddAcceptedLoop.
   bool AddAcceptedLoop(const cartographer::mapping::SubmapId& submap_id,
-                       const NodeKey& node, int64_t node_time,
-                       const absl::optional<LoopEdge>& loop);
+                       const uncertainty::NodeId& node, int64_t node_time,
+                       const absl::optional<uncertainty::LoopEdge>& loop);
   void DeleteSubmap(const cartographer::mapping::SubmapId& submap_id);
 
   MapLocalization* localization() { return &localization_; }

@@ -145,7 +145,8 @@ void VerifiedConstraintBuilder2D::MeasureFit(const OfferedPair& pair,
     return;
   }
   const absl::optional<double> travelled = verifier_.paths().Travelled(
-      NodeKey{pair.submap_id.trajectory_id, entry.newest_node_at_first},
+      uncertainty::NodeId{pair.submap_id.trajectory_id,
+                          entry.newest_node_at_first},
       ToKey(pair.node_id));
   if (!travelled.has_value() || *travelled > kWayBehindSubmap) return;
   typical_fit_.Add(pair.node_id.trajectory_id,
@@ -155,11 +156,11 @@ void VerifiedConstraintBuilder2D::MeasureFit(const OfferedPair& pair,
                        *entry.submap->grid()));
 }
 
-absl::optional<NodeKey> VerifiedConstraintBuilder2D::Anchor(
+absl::optional<uncertainty::VertexId> VerifiedConstraintBuilder2D::Anchor(
     const SubmapId& submap_id, const SubmapEntry& entry,
     const int trajectory_id) const {
   if (trajectory_id != submap_id.trajectory_id) {
-    return LoopVerifier::PathKey(ToKey(submap_id));
+    return uncertainty::VertexId(ToKey(submap_id));
   }
   if (entry.newest_node_at_first < 0) return absl::nullopt;
   // Two submaps are under way at a time, so that the nodes of this one are
@@ -347,7 +348,7 @@ LoopCandidate VerifiedConstraintBuilder2D::StartCandidate(
   // Of another run: as old as can be.
   loop.submap_age = 1e9;
   loop.submap_local_pose = entry.local_pose;
-  loop.anchor = LoopVerifier::PathKey(loop.submap);
+  loop.anchor = loop.submap;
   if (!with_maps) return loop;
   const int reach = extension_.temporal_verification().num_neighbours();
   for (int k = 0; k <= 2 * reach; ++k) {
@@ -424,7 +425,7 @@ void VerifiedConstraintBuilder2D::VerifyQuery(const PlaceQuery& query) {
     if (kept == submaps_.end()) continue;
     const SubmapEntry& entry = *kept->second;
     LoopCandidate loop = StartCandidate(submap_id, entry, true);
-    loop.node = NodeKey{trajectory_id, placed.node_index};
+    loop.node = uncertainty::NodeId{trajectory_id, placed.node_index};
     loop.node_time = placed.time;
     loop.constraint_pose = Between(entry.local_pose, placed.refined);
     loop.refined = loop.constraint_pose * placed.from_robot;
@@ -456,12 +457,12 @@ void VerifiedConstraintBuilder2D::TakeBackLoops(const int trajectory_id,
   loops.erase(old, loops.end());
 }
 
-absl::optional<LoopEdge> VerifiedConstraintBuilder2D::MakeLoopEdge(
+absl::optional<uncertainty::LoopEdge> VerifiedConstraintBuilder2D::MakeLoopEdge(
     const LoopOutcome& outcome) const {
   if (!outcome.anchor.has_value()) return absl::nullopt;
   const auto anchor_pose = verifier_.paths().LocalPose(*outcome.anchor);
   if (!anchor_pose.has_value()) return absl::nullopt;
-  LoopEdge loop;
+  uncertainty::LoopEdge loop;
   loop.a = *outcome.anchor;
   loop.b = outcome.node;
   loop.pose.pose =

@@ -110,9 +110,9 @@ class VerifiedConstraintBuilder2D {
   // How a node fits a submap of its run that ended right before it.
   void MeasureFit(const OfferedPair& pair, const SubmapEntry& entry)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  absl::optional<NodeKey> Anchor(const SubmapId& submap_id,
-                                 const SubmapEntry& entry,
-                                 int trajectory_id) const
+  absl::optional<uncertainty::VertexId> Anchor(const SubmapId& submap_id,
+                                               const SubmapEntry& entry,
+                                               int trajectory_id) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Schedule(PairCandidate* candidate) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ScheduleQuery(const std::vector<PairCandidate*>& candidates)
@@ -138,8 +138,8 @@ class VerifiedConstraintBuilder2D {
   void TakeBackLoops(int trajectory_id, int map_id)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // (anchor <- node)
-  absl::optional<LoopEdge> MakeLoopEdge(const LoopOutcome& outcome) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::optional<uncertainty::LoopEdge> MakeLoopEdge(
+      const LoopOutcome& outcome) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   Result Verify() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void CallBack() ABSL_LOCKS_EXCLUDED(mutex_);
 

@@ -26,7 +26,7 @@ using testing::IsEmpty;
 // submaps.
 class PairPlannerTest : public testing::Test {
  protected:
-  PairPlannerTest() : paths_(PathNoiseOptions(), 1000) {
+  PairPlannerTest() : paths_(uncertainty::PathNoiseOptions(), 1000) {
     options::SetDefaults(&extension_);
     options_.set_max_constraint_distance(15.);
     options_.set_sampling_ratio(0.5);
@@ -35,12 +35,11 @@ class PairPlannerTest : public testing::Test {
     options_.mutable_fast_correlative_scan_matcher_options()
         ->set_angular_search_window(0.5);
     for (int i = 0; i <= 100; ++i) {
-      paths_.Add(NodeKey{0, i}, Pose2(i, 0., 0.));
-      paths_.Add(NodeKey{1, i}, Pose2(i, 0., 0.));
+      paths_.Add(uncertainty::NodeId{0, i}, Pose2(i, 0., 0.));
+      paths_.Add(uncertainty::NodeId{1, i}, Pose2(i, 0., 0.));
     }
     for (int s = 0; s < 7; ++s) {
-      paths_.Add(LoopVerifier::PathKey(SubmapKey{0, s}),
-                 Pose2(10. * s, 0., 0.));
+      paths_.Add(uncertainty::SubmapId{0, s}, Pose2(10. * s, 0., 0.));
     }
     MakePlanner();
   }
@@ -57,8 +56,8 @@ class PairPlannerTest : public testing::Test {
     pair.node = &data_;
     pair.is_global = is_global;
     if (submap.trajectory_id != node.trajectory_id) {
-      pair.anchor = LoopVerifier::PathKey(
-          SubmapKey{submap.trajectory_id, submap.submap_index});
+      pair.anchor =
+          uncertainty::SubmapId{submap.trajectory_id, submap.submap_index};
     }
     return pair;
   }
@@ -89,7 +88,7 @@ class PairPlannerTest : public testing::Test {
   cartographer::mapping::constraints::proto::ConstraintBuilderOptions options_;
   proto::LoopClosureOptions extension_;
   cartographer::mapping::TrajectoryNode::Data data_;
-  PathUncertainty paths_;
+  uncertainty::PathUncertainty paths_;
   std::unique_ptr<PairPlanner> planner_;
   std::vector<LostPlace> lost_;
 };
@@ -146,11 +145,11 @@ TEST_F(PairPlannerTest, AroundTheStartThatSomebodyTold) {
 
 TEST_F(PairPlannerTest, WatchesBesidesTheSearchAroundThePrediction) {
   Plan(WithMap(0, true));
-  LoopEdge loop;
-  loop.a = LoopVerifier::PathKey(SubmapKey{0, 2});
-  loop.b = NodeKey{1, 0};
-  EXPECT_FALSE(
-      planner_->AddAcceptedLoop(SubmapId{0, 2}, NodeKey{1, 0}, 0, loop));
+  uncertainty::LoopEdge loop;
+  loop.a = uncertainty::SubmapId{0, 2};
+  loop.b = uncertainty::NodeId{1, 0};
+  EXPECT_FALSE(planner_->AddAcceptedLoop(SubmapId{0, 2},
+                                         uncertainty::NodeId{1, 0}, 0, loop));
   EXPECT_TRUE(planner_->localization()->IsKnown(1, 0));
   const std::vector<PlannedPair> planned = Plan(WithMap(10, false));
   // In the order they were offered, some twice.

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/loop_closure/path_uncertainty.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 #include <cmath>
+#include <vector>
 
 #include "cartographer_ext/common/random.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
-namespace loop_closure {
+namespace uncertainty {
 namespace {
 
 PathNoiseOptions Noise() {
@@ -20,20 +21,20 @@ PathNoiseOptions Noise() {
   return options;
 }
 
-NodeKey Key(int index) { return NodeKey{0, index}; }
+NodeId Key(int index) { return NodeId{0, index}; }
 
-TEST(PathUncertaintyTest, StraightWayByHand) {
+TEST(PathUncertaintyTest, StraightPathByHand) {
   PathUncertainty paths(Noise(), 100);
   for (int i = 0; i <= 4; ++i) paths.Add(Key(i), Pose2(5. + i, 7., 0.));
-  const auto way = paths.Between(Key(1), Key(4));
-  ASSERT_TRUE(way.has_value());
-  EXPECT_NEAR(way->pose.x, 3., 1e-12);
+  const auto path = paths.Between(Key(1), Key(4));
+  ASSERT_TRUE(path.has_value());
+  EXPECT_NEAR(path->pose.x, 3., 1e-12);
   // Three steps of 1 m, each with variances 0.01, 0.01 and 1e-4. A rotation
   // error of a step moves the end by what is left to go: 2, 1 and 0 metres.
-  EXPECT_NEAR(way->covariance(0, 0), 0.03, 1e-12);
-  EXPECT_NEAR(way->covariance(1, 1), 0.03 + 1e-4 * (4. + 1.), 1e-12);
-  EXPECT_NEAR(way->covariance(2, 2), 3e-4, 1e-12);
-  EXPECT_NEAR(way->covariance(1, 2), 1e-4 * (2. + 1.), 1e-12);
+  EXPECT_NEAR(path->covariance(0, 0), 0.03, 1e-12);
+  EXPECT_NEAR(path->covariance(1, 1), 0.03 + 1e-4 * (4. + 1.), 1e-12);
+  EXPECT_NEAR(path->covariance(2, 2), 3e-4, 1e-12);
+  EXPECT_NEAR(path->covariance(1, 2), 1e-4 * (2. + 1.), 1e-12);
   EXPECT_NEAR(*paths.Travelled(Key(4), Key(1)), 3., 1e-12);
 }
 
@@ -54,11 +55,11 @@ TEST(PathUncertaintyTest, EqualsComposingTheSteps) {
     step.Add(Key(1), poses[i]);
     composed = Compose(composed, *step.Between(Key(0), Key(1)));
   }
-  const auto way = paths.Between(Key(50), Key(150));
-  EXPECT_NEAR((way->covariance - composed.covariance).norm(), 0.,
+  const auto path = paths.Between(Key(50), Key(150));
+  EXPECT_NEAR((path->covariance - composed.covariance).norm(), 0.,
               1e-9 * composed.covariance.norm());
-  EXPECT_NEAR(way->pose.x, composed.pose.x, 1e-9);
-  EXPECT_NEAR(way->pose.theta, composed.pose.theta, 1e-9);
+  EXPECT_NEAR(path->pose.x, composed.pose.x, 1e-9);
+  EXPECT_NEAR(path->pose.theta, composed.pose.theta, 1e-9);
   // Backwards is the inverse.
   const auto back = paths.Between(Key(150), Key(50));
   const UncertainPose inverse = Invert(composed);
@@ -104,14 +105,16 @@ TEST(PathUncertaintyTest, NearestNodeAndMissingTrajectories) {
   EXPECT_EQ(paths.Nearest(0, Eigen::Vector2d(2.2, 1.))->node_index, 2);
   EXPECT_EQ(paths.Nearest(0, Eigen::Vector2d(2.5, 0.))->node_index, 2);
   EXPECT_FALSE(paths.Nearest(1, Eigen::Vector2d::Zero()).has_value());
-  EXPECT_FALSE(paths.Between(Key(1), NodeKey{1, 1}).has_value());
-  EXPECT_FALSE(paths.Travelled(Key(1), NodeKey{1, 1}).has_value());
+  EXPECT_FALSE(paths.Between(Key(1), NodeId{1, 1}).has_value());
+  EXPECT_FALSE(paths.Travelled(Key(1), NodeId{1, 1}).has_value());
   EXPECT_NEAR(paths.LocalPose(Key(3))->x, 3., 0.);
+  paths.Add(SubmapId{0, 3}, Pose2());
   paths.DeleteTrajectory(0);
   EXPECT_FALSE(paths.LocalPose(Key(3)).has_value());
+  EXPECT_FALSE(paths.LocalPose(SubmapId{0, 3}).has_value());
 }
 
-TEST(PathUncertaintyTest, DriftAndScaleAreTheSameAllAlong) {
+TEST(PathUncertaintyTest, DriftAndScaleAreConstantAlongTheRun) {
   PathNoiseOptions options;
   options.translation_per_metre = 0.;
   options.rotation_per_metre = 0.;
@@ -119,13 +122,13 @@ TEST(PathUncertaintyTest, DriftAndScaleAreTheSameAllAlong) {
   options.scale_error = 0.02;
   PathUncertainty paths(options, 100);
   for (int i = 0; i <= 10; ++i) paths.Add(Key(i), Pose2(3., 2. + i, 0.5 * kPi));
-  const auto way = paths.Between(Key(2), Key(6));
-  ASSERT_TRUE(way.has_value());
+  const auto path = paths.Between(Key(2), Key(6));
+  ASSERT_TRUE(path.has_value());
   // Four metres: the heading is off by 0.04, every metre turns those before it,
   // 0.01 (3 + 2 + 1) m to the side; the length by 0.08 m.
-  EXPECT_NEAR(way->covariance(0, 0), 0.08 * 0.08, 1e-12);
-  EXPECT_NEAR(way->covariance(1, 1), 0.06 * 0.06, 1e-12);
-  EXPECT_NEAR(way->covariance(2, 2), 0.04 * 0.04, 1e-12);
+  EXPECT_NEAR(path->covariance(0, 0), 0.08 * 0.08, 1e-12);
+  EXPECT_NEAR(path->covariance(1, 1), 0.06 * 0.06, 1e-12);
+  EXPECT_NEAR(path->covariance(2, 2), 0.04 * 0.04, 1e-12);
 }
 
 TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
@@ -141,10 +144,10 @@ TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
   paths.Add(Key(1), Pose2(0.5, 0., 0.4));
   paths.Add(Key(2), Pose2(1.8, 0., 0.9));
   EXPECT_TRUE(paths.Between(Key(0), Key(1))->covariance.isZero(1e-12));
-  const auto way = paths.Between(Key(1), Key(2));
-  EXPECT_NEAR(way->covariance(0, 0), 0.8 * 0.8, 1e-12);
-  EXPECT_NEAR(way->covariance(1, 1), 0.8 * 0.8, 1e-12);
-  EXPECT_NEAR(way->covariance(2, 2), 0.1 * 0.1, 1e-12);
+  const auto path = paths.Between(Key(1), Key(2));
+  EXPECT_NEAR(path->covariance(0, 0), 0.8 * 0.8, 1e-12);
+  EXPECT_NEAR(path->covariance(1, 1), 0.8 * 0.8, 1e-12);
+  EXPECT_NEAR(path->covariance(2, 2), 0.1 * 0.1, 1e-12);
 }
 
 TEST(PathUncertaintyTest, NearestAmongSomeNodes) {
@@ -155,6 +158,22 @@ TEST(PathUncertaintyTest, NearestAmongSomeNodes) {
   EXPECT_FALSE(paths.Nearest(0, Eigen::Vector2d(7.2, 0.), 11, 20).has_value());
 }
 
+TEST(PathUncertaintyTest, SubmapsHaveASequenceOfTheirOwnWithoutJumps) {
+  PathNoiseOptions options = Noise();
+  options.free_metres = 0.5;
+  PathUncertainty paths(options, 2);
+  paths.Add(Key(0), Pose2());
+  paths.Add(Key(1), Pose2(4., 0., 0.));
+  paths.Add(SubmapId{0, 0}, Pose2(0., 1., 0.));
+  paths.Add(SubmapId{0, 1}, Pose2(4., 1., 0.));
+  EXPECT_NEAR(paths.Between(SubmapId{0, 0}, SubmapId{0, 1})->covariance(0, 0),
+              0.01 * 4., 1e-12);
+  EXPECT_NEAR(paths.Between(Key(0), Key(1))->covariance(0, 0),
+              0.01 * 4. + 3.5 * 3.5, 1e-12);
+  EXPECT_FALSE(paths.Between(SubmapId{0, 0}, Key(1)).has_value());
+  EXPECT_EQ(paths.Nearest(0, Eigen::Vector2d(4., 1.))->node_index, 1);
+}
+
 }  // namespace
-}  // namespace loop_closure
+}  // namespace uncertainty
 }  // namespace cartographer_ext

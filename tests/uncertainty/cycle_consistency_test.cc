@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/loop_closure/cycle_consistency.h"
+#include "cartographer_ext/uncertainty/cycle_consistency.h"
 
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
-namespace loop_closure {
+namespace uncertainty {
 namespace {
 
 UncertainPose Make(const Pose2& pose, const double sigma_xy,
@@ -21,24 +21,6 @@ UncertainPose Make(const Pose2& pose, const double sigma_xy,
                                       sigma_theta * sigma_theta)
                           .asDiagonal();
   return result;
-}
-
-TEST(CycleConsistencyTest, RotationErrorGrowsWithTheLeverArm) {
-  // One degree of heading error, then ten metres straight on.
-  const UncertainPose turn = Make(Pose2(), 0., 0.01);
-  const UncertainPose ahead = Make(Pose2(10., 0., 0.), 0., 0.);
-  const UncertainPose sum = Compose(turn, ahead);
-  EXPECT_NEAR(sum.covariance(1, 1), 0.1 * 0.1, 1e-12);
-  EXPECT_NEAR(sum.covariance(0, 0), 0., 1e-12);
-  EXPECT_NEAR(sum.covariance(1, 2), 0.1 * 0.01, 1e-12);
-}
-
-TEST(CycleConsistencyTest, InverseOfInverseIsTheSame) {
-  UncertainPose pose = Make(Pose2(1., -2., 0.7), 0.1, 0.02);
-  pose.covariance(0, 2) = pose.covariance(2, 0) = 1e-3;
-  const UncertainPose back = Invert(Invert(pose));
-  EXPECT_NEAR(back.pose.x, 1., 1e-12);
-  EXPECT_TRUE(back.covariance.isApprox(pose.covariance, 1e-10));
 }
 
 // The propagated covariance is that of sampled errors.
@@ -112,5 +94,5 @@ TEST(CycleConsistencyTest, SingularCovariance) {
 }
 
 }  // namespace
-}  // namespace loop_closure
+}  // namespace uncertainty
 }  // namespace cartographer_ext

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/loop_closure/cycle_consistency.h"
+#include "cartographer_ext/uncertainty/cycle_consistency.h"
 
 #include <cmath>
 #include <limits>
@@ -8,31 +8,7 @@
 #include "Eigen/Cholesky"
 
 namespace cartographer_ext {
-namespace loop_closure {
-
-Eigen::Matrix3d Adjoint(const Pose2& pose) {
-  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
-  Eigen::Matrix3d adjoint;
-  adjoint << c, -s, pose.y, s, c, -pose.x, 0., 0., 1.;
-  return adjoint;
-}
-
-UncertainPose Compose(const UncertainPose& lhs, const UncertainPose& rhs) {
-  UncertainPose result;
-  result.pose = lhs.pose * rhs.pose;
-  const Eigen::Matrix3d transport = Adjoint(rhs.pose.Inverse());
-  result.covariance =
-      transport * lhs.covariance * transport.transpose() + rhs.covariance;
-  return result;
-}
-
-UncertainPose Invert(const UncertainPose& pose) {
-  UncertainPose result;
-  result.pose = pose.pose.Inverse();
-  const Eigen::Matrix3d transport = Adjoint(pose.pose);
-  result.covariance = transport * pose.covariance * transport.transpose();
-  return result;
-}
+namespace uncertainty {
 
 CycleResult TestCycle(const CycleConsistencyOptions& options,
                       const UncertainPose& loop_u, const UncertainPose& path_b,
@@ -64,5 +40,5 @@ CycleResult TestCycle(const CycleConsistencyOptions& options,
   return result;
 }
 
-}  // namespace loop_closure
+}  // namespace uncertainty
 }  // namespace cartographer_ext

@@ -4,47 +4,31 @@
 // Whether two loop constraints can both be true (paper G, improved graph
 // optimisation 2024, section 3.4, eq. 20).
 //
-// Loop u says where node
-// b_u lies in the frame of anchor a_u, loop v the same for a_v and b_v. Going
-// from a_u over loop u to b_u, along the path to b_v, back over loop v to a_v
-// and along the path back to a_u ends where it began when both are true:
+// Loop u estimates the pose of node b_u in the frame of anchor a_u, loop v the
+// same for b_v and a_v. The cycle from a_u over loop u to b_u, along the
+// trajectory to b_v, back over loop v to a_v and along the trajectory to a_u
+// closes when both are true:
 //
-//   E = T_u  (b_u <- b_v)  T_v^-1  (a_v <- a_u)
+//   E = T_u (b_u <- b_v) T_v^-1 (a_v <- a_u) = identity
 //
-// The print of eq. 20 has the factors in an order that does not close; this is
-// the standard four-edge cycle. |E| is compared
+// Eq. 20 as printed has the factors in an order that does not close; this is
+// the standard cycle of four edges. E is compared
 //
 //   kChiSquare   with its covariance, propagated to first order through all
-//   four
-//                edges, against a quantile of chi^2 with 3 degrees of freedom,
+//                four edges, against a quantile of chi^2 with 3 degrees of
+//                freedom,
 //   kFixedBound  with fixed bounds in metres and radians (eq. 20 as printed).
 //
 // A fixed bound is too strict for long paths and too lax for short ones.
-#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CYCLE_CONSISTENCY_H_
-#define CARTOGRAPHER_EXT_LOOP_CLOSURE_CYCLE_CONSISTENCY_H_
+#ifndef CARTOGRAPHER_EXT_UNCERTAINTY_CYCLE_CONSISTENCY_H_
+#define CARTOGRAPHER_EXT_UNCERTAINTY_CYCLE_CONSISTENCY_H_
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
-namespace loop_closure {
-
-// A relative pose (a <- b) with the covariance of its error in frame b, that is
-// of e in  true = measured * Exp(e)  to first order; x, y in metres, theta in
-// radians.
-struct UncertainPose {
-  Pose2 pose;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-
-// Adjoint of (a <- b): an error e in frame b is Adjoint * e in frame a, to
-// first order, for errors in the order x, y, theta.
-Eigen::Matrix3d Adjoint(const Pose2& pose);
-
-// (a <- c) = (a <- b)(b <- c) of independent poses.
-UncertainPose Compose(const UncertainPose& lhs, const UncertainPose& rhs);
-// (b <- a).
-UncertainPose Invert(const UncertainPose& pose);
+namespace uncertainty {
 
 enum class CycleTest { kChiSquare, kFixedBound };
 
@@ -69,7 +53,7 @@ CycleResult TestCycle(const CycleConsistencyOptions& options,
                       const UncertainPose& loop_u, const UncertainPose& path_b,
                       const UncertainPose& loop_v, const UncertainPose& path_a);
 
-}  // namespace loop_closure
+}  // namespace uncertainty
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_CYCLE_CONSISTENCY_H_
+#endif  // CARTOGRAPHER_EXT_UNCERTAINTY_CYCLE_CONSISTENCY_H_

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How uncertain local SLAM is about the path between two vertices of one
+// trajectory, nodes or submaps. Their local poses give the relative pose; its
+// error is a random walk whose variance grows with the distance driven and the
+// angle turned. With X_k the local pose of vertex k and Q_k the covariance of
+// the step to it, in its own frame (uncertain_pose.h),
+//
+//   cov(u <- v) = Ad(X_v^-1) (S_v - S_u) Ad(X_v^-1)^T,
+//   S_n = sum over k <= n of Ad(X_k) Q_k Ad(X_k)^T,
+//
+// so any pair of vertices costs the same, however far apart. Two errors are
+// constant along a run, a heading that drifts by so many radians per metre and
+// an error of scale; each adds w w^T times its variance, where w is the sum of
+// its effects on the steps, transported as above.
+//
+// Where local SLAM moves farther from one node to the next than nodes are
+// apart, it may have been misled (a jump of the odometry, a gap in the data):
+// the excess of a step over `free_metres` and `free_radians` counts as its
+// standard deviation.
+//
+// Not thread-safe; vertices may be added in any order.
+#ifndef CARTOGRAPHER_EXT_UNCERTAINTY_PATH_UNCERTAINTY_H_
+#define CARTOGRAPHER_EXT_UNCERTAINTY_PATH_UNCERTAINTY_H_
+
+#include <cstddef>
+#include <deque>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "Eigen/Core"
+#include "absl/types/optional.h"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/uncertainty/ids.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
+
+namespace cartographer_ext {
+namespace uncertainty {
+
+// Standard deviations after one metre driven or one radian turned; they grow
+// with the square root of both.
+struct PathNoiseOptions {
+  double translation_per_metre = 0.05;   // metres, >= 0
+  double translation_per_radian = 0.02;  // metres, >= 0
+  double rotation_per_metre = 0.005;     // radians, >= 0
+  double rotation_per_radian = 0.015;    // radians, >= 0
+  // Constant along the run.
+  double heading_drift = 0.;  // radians per metre, >= 0
+  double scale_error = 0.;    // >= 0
+  // Steps between nodes up to this length are no jumps, > 0.
+  double free_metres = std::numeric_limits<double>::infinity();
+  double free_radians = std::numeric_limits<double>::infinity();
+};
+
+class PathUncertainty {
+ public:
+  // Keeps the newest `max_vertices` (> 0) nodes and as many submaps of each
+  // trajectory.
+  PathUncertainty(const PathNoiseOptions& options, int max_vertices);
+
+  // (local frame of the trajectory <- vertex). A vertex known already, or older
+  // than all that are kept of a full trajectory, changes nothing.
+  void Add(const VertexId& vertex, const Pose2& local_pose);
+
+  // (u <- v). Empty for a node and a submap, between trajectories, and for
+  // vertices that are not kept.
+  absl::optional<UncertainPose> Between(const VertexId& u,
+                                        const VertexId& v) const;
+  // Metres driven between two vertices, empty as above.
+  absl::optional<double> Travelled(const VertexId& u, const VertexId& v) const;
+  // Uncertainty of the path between two vertices as one number, jumps included:
+  // the metres of straight driving that would be as uncertain. Adds up along
+  // the trajectory. Empty as above.
+  absl::optional<double> PathCost(const VertexId& u, const VertexId& v) const;
+  // The same of a relative pose with this covariance.
+  double PathCostOf(const Eigen::Matrix3d& covariance) const;
+  // (local frame <- vertex).
+  absl::optional<Pose2> LocalPose(const VertexId& vertex) const;
+
+  // The node whose local position is nearest, the oldest of equals. A submap
+  // lies where its first node was, so this ties a submap to a node. Empty when
+  // the trajectory has no nodes.
+  absl::optional<NodeId> Nearest(int trajectory_id,
+                                 const Eigen::Vector2d& local_position) const;
+  // The same among the nodes `first` to `last`, both included.
+  absl::optional<NodeId> Nearest(int trajectory_id,
+                                 const Eigen::Vector2d& local_position,
+                                 int first, int last) const;
+
+  void DeleteTrajectory(int trajectory_id);
+
+ private:
+  struct Entry {
+    int index;
+    Pose2 local_pose;
+    double travelled = 0.;                          // prefix sum, metres
+    double cost = 0.;                               // prefix sum, metres
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();  // S_n
+    // Sums of the steps' errors for a unit of drift and scale error.
+    Eigen::Vector3d drift = Eigen::Vector3d::Zero();
+    Eigen::Vector3d scale = Eigen::Vector3d::Zero();
+  };
+  // The nodes, or the submaps, of a trajectory.
+  struct Sequence {
+    std::deque<Entry> entries;  // by index
+    size_t num_valid = 0;       // entries with valid sums
+  };
+  using SequenceKey = std::pair<bool, int>;  // is_node, trajectory_id
+
+  static SequenceKey KeyOf(const VertexId& vertex) {
+    return {vertex.is_node(), vertex.trajectory_id()};
+  }
+  // Computes the sums of `entry` from those of the entry before.
+  void Accumulate(bool are_nodes, const Entry& before, Entry* entry) const;
+  const Entry* Find(const VertexId& vertex) const;
+  // Of a prefix sum, without sign. Empty as `Between`.
+  absl::optional<double> Difference(const VertexId& u, const VertexId& v,
+                                    double Entry::*sum) const;
+
+  const PathNoiseOptions options_;
+  const size_t max_vertices_;
+  // The sums are computed when they are asked for.
+  mutable std::map<SequenceKey, Sequence> sequences_;
+};
+
+}  // namespace uncertainty
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_UNCERTAINTY_PATH_UNCERTAINTY_H_

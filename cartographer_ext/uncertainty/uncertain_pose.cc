@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
+
+#include <cmath>
+
+namespace cartographer_ext {
+namespace uncertainty {
+
+Eigen::Matrix3d Adjoint(const Pose2& pose) {
+  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+  Eigen::Matrix3d adjoint;
+  adjoint << c, -s, pose.y, s, c, -pose.x, 0., 0., 1.;
+  return adjoint;
+}
+
+UncertainPose Compose(const UncertainPose& lhs, const UncertainPose& rhs) {
+  UncertainPose result;
+  result.pose = lhs.pose * rhs.pose;
+  const Eigen::Matrix3d adjoint = Adjoint(rhs.pose.Inverse());
+  result.covariance =
+      adjoint * lhs.covariance * adjoint.transpose() + rhs.covariance;
+  return result;
+}
+
+UncertainPose Invert(const UncertainPose& pose) {
+  UncertainPose result;
+  result.pose = pose.pose.Inverse();
+  const Eigen::Matrix3d adjoint = Adjoint(pose.pose);
+  result.covariance = adjoint * pose.covariance * adjoint.transpose();
+  return result;
+}
+
+UncertainPose Between(const UncertainPose& a, const UncertainPose& b) {
+  return Compose(Invert(a), b);
+}
+
+}  // namespace uncertainty
+}  // namespace cartographer_ext
