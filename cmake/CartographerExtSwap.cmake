@@ -255,6 +255,33 @@ function(cartographer_ext_write_swaps_header target swaps)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${generated}>)
 endfunction()
 
+# Lua files that a robot's own file includes. Installed beside Cartographer's, so that one configuration directory has both; the
+# runnable configurations and the stock files of this project stay behind, because Cartographer has its own.
+function(cartographer_ext_install_lua_files)
+  set(files)
+  foreach(pattern cartographer_ext front_end_ loop_closure_)
+    file(GLOB found CONFIGURE_DEPENDS "${CARTOGRAPHER_EXT_ROOT}/configuration_files/${pattern}*.lua")
+    list(APPEND files ${found})
+  endforeach()
+  install(FILES ${files} DESTINATION share/cartographer/configuration_files)
+endfunction()
+
+# Takes the tests of the project that calls this out of the target `all` and marks them as disabled in CTest: three of
+# Cartographer's own do not compile with GCC 12, and none of them is needed for an installation.
+function(cartographer_ext_exclude_tests)
+  get_property(targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
+  get_property(tests DIRECTORY PROPERTY TESTS)
+  foreach(test IN LISTS tests)
+    if(test IN_LIST targets)
+      set_target_properties(${test} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+      set_tests_properties(${test} PROPERTIES DISABLED TRUE)
+    endif()
+  endforeach()
+  list(LENGTH tests count)
+  message(STATUS "cartographer_ext: ${count} tests of ${PROJECT_NAME} are not built with `all` "
+                 "(-DCARTOGRAPHER_EXT_UPSTREAM_TESTS=ON builds them)")
+endfunction()
+
 function(cartographer_ext_swap_into target)
   cmake_parse_arguments(ARG "" "" "SWAPS" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
@@ -304,5 +331,6 @@ function(cartographer_ext_swap_into target)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${CARTOGRAPHER_EXT_ROOT}>
     $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/cartographer_ext_proto>)
+  cartographer_ext_install_lua_files()
   message(STATUS "cartographer_ext: swapped into ${target}: ${ARG_SWAPS}")
 endfunction()
