@@ -4,8 +4,7 @@
 -- The default of cartographer_ext: everything of ours that pays, with one set
 -- of values for all data sets.
 include "common_2d.lua"
-include "front_end_default.lua"
-include "loop_closure_default.lua"
+include "cartographer_ext_2d.lua"
 
 return {
   map_builder = MAP_BUILDER,
