@@ -5,16 +5,16 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_OPTIONS_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_OPTIONS_H_
 
-#include "cartographer_ext/loop_closure/compatible_subset.h"
-#include "cartographer_ext/loop_closure/constraint_information.h"
-#include "cartographer_ext/loop_closure/dtw.h"
-#include "cartographer_ext/loop_closure/dynamic_threshold.h"
-#include "cartographer_ext/loop_closure/innovation_veto.h"
-#include "cartographer_ext/loop_closure/loop_mixture.h"
-#include "cartographer_ext/loop_closure/map_localization.h"
-#include "cartographer_ext/loop_closure/score_fusion.h"
-#include "cartographer_ext/loop_closure/temporal_verification.h"
-#include "cartographer_ext/loop_closure/typical_fit.h"
+#include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
+#include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
+#include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
+#include "cartographer_ext/loop_closure/information/constraint_information.h"
+#include "cartographer_ext/loop_closure/relocalization/map_localization.h"
+#include "cartographer_ext/loop_closure/verification/dtw.h"
+#include "cartographer_ext/loop_closure/verification/dynamic_threshold.h"
+#include "cartographer_ext/loop_closure/verification/loop_mixture.h"
+#include "cartographer_ext/loop_closure/verification/score_fusion.h"
+#include "cartographer_ext/loop_closure/verification/temporal_verification.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 

@@ -10,9 +10,9 @@
 #include "Eigen/LU"
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/common/thread_time.h"
-#include "cartographer_ext/loop_closure/dtw.h"
-#include "cartographer_ext/loop_closure/innovation_veto.h"
+#include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
+#include "cartographer_ext/loop_closure/verification/dtw.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {

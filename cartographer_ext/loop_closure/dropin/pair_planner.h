@@ -29,8 +29,8 @@
 #include "cartographer/mapping/proto/pose_graph/constraint_builder_options.pb.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/loop_closure/map_localization.h"
-#include "cartographer_ext/loop_closure/search_planner.h"
+#include "cartographer_ext/loop_closure/candidate_search/search_planner.h"
+#include "cartographer_ext/loop_closure/relocalization/map_localization.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 

@@ -23,7 +23,7 @@
 #include "cartographer_ext/loop_closure/dropin/pair_planner.h"
 #include "cartographer_ext/loop_closure/dropin/place_search.h"
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
-#include "cartographer_ext/loop_closure/occupancy_view.h"
+#include "cartographer_ext/loop_closure/verification/occupancy_view.h"
 
 namespace cartographer_ext {
 namespace loop_closure {

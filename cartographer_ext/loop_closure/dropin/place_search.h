@@ -21,7 +21,7 @@
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/localization_options.pb.h"
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
-#include "cartographer_ext/loop_closure/place_tracker.h"
+#include "cartographer_ext/loop_closure/relocalization/place_tracker.h"
 
 namespace cartographer_ext {
 namespace loop_closure {

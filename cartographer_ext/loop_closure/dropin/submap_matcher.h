@@ -10,7 +10,7 @@
 #include "cartographer/mapping/proto/scan_matching/fast_correlative_scan_matcher_options_2d.pb.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/loop_closure/occupancy_view.h"
+#include "cartographer_ext/loop_closure/verification/occupancy_view.h"
 #include "cartographer_ext/scan_matching/dropin/fast_correlative_matcher_2d.h"
 
 namespace cartographer_ext {

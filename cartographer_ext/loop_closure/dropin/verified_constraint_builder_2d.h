@@ -53,11 +53,11 @@
 #include "cartographer/metrics/family_factory.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/full_information.h"
+#include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
 #include "cartographer_ext/loop_closure/dropin/pair_planner.h"
 #include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
 #include "cartographer_ext/loop_closure/dropin/place_search.h"
 #include "cartographer_ext/loop_closure/loop_verifier.h"
-#include "cartographer_ext/loop_closure/typical_fit.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 
 namespace cartographer_ext {

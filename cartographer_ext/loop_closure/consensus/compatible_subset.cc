@@ -1,0 +1,365 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "Eigen/Eigenvalues"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+uncertainty::LoopEdge Reversed(const uncertainty::LoopEdge& edge) {
+  uncertainty::LoopEdge reversed;
+  reversed.a = edge.b;
+  reversed.b = edge.a;
+  reversed.pose = Invert(edge.pose);
+  return reversed;
+}
+
+bool SameTrajectory(const uncertainty::LoopEdge& edge) {
+  return edge.a.trajectory_id() == edge.b.trajectory_id();
+}
+
+// Standard deviation along the worst direction.
+double WorstTranslationSigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix2d translation = covariance.topLeftCorner<2, 2>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
+      translation, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0., solver.eigenvalues().maxCoeff()));
+}
+
+}  // namespace
+
+CompatibleSubset::CompatibleSubset(
+    const CompatibleSubsetOptions& options,
+    const uncertainty::PathUncertainty* const paths)
+    : options_(options), paths_(CHECK_NOTNULL(paths)) {
+  CHECK_GT(options.max_clusters, 0);
+  CHECK_GE(options.min_revisits, 1);
+}
+
+CompatibleSubset::Relation CompatibleSubset::Relate(
+    const uncertainty::LoopEdge& u, const uncertainty::LoopEdge& v) const {
+  uncertainty::LoopEdge other = v;
+  if (!u.a.InSequenceWith(v.a)) other = Reversed(v);
+  const absl::optional<uncertainty::UncertainPose> path_b =
+      paths_->Between(u.b, other.b);
+  const absl::optional<uncertainty::UncertainPose> path_a =
+      paths_->Between(other.a, u.a);
+  if (!path_a.has_value() || !path_b.has_value()) return Relation::kUntestable;
+  const uncertainty::CycleResult cycle = uncertainty::TestCycle(
+      options_.cycle, u.pose, *path_b, other.pose, *path_a);
+  if (!cycle.compatible) return Relation::kContradicts;
+  return WorstTranslationSigma(cycle.covariance) <= options_.informative_sigma
+             ? Relation::kSupports
+             : Relation::kVague;
+}
+
+bool CompatibleSubset::SameRevisit(const uncertainty::LoopEdge& u,
+                                   const uncertainty::LoopEdge& v) const {
+  const absl::optional<double> a = paths_->Travelled(u.a, v.a);
+  const absl::optional<double> b = paths_->Travelled(u.b, v.b);
+  return a.has_value() && b.has_value() && *a <= options_.revisit_distance &&
+         *b <= options_.revisit_distance;
+}
+
+void CompatibleSubset::Add(const LoopEvidence& loop) {
+  changed_ = true;
+  for (Cluster& cluster : clusters_) {
+    if (!SameRevisit(cluster.leader.edge, loop.edge)) continue;
+    const Relation relation = Relate(cluster.leader.edge, loop.edge);
+    if (relation != Relation::kSupports && relation != Relation::kVague) {
+      continue;
+    }
+    cluster.undecided.push_back(loop);
+    ++cluster.num_loops;
+    cluster.best_score = std::max(cluster.best_score, loop.score);
+    cluster.least_sigma = std::min(cluster.least_sigma, loop.prior_sigma);
+    return;
+  }
+  MakeRoom();
+  std::vector<Relation> relations;
+  relations.reserve(clusters_.size());
+  for (const Cluster& cluster : clusters_) {
+    relations.push_back(Relate(cluster.leader.edge, loop.edge));
+  }
+  Cluster cluster;
+  cluster.leader = loop;
+  cluster.undecided.push_back(loop);
+  cluster.num_loops = 1;
+  cluster.best_score = loop.score;
+  cluster.least_sigma = loop.prior_sigma;
+  clusters_.push_back(std::move(cluster));
+  relations_.push_back(std::move(relations));
+}
+
+// How many support a cluster, all of them or those of the subset.
+int CompatibleSubset::Support(const int index, const bool of_subset) const {
+  const uncertainty::LoopEdge& edge = clusters_[index].leader.edge;
+  std::vector<uncertainty::VertexId> vertices;
+  for (int j = 0; j < num_clusters(); ++j) {
+    if (j == index || (of_subset && !clusters_[j].in_subset) ||
+        relations_[std::max(index, j)][std::min(index, j)] !=
+            Relation::kSupports) {
+      continue;
+    }
+    // The end in the same run.
+    const uncertainty::LoopEdge& other = clusters_[j].leader.edge;
+    vertices.push_back(other.b.InSequenceWith(edge.b) ? other.b : other.a);
+  }
+  if (SameTrajectory(edge)) return static_cast<int>(vertices.size());
+  std::sort(vertices.begin(), vertices.end());
+  std::vector<uncertainty::VertexId> places = {edge.b};
+  for (const uncertainty::VertexId& vertex : vertices) {
+    const bool is_near = std::any_of(
+        places.begin(), places.end(), [&](const uncertainty::VertexId& place) {
+          const absl::optional<double> distance =
+              paths_->Travelled(place, vertex);
+          return distance.has_value() && *distance <= options_.revisit_distance;
+        });
+    if (!is_near) places.push_back(vertex);
+  }
+  return static_cast<int>(places.size()) - 1;
+}
+
+void CompatibleSubset::Solve() {
+  const int n = num_clusters();
+  const auto relation = [this](const int i, const int j) {
+    return relations_[std::max(i, j)][std::min(i, j)];
+  };
+  CompatibilityGraph graph(n);
+  std::vector<double> weights(n);
+  for (int i = 0; i < n; ++i) {
+    weights[i] = clusters_[i].accepted ? options_.accepted_weight : 1.;
+    for (int j = 0; j < i; ++j) {
+      if (relation(i, j) != Relation::kContradicts) graph.AddEdge(i, j);
+    }
+  }
+  const MaxCliqueResult clique =
+      MaxWeightClique(graph, weights, options_.clique);
+  exact_ = clique.exact;
+  subset_size_ = static_cast<int>(clique.vertices.size());
+  num_overturned_ = 0;
+  for (Cluster& cluster : clusters_) cluster.in_subset = false;
+  for (const int v : clique.vertices) clusters_[v].in_subset = true;
+  std::vector<int> total_support(n, 0);
+  for (int i = 0; i < n; ++i) {
+    Cluster& cluster = clusters_[i];
+    cluster.support = Support(i, true);
+    total_support[i] = Support(i, false);
+    cluster.contradictions = 0;
+    for (int j = 0; j < n; ++j) {
+      if (j == i || !clusters_[j].in_subset) continue;
+      cluster.contradictions += relation(i, j) == Relation::kContradicts;
+    }
+    if (cluster.accepted && !cluster.in_subset) ++num_overturned_;
+  }
+  for (int i = 0; i < n; ++i) {
+    clusters_[i].rival_support = -1;
+    for (int j = 0; j < n; ++j) {
+      // A rival whose camp the subset outnumbers is beaten.
+      if (j != i && relation(i, j) == Relation::kContradicts &&
+          clusters_[j].contradictions <= total_support[j] + 1) {
+        clusters_[i].rival_support =
+            std::max(clusters_[i].rival_support, total_support[j]);
+      }
+    }
+  }
+}
+
+bool CompatibleSubset::MayAccept(const Cluster& cluster,
+                                 SubsetReason* const reason) const {
+  if (!cluster.in_subset) {
+    // A few failed tests among many that agree are forgiven.
+    const double tolerance =
+        cluster.least_sigma <= options_.single_strong_sigma
+            ? std::max(options_.tolerance, options_.predicted_tolerance)
+            : options_.tolerance;
+    if (cluster.best_score < options_.forgiven_score ||
+        cluster.contradictions >
+            tolerance * (cluster.support + cluster.contradictions)) {
+      *reason = SubsetReason::kContradicted;
+      return false;
+    }
+  } else if (cluster.rival_support >= cluster.support && !cluster.accepted) {
+    *reason = cluster.support == 0 ? SubsetReason::kUnsupported
+                                   : SubsetReason::kRival;
+    return false;
+  }
+  if (cluster.accepted) {
+    *reason = SubsetReason::kJoinsAccepted;
+    return true;
+  }
+  int needed = options_.min_revisits;
+  if (cluster.least_sigma > options_.doubtful_sigma) {
+    needed = std::max(needed, options_.doubtful_revisits);
+  }
+  if (std::isinf(cluster.least_sigma)) {
+    needed = std::max(needed, options_.unpredicted_revisits);
+  }
+  if (cluster.support + 1 >= needed) {
+    *reason = SubsetReason::kSupported;
+    return true;
+  }
+  if (options_.single_strong_enabled && cluster.rival_support < 0 &&
+      cluster.least_sigma <= options_.single_strong_sigma &&
+      cluster.best_score >= options_.single_strong_score &&
+      cluster.num_loops >= options_.single_strong_loops) {
+    *reason = SubsetReason::kSingleStrong;
+    return true;
+  }
+  *reason = SubsetReason::kUnsupported;
+  return false;
+}
+
+void CompatibleSubset::Emit(
+    const Cluster& cluster, const bool accepted, const SubsetReason reason,
+    std::vector<SubsetDecision>* const decisions) const {
+  for (const LoopEvidence& loop : cluster.undecided) {
+    SubsetDecision decision;
+    decision.id = loop.id;
+    decision.accepted = accepted;
+    decision.reason = reason;
+    decision.support = cluster.support;
+    decision.contradictions = cluster.contradictions;
+    decision.subset_size = subset_size_;
+    decisions->push_back(decision);
+  }
+}
+
+std::vector<SubsetDecision> CompatibleSubset::Decide() {
+  std::vector<SubsetDecision> decisions = std::move(overflow_);
+  overflow_.clear();
+  if (changed_) {
+    changed_ = false;
+    Solve();
+    for (Cluster& cluster : clusters_) {
+      SubsetReason reason;
+      if (cluster.undecided.empty() || !MayAccept(cluster, &reason)) continue;
+      Emit(cluster, true, reason, &decisions);
+      cluster.undecided.clear();
+      cluster.accepted = true;
+    }
+  }
+  std::stable_sort(decisions.begin(), decisions.end(),
+                   [](const SubsetDecision& a, const SubsetDecision& b) {
+                     return a.id < b.id;
+                   });
+  return decisions;
+}
+
+std::vector<SubsetDecision> CompatibleSubset::Flush() {
+  std::vector<SubsetDecision> decisions = Decide();
+  for (int i = num_clusters() - 1; i >= 0; --i) {
+    Cluster& cluster = clusters_[i];
+    if (!cluster.undecided.empty()) {
+      SubsetReason reason;
+      // Decide has accepted what may be accepted.
+      MayAccept(cluster, &reason);
+      Emit(cluster, false, reason, &decisions);
+      cluster.undecided.clear();
+    }
+    if (!cluster.accepted) Erase(i);
+  }
+  std::stable_sort(decisions.begin(), decisions.end(),
+                   [](const SubsetDecision& a, const SubsetDecision& b) {
+                     return a.id < b.id;
+                   });
+  return decisions;
+}
+
+std::vector<int64_t> CompatibleSubset::Withdraw(
+    const std::function<bool(const LoopEvidence&)>& condition) {
+  std::vector<int64_t> ids;
+  for (int i = num_clusters() - 1; i >= 0; --i) {
+    Cluster& cluster = clusters_[i];
+    const size_t before = cluster.undecided.size();
+    const auto kept = std::stable_partition(
+        cluster.undecided.begin(), cluster.undecided.end(),
+        [&](const LoopEvidence& loop) { return !condition(loop); });
+    for (auto it = kept; it != cluster.undecided.end(); ++it) {
+      ids.push_back(it->id);
+    }
+    cluster.undecided.erase(kept, cluster.undecided.end());
+    cluster.num_loops -= static_cast<int>(before - cluster.undecided.size());
+    if (cluster.undecided.empty() && !cluster.accepted) Erase(i);
+  }
+  if (!ids.empty()) changed_ = true;
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+void CompatibleSubset::ForgetAccepted(
+    const std::function<bool(const LoopEvidence&)>& condition) {
+  for (int i = num_clusters() - 1; i >= 0; --i) {
+    Cluster& cluster = clusters_[i];
+    if (!cluster.accepted || !condition(cluster.leader)) continue;
+    changed_ = true;
+    cluster.accepted = false;
+    if (cluster.undecided.empty()) Erase(i);
+  }
+}
+
+void CompatibleSubset::Erase(const int index) {
+  clusters_.erase(clusters_.begin() + index);
+  relations_.erase(relations_.begin() + index);
+  for (size_t i = static_cast<size_t>(index); i < relations_.size(); ++i) {
+    relations_[i].erase(relations_[i].begin() + index);
+  }
+}
+
+void CompatibleSubset::MakeRoom() {
+  if (num_clusters() < options_.max_clusters) return;
+  const auto num_accepted =
+      std::count_if(clusters_.begin(), clusters_.end(),
+                    [](const Cluster& cluster) { return cluster.accepted; });
+  const bool forget_accepted = 2 * num_accepted > num_clusters();
+  int oldest = 0;
+  while (clusters_[oldest].accepted != forget_accepted) ++oldest;
+  Cluster& cluster = clusters_[oldest];
+  if (!cluster.undecided.empty()) {
+    Solve();
+    SubsetReason reason;
+    const bool accept = MayAccept(cluster, &reason);
+    Emit(cluster, accept, reason, &overflow_);
+  }
+  Erase(oldest);
+}
+
+std::vector<SubsetDecision> CompatibleSubset::Undecided() const {
+  std::vector<SubsetDecision> decisions;
+  for (const Cluster& cluster : clusters_) {
+    SubsetReason reason;
+    MayAccept(cluster, &reason);
+    Emit(cluster, false, reason, &decisions);
+  }
+  std::stable_sort(decisions.begin(), decisions.end(),
+                   [](const SubsetDecision& a, const SubsetDecision& b) {
+                     return a.id < b.id;
+                   });
+  return decisions;
+}
+
+int CompatibleSubset::num_undecided() const {
+  int count = 0;
+  for (const Cluster& cluster : clusters_) {
+    count += static_cast<int>(cluster.undecided.size());
+  }
+  return count;
+}
+
+std::vector<uncertainty::LoopEdge> CompatibleSubset::AcceptedLoops() const {
+  std::vector<uncertainty::LoopEdge> loops;
+  for (const Cluster& cluster : clusters_) {
+    if (cluster.accepted) loops.push_back(cluster.leader.edge);
+  }
+  return loops;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

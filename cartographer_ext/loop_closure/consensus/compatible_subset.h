@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The largest set of loops that can be true together (paper G, improved graph
+// optimisation 2024, section 3.4, eq. 20 and 21), kept up to date while loops
+// come in.
+//
+//   clusters   Loops of neighbouring nodes with neighbouring submaps are one
+//              piece of evidence. A loop joins the first cluster whose leader
+//              (its first loop) is near along the trajectory on both sides and
+//              closes a cycle with it, otherwise it leads a new cluster.
+//   relations  Leaders are tested in pairs by the cycle of eq. 20. A closed
+//              cycle supports only when it could well have failed: where the
+//              way between the loops is so uncertain that anything closes,
+//              the pair is merely not in contradiction.
+//   subset     The maximum clique of the graph without the contradictions
+//              (eq. 21), every cluster counting once, those accepted before a
+//              little more.
+//   verdicts   A cluster is accepted when it is in the clique, has support from
+//              enough others, and no rival has as much. A rival is a cluster
+//              that contradicts it, unless more clusters of the subset
+//              contradict the rival than stand by it. A single strong loop
+//              without support is accepted by stricter rules of its own. What
+//              is neither stays buffered and is tested again when new evidence
+//              comes; `Flush` ends that.
+//
+// Pairwise tests of true loops fail now and then; `tolerance` forgives a few
+// contradictions so that long runs do not lose true loops. Zero is the print.
+//
+// Between trajectories one scan fits each of the submaps that overlap where it
+// was taken, without telling more than one of them would. There support counts
+// places along the run, `revisit_distance` apart, instead of clusters.
+//
+// Bounded: beyond `max_clusters` the oldest accepted cluster is forgotten when
+// more than half are accepted, otherwise the oldest undecided one is decided
+// as in `Flush`. Not thread-safe; loops are added in candidate order, which
+// alone determines the result.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_COMPATIBLE_SUBSET_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_COMPATIBLE_SUBSET_H_
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "cartographer_ext/loop_closure/consensus/max_clique.h"
+#include "cartographer_ext/uncertainty/cycle_consistency.h"
+#include "cartographer_ext/uncertainty/loop_edge.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+struct LoopEvidence {
+  int64_t id = 0;  // of the caller, unique
+  uncertainty::LoopEdge edge;
+  double score = 0.;  // the fused score, in [0, 1]
+  // How well the place was predicted before the search, one standard deviation
+  // in metres; infinity without a prediction.
+  double prior_sigma = 0.;
+};
+
+struct CompatibleSubsetOptions {
+  uncertainty::CycleConsistencyOptions cycle;
+  // Loops nearer than this along the trajectory, on both sides, are one
+  // revisit.
+  double revisit_distance = 5.;  // metres, >= 0
+  // A cycle supports when its translation is known this well, one sigma.
+  double informative_sigma = 1.;  // metres, > 0
+  int min_revisits = 2;           // that agree, including the loop itself, >= 1
+  // Share of contradictions among the informative relations to the clique that
+  // is forgiven, in [0, 1).
+  double tolerance = 0.04;
+  // The same of clusters that lie where they were predicted (the single strong
+  // sigma): a place that only looks alike lies elsewhere.
+  double predicted_tolerance = 0.2;
+  // Both only of clusters with a loop of at least this score: one about which
+  // nothing is known has to fit.
+  double forgiven_score = 0.6;
+  double accepted_weight = 1.5;  // of a cluster accepted before, >= 1
+  // Single strong loop: best score and number of loops in its cluster.
+  bool single_strong_enabled = true;
+  double single_strong_score = 0.8;
+  int single_strong_loops = 3;
+  // It has to be where it was predicted: one that was searched widely may be
+  // another place that looks alike.
+  double single_strong_sigma = 0.5;  // metres
+  // A place predicted worse than this needs more revisits that agree.
+  double doubtful_sigma = 1.;  // metres
+  int doubtful_revisits = 3;   // including the loop itself, >= 1
+  // The same for a place that was not predicted at all.
+  int unpredicted_revisits = 4;
+  int max_clusters = 400;  // > 0
+  MaxCliqueOptions clique;
+};
+
+enum class SubsetReason {
+  kSupported,      // accepted with its cluster
+  kSingleStrong,   // accepted by the rule for single strong loops
+  kJoinsAccepted,  // accepted, its cluster was accepted before
+  kContradicted,   // rejected, does not fit the compatible subset
+  kRival,          // rejected, a contradicting cluster has as much support
+  kUnsupported,    // rejected, nothing confirmed it until the end
+};
+
+struct SubsetDecision {
+  int64_t id = 0;
+  bool accepted = false;
+  SubsetReason reason = SubsetReason::kUnsupported;
+  int support = 0;         // clusters in the subset that support its cluster
+  int contradictions = 0;  // clusters in the subset that contradict it
+  int subset_size = 0;     // clusters in the subset
+};
+
+class CompatibleSubset {
+ public:
+  // `paths` has to outlive this and to know the nodes of the loops added.
+  CompatibleSubset(const CompatibleSubsetOptions& options,
+                   const uncertainty::PathUncertainty* paths);
+
+  void Add(const LoopEvidence& loop);
+
+  // Decides what can be decided now, in the order of adding. Costs little when
+  // nothing was added since.
+  std::vector<SubsetDecision> Decide();
+  // Decides, then rejects everything undecided with its reason. Accepted
+  // clusters stay known.
+  std::vector<SubsetDecision> Flush();
+
+  // Takes back undecided loops, for submaps or nodes that are deleted; returns
+  // their ids in the order of adding.
+  std::vector<int64_t> Withdraw(
+      const std::function<bool(const LoopEvidence&)>& condition);
+
+  // Accepted loops no longer count, where the condition holds for the first of
+  // their revisit.
+  void ForgetAccepted(
+      const std::function<bool(const LoopEvidence&)>& condition);
+
+  // What waits and why, as of the last `Decide`, in the order of adding.
+  std::vector<SubsetDecision> Undecided() const;
+  int num_undecided() const;
+  int num_clusters() const { return static_cast<int>(clusters_.size()); }
+  // Accepted clusters that the last `Decide` found outside the subset: later
+  // evidence speaks against them.
+  int num_overturned() const { return num_overturned_; }
+  // Whether the last clique search was exact.
+  bool exact() const { return exact_; }
+  // The leaders of the accepted clusters.
+  std::vector<uncertainty::LoopEdge> AcceptedLoops() const;
+
+ private:
+  enum class Relation : char {
+    kUntestable,  // no way between the loops
+    kVague,       // closes, but so would anything
+    kSupports,
+    kContradicts,
+  };
+  struct Cluster {
+    LoopEvidence leader;
+    std::vector<LoopEvidence> undecided;
+    int num_loops = 0;  // ever
+    double best_score = 0.;
+    double least_sigma = 0.;  // of its loops
+    bool accepted = false;
+    // Of the last `Solve`.
+    bool in_subset = false;
+    int support = 0;
+    int contradictions = 0;
+    int rival_support = -1;  // of the strongest rival, -1 without one
+  };
+
+  Relation Relate(const uncertainty::LoopEdge& u,
+                  const uncertainty::LoopEdge& v) const;
+  bool SameRevisit(const uncertainty::LoopEdge& u,
+                   const uncertainty::LoopEdge& v) const;
+  int Support(int index, bool of_subset) const;
+  void Solve();
+  bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;
+  void Emit(const Cluster& cluster, bool accepted, SubsetReason reason,
+            std::vector<SubsetDecision>* decisions) const;
+  void Erase(int index);
+  void MakeRoom();
+
+  const CompatibleSubsetOptions options_;
+  const uncertainty::PathUncertainty* const paths_;
+  std::vector<Cluster> clusters_;  // in the order of their leaders
+  // relations_[i][j] for j < i.
+  std::vector<std::vector<Relation>> relations_;
+  std::vector<SubsetDecision> overflow_;  // decided by MakeRoom
+  bool changed_ = false;
+  bool exact_ = true;
+  int subset_size_ = 0;
+  int num_overturned_ = 0;
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_COMPATIBLE_SUBSET_H_

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Could this loop be true, given how far the odometry may have drifted? (Paper
+// G, improved graph optimisation 2024, section 3.4, checks odometry after the
+// optimisation; this is the cheap question before.)
+//
+// The most certain way between the loop's two nodes predicts where the one lies
+// from the other; the innovation is what the loop demands beyond that:
+//
+//   E = prior^-1 (b <- a)  loop (a <- b),   chi^2 = E^T cov(E)^-1 E.
+//
+// Beyond a high quantile of chi^2 with 3 degrees of freedom the loop is vetoed.
+// The default 0.9999 leaves much room, since real drift is not Gaussian.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
+
+#include "cartographer_ext/uncertainty/cycle_consistency.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+struct InnovationOptions {
+  double chi_square_bound = 21.108;  // chi^2, 3 degrees of freedom, 0.9999
+};
+
+struct InnovationResult {
+  Pose2 innovation;        // E above; (b <- b), metres and radians
+  double chi_square = 0.;  // infinity when E is not zero but certain to be
+  bool vetoed = false;
+};
+
+InnovationResult TestInnovation(const InnovationOptions& options,
+                                const uncertainty::UncertainPose& prior,
+                                const uncertainty::UncertainPose& loop);
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Does a scan agree with a map from a given pose, beam by beam? Look-alike
+// places differ in little: a door a hand's breadth farther on, a wall at the
+// far end of a corridor. Averages over sectors blur just that, so the temporal
+// score (temporal_verification.h) compares each beam at its own angle:
+//
+//   ends at a wall or in free space   it disagrees by the distance from its end
+//                                     to the nearest occupied cell, which
+//                                     forgives beams that graze a wall.
+//   ends in unknown space             by the difference between its range and
+//                                     the range that the map predicts along it:
+//                                     a beam does not go through walls. Where
+//                                     the map predicts nothing it tells
+//                                     nothing.
+//
+// A tolerance is forgiven, and disagreements are clipped since people walk by.
+// A beam longer than the largest range has no end; it says that the way is free
+// up to there.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_BEAM_AGREEMENT_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_BEAM_AGREEMENT_H_
+
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/verification/occupancy_view.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+// A map that predicts, and where it lies.
+struct ReferenceMap {
+  const OccupancyView* view = nullptr;
+  Pose2 view_from_submap;  // (frame of the view <- frame of the candidate)
+};
+
+struct BeamAgreementOptions {
+  double max_range = 25.;     // metres, > 0
+  double min_range = 0.1;     // metres, >= 0; nearer points are the robot
+  double max_unknown = 0.15;  // metres of unknown space a beam may cross
+  double tolerance = 1.;      // cells of the map, >= 0
+  double clip = 0.2;          // metres, > 0
+  // Share of the beams that the maps have to know, in (0, 1].
+  double minimum_overlap = 0.7;
+  // Scans are thinned out to this number of beams.
+  int max_beams = 120;  // > 0
+};
+
+// A beam from the origin of the node to what it hit, metres.
+struct Beam {
+  Eigen::Vector2f end;
+  float range;
+};
+
+// Of points in the frame of the node, in their order. Points that are not
+// finite or nearer than the smallest range are left out.
+std::vector<Beam> BeamsFromPoints(const BeamAgreementOptions& options,
+                                  const std::vector<Eigen::Vector2f>& points);
+
+// How far, in cells, the views have to know distances for this.
+int DistanceReach(const BeamAgreementOptions& options, double resolution);
+
+// Maps seen from one pose.
+class PlacedMaps {
+ public:
+  // `pose`: (frame of the candidate <- node). The views have to know distances
+  // and to outlive this.
+  PlacedMaps(const std::vector<ReferenceMap>& maps, const Pose2& pose);
+
+  // Mean disagreement of the beams as a share of the clip, in [0, 1]. Of the
+  // maps the first that knows about a beam counts. NaN when less than the
+  // minimum overlap is known.
+  double Disagreement(const BeamAgreementOptions& options,
+                      const std::vector<Beam>& beams) const;
+  // A number that the disagreement is not below, unless it is NaN, at a small
+  // part of the cost: nothing is predicted along beams.
+  double LeastDisagreement(const BeamAgreementOptions& options,
+                           const std::vector<Beam>& beams) const;
+
+ private:
+  // Where the node lies in one map.
+  struct Place {
+    const OccupancyView* view;
+    Eigen::Vector2d start;  // frame of the view, metres
+    double cos, sin;
+    Eigen::Vector2d cell;  // of the start
+    double cos_cells, sin_cells;
+  };
+  struct Sums {
+    double disagreement = 0.;  // metres
+    int num_known = 0;
+    int num_open = 0;  // neither known nor unknown yet
+  };
+
+  // NaN where no map knows about the end of the beam.
+  double EndDisagreement(const Beam& beam, double tolerance) const;
+  Sums Sum(const BeamAgreementOptions& options, const std::vector<Beam>& beams,
+           bool predict) const;
+
+  std::vector<Place> places_;
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_BEAM_AGREEMENT_H_

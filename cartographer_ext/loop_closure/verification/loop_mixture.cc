@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/verification/loop_mixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "Eigen/LU"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+constexpr double kLogTwoPi = 1.8378770664093453;
+
+// Keeps the logarithm finite at S_t = 1: one beam in fifty more or less.
+constexpr double kCostFloor = 0.02;
+
+// A component with what its density needs worked out.
+class Density {
+ public:
+  explicit Density(const MixtureComponent& component)
+      : mean_(component.mean),
+        inverse_(component.covariance.inverse()),
+        log_factor_(std::log(component.weight) - kLogTwoPi -
+                    0.5 * std::log(component.covariance.determinant())) {}
+
+  double Log(const Eigen::Vector2d& scores) const {
+    const Eigen::Vector2d difference = scores - mean_;
+    return log_factor_ - 0.5 * difference.dot(inverse_ * difference);
+  }
+
+ private:
+  const Eigen::Vector2d mean_;
+  const Eigen::Matrix2d inverse_;
+  const double log_factor_;
+};
+
+MixtureComponent Component(const Eigen::Vector2d& mean, const double sigma_grid,
+                           const double sigma_temporal,
+                           const double correlation) {
+  MixtureComponent component;
+  component.weight = 0.5;
+  component.mean = mean;
+  const double covariance = correlation * sigma_grid * sigma_temporal;
+  component.covariance << sigma_grid * sigma_grid, covariance, covariance,
+      sigma_temporal * sigma_temporal;
+  return component;
+}
+
+}  // namespace
+
+double TemporalCoordinate(const double temporal_score) {
+  return -std::log(1. + kCostFloor - std::min(1., temporal_score));
+}
+
+std::array<MixtureComponent, 2> LoopMixtureOptions::DefaultPrior() {
+  // Scans that see little of the submap have lower scores of both kinds.
+  constexpr double kCorrelation = 0.4;
+  return {{Component(Eigen::Vector2d(0.64, 1.3), 0.07, 0.5, kCorrelation),
+           Component(Eigen::Vector2d(0.72, 2.8), 0.09, 0.5, kCorrelation)}};
+}
+
+double LogWeightedDensity(const MixtureComponent& component,
+                          const Eigen::Vector2d& scores) {
+  return Density(component).Log(scores);
+}
+
+LoopMixture::LoopMixture(const LoopMixtureOptions& options)
+    : options_(options), components_(options.prior) {
+  CHECK_GT(options.capacity, 0);
+  CHECK_GT(options.prior_strength, 0.);
+}
+
+double LoopMixture::ProbabilityTrue(const double grid_score,
+                                    const double temporal_score) const {
+  const Eigen::Vector2d scores(grid_score, TemporalCoordinate(temporal_score));
+  return 1. / (1. + std::exp(LogWeightedDensity(components_[0], scores) -
+                             LogWeightedDensity(components_[1], scores)));
+}
+
+void LoopMixture::Add(const double grid_score, const double temporal_score) {
+  scores_.emplace_back(grid_score, TemporalCoordinate(temporal_score));
+  if (scores_.size() > static_cast<size_t>(options_.capacity)) {
+    scores_.pop_front();
+  }
+}
+
+int LoopMixture::Fit() {
+  const double strength = options_.prior_strength;
+  const double n = static_cast<double>(scores_.size());
+  if (scores_.empty()) return 0;
+  std::vector<double> of_true(scores_.size());
+  double last = -std::numeric_limits<double>::infinity();
+  for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
+    // Expectation.
+    const Density density_false(components_[0]);
+    const Density density_true(components_[1]);
+    double total = 0.;
+    for (size_t i = 0; i < scores_.size(); ++i) {
+      const double log_false = density_false.Log(scores_[i]);
+      const double log_true = density_true.Log(scores_[i]);
+      of_true[i] = 1. / (1. + std::exp(log_false - log_true));
+      const double top = std::max(log_false, log_true);
+      total += top + std::log1p(std::exp(-std::abs(log_false - log_true)));
+    }
+    total /= n;
+    if (std::abs(total - last) < options_.tolerance) return iteration;
+    last = total;
+    // Maximisation with the priors as pseudo-observations.
+    for (int c = 0; c < 2; ++c) {
+      const MixtureComponent& prior = options_.prior[c];
+      double mass = strength;
+      Eigen::Vector2d mean = strength * prior.mean;
+      for (size_t i = 0; i < scores_.size(); ++i) {
+        const double r = c == 1 ? of_true[i] : 1. - of_true[i];
+        mass += r;
+        mean += r * scores_[i];
+      }
+      mean /= mass;
+      Eigen::Matrix2d scatter = strength * prior.covariance;
+      scatter +=
+          strength * (prior.mean - mean) * (prior.mean - mean).transpose();
+      for (size_t i = 0; i < scores_.size(); ++i) {
+        const double r = c == 1 ? of_true[i] : 1. - of_true[i];
+        const Eigen::Vector2d difference = scores_[i] - mean;
+        scatter += r * difference * difference.transpose();
+      }
+      components_[c].weight = mass / (n + 2. * strength);
+      components_[c].mean = mean;
+      components_[c].covariance = scatter / mass;
+    }
+    // "True" is the component with the better scores, by definition.
+    for (int d = 0; d < 2; ++d) {
+      if (components_[1].mean(d) < components_[0].mean(d)) {
+        const double middle =
+            0.5 * (components_[0].mean(d) + components_[1].mean(d));
+        components_[0].mean(d) = middle;
+        components_[1].mean(d) = middle;
+      }
+    }
+  }
+  return options_.max_iterations;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

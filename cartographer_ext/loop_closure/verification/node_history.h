@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A bounded memory of what the robot saw at its nodes. The host guarantees a
+// node's data only until its constraints are computed and never says when it is
+// trimmed, so whatever spans several nodes has to keep its own copies. They are
+// taken of every node offered, before any sampler, so that the sequence has no
+// gaps.
+//
+// Not thread-safe; nodes may be added in any order (a finished submap is
+// offered all older nodes in a burst).
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_NODE_HISTORY_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_NODE_HISTORY_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/verification/beam_agreement.h"
+#include "cartographer_ext/loop_closure/verification/range_signature.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+struct HistoryNode {
+  int node_index = 0;
+  int64_t time = 0;  // host ticks
+  Pose2 local_pose;  // (local frame of the trajectory <- node)
+  // What the temporal score compares, one of them (DescribeScan).
+  std::vector<Beam> beams;
+  RangeSignature signature;
+};
+
+class NodeHistory {
+ public:
+  // Keeps the newest `max_nodes` (> 0) nodes of each trajectory.
+  explicit NodeHistory(int max_nodes);
+
+  // False when the node is there already or older than all that are kept of a
+  // full trajectory; then nothing changes.
+  bool Add(int trajectory_id, HistoryNode node);
+  bool Contains(int trajectory_id, int node_index) const;
+  // Null when the node is not kept.
+  const HistoryNode* Find(int trajectory_id, int node_index) const;
+  int size(int trajectory_id) const;
+
+  // Up to `count` nodes that end with `node_index`, oldest first; going back,
+  // the next one is the first at least `spacing` metres of travel (>= 0) away.
+  // Empty when `node_index` is not kept. Looks back over at most `max_scan`
+  // nodes, so a robot that stands still costs little.
+  std::vector<const HistoryNode*> Sequence(int trajectory_id, int node_index,
+                                           int count, double spacing,
+                                           int max_scan) const;
+
+  void DeleteTrajectory(int trajectory_id);
+
+ private:
+  const size_t max_nodes_;
+  std::map<int, std::map<int, HistoryNode>> trajectories_;
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_NODE_HISTORY_H_

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The temporal score S_t of a loop candidate (paper C, optimised Cartographer
+// 2025, section 1.2; the paper names dynamic time warping and leaves the rest
+// open).
+//
+// A look-alike place matches one scan as well as the true place does. It rarely
+// matches the whole way the robot took to get there. So the last nodes up to
+// the candidate's node (the query) are compared with what the submap predicts
+// along the same way, placed so that its last pose is the candidate pose (the
+// reference):
+//
+//   reference pose k   = candidate (submap <- node)
+//                        * (node <- local) * (local <- node k)
+//   local cost c(i, j) = how far scan i and the map disagree at reference pose
+//   j S_t                = 1 - D / path length        (dtw.h)
+//
+// Two local costs: the clipped mean difference of range signatures, which sum
+// up sectors of a scan (range_signature.h), and the disagreement of the beams
+// themselves (beam_agreement.h), which tells more and costs less.
+// The reference is sampled `oversampling` times finer than the query, and
+// warping within the band absorbs the error of the odometry's scale. In the
+// textbook's symmetric warping the samples between two nodes have to be matched
+// as well, so even a perfect repetition scores below one; the asymmetric
+// warping picks one sample for each node and lets the first begin anywhere in
+// the band.
+// Neighbouring submaps continue the reference where the way leaves the submap.
+// Where none of them knows the way any more the query is cut: what is left has
+// to have a minimum length, otherwise there is no score.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_TEMPORAL_VERIFICATION_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_TEMPORAL_VERIFICATION_H_
+
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/verification/beam_agreement.h"
+#include "cartographer_ext/loop_closure/verification/node_history.h"
+#include "cartographer_ext/loop_closure/verification/range_signature.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+enum class WarpingStep {
+  kSymmetric,   // every reference sample has to be matched, as in the textbook
+  kAsymmetric,  // one reference sample for each node of the query
+};
+
+enum class ScanComparison {
+  kSectors,  // range signatures
+  kBeams,
+};
+
+struct TemporalVerificationOptions {
+  ScanComparison comparison = ScanComparison::kBeams;
+  RangeSignatureOptions signature;
+  BeamAgreementOptions beams;
+  int oversampling = 2;  // reference samples per step of the query, > 0
+  WarpingStep step = WarpingStep::kAsymmetric;
+  // Half width of the Sakoe-Chiba band in steps of the query; negative: no
+  // band. Symmetric warping takes at least 0.5, less would leave no way.
+  double band = 1.;
+  int minimum_length = 3;  // nodes of the query, > 0
+};
+
+enum class TemporalOutcome {
+  kScored,
+  kShortHistory,  // too few nodes before the candidate's
+  kUnknownWay,    // the maps know too little of the way
+};
+
+struct TemporalResult {
+  TemporalOutcome outcome = TemporalOutcome::kShortHistory;
+  double score = 0.;  // S_t in [0, 1], 0 unless kScored
+  int num_query = 0;  // nodes compared
+  int num_reference = 0;
+  double travelled = 0.;  // metres from the first to the last compared node
+};
+
+// Puts into a node of the history what the comparison needs of its scan; points
+// in the frame of the node, metres.
+void DescribeScan(const TemporalVerificationOptions& options,
+                  const std::vector<Eigen::Vector2f>& points,
+                  HistoryNode* node);
+
+// `query`: nodes of one trajectory, oldest first, the last is the candidate's
+// node. `candidate`: (frame of the candidate <- last node). `maps`: the submap
+// first, then its neighbours; each fills what those before it do not know.
+// Their views have to know distances where beams are compared.
+TemporalResult VerifySequence(const TemporalVerificationOptions& options,
+                              const std::vector<const HistoryNode*>& query,
+                              const Pose2& candidate,
+                              const std::vector<ReferenceMap>& maps);
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_TEMPORAL_VERIFICATION_H_

@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/candidate_search/search_planner.h"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "cartographer_ext/options/option_description.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using proto::LoopDecision;
+
+// A straight way of 200 m, a node every metre. Only the translation is
+// uncertain, 0.1 m per root metre.
+class SearchPlannerTest : public testing::Test {
+ protected:
+  SearchPlannerTest() : paths_(Noise(), 1000) {
+    for (int i = 0; i <= 200; ++i) {
+      paths_.Add(uncertainty::NodeId{0, i}, Pose2(i, 0., 0.));
+    }
+    proto::LoopClosureOptions options;
+    options::SetDefaults(&options);
+    options_ = options.search();
+    options_.set_window_sigmas(3.);
+    options_.set_min_linear_window(1.);
+    options_.set_max_linear_window(4.);
+    options_.set_min_angular_window(0.2);
+    options_.set_max_searches_per_node(2);
+    options_.set_redundant_distance(5.);
+    options_.set_search_spacing(2.);
+    options_.set_informative_sigma(0.15);
+  }
+
+  static uncertainty::PathNoiseOptions Noise() {
+    uncertainty::PathNoiseOptions noise;
+    noise.translation_per_metre = 0.1;
+    noise.translation_per_radian = 0.;
+    noise.rotation_per_metre = 0.;
+    noise.rotation_per_radian = 0.;
+    return noise;
+  }
+
+  static Eigen::Matrix3d LoopCovariance() {
+    return Eigen::Vector3d(0.01, 0.01, 0.).asDiagonal();
+  }
+
+  void MakePlanner() {
+    planner_.reset(
+        new SearchPlanner(options_, LoopCovariance(), 15., 7., 0.5, &paths_));
+  }
+
+  // Submap `s` has its origin at node `anchor`; the node is predicted `x`
+  // metres from it.
+  static SearchPair Pair(int s, int anchor, int node, double x) {
+    SearchPair pair;
+    pair.submap_index = s;
+    pair.anchor = uncertainty::NodeId{0, anchor};
+    pair.node = uncertainty::NodeId{0, node};
+    pair.predicted = Pose2(x, 0., 0.);
+    return pair;
+  }
+
+  SearchPlan PlanOne(const SearchPair& pair) {
+    return planner_->Plan({pair}).front();
+  }
+
+  uncertainty::PathUncertainty paths_;
+  proto::LoopClosureOptions::Search options_;
+  std::unique_ptr<SearchPlanner> planner_;
+};
+
+TEST_F(SearchPlannerTest, WindowFollowsTheUncertaintyOfTheWay) {
+  MakePlanner();
+  const SearchPlan plan = PlanOne(Pair(0, 0, 100, 3.));
+  EXPECT_EQ(plan.skipped, LoopDecision::NONE);
+  EXPECT_FALSE(plan.full_submap);
+  EXPECT_NEAR(plan.translation_sigma, 1., 1e-12);
+  EXPECT_NEAR(plan.linear_window, 3., 1e-12);
+  EXPECT_EQ(plan.angular_window, 0.2);
+  // A short way: the smallest window.
+  EXPECT_EQ(PlanOne(Pair(1, 0, 4, 3.)).linear_window, 1.);
+}
+
+TEST_F(SearchPlannerTest, SearchesTheWholeSubmapWhereTheWindowIsTooSmall) {
+  MakePlanner();
+  const SearchPlan plan = PlanOne(Pair(0, 0, 200, 3.));
+  EXPECT_TRUE(plan.full_submap);
+  // 15 m and three times the square root of two.
+  EXPECT_FALSE(PlanOne(Pair(1, 0, 200, 19.)).out_of_reach);
+  EXPECT_TRUE(PlanOne(Pair(2, 0, 200, 19.3)).out_of_reach);
+  options_.set_global_search(false);
+  MakePlanner();
+  const SearchPlan bounded = PlanOne(Pair(0, 0, 200, 3.));
+  EXPECT_FALSE(bounded.full_submap);
+  EXPECT_EQ(bounded.linear_window, 4.);
+}
+
+TEST_F(SearchPlannerTest, WithoutAnchorTheDefaultWindowHolds) {
+  MakePlanner();
+  SearchPair pair = Pair(0, 0, 100, 3.);
+  pair.anchor.reset();
+  const SearchPlan plan = PlanOne(pair);
+  EXPECT_EQ(plan.linear_window, 7.);
+  EXPECT_EQ(plan.angular_window, 0.5);
+  EXPECT_EQ(plan.translation_sigma, 0.);
+  pair.predicted.x = 15.1;
+  EXPECT_TRUE(PlanOne(pair).out_of_reach);
+}
+
+TEST_F(SearchPlannerTest, SkipsWhatTellsNothingNew) {
+  MakePlanner();
+  EXPECT_EQ(PlanOne(Pair(0, 0, 2, 2.)).skipped,
+            LoopDecision::SKIPPED_UNINFORMATIVE);
+  EXPECT_EQ(PlanOne(Pair(0, 0, 3, 3.)).skipped, LoopDecision::NONE);
+}
+
+TEST_F(SearchPlannerTest, SpacesSearchesOfASubmap) {
+  MakePlanner();
+  EXPECT_EQ(PlanOne(Pair(0, 0, 100, 3.)).skipped, LoopDecision::NONE);
+  EXPECT_EQ(PlanOne(Pair(0, 0, 101, 3.)).skipped,
+            LoopDecision::SKIPPED_SPACING);
+  EXPECT_EQ(PlanOne(Pair(0, 0, 99, 3.)).skipped, LoopDecision::SKIPPED_SPACING);
+  EXPECT_EQ(PlanOne(Pair(1, 0, 101, 3.)).skipped, LoopDecision::NONE);
+  EXPECT_EQ(PlanOne(Pair(0, 0, 102, 3.)).skipped, LoopDecision::NONE);
+  planner_->DeleteSubmap(0, 0);
+  EXPECT_EQ(PlanOne(Pair(0, 0, 101, 3.)).skipped, LoopDecision::NONE);
+}
+
+TEST_F(SearchPlannerTest, AcceptedLoopsNarrowTheWindowAndRestTheSubmap) {
+  MakePlanner();
+  uncertainty::LoopEdge loop;
+  loop.a = uncertainty::NodeId{0, 10};
+  loop.b = uncertainty::NodeId{0, 150};
+  loop.pose.covariance = LoopCovariance();
+  planner_->AddAcceptedLoop(0, 7, loop, 0);
+  // 10 m before the loop, 9 m behind it, and the loop itself.
+  const SearchPlan plan = PlanOne(Pair(1, 0, 159, 3.));
+  EXPECT_NEAR(plan.translation_sigma, std::sqrt(0.1 + 0.09 + 0.01), 1e-12);
+  EXPECT_EQ(PlanOne(Pair(7, 10, 154, 3.)).skipped,
+            LoopDecision::SKIPPED_REDUNDANT);
+  EXPECT_EQ(PlanOne(Pair(7, 10, 155, 3.)).skipped, LoopDecision::NONE);
+}
+
+TEST_F(SearchPlannerTest, AfterSomeTimeASubmapIsSearchedAgain) {
+  options_.set_redundant_time(10.);
+  MakePlanner();
+  SearchPair pair = Pair(0, 0, 100, 3.);
+  pair.node_time = 1000000000;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
+  pair.node.node_index = 101;
+  pair.node_time += 100000000;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_SPACING);
+  pair.node_time += 1;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
+
+  uncertainty::LoopEdge loop;
+  loop.a = uncertainty::NodeId{0, 10};
+  loop.b = uncertainty::NodeId{0, 150};
+  loop.pose.covariance = LoopCovariance();
+  planner_->AddAcceptedLoop(0, 7, loop, 1000000000);
+  pair = Pair(7, 10, 153, 3.);
+  pair.node_time = 1100000000;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_REDUNDANT);
+  pair.node_time = 1100000001;
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
+}
+
+TEST_F(SearchPlannerTest, CapsTheSearchesOfANode) {
+  MakePlanner();
+  // Of equal uncertainty; the nearest are the most promising.
+  const std::vector<SearchPlan> plans =
+      planner_->Plan({Pair(0, 0, 100, 14.), Pair(1, 0, 100, 2.),
+                      Pair(2, 0, 100, 12.), Pair(3, 0, 100, 1.)});
+  EXPECT_EQ(plans[0].skipped, LoopDecision::SKIPPED_BUDGET);
+  EXPECT_EQ(plans[1].skipped, LoopDecision::NONE);
+  EXPECT_EQ(plans[2].skipped, LoopDecision::SKIPPED_BUDGET);
+  EXPECT_EQ(plans[3].skipped, LoopDecision::NONE);
+  // What was left out may be searched from the next node.
+  EXPECT_EQ(PlanOne(Pair(0, 0, 101, 14.)).skipped, LoopDecision::NONE);
+}
+
+TEST_F(SearchPlannerTest, OneWholeSubmapANode) {
+  MakePlanner();
+  const std::vector<SearchPlan> plans =
+      planner_->Plan({Pair(0, 0, 200, 3.), Pair(1, 0, 200, 3.)});
+  EXPECT_EQ(plans[0].skipped, LoopDecision::NONE);
+  EXPECT_EQ(plans[1].skipped, LoopDecision::SKIPPED_BUDGET);
+}
+
+TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
+  // Run 1 in the map of run 0.
+  const uncertainty::SubmapId submap{0, 0};
+  paths_.Add(submap, Pose2());
+  for (int i = 0; i <= 20; ++i)
+    paths_.Add(uncertainty::NodeId{1, i}, Pose2(i, 0., 0.));
+  options_.set_search_spacing(0.);
+  MakePlanner();
+  SearchPair pair;
+  pair.anchor = submap;
+  pair.node = uncertainty::NodeId{1, 16};
+  // Nothing is known about it.
+  EXPECT_EQ(PlanOne(pair).linear_window, 7.);
+  uncertainty::LoopEdge loop;
+  loop.a = submap;
+  loop.b = uncertainty::NodeId{1, 10};
+  loop.pose.covariance = LoopCovariance();
+  planner_->AddAcceptedLoop(0, 0, loop, 0);
+  pair.node = uncertainty::NodeId{1, 20};
+  EXPECT_LT(PlanOne(pair).linear_window, 2.);
+  // Not up to there, or of another map.
+  planner_->ForgetLoops(1, 0, 9);
+  planner_->ForgetLoops(1, 3, 30);
+  planner_->ForgetLoops(2, 0, 30);
+  pair.node = uncertainty::NodeId{1, 17};
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
+  pair.node = uncertainty::NodeId{1, 12};
+  EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_REDUNDANT);
+  planner_->ForgetLoops(1, 0, 10);
+  const SearchPlan plan = PlanOne(pair);
+  EXPECT_EQ(plan.skipped, LoopDecision::NONE);
+  EXPECT_EQ(plan.linear_window, 7.);
+}
+
+}  // namespace
+}  // namespace loop_closure
+}  // namespace cartographer_ext

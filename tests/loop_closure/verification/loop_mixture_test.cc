@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/verification/loop_mixture.h"
+
+#include <cmath>
+
+#include "Eigen/LU"
+#include "cartographer_ext/common/random.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+// The temporal score of a coordinate.
+double Score(const double coordinate) { return 1.02 - std::exp(-coordinate); }
+
+TEST(LoopMixtureTest, CoordinateByHand) {
+  EXPECT_NEAR(TemporalCoordinate(0.52), std::log(2.), 1e-12);
+  EXPECT_NEAR(TemporalCoordinate(1.), std::log(50.), 1e-12);
+  EXPECT_EQ(TemporalCoordinate(1.5), TemporalCoordinate(1.));
+  EXPECT_NEAR(TemporalCoordinate(Score(1.7)), 1.7, 1e-12);
+}
+
+TEST(LoopMixtureTest, DensityByHand) {
+  MixtureComponent component;
+  component.weight = 0.5;
+  component.covariance = Eigen::Vector2d(0.04, 0.01).asDiagonal();
+  // log(0.5) - log(2 pi 0.2 0.1) - (0.2^2 / 0.04 + 0.1^2 / 0.01) / 2
+  EXPECT_NEAR(LogWeightedDensity(component, Eigen::Vector2d(0.2, 0.1)),
+              std::log(0.5) - std::log(2. * M_PI * 0.2 * 0.1) - 1., 1e-12);
+}
+
+TEST(LoopMixtureTest, RecoversTwoPopulationsAndIsCalibrated) {
+  Random random(3);
+  LoopMixtureOptions options;
+  options.capacity = 20000;
+  // A strong prior biases the tails, where the probabilities are decided.
+  options.prior_strength = 2.;
+  LoopMixture mixture(options);
+  const auto draw = [&random](const bool is_true) {
+    return is_true ? Eigen::Vector2d(random.Normal(0.75, 0.05),
+                                     Score(random.Normal(2.9, 0.4)))
+                   : Eigen::Vector2d(random.Normal(0.58, 0.06),
+                                     Score(random.Normal(1.4, 0.5)));
+  };
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector2d s = draw(random.Uniform() < 0.3);
+    mixture.Add(s.x(), s.y());
+  }
+  EXPECT_GT(mixture.Fit(), 1);
+  EXPECT_NEAR(mixture.components()[1].weight, 0.3, 0.03);
+  EXPECT_NEAR(mixture.components()[1].mean.x(), 0.75, 0.01);
+  EXPECT_NEAR(mixture.components()[0].mean.y(), 1.4, 0.05);
+  // Reliability: of the candidates given probability p, p are true.
+  double predicted = 0., actual = 0.;
+  int count = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const bool is_true = random.Uniform() < 0.3;
+    const Eigen::Vector2d s = draw(is_true);
+    const double p = mixture.ProbabilityTrue(s.x(), s.y());
+    ASSERT_GE(p, 0.);
+    ASSERT_LE(p, 1.);
+    if (p > 0.2 && p < 0.8) {
+      predicted += p;
+      actual += is_true;
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 200);
+  EXPECT_NEAR(predicted / count, actual / count, 0.05);
+}
+
+TEST(LoopMixtureTest, OnePopulationKeepsTheOrderOfTheComponents) {
+  LoopMixture mixture((LoopMixtureOptions()));
+  for (int i = 0; i < 300; ++i) mixture.Add(0.6, 0.7);
+  mixture.Fit();
+  EXPECT_GE(mixture.components()[1].mean.x(), mixture.components()[0].mean.x());
+  EXPECT_GE(mixture.components()[1].mean.y(), mixture.components()[0].mean.y());
+  EXPECT_GT(mixture.components()[0].covariance.determinant(), 0.);
+  EXPECT_TRUE(std::isfinite(mixture.ProbabilityTrue(1e3, -1e3)));
+}
+
+TEST(LoopMixtureTest, MemoryIsBounded) {
+  LoopMixtureOptions options;
+  options.capacity = 10;
+  LoopMixture mixture(options);
+  EXPECT_EQ(mixture.Fit(), 0);
+  for (int i = 0; i < 100; ++i) mixture.Add(0.5, 0.5);
+  EXPECT_EQ(mixture.size(), 10);
+}
+
+}  // namespace
+}  // namespace loop_closure
+}  // namespace cartographer_ext
