@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation
+// LINK: experiments
 //
 // Compares the scan matchers, the host's and ours, with golden vectors taken
 // from the real Cartographer, and times them.
@@ -13,7 +13,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/progress.h"
-#include "cartographer_ext/evaluation/golden_search.h"
+#include "cartographer_ext/experiments/golden_search.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"

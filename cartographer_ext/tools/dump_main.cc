@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation
+// LINK: map
 //
 // cartographer_ext_dump: what is in a .pbstream, is it whole, how do two
 // differ?
@@ -10,8 +10,9 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
-#include "cartographer_ext/evaluation/pbstream_inspection.h"
 #include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/map/pbstream_difference.h"
+#include "cartographer_ext/map/pbstream_inspection.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation
+// LINK: verdict
 //
 // cartographer_ext_evaluate_localization: did the robot know where it was?
 #include <iostream>
@@ -12,11 +12,11 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_ext/evaluation/evaluation_report.h"
-#include "cartographer_ext/evaluation/localization_metrics.h"
-#include "cartographer_ext/evaluation/trajectory.h"
-#include "cartographer_ext/evaluation/trajectory_metrics.h"
 #include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/map/verdict/evaluation_report.h"
+#include "cartographer_ext/metrics/localization_metrics.h"
+#include "cartographer_ext/metrics/trajectory.h"
+#include "cartographer_ext/metrics/trajectory_metrics.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"

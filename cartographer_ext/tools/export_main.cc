@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation
+// LINK: slam_library verdict
 //
 // cartographer_ext_export: gets things out of a .pbstream.
 #include <iostream>
@@ -11,20 +11,20 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/common/atomic_file.h"
-#include "cartographer_ext/evaluation/decision_table.h"
-#include "cartographer_ext/evaluation/map_graph.h"
-#include "cartographer_ext/evaluation/map_picture.h"
-#include "cartographer_ext/evaluation/match_files.h"
-#include "cartographer_ext/evaluation/pbstream_map.h"
-#include "cartographer_ext/evaluation/pbstream_optimization.h"
-#include "cartographer_ext/evaluation/pose_graph_export.h"
-#include "cartographer_ext/evaluation/switched_constraints.h"
 #include "cartographer_ext/io/g2o.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/map/map_picture.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/pbstream_optimization.h"
+#include "cartographer_ext/map/pose_graph_export.h"
+#include "cartographer_ext/map/switched_constraints.h"
+#include "cartographer_ext/map/verdict/decision_table.h"
+#include "cartographer_ext/slam/match_files.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation
+// LINK: experiments
 //
 // cartographer_ext_label_loops: which loop candidates are true, and do the
 // scores know?
@@ -15,17 +15,17 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_ext/common/atomic_file.h"
-#include "cartographer_ext/evaluation/decision_files.h"
-#include "cartographer_ext/evaluation/host_map.h"
-#include "cartographer_ext/evaluation/labelled_loops.h"
-#include "cartographer_ext/evaluation/loop_statistics.h"
-#include "cartographer_ext/evaluation/open_recording.h"
-#include "cartographer_ext/evaluation/pbstream_map.h"
-#include "cartographer_ext/evaluation/slam_configuration.h"
-#include "cartographer_ext/evaluation/slam_runner.h"
+#include "cartographer_ext/configuration/slam_configuration.h"
+#include "cartographer_ext/experiments/labelled_loops.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/io/relations_file.h"
 #include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/map/host_map.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/verdict/loop_statistics.h"
+#include "cartographer_ext/slam/decision_files.h"
+#include "cartographer_ext/slam/open_recording.h"
+#include "cartographer_ext/slam/slam_runner.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation optimization
+// LINK: experiments
 //
 // cartographer_ext_optimize: solves a pose graph whose loops may be wrong.
 #include <iostream>
@@ -14,16 +14,16 @@
 #include "absl/strings/str_join.h"
 #include "absl/types/optional.h"
 #include "cartographer_ext/common/atomic_file.h"
-#include "cartographer_ext/evaluation/pbstream_map.h"
-#include "cartographer_ext/evaluation/pbstream_optimization.h"
-#include "cartographer_ext/evaluation/wrong_loops.h"
+#include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/pbstream_optimization.h"
+#include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/graph_metrics.h"
 #include "cartographer_ext/optimization/optimize.h"
 #include "cartographer_ext/tools/command_line.h"
-#include "cartographer_ext/tools/pose_graph_files.h"
 #include "gflags/gflags.h"
 
 DEFINE_string(input_filename, "", "Graph: .g2o (also .gz, .xz) or .pbstream.");
@@ -97,7 +97,7 @@ absl::StatusOr<Input> ReadInput() {
           "-drop_loops and -wrong_loops need a pbstream; for a g2o file "
           "cartographer_ext_robustness adds wrong loops");
     }
-    auto graph = tools::ReadPoseGraph(FLAGS_input_filename);
+    auto graph = evaluation::ReadPoseGraph(FLAGS_input_filename);
     if (!graph.ok()) return graph.status();
     input.graph = *std::move(graph);
     return input;
@@ -150,8 +150,8 @@ absl::Status WriteOutput(const Input& input,
     return WriteTum(input, result.poses);
   }
   if (!absl::EndsWith(FLAGS_output_filename, ".pbstream")) {
-    return tools::WritePoseGraph(input.graph, result.poses,
-                                 FLAGS_output_filename);
+    return evaluation::WritePoseGraph(input.graph, result.poses,
+                                      FLAGS_output_filename);
   }
   if (!input.pbstream.has_value()) {
     return absl::InvalidArgumentError(
@@ -234,8 +234,8 @@ absl::Status Run() {
   }
   nlohmann::ordered_json json = Report(input->graph, *result);
   if (!FLAGS_truth_filename.empty()) {
-    const auto truth =
-        tools::ReadTruth(input->graph, result->poses, FLAGS_truth_filename);
+    const auto truth = evaluation::ReadTruth(input->graph, result->poses,
+                                             FLAGS_truth_filename);
     if (!truth.ok()) return truth.status();
     json["ate"] = {
         {"rmse", optimization::AbsoluteTrajectoryError(result->poses, *truth)}};
@@ -244,11 +244,12 @@ absl::Status Run() {
   }
   absl::Status status = WriteOutput(*input, *result);
   if (status.ok() && !FLAGS_verdicts_filename.empty()) {
-    status = WriteFileAtomically(FLAGS_verdicts_filename,
-                                 tools::VerdictTable(input->graph, *result));
+    status =
+        WriteFileAtomically(FLAGS_verdicts_filename,
+                            evaluation::VerdictTable(input->graph, *result));
   }
   if (status.ok() && !FLAGS_picture_filename.empty()) {
-    status = tools::WriteComparisonPicture(
+    status = evaluation::WriteComparisonPicture(
         input->graph, *result,
         absl::StrCat(tools::BaseName(FLAGS_input_filename), ", ", FLAGS_kernel),
         FLAGS_picture_filename);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation options
+// LINK: configuration options
 //
 // cartographer_ext_print_options: what do our blocks of a configuration mean,
 // and what else could they say?
@@ -10,8 +10,8 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_ext/evaluation/option_blocks.h"
-#include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/configuration/option_blocks.h"
+#include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/options/option_printing.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"

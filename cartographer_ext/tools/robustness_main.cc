@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: optimization io
+// LINK: experiments
 //
 // cartographer_ext_robustness: how many wrong loops does a back end survive?
 #include <iostream>
@@ -10,10 +10,10 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "cartographer_ext/experiments/paper_tables.h"
+#include "cartographer_ext/experiments/robustness_report.h"
+#include "cartographer_ext/experiments/robustness_sweep.h"
 #include "cartographer_ext/tools/command_line.h"
-#include "cartographer_ext/tools/paper_tables.h"
-#include "cartographer_ext/tools/robustness_report.h"
-#include "cartographer_ext/tools/robustness_sweep.h"
 #include "gflags/gflags.h"
 
 DEFINE_string(preset, "",
@@ -122,7 +122,7 @@ std::vector<std::string> Words(const std::string& text) {
 }
 
 absl::Status Run() {
-  tools::SweepOptions options;
+  experiments::SweepOptions options;
   options.data_directory = FLAGS_data_directory;
   options.datasets = Words(FLAGS_datasets);
   options.kernels = Words(FLAGS_kernels);
@@ -162,30 +162,32 @@ absl::Status Run() {
   const absl::Status writable =
       tools::CheckWritable({FLAGS_picture_filename, FLAGS_json});
   if (!writable.ok()) return writable;
-  const auto runs = tools::RunSweep(options);
+  const auto runs = experiments::RunSweep(options);
   if (!runs.ok()) return runs.status();
-  const std::vector<tools::SweepCell> cells = tools::Summarize(*runs);
+  const std::vector<experiments::SweepCell> cells =
+      experiments::Summarize(*runs);
   if (FLAGS_json != "-") {
-    std::cout << tools::SweepTable(cells);
+    std::cout << experiments::SweepTable(cells);
     if (FLAGS_preset == "a_table_2") {
       for (const char* kernel : {"acs", "acs_paper"}) {
         std::cout << "\n"
-                  << tools::PrintedComparison(cells, tools::AcsTable2(),
-                                              kernel);
+                  << experiments::PrintedComparison(
+                         cells, experiments::AcsTable2(), kernel);
       }
     } else if (FLAGS_preset == "r_table_2") {
       std::cout
           << "\n(ratio ours: SC's one solution over all steps of R-iSAM)\n"
-          << tools::PrintedComparison(cells, tools::RIsamTable2(), "r_isam");
+          << experiments::PrintedComparison(cells, experiments::RIsamTable2(),
+                                            "r_isam");
     }
   }
   if (!FLAGS_picture_filename.empty()) {
     const absl::Status status =
-        tools::WriteSweepPlot(cells, FLAGS_picture_filename);
+        experiments::WriteSweepPlot(cells, FLAGS_picture_filename);
     if (!status.ok()) return status;
   }
   if (!FLAGS_json.empty()) {
-    return tools::WriteJson(tools::SweepJson(*runs), FLAGS_json);
+    return tools::WriteJson(experiments::SweepJson(*runs), FLAGS_json);
   }
   return absl::OkStatus();
 }

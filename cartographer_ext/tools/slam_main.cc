@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: evaluation
+// LINK: experiments
 //
 // cartographer_ext_slam: a recording in, a map and numbers out.
 #include <malloc.h>
@@ -20,22 +20,23 @@
 #include "absl/strings/str_split.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
-#include "cartographer_ext/evaluation/decision_files.h"
-#include "cartographer_ext/evaluation/decision_table.h"
-#include "cartographer_ext/evaluation/host_map.h"
-#include "cartographer_ext/evaluation/map_picture.h"
-#include "cartographer_ext/evaluation/match_files.h"
-#include "cartographer_ext/evaluation/open_recording.h"
-#include "cartographer_ext/evaluation/pbstream_map.h"
-#include "cartographer_ext/evaluation/pbstream_optimization.h"
-#include "cartographer_ext/evaluation/slam_configuration.h"
-#include "cartographer_ext/evaluation/slam_runner.h"
-#include "cartographer_ext/evaluation/switched_constraints.h"
+#include "cartographer_ext/configuration/slam_configuration.h"
+#include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/loop_closure/decision_log.h"
+#include "cartographer_ext/map/host_map.h"
+#include "cartographer_ext/map/map_picture.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/pbstream_optimization.h"
+#include "cartographer_ext/map/switched_constraints.h"
+#include "cartographer_ext/map/verdict/decision_table.h"
+#include "cartographer_ext/slam/decision_files.h"
+#include "cartographer_ext/slam/match_files.h"
+#include "cartographer_ext/slam/open_recording.h"
+#include "cartographer_ext/slam/slam_runner.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
@@ -180,10 +181,11 @@ std::string ToText(const evaluation::SlamRun& run) {
 }
 
 // Of the wrong loops that were injected.
-int CountSwitchedOff(const evaluation::SlamRun& run) {
-  evaluation::MapGraph injected;
-  injected.constraints = run.wrong_loops;
-  return evaluation::MarkSwitchedOff(run.switched_loops.off, &injected).size();
+int CountSwitchedOff(const evaluation::SlamRun& run,
+                     const std::vector<evaluation::GraphConstraint>& injected) {
+  evaluation::MapGraph graph;
+  graph.constraints = injected;
+  return evaluation::MarkSwitchedOff(run.switched_loops.off, &graph).size();
 }
 
 // Leaves the loops that were switched off out of a map just written.
@@ -263,10 +265,6 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
       {"loops_switched_off", switched.off.size()},
       {"selection_cpu_seconds", switched.selection_cpu_seconds},
       {"solution_cpu_seconds", switched.solution_cpu_seconds}};
-  if (FLAGS_wrong_loops > 0) {
-    json["wrong_loops"] = {{"injected", run.wrong_loops.size()},
-                           {"switched_off", CountSwitchedOff(run)}};
-  }
   json["metrics"] = run.metrics;
   json["warnings"] = run.warnings;
   return json;
@@ -384,8 +382,12 @@ absl::Status Run() {
   evaluation::SlamRunOptions run_options;
   run_options.state = *std::move(state);
   run_options.num_background_threads = FLAGS_num_background_threads;
-  run_options.wrong_loops.count = FLAGS_wrong_loops;
-  run_options.wrong_loops.seed = FLAGS_wrong_loops_seed;
+  evaluation::WrongLoopOptions wrong_loops;
+  wrong_loops.count = FLAGS_wrong_loops;
+  wrong_loops.seed = FLAGS_wrong_loops_seed;
+  evaluation::WrongLoopInjector injector(evaluation::WithLoopWeights(
+      configuration->map_builder_options, wrong_loops));
+  if (FLAGS_wrong_loops > 0) run_options.after_scan = injector.Callback();
   run_options.on_progress = [&](const evaluation::SlamProgress& now) {
     if (now.stage == evaluation::SlamProgress::Stage::kOptimizing) {
       progress->Update(now.total_scans, "closing loops, last optimisation");
@@ -410,7 +412,13 @@ absl::Status Run() {
   if (!written.ok()) return written;
   out << ToText(*run);
   if (FLAGS_json.empty()) return absl::OkStatus();
-  return tools::WriteJson(ToJson(*run), FLAGS_json);
+  nlohmann::ordered_json json = ToJson(*run);
+  if (FLAGS_wrong_loops > 0) {
+    json["wrong_loops"] = {
+        {"injected", injector.injected().size()},
+        {"switched_off", CountSwitchedOff(*run, injector.injected())}};
+  }
+  return tools::WriteJson(json, FLAGS_json);
 }
 
 }  // namespace

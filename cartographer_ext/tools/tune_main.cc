@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: tuning evaluation
+// LINK: tuning
 //
 // cartographer_ext_tune: a configuration that suits the recordings.
 #include <algorithm>

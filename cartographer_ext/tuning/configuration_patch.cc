@@ -10,8 +10,8 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_ext/evaluation/lua_value.h"
-#include "cartographer_ext/evaluation/option_blocks.h"
+#include "cartographer_ext/configuration/lua_value.h"
+#include "cartographer_ext/configuration/option_blocks.h"
 #include "cartographer_ext/options/option_description.h"
 
 namespace cartographer_ext {

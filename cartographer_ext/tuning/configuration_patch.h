@@ -17,7 +17,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "cartographer_ext/evaluation/slam_configuration.h"
+#include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/tuning/parameter_space.h"
 
 namespace cartographer_ext {

@@ -12,7 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_ext/evaluation/lua_value.h"
+#include "cartographer_ext/configuration/lua_value.h"
 
 namespace cartographer_ext {
 namespace tuning {

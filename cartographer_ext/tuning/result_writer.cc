@@ -10,7 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "absl/types/optional.h"
-#include "cartographer_ext/evaluation/lua_value.h"
+#include "cartographer_ext/configuration/lua_value.h"
 #include "cartographer_ext/tuning/comparable_trials.h"
 #include "cartographer_ext/tuning/sensitivity.h"
 

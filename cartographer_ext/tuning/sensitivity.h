@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which keys matter? From the trials of a search, whatever sampler chose them.
-// Objectives are replaced by their ranks first, because a folded map is off by
-// a hundred times more than a good one and would decide alone.
+// Which keys matter? Computed from the trials of a search, whatever sampler
+// chose them. Objectives are replaced by their ranks first, because a folded
+// map is off by a hundred times more than a good one and would dominate.
 //
 // * effect: share of the variance of the ranks that the value of this key
 //   explains, by the means over quarters of its range (or its choices); the
-//   correlation ratio. What that many groups explain by chance is taken off.
-// * trend: rank correlation of value and objective (Spearman), -1 to 1.
-// Positive:
-//   larger values are worse.
+//   correlation ratio, corrected for what that many groups explain by chance.
+// * trend: rank correlation of value and objective (Spearman), -1 to 1; with a
+//   positive trend larger values are worse.
 #ifndef CARTOGRAPHER_EXT_TUNING_SENSITIVITY_H_
 #define CARTOGRAPHER_EXT_TUNING_SENSITIVITY_H_
 

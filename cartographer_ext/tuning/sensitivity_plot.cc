@@ -13,7 +13,7 @@
 #include "cairo-svg.h"
 #include "cairo.h"
 #include "cartographer_ext/common/atomic_file.h"
-#include "cartographer_ext/evaluation/lua_value.h"
+#include "cartographer_ext/configuration/lua_value.h"
 #include "cartographer_ext/io/picture.h"
 #include "cartographer_ext/tuning/comparable_trials.h"
 #include "cartographer_ext/tuning/sensitivity.h"

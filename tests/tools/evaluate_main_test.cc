@@ -3,9 +3,9 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
-#include "cartographer_ext/evaluation/trajectory.h"
 #include "cartographer_ext/io/relations_file.h"
 #include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/metrics/trajectory.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/tools/run_command.h"

@@ -7,7 +7,7 @@
 #include "cartographer_ext/io/pbstream_reader.h"
 #include "cartographer_ext/io/pbstream_writer.h"
 #include "gmock/gmock.h"
-#include "tests/evaluation/square_map.h"
+#include "tests/map/square_map.h"
 #include "tests/tools/run_command.h"
 
 namespace cartographer_ext {

@@ -21,7 +21,7 @@
 #include "cartographer_ext/io/carmen_writer.h"
 #include "gtest/gtest.h"
 #include "nlohmann/json.hpp"
-#include "tests/evaluation/room_source.h"
+#include "tests/slam/room_source.h"
 
 namespace cartographer_ext {
 namespace test {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/objective.h"
 
-#include "cartographer_ext/evaluation/lua_value.h"
+#include "cartographer_ext/configuration/lua_value.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Lua code to plain values. The host's parameter dictionary ends the program
+// when something is wrong and wants every key read once; a search wants to look
+// at a configuration and to tell the user what is wrong with his search file.
+#ifndef CARTOGRAPHER_EXT_CONFIGURATION_LUA_VALUE_H_
+#define CARTOGRAPHER_EXT_CONFIGURATION_LUA_VALUE_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// Runs `code`, which is called `name` in messages, and returns the value that
+// it returns: a table with keys 1 to n as an array, one with string keys as an
+// object in alphabetical order, an empty table as an empty object. The code has
+// the standard libraries and include, read and choose as configurations have;
+// files are searched in `directories`, the first that has one wins.
+//
+// Errors are InvalidArgument and name file and line where Lua does: code that
+// does not compile or fails, a missing file, a result with functions or mixed
+// keys, more than 10^9 instructions.
+absl::StatusOr<nlohmann::json> EvaluateLua(
+    const std::string& code, const std::string& name,
+    const std::vector<std::string>& directories);
+
+// The content of the first file of that name in the directories.
+absl::StatusOr<std::string> ReadFromDirectories(
+    const std::string& basename, const std::vector<std::string>& directories);
+
+// A scalar as Lua text that reads back as the same value: true, 90, 0.55, 10.,
+// "auto".
+std::string ToLua(const nlohmann::json& value);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_CONFIGURATION_LUA_VALUE_H_

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A configuration file as the commands take it: Lua that returns
+//   { map_builder = MAP_BUILDER, trajectory_builder = TRAJECTORY_BUILDER }
+// and, if it likes, two more kinds of keys:
+//   sensors = { use_odometry = true, odometry_source = "auto",
+//               min_range = 0., max_range = 80., tracking_frame = "base_link" }
+//     all of them optional: what of a recording is used. Ranges outside the
+//     limits (metres) are dropped before local SLAM sees them.
+//   the keys of a ROS node's file (map_frame, num_laser_scans, ...): such files
+//     can be used as they are. Of these only use_odometry and tracking_frame
+//     mean anything here.
+#ifndef CARTOGRAPHER_EXT_CONFIGURATION_SLAM_CONFIGURATION_H_
+#define CARTOGRAPHER_EXT_CONFIGURATION_SLAM_CONFIGURATION_H_
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer/mapping/proto/map_builder_options.pb.h"
+#include "cartographer/mapping/proto/trajectory_builder_options.pb.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+struct SensorSettings {
+  bool use_odometry = true;
+  // Of CARMEN logs, see io::SensorSourceOptions.
+  std::string odometry_source = "auto";
+  double min_range = 0.;                                       // metres
+  double max_range = std::numeric_limits<double>::infinity();  // metres
+  std::string tracking_frame = "base_link";
+};
+
+struct SlamConfiguration {
+  std::string name;  // of the file
+  cartographer::mapping::proto::MapBuilderOptions map_builder_options;
+  cartographer::mapping::proto::TrajectoryBuilderOptions
+      trajectory_builder_options;
+  SensorSettings sensors;
+};
+
+// Reads `basename` and what it includes from the directories, the first that
+// has a file wins. Everything the host would end the program for becomes an
+// InvalidArgument error that names the file and the key; see fatal_guard.h for
+// what that asks of the caller.
+absl::StatusOr<SlamConfiguration> LoadSlamConfiguration(
+    const std::vector<std::string>& directories, const std::string& basename);
+
+// The same for Lua code at hand, which is called `name` in messages.
+absl::StatusOr<SlamConfiguration> ParseSlamConfiguration(
+    const std::vector<std::string>& directories, const std::string& name,
+    const std::string& code);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_CONFIGURATION_SLAM_CONFIGURATION_H_

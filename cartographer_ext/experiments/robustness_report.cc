@@ -1,0 +1,253 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/experiments/robustness_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_ext/io/picture.h"
+
+namespace cartographer_ext {
+namespace experiments {
+namespace {
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0.;
+  std::sort(values.begin(), values.end());
+  const size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half]
+                                : 0.5 * (values[half - 1] + values[half]);
+}
+
+template <typename Member>
+double MedianOf(const std::vector<const SweepRun*>& runs, Member member) {
+  std::vector<double> values;
+  for (const SweepRun* const run : runs) values.push_back(run->*member);
+  return Median(values);
+}
+
+const SweepCell* Find(const std::vector<SweepCell>& cells,
+                      const PrintedRow& row, const std::string& kernel) {
+  for (const SweepCell& cell : cells) {
+    if (cell.dataset == row.dataset && cell.type == row.type &&
+        cell.count == row.count && cell.kernel == kernel) {
+      return &cell;
+    }
+  }
+  return nullptr;
+}
+
+std::string Number(const double value, const char* const format_unit) {
+  return value < 0. ? "-" : absl::StrFormat("%.3g%s", value, format_unit);
+}
+
+}  // namespace
+
+std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs) {
+  std::vector<SweepCell> cells;
+  std::map<std::string, size_t> index;
+  std::vector<std::vector<const SweepRun*>> members;
+  for (const SweepRun& run : runs) {
+    const std::string key = absl::StrCat(run.dataset, "|", run.kernel, "|",
+                                         run.type, "|", run.count);
+    if (index.emplace(key, cells.size()).second) {
+      SweepCell cell;
+      cell.dataset = run.dataset;
+      cell.kernel = run.kernel;
+      cell.type = run.type;
+      cell.count = run.count;
+      cells.push_back(cell);
+      members.emplace_back();
+    }
+    members[index[key]].push_back(&run);
+  }
+  for (size_t i = 0; i != cells.size(); ++i) {
+    SweepCell& cell = cells[i];
+    const std::vector<const SweepRun*>& of_cell = members[i];
+    cell.runs = of_cell.size();
+    cell.cpu_seconds = MedianOf(of_cell, &SweepRun::cpu_seconds);
+    cell.ate = MedianOf(of_cell, &SweepRun::ate);
+    cell.ate_truth = MedianOf(of_cell, &SweepRun::ate_truth);
+    cell.rpe = MedianOf(of_cell, &SweepRun::rpe);
+    cell.precision = MedianOf(of_cell, &SweepRun::precision);
+    cell.recall = MedianOf(of_cell, &SweepRun::recall);
+    cell.truncated = MedianOf(of_cell, &SweepRun::truncated);
+    cell.step_mean = MedianOf(of_cell, &SweepRun::step_mean);
+    cell.step_p99 = MedianOf(of_cell, &SweepRun::step_p99);
+    int successes = 0;
+    for (const SweepRun* const run : of_cell) {
+      cell.ate_largest = std::max(cell.ate_largest, run->ate);
+      cell.step_max = std::max(cell.step_max, run->step_max);
+      successes += run->success;
+      cell.unfinished += !run->converged;
+    }
+    cell.success_rate = static_cast<double>(successes) / cell.runs;
+  }
+  return cells;
+}
+
+std::string SweepTable(const std::vector<SweepCell>& cells) {
+  std::string table = absl::StrFormat(
+      "%-18s %-10s %-4s %6s %4s %9s %9s %9s %9s %7s %7s %8s\n", "data set",
+      "kernel", "type", "count", "runs", "cpu s", "ATE m", "worst m", "RPE m2",
+      "recall", "precis.", "success");
+  for (const SweepCell& cell : cells) {
+    absl::StrAppendFormat(
+        &table,
+        "%-18s %-10s %-4s %6d %4d %9.3f %9.4f %9.4f %9.2g %7.4f %7.4f "
+        "%7.0f%%",
+        cell.dataset, cell.kernel, cell.type, cell.count, cell.runs,
+        cell.cpu_seconds, cell.ate, cell.ate_largest, cell.rpe, cell.recall,
+        cell.precision, 100. * cell.success_rate);
+    if (cell.ate_truth >= 0.) {
+      absl::StrAppendFormat(&table, "  truth %.3f m", cell.ate_truth);
+    }
+    if (cell.step_mean > 0.) {
+      absl::StrAppendFormat(&table, "  step %.3f ms, p99 %.2f, max %.0f",
+                            cell.step_mean, cell.step_p99, cell.step_max);
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+std::string PrintedComparison(const std::vector<SweepCell>& cells,
+                              const std::vector<PrintedRow>& printed,
+                              const std::string& method) {
+  const bool is_step = method == "r_isam";
+  const char* const unit = is_step ? " ms" : " s";
+  std::string table =
+      absl::StrFormat("%-18s %-4s %6s | %9s %11s %7s | %9s %11s %7s\n",
+                      "data set", "type", "count", "SC ours", method + " ours",
+                      "ratio", "SC paper", "paper", "ratio");
+  for (const PrintedRow& row : printed) {
+    const SweepCell* const baseline = Find(cells, row, "sc");
+    const SweepCell* const ours = Find(cells, row, method);
+    if (ours == nullptr) continue;
+    const double value = is_step ? ours->step_mean : ours->cpu_seconds;
+    const double sc = baseline == nullptr ? -1. : baseline->cpu_seconds;
+    const double total = ours->cpu_seconds;
+    const char* const bound =
+        baseline != nullptr && 2 * baseline->unfinished >= baseline->runs ? ">"
+                                                                          : "";
+    absl::StrAppendFormat(
+        &table, "%-18s %-4s %6d | %9s %11s %7s | %9s %11s %7s\n", row.dataset,
+        row.type, row.count, bound + Number(sc, " s"), Number(value, unit),
+        bound + Number(sc < 0. ? -1. : sc / total, "x"),
+        Number(row.baseline, " s"), Number(row.method, unit),
+        is_step || row.baseline < 0. ? "-"
+                                     : Number(row.baseline / row.method, "x"));
+  }
+  return table;
+}
+
+nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs) {
+  nlohmann::ordered_json json;
+  json["runs"] = nlohmann::ordered_json::array();
+  for (const SweepRun& run : runs) json["runs"].push_back(ToJson(run));
+  json["cells"] = nlohmann::ordered_json::array();
+  for (const SweepCell& cell : Summarize(runs)) {
+    nlohmann::ordered_json out;
+    out["dataset"] = cell.dataset;
+    out["kernel"] = cell.kernel;
+    out["type"] = cell.type;
+    out["count"] = cell.count;
+    out["runs"] = cell.runs;
+    out["cpu_seconds"] = cell.cpu_seconds;
+    out["ate"] = cell.ate;
+    out["ate_largest"] = cell.ate_largest;
+    if (cell.ate_truth >= 0.) out["ate_truth"] = cell.ate_truth;
+    out["rpe"] = cell.rpe;
+    out["precision"] = cell.precision;
+    out["recall"] = cell.recall;
+    out["truncated"] = cell.truncated;
+    out["success_rate"] = cell.success_rate;
+    out["unfinished"] = cell.unfinished;
+    json["cells"].push_back(out);
+  }
+  return json;
+}
+
+absl::Status WriteSweepPlot(const std::vector<SweepCell>& cells,
+                            const std::string& filename) {
+  const io::Color kColors[] = {
+      io::palette::kVermilion, io::palette::kBlue,   io::palette::kGreen,
+      io::palette::kOrange,    io::palette::kPurple, io::palette::kSkyBlue,
+      io::palette::kYellow,    io::palette::kGrey,   io::palette::kBlack};
+  std::vector<std::string> panels, kernels;
+  int least = 1 << 30, most = 1;
+  for (const SweepCell& cell : cells) {
+    const std::string panel = cell.dataset + " " + cell.type;
+    if (std::find(panels.begin(), panels.end(), panel) == panels.end()) {
+      panels.push_back(panel);
+    }
+    if (std::find(kernels.begin(), kernels.end(), cell.kernel) ==
+        kernels.end()) {
+      kernels.push_back(cell.kernel);
+    }
+    least = std::min(least, std::max(cell.count, 1));
+    most = std::max(most, cell.count);
+  }
+  // A panel is a unit square; four of them to a row.
+  constexpr double kPitch = 1.3, kLow = -4., kHigh = 2.;  // log10 of metres
+  const int rows = (static_cast<int>(panels.size()) + 3) / 4;
+  io::PictureBounds bounds;
+  bounds.Add(Eigen::Vector2d(-0.2, -kPitch * rows + 0.2));
+  bounds.Add(Eigen::Vector2d(4. * kPitch, 1.2));
+  io::Picture picture(bounds, 2000);
+  const double span = std::log(std::max(1.001, 1. * most / least));
+  for (size_t p = 0; p != panels.size(); ++p) {
+    const Eigen::Vector2d corner(kPitch * (p % 4), -kPitch * (p / 4));
+    const auto place = [&](const int count, const double ate) {
+      const double y =
+          (std::log10(std::max(ate, 1e-4)) - kLow) / (kHigh - kLow);
+      return Eigen::Vector2d(
+          corner +
+          Eigen::Vector2d(std::log(std::max(count, 1) * 1. / least) / span,
+                          std::min(1., y)));
+    };
+    picture.DrawPolygon(
+        {corner, corner + Eigen::Vector2d(1., 0.),
+         corner + Eigen::Vector2d(1., 1.), corner + Eigen::Vector2d(0., 1.)},
+        {io::palette::kGrey, 1.}, {1., 1., 1., 0.});
+    for (int decade = -4; decade <= 2; decade += 2) {
+      const Eigen::Vector2d left = place(least, std::pow(10., decade));
+      picture.DrawLine(left, left + Eigen::Vector2d(1., 0.),
+                       {io::palette::kGrey, 0.5, true});
+      picture.DrawText(left - Eigen::Vector2d(0.16, 0.01),
+                       absl::StrFormat("1e%d m", decade), 14.,
+                       io::palette::kBlack);
+    }
+    picture.DrawText(corner + Eigen::Vector2d(0., 1.03),
+                     absl::StrCat("ATE, ", panels[p], ", ", least, " to ", most,
+                                  " outliers"),
+                     16., io::palette::kBlack);
+    for (size_t k = 0; k != kernels.size(); ++k) {
+      std::vector<std::pair<int, double>> values;
+      for (const SweepCell& cell : cells) {
+        if (cell.dataset + " " + cell.type == panels[p] &&
+            cell.kernel == kernels[k]) {
+          values.push_back({cell.count, cell.ate});
+        }
+      }
+      std::sort(values.begin(), values.end());
+      std::vector<Eigen::Vector2d> points;
+      for (const auto& value : values) {
+        points.push_back(place(value.first, value.second));
+        picture.DrawDot(points.back(), 4., kColors[k % 9]);
+      }
+      picture.DrawPolyline(points, {kColors[k % 9], 2.});
+    }
+  }
+  for (size_t k = 0; k != kernels.size(); ++k) {
+    picture.AddLegend(kernels[k], kColors[k % 9]);
+  }
+  return picture.Write(filename);
+}
+
+}  // namespace experiments
+}  // namespace cartographer_ext

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a sweep says: medians over seeds as a table, as JSON and as a plot.
+#ifndef CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_REPORT_H_
+#define CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_REPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "cartographer_ext/experiments/paper_tables.h"
+#include "cartographer_ext/experiments/robustness_sweep.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace experiments {
+
+// Runs that differ in their seed only; medians unless said otherwise.
+struct SweepCell {
+  std::string dataset, kernel, type;
+  int count = 0;
+  int runs = 0;
+  double cpu_seconds = 0., ate = 0., ate_largest = 0., ate_truth = -1.;
+  double rpe = 0., precision = 0., recall = 0., truncated = 0.;
+  double step_mean = 0., step_p99 = 0., step_max = 0.;  // ms; max: largest
+  double success_rate = 0.;
+  int unfinished = 0;  // runs that a limit of time or iterations ended
+};
+
+// In order of first appearance.
+std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs);
+
+std::string SweepTable(const std::vector<SweepCell>& cells);
+
+// Our times beside the printed ones, one line per printed row that was run: SC,
+// the method, and SC over the method, ours and theirs. SC's time is a lower
+// bound (>) where a limit ended at least half of its runs.
+std::string PrintedComparison(const std::vector<SweepCell>& cells,
+                              const std::vector<PrintedRow>& printed,
+                              const std::string& method);
+
+// "runs" (every run) and "cells" (Summarize).
+nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs);
+
+// Median ATE over the number of outliers, one panel per data set and type, one
+// line per kernel, both axes logarithmic.
+absl::Status WriteSweepPlot(const std::vector<SweepCell>& cells,
+                            const std::string& filename);
+
+}  // namespace experiments
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_REPORT_H_

@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/experiments/robustness_sweep.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/map/pose_graph_files.h"
+#include "cartographer_ext/optimization/graph_metrics.h"
+#include "cartographer_ext/optimization/outlier_generator.h"
+#include "cartographer_ext/optimization/robust_solver.h"
+
+namespace cartographer_ext {
+namespace experiments {
+namespace {
+
+using evaluation::ReadPoseGraph;
+using evaluation::ReadTruth;
+using optimization::PoseGraph;
+using optimization::PoseGraphEdge;
+
+struct Dataset {
+  std::string name;
+  PoseGraph graph;
+  std::vector<Pose2> optimum;  // without outliers
+  int num_loops = 0;
+};
+
+bool Exists(const std::string& path) {
+  struct stat unused;
+  return stat(path.c_str(), &unused) == 0;
+}
+
+absl::StatusOr<Dataset> LoadDataset(const SweepOptions& options,
+                                    const std::string& dataset) {
+  std::string filename = dataset;
+  for (const char* suffix : {".g2o.xz", ".g2o.gz", ".g2o"}) {
+    const std::string candidate =
+        absl::StrCat(options.data_directory, "/", dataset, suffix);
+    if (!Exists(filename) && Exists(candidate)) filename = candidate;
+  }
+  auto graph = ReadPoseGraph(filename);
+  if (!graph.ok()) return graph.status();
+  Dataset result;
+  result.name = DatasetName(dataset);
+  result.graph = *std::move(graph);
+  result.optimum = result.graph.poses;
+  optimization::SolverOptions solver;
+  solver.max_iterations = 500;
+  solver.cost_tolerance = 1e-10;
+  // Sets that come with wrong loops of their own have no plain optimum.
+  const bool own_outliers = options.truths.count(result.name) > 0;
+  if (own_outliers) {
+    optimization::OptimizeOptions automatic;
+    const auto best = optimization::Optimize(result.graph, automatic);
+    if (best.ok()) result.optimum = best->poses;
+  } else {
+    optimization::SolveRobust(optimization::Whiten(result.graph.edges), solver,
+                              &result.optimum);
+  }
+  for (const PoseGraphEdge& edge : result.graph.edges) {
+    result.num_loops += edge.is_loop;
+  }
+  return result;
+}
+
+absl::StatusOr<int> OutlierCount(const std::string& text, const int num_loops) {
+  absl::string_view number = text;
+  const bool is_percentage = absl::ConsumeSuffix(&number, "%");
+  double value;
+  if (!absl::SimpleAtod(number, &value) || !(value >= 0.) || value > 1e6 ||
+      (is_percentage && value > 99.)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "outlier count '", text, "' is neither a number nor at most 99%"));
+  }
+  if (!is_percentage) return static_cast<int>(value);
+  return static_cast<int>(std::lround(num_loops * value / (100. - value)));
+}
+
+std::string Key(const SweepRun& run) {
+  return absl::StrCat(run.dataset, "|", run.kernel, "|", run.type, "|",
+                      run.count, "|", run.seed);
+}
+
+absl::StatusOr<std::map<std::string, SweepRun>> ReadJournal(
+    const std::string& filename) {
+  std::map<std::string, SweepRun> result;
+  if (filename.empty()) return result;
+  std::ifstream stream(filename);
+  std::string line, whole_lines;
+  int number = 0;
+  while (std::getline(stream, line)) {
+    ++number;
+    SweepRun run;
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (json.is_discarded() && number > 1 && stream.peek() == EOF) {
+      // An interrupted write leaves half a line at the end.
+      const absl::Status status = WriteFileAtomically(filename, whole_lines);
+      if (!status.ok()) return status;
+      break;
+    }
+    if (json.is_discarded() || !FromJson(json, &run)) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          filename, ":", number, ": not a line of a robustness journal"));
+    }
+    result[Key(run)] = run;
+    absl::StrAppend(&whole_lines, line, "\n");
+  }
+  return result;
+}
+
+absl::Status RunOne(const SweepOptions& options, const Dataset& dataset,
+                    SweepRun* const run) {
+  PoseGraph graph = dataset.graph;
+  const size_t first_outlier = graph.edges.size();
+  if (run->type != "none") {
+    optimization::OutlierOptions outliers;
+    outliers.type = *optimization::OutlierTypeFromName(run->type);
+    outliers.count = run->count;
+    outliers.seed = run->seed;
+    outliers.group_size = options.group_size;
+    const auto edges = optimization::GenerateOutliers(graph, outliers);
+    if (!edges.ok()) return edges.status();
+    graph.edges.insert(graph.edges.end(), edges->begin(), edges->end());
+  }
+  optimization::OptimizeOptions optimize = options.optimize;
+  optimize.method = run->kernel;
+  const auto result = optimization::Optimize(graph, optimize);
+  if (!result.ok()) return result.status();
+  run->cpu_seconds = result->cpu_seconds;
+  run->iterations = result->iterations;
+  run->converged = result->converged;
+  run->ate =
+      optimization::AbsoluteTrajectoryError(result->poses, dataset.optimum);
+  run->rpe = optimization::RelativePoseError(graph.edges, result->poses,
+                                             dataset.optimum);
+  const optimization::LoopScore score =
+      optimization::ScoreLoops(optimization::Whiten(graph.edges), first_outlier,
+                               result->poses, dataset.optimum);
+  run->precision = score.precision;
+  run->recall = score.recall;
+  run->truncated = result->truncated_chi2;
+  run->selected_truncated = result->member.empty()
+                                ? result->truncated_chi2
+                                : result->member_truncated_chi2;
+  const std::vector<double>& steps = result->step_seconds;
+  if (!steps.empty()) {
+    run->step_mean =
+        1e3 * std::accumulate(steps.begin(), steps.end(), 0.) / steps.size();
+    run->step_p99 = 1e3 * optimization::Quantile(steps, 0.99);
+    run->step_max = 1e3 * optimization::Quantile(steps, 1.);
+  }
+  const auto truth = options.truths.find(dataset.name);
+  if (truth != options.truths.end()) {
+    const auto poses = ReadTruth(graph, result->poses, truth->second);
+    if (!poses.ok()) return poses.status();
+    run->ate_truth =
+        optimization::AbsoluteTrajectoryError(result->poses, *poses);
+  }
+  const auto limit = options.ate_limits.find(dataset.name);
+  run->success = run->ate <= (limit != options.ate_limits.end() ? limit->second
+                              : run->type[0] == 'L' ? options.ate_limit_local
+                                                    : options.ate_limit);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const SweepRun& run) {
+  nlohmann::ordered_json json;
+  json["dataset"] = run.dataset;
+  json["kernel"] = run.kernel;
+  json["type"] = run.type;
+  json["count"] = run.count;
+  json["requested_count"] = run.requested_count;
+  json["seed"] = run.seed;
+  json["cpu_seconds"] = run.cpu_seconds;
+  json["ate"] = run.ate;
+  json["ate_truth"] = run.ate_truth;
+  json["rpe"] = run.rpe;
+  json["precision"] = run.precision;
+  json["recall"] = run.recall;
+  json["truncated"] = run.truncated;
+  json["selected_truncated"] = run.selected_truncated;
+  json["iterations"] = run.iterations;
+  json["converged"] = run.converged;
+  if (run.kernel == "r_isam") {
+    json["step_milliseconds"] = {
+        {"mean", run.step_mean}, {"p99", run.step_p99}, {"max", run.step_max}};
+  }
+  json["success"] = run.success;
+  return json;
+}
+
+bool FromJson(const nlohmann::json& json, SweepRun* const run) {
+  if (!json.is_object()) return false;
+  for (const char* key : {"dataset", "kernel", "type", "requested_count"}) {
+    if (!json.contains(key) || !json[key].is_string()) return false;
+  }
+  for (const char* key :
+       {"count", "seed", "cpu_seconds", "ate", "ate_truth", "rpe", "precision",
+        "recall", "truncated", "selected_truncated", "iterations"}) {
+    if (!json.contains(key) || !json[key].is_number()) return false;
+  }
+  for (const char* key : {"converged", "success"}) {
+    if (!json.contains(key) || !json[key].is_boolean()) return false;
+  }
+  run->dataset = json["dataset"].get<std::string>();
+  run->kernel = json["kernel"].get<std::string>();
+  run->type = json["type"].get<std::string>();
+  run->requested_count = json["requested_count"].get<std::string>();
+  run->count = json["count"].get<int>();
+  run->seed = json["seed"].get<int>();
+  run->cpu_seconds = json["cpu_seconds"].get<double>();
+  run->ate = json["ate"].get<double>();
+  run->ate_truth = json["ate_truth"].get<double>();
+  run->rpe = json["rpe"].get<double>();
+  run->precision = json["precision"].get<double>();
+  run->recall = json["recall"].get<double>();
+  run->truncated = json["truncated"].get<double>();
+  run->selected_truncated = json["selected_truncated"].get<double>();
+  run->iterations = json["iterations"].get<int>();
+  run->converged = json["converged"].get<bool>();
+  run->success = json["success"].get<bool>();
+  if (json.contains("step_milliseconds")) {
+    const nlohmann::json& steps = json["step_milliseconds"];
+    for (const char* key : {"mean", "p99", "max"}) {
+      if (!steps.contains(key) || !steps[key].is_number()) return false;
+    }
+    run->step_mean = steps["mean"].get<double>();
+    run->step_p99 = steps["p99"].get<double>();
+    run->step_max = steps["max"].get<double>();
+  }
+  return true;
+}
+
+std::string DatasetName(const std::string& dataset) {
+  std::string name = std::filesystem::path(dataset).filename().string();
+  for (const char* suffix : {".xz", ".gz", ".bz2", ".g2o"}) {
+    name = std::string(absl::StripSuffix(name, suffix));
+  }
+  return name;
+}
+
+absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
+  for (const std::string& kernel : options.kernels) {
+    const std::vector<std::string>& names = optimization::MethodNames();
+    if (std::find(names.begin(), names.end(), kernel) == names.end()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("unknown kernel '", kernel, "'"));
+    }
+  }
+  for (const std::string& type : options.types) {
+    if (type == "none") continue;
+    const auto known = optimization::OutlierTypeFromName(type);
+    if (!known.ok()) return known.status();
+  }
+  auto journal = ReadJournal(options.journal_filename);
+  if (!journal.ok()) return journal.status();
+  std::ofstream append;
+  if (!options.journal_filename.empty()) {
+    append.open(options.journal_filename, std::ios::app);
+    if (!append) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("cannot write ", options.journal_filename));
+    }
+  }
+  std::vector<SweepRun> runs;
+  const int64_t total = options.datasets.size() * options.types.size() *
+                        options.counts.size() * options.seeds *
+                        options.kernels.size();
+  Progress progress("robustness", total);
+  for (const std::string& name : options.datasets) {
+    const auto dataset = LoadDataset(options, name);
+    if (!dataset.ok()) return dataset.status();
+    for (const std::string& type : options.types) {
+      for (const std::string& count_text : options.counts) {
+        const auto count = OutlierCount(count_text, dataset->num_loops);
+        if (!count.ok()) return count.status();
+        for (int seed = 1; seed <= options.seeds; ++seed) {
+          for (const std::string& kernel : options.kernels) {
+            SweepRun run;
+            run.dataset = dataset->name;
+            run.kernel = kernel;
+            run.type = type;
+            run.requested_count = count_text;
+            run.count = *count;
+            run.seed = seed;
+            const auto done = journal->find(Key(run));
+            if (done != journal->end()) {
+              runs.push_back(done->second);
+              runs.back().requested_count = count_text;
+            } else {
+              const absl::Status status = RunOne(options, *dataset, &run);
+              if (!status.ok()) return status;
+              if (append.is_open()) append << ToJson(run).dump() << std::endl;
+              runs.push_back(run);
+            }
+            progress.Update(runs.size(), Key(run));
+          }
+        }
+      }
+    }
+  }
+  progress.Finish();
+  return runs;
+}
+
+}  // namespace experiments
+}  // namespace cartographer_ext

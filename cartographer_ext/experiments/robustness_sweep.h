@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Runs back ends on graphs with outliers, many times over. Every finished run
+// is a line of a journal, so that a sweep which was interrupted goes on where
+// it stopped.
+#ifndef CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_SWEEP_H_
+#define CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_SWEEP_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cartographer_ext/optimization/optimize.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace experiments {
+
+struct SweepOptions {
+  std::string data_directory;         // where names of data sets are looked up
+  std::vector<std::string> datasets;  // names ("intel") or files
+  std::vector<std::string> kernels;   // optimization::MethodNames()
+  std::vector<std::string> types;     // R L RG LG, or none
+  std::vector<std::string> counts;    // "1000", or "90%" of all loops
+  int seeds = 1;                      // 1 .. seeds
+  int group_size = 10;
+  double ate_limit = 0.05;  // metres; success
+  double ate_limit_local = 0.4;
+  std::map<std::string, double> ate_limits;   // by data set, for all types
+  std::map<std::string, std::string> truths;  // by data set; else the optimum
+  std::string journal_filename;               // empty: none
+  optimization::OptimizeOptions optimize;     // all but the method
+};
+
+struct SweepRun {
+  std::string dataset, kernel, type;
+  std::string requested_count;  // as in SweepOptions::counts
+  int count = 0;                // outliers
+  int seed = 0;
+  double cpu_seconds = 0.;
+  double ate = 0.;         // metres, to the optimum without outliers
+  double ate_truth = -1.;  // metres, where truth was given
+  double rpe = 0.;         // square metres
+  double precision = 0., recall = 0.;
+  double truncated = 0.;           // TruncatedCost
+  double selected_truncated = 0.;  // auto: of the member chosen
+  int iterations = 0;
+  bool converged = false;
+  // r_isam, milliseconds.
+  double step_mean = 0., step_p99 = 0., step_max = 0.;
+  bool success = false;
+};
+
+nlohmann::ordered_json ToJson(const SweepRun& run);
+// False when a key is missing or of another kind.
+bool FromJson(const nlohmann::json& json, SweepRun* run);
+
+// The data set's short name: the file's without folder and .g2o, .gz, .xz.
+std::string DatasetName(const std::string& dataset);
+
+// All runs in the order data set, type, count, seed, kernel, those of the
+// journal included. Bad input (a file, a name, a journal of something else) is
+// an error.
+absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options);
+
+}  // namespace experiments
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_SWEEP_H_

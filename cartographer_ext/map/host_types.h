@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Between the host's types and those of the metrics.
+#ifndef CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_
+#define CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_
+
+#include "Eigen/Geometry"
+#include "cartographer/common/time.h"
+#include "cartographer/transform/rigid_transform.h"
+#include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/io/sensor_source.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// The host counts ticks of 100 ns since the year 1. Stamps relative to the
+// start of a log are taken as if they counted from 1970.
+inline cartographer::common::Time ToHostTime(const io::TimeNs time) {
+  // Rounds to the nearest tick, also below zero.
+  const io::TimeNs ticks = (time + (time >= 0 ? 50 : -50)) / 100;
+  return cartographer::common::FromUniversal(
+      ticks +
+      cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000LL);
+}
+
+inline io::TimeNs FromHostTicks(const int64_t universal_ticks) {
+  return (universal_ticks -
+          cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds *
+              10000000LL) *
+         100;
+}
+
+inline io::TimeNs FromHostTime(const cartographer::common::Time time) {
+  return FromHostTicks(cartographer::common::ToUniversal(time));
+}
+
+inline Eigen::Isometry3d FromHostPose(
+    const cartographer::transform::Rigid3d& pose) {
+  return Eigen::Translation3d(pose.translation()) * pose.rotation();
+}
+
+// x, y and yaw of a spatial pose.
+inline Pose2 ToPlanarPose(const cartographer::transform::Rigid3d& pose) {
+  const cartographer::transform::Rigid2d planar =
+      cartographer::transform::Project2D(pose);
+  return Pose2(planar.translation().x(), planar.translation().y(),
+               planar.normalized_angle());
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The scans and grids of a stored map in plain types. Together with the poses
+// of a MapGraph, which may be those of the file or of another run, they say
+// how well the map agrees with itself.
+#ifndef CARTOGRAPHER_EXT_MAP_MAP_CONTENTS_H_
+#define CARTOGRAPHER_EXT_MAP_MAP_CONTENTS_H_
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/map/map_graph.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// What a submap says of a cell. Cells in between, and those next to an edge of
+// what is known, are unsure.
+enum class CellEvidence : uint8_t { kUnsure, kFree, kOccupied };
+
+// The grid of one submap.
+class SubmapCells {
+ public:
+  // `grid` must be one that CheckGrid accepts. `margin`: metres around occupied
+  // or unknown cells in which a free cell does not count as free.
+  SubmapCells(const cartographer::mapping::proto::Grid2D& grid, double margin);
+
+  double resolution() const { return resolution_; }
+  int num_x() const { return num_x_; }
+  int num_y() const { return num_y_; }
+  // `point`: in the local frame of the trajectory, metres.
+  CellEvidence At(const Eigen::Vector2d& point) const;
+  // Occupied, or within the margin of an occupied cell.
+  bool NearOccupied(const Eigen::Vector2d& point) const;
+  // Mean probability of occupancy where the points fall, as the loop search
+  // scores a match (unknown cells count 0.1); to a few thousandths. `points` in
+  // the frame of a node, `local_from_node` places them in the local frame.
+  double Score(const std::vector<Eigen::Vector2d>& points,
+               const Pose2& local_from_node) const;
+  // Centres of the occupied cells, in the local frame.
+  std::vector<Eigen::Vector2d> OccupiedCells() const;
+  // Corners of the grid in the local frame.
+  Eigen::Vector2d min_corner() const;
+  Eigen::Vector2d max_corner() const { return max_; }
+
+ private:
+  int Offset(const Eigen::Vector2d& point) const;  // -1 outside
+
+  double resolution_;
+  Eigen::Vector2d max_;
+  int num_x_, num_y_;
+  std::vector<CellEvidence> cells_;
+  std::vector<bool> near_occupied_;
+  std::vector<uint8_t> probabilities_;  // of 255
+};
+
+struct MapContents {
+  // Returns in the frame of the node as MapGraph has it, metres.
+  std::map<GraphId, std::vector<Eigen::Vector2d>> scans;
+  std::map<GraphId, SubmapCells> submaps;
+};
+
+struct MapContentsOptions {
+  double margin = 0.15;  // metres, see SubmapCells
+  // Of each scan every so-manieth return is kept so that no more remain.
+  int max_points = 400;
+};
+
+MapContents ReadMapContents(const io::Pbstream& pbstream,
+                            const MapContentsOptions& options);
+
+// The score of each loop of the graph at its own pose, in the order of the
+// constraints; -1 where the scan or the grid is missing.
+std::vector<double> LoopScores(const MapGraph& graph,
+                               const MapContents& contents);
+
+// (map <- local frame of the trajectory), as a submap's poses have it.
+Pose2 MapFromLocal(const GraphSubmap& submap);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_MAP_MAP_CONTENTS_H_

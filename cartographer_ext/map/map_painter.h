@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// One occupancy map of all submaps at their optimised poses. Submaps overlap:
+// each cell of the map takes what every submap that knows it has to say, as
+// independent evidence, which is the sum of the log odds of occupancy.
+#ifndef CARTOGRAPHER_EXT_MAP_MAP_PAINTER_H_
+#define CARTOGRAPHER_EXT_MAP_MAP_PAINTER_H_
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer/mapping/proto/grid_2d.pb.h"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/io/occupancy_map.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// The grid of a submap. Its cells have coordinates in the local frame of the
+// trajectory.
+struct PlacedGrid {
+  const cartographer::mapping::proto::Grid2D* grid = nullptr;
+  Pose2 map_from_local;  // (map <- submap) * (local <- submap)^-1
+};
+
+// Probability of occupancy of cell (ix, iy), NaN where unknown. Of TSDF grids,
+// which know distances to surfaces, a cell counts as occupied within half a
+// cell of a surface and as free elsewhere. The grid must be one that
+// CheckGrid accepts.
+float Occupancy(const cartographer::mapping::proto::Grid2D& grid, int ix,
+                int iy);
+
+// An error where sizes or limits of the grid make no sense.
+absl::Status CheckGrid(const cartographer::mapping::proto::Grid2D& grid);
+
+// Metres a cell. An error when nothing is known or the map would need more than
+// 4e8 cells. The map's edges lie on multiples of the resolution.
+absl::StatusOr<io::OccupancyMap> PaintMap(const std::vector<PlacedGrid>& grids,
+                                          double resolution);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_MAP_MAP_PAINTER_H_

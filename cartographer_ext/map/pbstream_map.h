@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The map of a stored state, in plain types.
+#ifndef CARTOGRAPHER_EXT_MAP_PBSTREAM_MAP_H_
+#define CARTOGRAPHER_EXT_MAP_PBSTREAM_MAP_H_
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/io/occupancy_map.h"
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/map/map_graph.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// Nodes and submaps without a global pose are left out.
+MapGraph MakeMapGraph(const io::Pbstream& pbstream);
+
+// Of all submaps with a global pose, metres a cell.
+absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
+                                                  double resolution);
+
+// The same with the submaps where `graph` has them; those it lacks are left
+// out.
+absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
+                                                  const MapGraph& graph,
+                                                  double resolution);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_MAP_PBSTREAM_MAP_H_

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Do loops agree with each other, whatever the optimisation made of them? Two
+// loops close a cycle with two short stretches of local SLAM: from node i to
+// node k, and from submap a to submap b,
+//
+//   (a <- i) * (i <- k by local SLAM) * (b <- k)^-1 * (b <- a by local SLAM),
+//
+// which is the identity when both loops are right. Only stretches short enough
+// for local SLAM to be right are used, so that a residual blames the loops.
+#ifndef CARTOGRAPHER_EXT_MAP_VERDICT_LOOP_CYCLES_H_
+#define CARTOGRAPHER_EXT_MAP_VERDICT_LOOP_CYCLES_H_
+
+#include <vector>
+
+#include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/metrics/statistics.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+struct LoopCycleOptions {
+  int max_node_gap = 30;
+  int max_submap_gap = 1;
+  double max_metres = 5.;  // of local SLAM between the nodes
+  // Each loop is held against at most so many that follow it.
+  int max_partners = 8;
+  double consistent_translation = 0.3;        // metres
+  double consistent_rotation = DegToRad(5.);  // radians
+};
+
+struct LoopCycles {
+  int64_t cycles = 0;
+  int64_t inconsistent = 0;
+  Statistics translation;  // metres
+  Statistics rotation_degrees;
+  // For each loop in the order of the constraints: the share of its cycles that
+  // do not close, and how many it is part of.
+  std::vector<double> inconsistent_fraction;
+  std::vector<int> partners;
+  double fraction() const {
+    return cycles == 0 ? 0.
+                       : static_cast<double>(inconsistent) /
+                             static_cast<double>(cycles);
+  }
+};
+
+LoopCycles ComputeLoopCycles(const MapGraph& graph,
+                             const LoopCycleOptions& options);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_MAP_VERDICT_LOOP_CYCLES_H_

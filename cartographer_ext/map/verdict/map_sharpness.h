@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How crisp the walls of a map are, from the returns of all scans laid over
+// each other, without any truth:
+//
+// * mean map entropy (Droeschel et al., Razlaw et al., "Evaluation of
+//   registration methods for sparse 3D laser scans", 2015): the mean over all
+//   returns q of h(q) = 1/2 ln |2 pi e S(q)|, where S(q) is the covariance of
+//   the returns within a radius of q. Smaller is sharper.
+// * wall thickness: where these returns lie along a line, twice the standard
+//   deviation across it, which is the root of the smaller eigenvalue of S.
+//
+// Both depend on the place (bushes are thicker than walls). The same thickness
+// from returns of one visit only tells what the place and the laser do; what
+// the map adds on top is the doubling of walls by visits that do not agree.
+#ifndef CARTOGRAPHER_EXT_MAP_VERDICT_MAP_SHARPNESS_H_
+#define CARTOGRAPHER_EXT_MAP_VERDICT_MAP_SHARPNESS_H_
+
+#include "cartographer_ext/map/map_contents.h"
+#include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/metrics/statistics.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+struct SharpnessOptions {
+  double radius = 0.3;  // metres
+  int min_neighbours = 10;
+  // Nodes this near in the sequence are one visit.
+  int visit_nodes = 40;
+  // Of all returns so many are looked at, evenly.
+  int64_t max_samples = 20000;
+  // Of all returns so many are kept as neighbours, evenly.
+  int64_t max_points = 400000;
+  // A line: the larger eigenvalue is so many times the smaller.
+  double min_elongation = 4.;
+};
+
+struct Sharpness {
+  int64_t samples = 0;
+  double mean_entropy = 0.;  // nats
+  // Twice the standard deviation across walls, metres.
+  Statistics wall_thickness;
+  // The same of single visits, at the places that have been visited again.
+  Statistics single_visit_thickness;
+  Statistics revisited_thickness;  // at the same places, all visits
+  // Mean of the ratio of the two; 1 where nothing was visited twice.
+  double doubling = 1.;
+};
+
+Sharpness ComputeSharpness(const MapGraph& graph, const MapContents& contents,
+                           const SharpnessOptions& options);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_MAP_VERDICT_MAP_SHARPNESS_H_

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Three accounts of how the robot went from one node to the next: the finished
+// map, local SLAM, and the wheels where there is odometry. Map against local
+// SLAM is what the optimisation has bent; local SLAM against the wheels is
+// where one of the two went wrong, by slip or by a scan matched wrongly.
+#ifndef CARTOGRAPHER_EXT_MAP_VERDICT_MOTION_DISAGREEMENT_H_
+#define CARTOGRAPHER_EXT_MAP_VERDICT_MOTION_DISAGREEMENT_H_
+
+#include <map>
+#include <vector>
+
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/metrics/statistics.h"
+#include "cartographer_ext/metrics/trajectory.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// From the node before to this one.
+struct MotionStep {
+  GraphId node_id;
+  io::TimeNs time = 0;
+  double seconds = 0.;
+  double metres = 0.;  // by local SLAM
+  // Map against local SLAM.
+  double bend_translation = 0.;  // metres
+  double bend_rotation = 0.;     // radians
+  // Local SLAM against the wheels, where these say something.
+  bool has_odometry = false;
+  double odometry_translation = 0.;
+  double odometry_rotation = 0.;
+};
+
+struct MotionDisagreement {
+  std::vector<MotionStep> steps;  // by id; first nodes have none
+  Statistics bend_translation;    // metres
+  Statistics bend_rotation_degrees;
+  Statistics odometry_translation;
+  Statistics odometry_rotation_degrees;
+};
+
+// Odometry of a trajectory, (odometry frame <- robot), by time.
+std::map<int, Trajectory> ReadOdometry(const io::Pbstream& pbstream);
+
+MotionDisagreement CompareMotions(const MapGraph& graph,
+                                  const std::map<int, Trajectory>& odometry);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_MAP_VERDICT_MOTION_DISAGREEMENT_H_

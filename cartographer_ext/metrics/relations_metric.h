@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The relations metric of Kuemmerle et al. ("On measuring the accuracy of SLAM
+// algorithms", Autonomous Robots 2009) in the form that Cartographer's
+// compute_relations_metrics has given it: for a reference relation between the
+// stamps t1 and t2,
+//
+//   error = (pose(t1)^-1 * pose(t2)) * expected^-1,
+//
+// of which the length of the translation and the angle of the rotation are
+// taken. No alignment is needed, and being metres off far away does not count
+// against relations that are right near by. The length of the translation
+// depends on the direction of the relation (an error of rotation levers the
+// expected translation), so relations are used as they stand.
+//
+// A folded map looks good on the relations between successive scans. They are
+// therefore reported apart from those that close a loop, which are taken to be
+// the ones whose stamps lie more than a minute apart.
+#ifndef CARTOGRAPHER_EXT_METRICS_RELATIONS_METRIC_H_
+#define CARTOGRAPHER_EXT_METRICS_RELATIONS_METRIC_H_
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/io/relations_file.h"
+#include "cartographer_ext/metrics/statistics.h"
+#include "cartographer_ext/metrics/trajectory.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+using Relation = io::StampedRelation;
+
+struct RelationError {
+  io::TimeNs time1 = 0;
+  io::TimeNs time2 = 0;
+  bool is_loop = false;
+  double translation = 0.;  // metres
+  double rotation = 0.;     // radians
+};
+
+struct RelationsSummary {
+  int64_t count = 0;
+  Statistics translation;          // metres
+  Statistics squared_translation;  // square metres
+  Statistics rotation_degrees;
+  Statistics squared_rotation_degrees;
+  double fraction_above_half_metre = 0.;
+};
+
+struct RelationsMetric {
+  RelationsSummary all;
+  RelationsSummary loop;
+  RelationsSummary sequential;
+  // Relations with a stamp outside the trajectory.
+  int64_t num_not_covered = 0;
+  std::vector<RelationError> errors;  // in the order of the relations
+};
+
+struct RelationsMetricOptions {
+  // Stamps this near are the same scan; 0 always interpolates.
+  io::TimeNs stamp_tolerance = 1000000;
+  io::TimeNs loop_time_gap = 60LL * 1000000000LL;
+};
+
+// An error when none of the relations lies within the trajectory.
+absl::StatusOr<RelationsMetric> ComputeRelationsMetric(
+    const Trajectory& trajectory, const std::vector<Relation>& relations,
+    const RelationsMetricOptions& options);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_METRICS_RELATIONS_METRIC_H_

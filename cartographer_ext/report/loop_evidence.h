@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// All that is known about each loop of a run, side by side.
+#ifndef CARTOGRAPHER_EXT_REPORT_LOOP_EVIDENCE_H_
+#define CARTOGRAPHER_EXT_REPORT_LOOP_EVIDENCE_H_
+
+#include <string>
+#include <vector>
+
+#include "cartographer_ext/report/report_data.h"
+
+namespace cartographer_ext {
+namespace report {
+
+// A loop of the graph, or a candidate that was refused.
+struct LoopEvidence {
+  evaluation::GraphId submap_id, node_id;
+  bool accepted = true;
+  Pose2 relative_pose;  // (submap <- node), the loop's
+  double score = -1.;   // on the grid; negative where not known
+  bool in_graph = false;
+  // Against the optimised map.
+  double residual_translation = 0.;  // metres
+  double residual_rotation = 0.;     // radians
+  // Cycles with other loops near by, and the share of those that stay open.
+  int partners = 0;
+  double open_share = 0.;
+  evaluation::LoopVerdict truth = evaluation::LoopVerdict::kUnknown;
+  double truth_translation = 0.;  // metres
+  // Record of the decision, where there is one.
+  const proto::LoopDecision* decision = nullptr;
+
+  // Wrong by truth where that is known; else overruled by the map by more than
+  // half a metre.
+  bool suspicious() const;
+  // For sorting: how bad it is, metres.
+  double badness() const;
+};
+
+// The loops in the order of the constraints, then the refused candidates that
+// have a pose, in the order of the records. Points into `run`.
+std::vector<LoopEvidence> CollectEvidence(
+    const ReportRun& run, const evaluation::MapContents& contents);
+
+// Several lines, for hovering.
+std::string Describe(const LoopEvidence& evidence);
+
+// "low temporal score", of the enumeration.
+std::string ReasonInWords(proto::LoopDecision::Reason reason);
+
+// "refused: low temporal score", "not searched: budget", "undecided".
+std::string VerdictInWords(const proto::LoopDecision& decision);
+
+}  // namespace report
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_REPORT_LOOP_EVIDENCE_H_

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The parts of the page, in its order. Each adds a heading with an anchor and
+// what belongs under it, or nothing where there is nothing to tell.
+#ifndef CARTOGRAPHER_EXT_REPORT_SECTIONS_H_
+#define CARTOGRAPHER_EXT_REPORT_SECTIONS_H_
+
+#include <string>
+#include <vector>
+
+#include "Eigen/Core"
+#include "absl/status/status.h"
+#include "cartographer_ext/io/picture.h"
+#include "cartographer_ext/report/loop_evidence.h"
+#include "cartographer_ext/report/markup.h"
+#include "cartographer_ext/report/report_data.h"
+
+namespace cartographer_ext {
+namespace report {
+
+// What several parts use, made once.
+struct Prepared {
+  // Parallel to ReportData::runs.
+  std::vector<std::vector<LoopEvidence>> evidence;
+  std::vector<std::string> image_ids;  // empty where there is no picture
+  io::PictureBounds bounds;            // of all maps
+  io::TimeNs start = 0;                // of the first node
+};
+
+void AddHeading(const std::string& id, const std::string& text, Markup* page);
+
+// Verdict, figures, and all runs in one table.
+void AddSummary(const ReportData& data, Markup* page);
+// Where the map contradicts itself; before and after.
+void AddMaps(const ReportData& data, const Prepared& prepared, Markup* page);
+// Loops on the map, coloured by verdict.
+void AddLoops(const ReportData& data, const Prepared& prepared, Markup* page);
+// Histograms of scores and residuals, and the two scores against each other.
+void AddScores(const ReportData& data, const Prepared& prepared, Markup* page);
+// What is known along the path: contradiction, odometry, degeneracy.
+void AddPath(const ReportData& data, const Prepared& prepared, Markup* page);
+// Which loops the runs have in common, and why candidates were refused.
+void AddComparison(const ReportData& data, Markup* page);
+// The worst loops with their scans, as pictures and as a table.
+void AddWorstLoops(const ReportData& data, const Prepared& prepared,
+                   Markup* page);
+// What the runs took.
+void AddTiming(const ReportData& data, Markup* page);
+// Options, versions, command line.
+void AddOrigin(const ReportData& data, Markup* page);
+
+// Positions of the nodes; trajectories are parted by a point that is not
+// finite.
+std::vector<Eigen::Vector2d> NodePath(const evaluation::MapGraph& graph);
+
+}  // namespace report
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_REPORT_SECTIONS_H_

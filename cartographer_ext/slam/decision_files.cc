@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/slam/decision_files.h"
+
+#include "cartographer_ext/loop_closure/decision_log.h"
+#include "cartographer_ext/slam/side_files.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+using proto::LoopDecision;
+
+std::string DecisionRecordsFilename(const std::string& pbstream_filename) {
+  return SideFilename(pbstream_filename, ".loops.pb");
+}
+
+std::string DecisionCsvFilename(const std::string& pbstream_filename) {
+  return SideFilename(pbstream_filename, ".loops.csv");
+}
+
+absl::Status WriteDecisionsBeside(const std::string& pbstream_filename,
+                                  const std::vector<LoopDecision>& decisions) {
+  std::string bytes;
+  for (const LoopDecision& decision : decisions) {
+    loop_closure::AppendDecision(decision, &bytes);
+  }
+  return WriteSideFiles(DecisionRecordsFilename(pbstream_filename), bytes,
+                        DecisionCsvFilename(pbstream_filename),
+                        loop_closure::DecisionCsv(decisions));
+}
+
+absl::StatusOr<std::vector<LoopDecision>> ReadDecisions(
+    const std::string& records_filename) {
+  return ReadSideFile(records_filename, loop_closure::ParseDecisions);
+}
+
+DecisionCounts CountDecisions(const std::vector<LoopDecision>& decisions) {
+  DecisionCounts counts;
+  for (const LoopDecision& decision : decisions) {
+    if (decision.verdict() == LoopDecision::ACCEPTED) {
+      ++counts.accepted;
+    } else if (decision.verdict() == LoopDecision::UNDECIDED) {
+      ++counts.undecided;
+    } else if (decision.reason() >= LoopDecision::SKIPPED_REDUNDANT) {
+      ++counts.skipped;
+    } else if (decision.reason() == LoopDecision::LOW_GRID_SCORE) {
+      ++counts.not_found;
+    } else {
+      ++counts.rejected;
+    }
+  }
+  return counts;
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Records of local SLAM beside a map: run.pbstream has run.nodes.pb
+// (length-delimited MatchRecord messages, one a matched scan) and run.nodes.csv
+// (the same as a table), if local SLAM of ours made it.
+#ifndef CARTOGRAPHER_EXT_SLAM_MATCH_FILES_H_
+#define CARTOGRAPHER_EXT_SLAM_MATCH_FILES_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/match_record.pb.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+std::string MatchRecordsFilename(const std::string& pbstream_filename);
+std::string MatchCsvFilename(const std::string& pbstream_filename);
+
+// Writes both files atomically; without records it removes those of an earlier
+// run, which would not belong to the map.
+absl::Status WriteMatchesBeside(const std::string& pbstream_filename,
+                                const std::vector<proto::MatchRecord>& records);
+
+absl::StatusOr<std::vector<proto::MatchRecord>> ReadMatches(
+    const std::string& records_filename);
+
+// Marks the nodes of `graph` for the picture: those whose scan did not
+// determine the position, with the direction, and those next to which odometry
+// was at fault. Records of trajectories that the graph does not have are
+// ignored.
+void MarkMatches(const std::vector<proto::MatchRecord>& records,
+                 MapGraph* graph);
+
+struct MatchCounts {
+  int64_t scans = 0;
+  int64_t degenerate = 0;
+  int64_t searched = 0;
+  int64_t relocated = 0;
+  int64_t odometry_faults = 0;  // stale, jumping, wrong sign, slipping
+  int64_t slip_suspected = 0;
+  // Of the last scan: seconds, and the calibration of odometry.
+  double time_offset = 0.;
+  double way_scale = 0.;
+  double way_scale_sigma = 0.;
+  double turn_scale = 0.;
+  double turn_per_metre = 0.;  // radians
+};
+
+MatchCounts CountMatches(const std::vector<proto::MatchRecord>& records);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SLAM_MATCH_FILES_H_

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The pose that a user of the running system sees at each scan, which is not
+// the pose that the finished map gives the scan later:
+//
+//   (map <- robot) = (map <- local) * (local <- robot),
+//
+// with (map <- local) as the last optimisation before the scan left it. Every
+// optimisation belongs to the node that asked for it: scans later than that
+// node see its result, as they would with a back end that takes no time. That
+// does not depend on how fast a recording is played, nor on threads.
+#ifndef CARTOGRAPHER_EXT_SLAM_ONLINE_POSES_H_
+#define CARTOGRAPHER_EXT_SLAM_ONLINE_POSES_H_
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "Eigen/Geometry"
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
+#include "cartographer_ext/metrics/trajectory.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// Scans and optimisations may be told by different threads.
+class OnlinePoses {
+ public:
+  OnlinePoses() = default;
+  OnlinePoses(const OnlinePoses&) = delete;
+  OnlinePoses& operator=(const OnlinePoses&) = delete;
+
+  // (map <- local) until the first optimisation; identity unless told.
+  void Start(const Eigen::Isometry3d& map_from_local)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // That the scan at `time` became this node. In any order.
+  void AddNode(int node_index, io::TimeNs time) ABSL_LOCKS_EXCLUDED(mutex_);
+  // What an optimisation up to and with this node found.
+  void AddOptimization(int node_index, const Eigen::Isometry3d& map_from_local)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // (map <- robot) at each of the scans, which are (local <- robot) in order of
+  // time. An optimisation of a node that was never told changes nothing.
+  std::vector<StampedPose> At(const std::vector<StampedPose>& local_scans) const
+      ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  mutable absl::Mutex mutex_;
+  Eigen::Isometry3d start_ ABSL_GUARDED_BY(mutex_) =
+      Eigen::Isometry3d::Identity();
+  std::map<int, io::TimeNs> node_times_ ABSL_GUARDED_BY(mutex_);
+  std::vector<std::pair<int, Eigen::Isometry3d>> optimizations_
+      ABSL_GUARDED_BY(mutex_);
+};
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SLAM_ONLINE_POSES_H_

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#ifndef CARTOGRAPHER_EXT_SLAM_OPEN_RECORDING_H_
+#define CARTOGRAPHER_EXT_SLAM_OPEN_RECORDING_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/configuration/slam_configuration.h"
+#include "cartographer_ext/io/sensor_source.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// A log, a bag, or a world file (*.world), which is driven through with that
+// seed while it is read.
+absl::StatusOr<std::unique_ptr<io::SensorSource>> OpenRecording(
+    const std::string& filename, const io::SensorSourceOptions& options,
+    uint64_t seed);
+
+// What the configuration says about reading a recording.
+io::SensorSourceOptions ToSourceOptions(const SensorSettings& settings);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SLAM_OPEN_RECORDING_H_

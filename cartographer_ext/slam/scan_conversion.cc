@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/slam/scan_conversion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cartographer_ext/map/host_types.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+cartographer::sensor::TimedPointCloudData ToTimedPointCloudData(
+    const io::LaserScan& scan, const double min_range, const double max_range) {
+  const double nearest = std::max(min_range, scan.range_min);
+  const double furthest = std::min(max_range, scan.range_max);
+  cartographer::sensor::TimedPointCloudData data;
+  data.time = ToHostTime(scan.time);
+  data.origin = Eigen::Vector3f(static_cast<float>(scan.laser_pose.x),
+                                static_cast<float>(scan.laser_pose.y), 0.f);
+  data.ranges.reserve(scan.ranges.size());
+  const double last = static_cast<double>(scan.ranges.size()) - 1.;
+  for (size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = scan.ranges[i];
+    // Written so that NaN fails.
+    if (!(range >= nearest && range <= furthest) || std::isinf(range)) continue;
+    const double angle =
+        scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    const Eigen::Vector2d point =
+        scan.laser_pose *
+        Eigen::Vector2d(range * std::cos(angle), range * std::sin(angle));
+    cartographer::sensor::TimedRangefinderPoint timed_point;
+    timed_point.position = Eigen::Vector3f(static_cast<float>(point.x()),
+                                           static_cast<float>(point.y()), 0.f);
+    timed_point.time = static_cast<float>(
+        std::min(0., (static_cast<double>(i) - last) * scan.time_increment));
+    data.ranges.push_back(timed_point);
+  }
+  return data;
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#ifndef CARTOGRAPHER_EXT_SLAM_SCAN_CONVERSION_H_
+#define CARTOGRAPHER_EXT_SLAM_SCAN_CONVERSION_H_
+
+#include "cartographer/sensor/timed_point_cloud_data.h"
+#include "cartographer_ext/io/sensor_source.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// The scan as points in the tracking frame with the laser as origin. Beams
+// that saw nothing are left out: NaN, infinite, and ranges outside the laser's
+// own limits and outside [min_range, max_range] (metres). What is a hit and
+// what only clears free space is decided further on, by the range limits of
+// local SLAM. The time of a point counts from the stamp of the scan, which is
+// that of the last beam, so it is never above zero.
+cartographer::sensor::TimedPointCloudData ToTimedPointCloudData(
+    const io::LaserScan& scan, double min_range, double max_range);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SLAM_SCAN_CONVERSION_H_

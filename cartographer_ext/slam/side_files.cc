@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/slam/side_files.h"
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "absl/strings/strip.h"
+#include "cartographer_ext/common/atomic_file.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+std::string SideFilename(const absl::string_view pbstream_filename,
+                         const absl::string_view ending) {
+  return absl::StrCat(absl::StripSuffix(pbstream_filename, ".pbstream"),
+                      ending);
+}
+
+absl::Status WriteSideFiles(const std::string& records_filename,
+                            const std::string& bytes,
+                            const std::string& csv_filename,
+                            const std::string& csv) {
+  if (bytes.empty()) {
+    std::remove(records_filename.c_str());
+    std::remove(csv_filename.c_str());
+    return absl::OkStatus();
+  }
+  const absl::Status status = WriteFileAtomically(records_filename, bytes);
+  if (!status.ok()) return status;
+  return WriteFileAtomically(csv_filename, csv);
+}
+
+absl::StatusOr<std::string> ReadBytes(const std::string& filename) {
+  std::ifstream file(filename, std::ios::binary);
+  if (!file) return absl::NotFoundError(absl::StrCat("cannot read ", filename));
+  return std::string((std::istreambuf_iterator<char>(file)),
+                     std::istreambuf_iterator<char>());
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext

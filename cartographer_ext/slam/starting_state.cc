@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/slam/starting_state.h"
+
+#include "absl/strings/str_cat.h"
+#include "cartographer/common/time.h"
+#include "cartographer/transform/transform.h"
+#include "cartographer_ext/io/pbstream_reader.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+using cartographer::mapping::MapBuilderInterface;
+using cartographer::mapping::PoseGraphInterface;
+using cartographer::transform::Rigid3d;
+
+absl::StatusOr<std::map<int, int>> LoadStartingState(
+    const StartingState& state, MapBuilderInterface* const map_builder) {
+  {
+    const auto pbstream = io::ReadPbstream(state.filename);
+    if (!pbstream.ok()) return pbstream.status();
+    if (pbstream->nodes.empty() || pbstream->submaps.empty()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(state.filename, ": the map is empty"));
+    }
+  }
+  return map_builder->LoadStateFromFile(state.filename, state.frozen);
+}
+
+absl::Status SetInitialPose(
+    const Pose2& initial_pose, const int to_trajectory_id,
+    const PoseGraphInterface& pose_graph,
+    cartographer::mapping::proto::TrajectoryBuilderOptions* const options) {
+  const auto nodes = pose_graph.GetTrajectoryNodePoses();
+  if (nodes.SizeOfTrajectoryOrZero(to_trajectory_id) == 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "trajectory ", to_trajectory_id, " of the map has no nodes"));
+  }
+  const auto first = *nodes.BeginOfTrajectory(to_trajectory_id);
+  if (!first.data.constant_pose_data.has_value()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "the first node of trajectory ", to_trajectory_id, " has no stamp"));
+  }
+  const Rigid3d map_from_robot(
+      Eigen::Vector3d(initial_pose.x, initial_pose.y, 0.),
+      Eigen::Quaterniond(
+          Eigen::AngleAxisd(initial_pose.theta, Eigen::Vector3d::UnitZ())));
+  auto* const initial = options->mutable_initial_trajectory_pose();
+  initial->set_to_trajectory_id(to_trajectory_id);
+  *initial->mutable_relative_pose() = cartographer::transform::ToProto(
+      first.data.global_pose.inverse() * map_from_robot);
+  initial->set_timestamp(
+      cartographer::common::ToUniversal(first.data.constant_pose_data->time));
+  return absl::OkStatus();
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A map to start from: to localise in it, or to go on mapping.
+#ifndef CARTOGRAPHER_EXT_SLAM_STARTING_STATE_H_
+#define CARTOGRAPHER_EXT_SLAM_STARTING_STATE_H_
+
+#include <map>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "cartographer/mapping/map_builder_interface.h"
+#include "cartographer/mapping/proto/trajectory_builder_options.pb.h"
+#include "cartographer_ext/common/pose2.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+struct StartingState {
+  std::string filename;  // .pbstream; empty: start from nothing
+  // Nothing of the map moves any more, and it is not searched against itself.
+  bool frozen = true;
+  // (map <- robot) at the first scan, where it is known; needs a file.
+  absl::optional<Pose2> initial_pose;
+};
+
+// Loads the file, which is checked before: the host would end the program over
+// a bad one. Returns the ids that the stored trajectories got, by their ids in
+// the file. Errors: those of io::ReadPbstream, a state without nodes.
+absl::StatusOr<std::map<int, int>> LoadStartingState(
+    const StartingState& state,
+    cartographer::mapping::MapBuilderInterface* map_builder);
+
+// Tells the host where a trajectory begins, in the way the host knows: relative
+// to the first node of trajectory `to_trajectory_id`. An error where that has
+// no nodes.
+absl::Status SetInitialPose(
+    const Pose2& initial_pose, int to_trajectory_id,
+    const cartographer::mapping::PoseGraphInterface& pose_graph,
+    cartographer::mapping::proto::TrajectoryBuilderOptions* options);
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SLAM_STARTING_STATE_H_

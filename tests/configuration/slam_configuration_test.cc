@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/configuration/slam_configuration.h"
+
+#include <cmath>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr char kHead[] = "include \"common_2d.lua\"\n";
+
+absl::StatusOr<SlamConfiguration> Parse(const std::string& changes,
+                                        const std::string& more_keys = "") {
+  return ParseSlamConfiguration(
+      {"configuration_files"}, "test.lua",
+      kHead + changes +
+          "\nreturn { map_builder = MAP_BUILDER, trajectory_builder = "
+          "TRAJECTORY_BUILDER, " +
+          more_keys + " }");
+}
+
+void ExpectError(const absl::StatusOr<SlamConfiguration>& configuration,
+                 const std::string& hint) {
+  ASSERT_FALSE(configuration.ok());
+  EXPECT_EQ(configuration.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(configuration.status().message()),
+              HasSubstr("test.lua"));
+  EXPECT_THAT(std::string(configuration.status().message()), HasSubstr(hint));
+}
+
+TEST(SlamConfigurationTest, PresetsOfLoopClosureLoad) {
+  for (const char* const name :
+       {"default.lua", "corridor.lua", "warehouse.lua", "paper_2025.lua",
+        "ablation_2025_a.lua", "ablation_2025_b.lua", "ablation_2025_c.lua"}) {
+    const auto configuration =
+        LoadSlamConfiguration({"configuration_files"}, name);
+    EXPECT_TRUE(configuration.ok()) << configuration.status();
+  }
+}
+
+TEST(SlamConfigurationTest, StockIsStock) {
+  const auto configuration =
+      LoadSlamConfiguration({"configuration_files"}, "stock.lua");
+  ASSERT_TRUE(configuration.ok()) << configuration.status();
+  EXPECT_TRUE(configuration->map_builder_options.use_trajectory_builder_2d());
+  const auto& builder = configuration->map_builder_options.pose_graph_options()
+                            .constraint_builder_options();
+  EXPECT_EQ(builder.min_score(), 0.55);
+  EXPECT_EQ(
+      configuration->trajectory_builder_options.trajectory_builder_2d_options()
+          .submaps_options()
+          .num_range_data(),
+      90);
+  EXPECT_TRUE(configuration->sensors.use_odometry);
+  EXPECT_EQ(configuration->sensors.odometry_source, "auto");
+  EXPECT_TRUE(std::isinf(configuration->sensors.max_range));
+}
+
+TEST(SlamConfigurationTest, ChangesArriveInTheOptions) {
+  const auto configuration =
+      Parse("POSE_GRAPH.constraint_builder.min_score = 0.7");
+  ASSERT_TRUE(configuration.ok()) << configuration.status();
+  EXPECT_EQ(configuration->map_builder_options.pose_graph_options()
+                .constraint_builder_options()
+                .min_score(),
+            0.7);
+}
+
+TEST(SlamConfigurationTest, SensorSettings) {
+  const auto configuration =
+      Parse("",
+            "sensors = { use_odometry = false, odometry_source = \"scan\", "
+            "min_range = 0.2, max_range = 25., tracking_frame = \"base\" }");
+  ASSERT_TRUE(configuration.ok()) << configuration.status();
+  EXPECT_FALSE(configuration->sensors.use_odometry);
+  EXPECT_EQ(configuration->sensors.odometry_source, "scan");
+  EXPECT_EQ(configuration->sensors.min_range, 0.2);
+  EXPECT_EQ(configuration->sensors.max_range, 25.);
+  EXPECT_EQ(configuration->sensors.tracking_frame, "base");
+}
+
+TEST(SlamConfigurationTest, FilesOfARosNodeWork) {
+  const auto configuration = Parse(
+      "",
+      "map_frame = \"map\", tracking_frame = \"imu\", published_frame = "
+      "\"base\", odom_frame = \"odom\", provide_odom_frame = true, "
+      "use_odometry = false, num_laser_scans = 1, "
+      "lookup_transform_timeout_sec = 0.2, rangefinder_sampling_ratio = 1.");
+  ASSERT_TRUE(configuration.ok()) << configuration.status();
+  EXPECT_FALSE(configuration->sensors.use_odometry);
+  EXPECT_EQ(configuration->sensors.tracking_frame, "imu");
+}
+
+TEST(SlamConfigurationTest, WhatTheHostWouldDieOfBecomesAnError) {
+  ExpectError(Parse("POSE_GRAPH.optimize_every_n_nodez = 3"),
+              "optimize_every_n_nodez");
+  ExpectError(Parse("POSE_GRAPH.optimize_every_n_nodes = nil"),
+              "optimize_every_n_nodes");
+  ExpectError(Parse("POSE_GRAPH.optimize_every_n_nodes = {}"),
+              "optimize_every_n_nodes");
+  ExpectError(Parse("MAP_BUILDER.num_background_threads = 0"), "");
+  ExpectError(Parse("", "surprise = 3"), "surprise");
+  ExpectError(Parse("MAP_BUILDER.use_trajectory_builder_2d = false\n"
+                    "MAP_BUILDER.use_trajectory_builder_3d = true"),
+              "use_trajectory_builder_2d");
+  ExpectError(Parse("", "sensors = { odometry_source = \"both?\" }"),
+              "sensors.odometry_source");
+  ExpectError(Parse("", "sensors = { min_range = -1. }"), "sensors.min_range");
+  ExpectError(Parse("", "sensors = { min_range = 2., max_range = 1. }"),
+              "sensors.max_range");
+  ExpectError(Parse("this is no Lua"), "");
+}
+
+TEST(SlamConfigurationTest, MissingFilesNameTheFolders) {
+  const auto configuration =
+      LoadSlamConfiguration({"configuration_files", "elsewhere"}, "nope.lua");
+  ASSERT_FALSE(configuration.ok());
+  EXPECT_THAT(std::string(configuration.status().message()),
+              HasSubstr("nope.lua"));
+  EXPECT_THAT(std::string(configuration.status().message()),
+              HasSubstr("configuration_files, elsewhere"));
+}
+
+}  // namespace
+}  // namespace evaluation
+}  // namespace cartographer_ext

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/map/map_painter.h"
+
+#include <cmath>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using cartographer::mapping::proto::Grid2D;
+
+// Three cells along the ix axis (against y) and two along iy (against x), one
+// metre each, corner at (2, 3).
+Grid2D SmallGrid() {
+  Grid2D grid;
+  grid.mutable_limits()->set_resolution(1.);
+  grid.mutable_limits()->mutable_max()->set_x(2.);
+  grid.mutable_limits()->mutable_max()->set_y(3.);
+  grid.mutable_limits()->mutable_cell_limits()->set_num_x_cells(3);
+  grid.mutable_limits()->mutable_cell_limits()->set_num_y_cells(2);
+  grid.mutable_probability_grid_2d();
+  grid.set_min_correspondence_cost(0.1f);
+  grid.set_max_correspondence_cost(0.9f);
+  for (int i = 0; i < 6; ++i) grid.add_cells(0);
+  return grid;
+}
+
+TEST(MapPainterTest, DecodesProbabilities) {
+  Grid2D grid = SmallGrid();
+  grid.set_cells(0, 1);
+  grid.set_cells(1, 32767);
+  grid.set_cells(4, 16384);
+  EXPECT_NEAR(Occupancy(grid, 0, 0), 0.9, 1e-6);
+  EXPECT_NEAR(Occupancy(grid, 1, 0), 0.1, 1e-6);
+  EXPECT_NEAR(Occupancy(grid, 1, 1), 0.5, 1e-6);
+  EXPECT_TRUE(std::isnan(Occupancy(grid, 2, 1)));
+  // Files of old do not name the bounds.
+  grid.clear_min_correspondence_cost();
+  grid.clear_max_correspondence_cost();
+  EXPECT_NEAR(Occupancy(grid, 0, 0), 0.9, 1e-6);
+}
+
+TEST(MapPainterTest, TsdfCellsAreOccupiedNearTheSurface) {
+  Grid2D grid = SmallGrid();
+  grid.mutable_tsdf_2d()->set_truncation_distance(3.f);
+  grid.set_cells(0, 16384);  // distance 0
+  grid.set_cells(1, 32767);  // distance 3
+  EXPECT_GT(Occupancy(grid, 0, 0), 0.5f);
+  EXPECT_LT(Occupancy(grid, 1, 0), 0.5f);
+  EXPECT_TRUE(std::isnan(Occupancy(grid, 2, 0)));
+}
+
+TEST(MapPainterTest, CellsLieWhereTheLimitsSay) {
+  Grid2D grid = SmallGrid();
+  // Cell (0, 0) has its centre at (1.5, 2.5), cell (2, 1) at (0.5, 0.5).
+  grid.set_cells(0, 1);
+  grid.set_cells(3 * 1 + 2, 32767);
+  const auto map = PaintMap({{&grid, Pose2()}}, 1.);
+  ASSERT_TRUE(map.ok()) << map.status();
+  ASSERT_EQ(map->width, 2);
+  ASSERT_EQ(map->height, 3);
+  EXPECT_EQ(map->origin.x, 0.);
+  EXPECT_EQ(map->origin.y, 0.);
+  EXPECT_NEAR(map->at(1, 2), 0.9, 1e-6);
+  EXPECT_NEAR(map->at(0, 0), 0.1, 1e-6);
+  EXPECT_TRUE(std::isnan(map->at(0, 2)));
+}
+
+TEST(MapPainterTest, PlacesGridsByTheirPoses) {
+  Grid2D grid = SmallGrid();
+  grid.set_cells(0, 1);
+  // A quarter turn: (1.5, 2.5) goes to (-2.5, 1.5), then 10 m to the right.
+  const auto map = PaintMap({{&grid, Pose2(10., 0., kPi / 2.)}}, 1.);
+  ASSERT_TRUE(map.ok());
+  double x = 0., y = 0.;
+  for (int j = 0; j < map->height; ++j) {
+    for (int i = 0; i < map->width; ++i) {
+      if (std::isnan(map->at(i, j))) continue;
+      x = map->origin.x + i + 0.5;
+      y = map->origin.y + j + 0.5;
+    }
+  }
+  EXPECT_NEAR(x, 7.5, 1e-9);
+  EXPECT_NEAR(y, 1.5, 1e-9);
+}
+
+TEST(MapPainterTest, OverlappingGridsAddTheirEvidence) {
+  Grid2D occupied = SmallGrid(), free = SmallGrid();
+  occupied.set_cells(0, 1);
+  free.set_cells(0, 32767);
+  const auto twice = PaintMap({{&occupied, Pose2()}, {&occupied, Pose2()}}, 1.);
+  ASSERT_TRUE(twice.ok());
+  // Odds of 9 squared.
+  EXPECT_NEAR(twice->at(0, 0), 81. / 82., 1e-5);
+  const auto mixed = PaintMap({{&occupied, Pose2()}, {&free, Pose2()}}, 1.);
+  ASSERT_TRUE(mixed.ok());
+  EXPECT_NEAR(mixed->at(0, 0), 0.5, 1e-5);
+}
+
+TEST(MapPainterTest, RefusesNonsense) {
+  Grid2D grid = SmallGrid();
+  EXPECT_THAT(PaintMap({{&grid, Pose2()}}, 1.).status().message(),
+              testing::HasSubstr("no submap"));
+  grid.set_cells(0, 1);
+  EXPECT_FALSE(PaintMap({{&grid, Pose2()}}, 0.).ok());
+  EXPECT_THAT(PaintMap({{&grid, Pose2()}}, 1e-5).status().message(),
+              testing::HasSubstr("coarser"));
+  grid.add_cells(1);
+  EXPECT_THAT(PaintMap({{&grid, Pose2()}}, 1.).status().message(),
+              testing::HasSubstr("7 cells"));
+}
+
+TEST(MapPainterTest, ChecksTheBoundsOfTheCosts) {
+  Grid2D grid = SmallGrid();
+  grid.set_min_correspondence_cost(0.9f);
+  grid.set_max_correspondence_cost(0.1f);
+  EXPECT_FALSE(CheckGrid(grid).ok());
+  EXPECT_TRUE(CheckGrid(SmallGrid()).ok());
+}
+
+}  // namespace
+}  // namespace evaluation
+}  // namespace cartographer_ext

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/map/verdict/self_consistency.h"
+
+#include "absl/strings/str_cat.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/verdict/map_evaluation.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/map/verdict/box_world.h"
+#include "tests/test_data.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr int kNever = 1000;
+
+// Wheels that agree with local SLAM but for one turn.
+std::map<int, Trajectory> Odometry(const MapGraph& graph, const int turn_at,
+                                   const double angle) {
+  std::vector<StampedPose> poses;
+  Pose2 turned;
+  for (const auto& node : graph.nodes) {
+    if (node.first.index == turn_at) {
+      turned = node.second.local_pose * Pose2(0., 0., angle) *
+               node.second.local_pose.Inverse();
+    }
+    poses.push_back(
+        {node.second.time, ToIsometry(turned * node.second.local_pose)});
+  }
+  return {{0, Trajectory(poses)}};
+}
+
+TEST(SelfConsistencyTest, RightMapIsSound) {
+  const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  const SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents, {}, {});
+  EXPECT_EQ(result.word, "sound");
+  EXPECT_TRUE(result.severe.empty());
+  EXPECT_THAT(result.reasons.front(), HasSubstr("nothing speaks against"));
+}
+
+TEST(SelfConsistencyTest, FoldedMapIsBrokenAndNamesThePlace) {
+  const test::BoxWorld world =
+      test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
+  const SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents, {}, {});
+  EXPECT_EQ(result.word, "broken");
+  EXPECT_GT(result.severe_share, 0.3);
+  EXPECT_THAT(result.reasons.front(), HasSubstr("the map is broken"));
+  EXPECT_THAT(result.reasons,
+              Contains(HasSubstr("nodes (0, 60) to (0, 99) (60.0 s to 99.0 s "
+                                 "after the start)")));
+  const auto json = ToJson(result);
+  EXPECT_EQ(json["verdict"], "broken");
+  EXPECT_GE(json["places"].size(), 1u);
+  EXPECT_THAT(ToText(result), HasSubstr("Self-consistency"));
+}
+
+TEST(SelfConsistencyTest, WrongTurnAloneIsDoubt) {
+  const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  const SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents,
+                            Odometry(world.graph, 40, DegToRad(70.)), {});
+  EXPECT_EQ(result.word, "doubtful");
+  ASSERT_EQ(result.wrong_turns.size(), 1u);
+  EXPECT_EQ(result.wrong_turns[0].node_id, (GraphId{0, 40}));
+  EXPECT_NEAR(RadToDeg(result.wrong_turns[0].odometry_rotation), 70., 1e-6);
+  EXPECT_THAT(result.reasons, Contains(HasSubstr("differ by 70 degrees")));
+}
+
+TEST(SelfConsistencyTest, AgreeingOdometryIsFine) {
+  const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  const SelfConsistency result = AssessSelfConsistency(
+      world.graph, world.contents, Odometry(world.graph, kNever, 0.), {});
+  EXPECT_EQ(result.word, "sound");
+  EXPECT_EQ(result.motion.odometry_translation.count, 99);
+  EXPECT_LT(result.motion.odometry_translation.max, 1e-9);
+  EXPECT_LT(result.motion.bend_translation.max, 1e-9);
+}
+
+TEST(SelfConsistencyTest, NothingSeenTwiceIsUnknown) {
+  test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  SelfConsistencyOptions options;
+  options.contradiction.min_node_gap = 1000;
+  EXPECT_EQ(
+      AssessSelfConsistency(world.graph, world.contents, {}, options).word,
+      "unknown");
+}
+
+TEST(SelfConsistencyTest, TruthGoesBeforeTheMapsOwnWord) {
+  const test::BoxWorld world =
+      test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
+  Evaluation evaluation;
+  evaluation.consistency =
+      AssessSelfConsistency(world.graph, world.contents, {}, {});
+  EXPECT_EQ(Judge(evaluation).word, "broken");
+  evaluation.trajectory.emplace();
+  evaluation.trajectory->ate.rmse = 0.02;
+  EXPECT_EQ(Judge(evaluation).word, "sound");
+}
+
+class SharedMapsTest
+    : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(SharedMapsTest, VerdictWithoutTruth) {
+  const std::string filename = test::SharedData(
+      absl::StrCat("pbstream/", GetParam().first, ".pbstream"));
+  CARTOGRAPHER_EXT_SKIP_WITHOUT(filename);
+  const auto pbstream = io::ReadPbstream(filename);
+  ASSERT_TRUE(pbstream.ok()) << pbstream.status();
+  const SelfConsistency result = AssessSelfConsistency(
+      MakeMapGraph(*pbstream), ReadMapContents(*pbstream, {}),
+      ReadOdometry(*pbstream), {});
+  if (std::string(GetParam().second) == "broken") {
+    EXPECT_EQ(result.word, "broken");
+    EXPECT_FALSE(result.severe.empty());
+  } else {
+    EXPECT_NE(result.word, "broken");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SharedMapsTest,
+    testing::Values(std::make_pair("aces-made-by-cartographer", "broken"),
+                    std::make_pair("csail-made-by-cartographer", "broken"),
+                    std::make_pair("aces-sound-by-cartographer", "not broken"),
+                    std::make_pair("csail-sound-by-cartographer", "not broken"),
+                    std::make_pair("forzaeth-hangar", "not broken"),
+                    std::make_pair("legndy-map", "not broken")));
+
+}  // namespace
+}  // namespace evaluation
+}  // namespace cartographer_ext

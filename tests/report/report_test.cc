@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/report/report.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "absl/strings/str_cat.h"
+#include "cartographer_ext/front_end/match_record.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/report/loop_evidence.h"
+#include "cartographer_ext/report/map_runs.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/slam/room_map.h"
+
+namespace cartographer_ext {
+namespace report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// A report of the room, with stock and ours run again.
+class ReportTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    pbstream_ = new io::Pbstream(
+        test::MakeRoomMap(testing::TempDir() + "/report_test.pbstream"));
+    graph_ = new evaluation::MapGraph(evaluation::MakeMapGraph(*pbstream_));
+    contents_ = new evaluation::MapContents(
+        evaluation::ReadMapContents(*pbstream_, {}));
+    odometry_ = new std::map<int, evaluation::Trajectory>(
+        evaluation::ReadOdometry(*pbstream_));
+    truth_ = new evaluation::GroundTruth;
+    std::vector<evaluation::StampedPose> poses;
+    for (int i = 0; i < 520; ++i) {
+      poses.push_back(io::MakeStampedPose(
+          test::RoomSource::kStart + i * test::RoomSource::kStep,
+          test::RoomSource::TruePose(i)));
+    }
+    truth_->reference = evaluation::Trajectory(poses);
+    data_ = new ReportData;
+    data_->title = "room <1>";
+    data_->command_line = "evaluate -x \"a&b\"";
+    data_->versions = Versions();
+    data_->pbstream = pbstream_;
+    data_->contents = contents_;
+    data_->with_times = false;
+    const RunInputs inputs = Inputs();
+    evaluation::MapToEvaluate map;
+    map.graph = graph_;
+    map.contents = contents_;
+    map.odometry = odometry_;
+    const auto stored =
+        evaluation::EvaluateMap(map, *truth_, inputs.evaluation);
+    ASSERT_TRUE(stored.ok()) << stored.status();
+    data_->runs.push_back(StoredRun(inputs, *stored));
+    evaluation::RerunConfiguration configuration;
+    configuration.stock_name = configuration.ours_name = "room.lua";
+    configuration.stock =
+        test::RoomConfiguration().map_builder_options.pose_graph_options();
+    configuration.ours =
+        test::RoomConfiguration("include \"loop_closure_default.lua\"")
+            .map_builder_options.pose_graph_options();
+    const absl::Status status = AddReruns(inputs, configuration, data_);
+    ASSERT_TRUE(status.ok()) << status;
+  }
+  static void TearDownTestSuite() {
+    delete data_;
+    delete truth_;
+    delete odometry_;
+    delete contents_;
+    delete graph_;
+    delete pbstream_;
+  }
+
+  static RunInputs Inputs() {
+    RunInputs inputs;
+    inputs.pbstream = pbstream_;
+    inputs.graph = graph_;
+    inputs.contents = contents_;
+    inputs.odometry = odometry_;
+    inputs.truth = truth_;
+    return inputs;
+  }
+
+  static io::Pbstream* pbstream_;
+  static evaluation::MapGraph* graph_;
+  static evaluation::MapContents* contents_;
+  static std::map<int, evaluation::Trajectory>* odometry_;
+  static evaluation::GroundTruth* truth_;
+  static ReportData* data_;
+};
+
+io::Pbstream* ReportTest::pbstream_ = nullptr;
+evaluation::MapGraph* ReportTest::graph_ = nullptr;
+evaluation::MapContents* ReportTest::contents_ = nullptr;
+std::map<int, evaluation::Trajectory>* ReportTest::odometry_ = nullptr;
+evaluation::GroundTruth* ReportTest::truth_ = nullptr;
+ReportData* ReportTest::data_ = nullptr;
+
+size_t Count(const std::string& text, const std::string& part) {
+  size_t count = 0;
+  for (size_t at = text.find(part); at != std::string::npos;
+       at = text.find(part, at + part.size())) {
+    ++count;
+  }
+  return count;
+}
+
+TEST_F(ReportTest, TellsEverythingInOneFile) {
+  const auto page = MakeReport(*data_);
+  ASSERT_TRUE(page.ok()) << page.status();
+  EXPECT_LT(page->size(), 5u << 20);
+  EXPECT_THAT(*page, HasSubstr("room &lt;1&gt;"));
+  EXPECT_THAT(*page, HasSubstr("evaluate -x &quot;a&amp;b&quot;"));
+  EXPECT_THAT(*page, HasSubstr("Map sound"));
+  for (const char* const id :
+       {"map", "loops", "comparison", "scores", "path", "worst", "origin"}) {
+    EXPECT_THAT(*page, HasSubstr(absl::StrCat("<h2 id=\"", id, "\"")));
+  }
+  EXPECT_THAT(*page, HasSubstr("id=\"map0\""));
+  EXPECT_THAT(*page, HasSubstr("id=\"map2\""));
+  EXPECT_THAT(*page, HasSubstr("prefers-color-scheme:dark"));
+  EXPECT_THAT(*page, HasSubstr("cartographer_ext: absent"));
+  // Nothing is fetched.
+  EXPECT_EQ(Count(*page, "http"), 0u);
+  EXPECT_EQ(Count(*page, "src="), 0u);
+  EXPECT_THAT(*page, Not(HasSubstr("nan\"")));
+  EXPECT_THAT(*page, Not(HasSubstr("inf\"")));
+  EXPECT_EQ(Count(*page, "<svg"), Count(*page, "</svg>"));
+  EXPECT_EQ(Count(*page, "<figure"), Count(*page, "</figure>"));
+}
+
+TEST_F(ReportTest, SameInputSameBytes) {
+  const auto first = MakeReport(*data_);
+  const auto second = MakeReport(*data_);
+  ASSERT_TRUE(first.ok() && second.ok());
+  EXPECT_EQ(*first, *second);
+  EXPECT_THAT(*first, Not(HasSubstr("<h2 id=\"timing\"")));
+  ReportData timed = *data_;
+  timed.with_times = true;
+  EXPECT_THAT(*MakeReport(timed), HasSubstr("<h2 id=\"timing\""));
+}
+
+TEST_F(ReportTest, NumbersForPrograms) {
+  const auto json = RunsToJson(*data_);
+  ASSERT_EQ(json.size(), 3u);
+  EXPECT_EQ(json[0]["name"], "as stored");
+  EXPECT_EQ(json[0]["loops"], graph_->num_loops());
+  EXPECT_GT(json[1]["against_stored"]["fraction_of_stored"], 0.95);
+  EXPECT_GT(json[1]["evaluation"]["loops"]["precision"], 0.95);
+  EXPECT_FALSE(json[1]["run"].contains("cpu_seconds"));
+  EXPECT_GT(json[2]["run"]["decisions"].size(), 0u);
+  const std::string csv = LoopsToCsv(*data_);
+  EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 2 * graph_->num_loops());
+  EXPECT_THAT(csv, HasSubstr("as stored,0,"));
+}
+
+TEST_F(ReportTest, DegeneracyAlongThePath) {
+  const std::string filename = testing::TempDir() + "/room.matches";
+  std::string bytes;
+  for (const auto& node : pbstream_->nodes) {
+    proto::MatchRecord record;
+    record.set_time(node.node_data().timestamp());
+    record.set_is_node(true);
+    record.set_information_ratio(0.5);
+    if (node.node_id().node_index() % 50 < 10) {
+      record.set_degeneracy(proto::MatchRecord::TRANSLATION);
+    }
+    front_end::AppendRecord(record, &bytes);
+  }
+  std::ofstream(filename, std::ios::binary) << bytes;
+  const auto samples = ReadDegeneracy(filename);
+  ASSERT_TRUE(samples.ok()) << samples.status();
+  EXPECT_EQ(samples->size(), pbstream_->nodes.size());
+  EXPECT_EQ((*samples)[3].time, graph_->nodes.at({0, 3}).time);
+  EXPECT_TRUE((*samples)[3].degenerate);
+  EXPECT_FALSE((*samples)[12].degenerate);
+  ReportData data = *data_;
+  data.degeneracy = *samples;
+  EXPECT_THAT(*MakeReport(data), HasSubstr("Degeneracy along the path"));
+
+  std::ofstream(filename, std::ios::binary) << bytes.substr(0, 20) << "\xff";
+  EXPECT_FALSE(ReadDegeneracy(filename).ok());
+  EXPECT_FALSE(ReadDegeneracy("/nowhere/x.matches").ok());
+}
+
+TEST_F(ReportTest, EvidenceOfRefusedCandidates) {
+  ReportRun run = data_->runs[2];
+  run.rerun->decisions.clear();
+  proto::LoopDecision decision;
+  decision.set_submap_index(1);
+  decision.set_node_index(77);
+  decision.set_verdict(proto::LoopDecision::REJECTED);
+  decision.set_reason(proto::LoopDecision::CONTRADICTED);
+  decision.mutable_search()->set_grid_score(0.625);
+  decision.mutable_search()->mutable_refined()->set_x(3.);
+  decision.mutable_temporal()->set_score(0.5);
+  run.rerun->decisions.push_back(decision);
+  const auto evidence = CollectEvidence(run, *contents_);
+  ASSERT_EQ(evidence.size(), static_cast<size_t>(run.graph.num_loops()) + 1);
+  EXPECT_FALSE(evidence.back().accepted);
+  EXPECT_EQ(evidence.back().relative_pose.x, 3.);
+  const std::string text = Describe(evidence.back());
+  EXPECT_THAT(text, HasSubstr("submap (0, 1) - node (0, 77), refused"));
+  EXPECT_THAT(text, HasSubstr("score on the grid 0.625"));
+  EXPECT_THAT(text, HasSubstr("temporal score 0.500"));
+  EXPECT_THAT(text, HasSubstr("contradicted"));
+  EXPECT_THAT(Describe(evidence.front()), HasSubstr("truth: right"));
+}
+
+TEST(ReportErrorTest, NothingToReport) {
+  EXPECT_FALSE(MakeReport(ReportData()).ok());
+  ReportData empty;
+  empty.runs.emplace_back();
+  EXPECT_FALSE(MakeReport(empty).ok());
+}
+
+TEST_F(ReportTest, OpensInABrowserWithoutErrors) {
+  if (std::system("command -v chromium > /dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "no chromium here";
+  }
+  const std::string folder = testing::TempDir();
+  const std::string html = folder + "/report_test.html";
+  std::ofstream(html) << *MakeReport(*data_);
+  const std::string log = folder + "/report_test.log";
+  const std::string picture = folder + "/report_test.png";
+  const int status = std::system(
+      absl::StrCat("timeout 60 chromium --headless=new --no-sandbox "
+                   "--disable-gpu --hide-scrollbars --user-data-dir=",
+                   folder,
+                   "/report_test_profile --enable-logging=stderr "
+                   "--window-size=1366,2000 --screenshot=",
+                   picture, " file://", html, " 2> ", log, " > /dev/null")
+          .c_str());
+  if (status != 0) GTEST_SKIP() << "chromium does not run here";
+  std::ifstream file(log);
+  const std::string text((std::istreambuf_iterator<char>(file)),
+                         std::istreambuf_iterator<char>());
+  EXPECT_THAT(text, Not(HasSubstr("CONSOLE")));
+  std::ifstream drawn(picture, std::ios::binary | std::ios::ate);
+  EXPECT_GT(drawn.tellg(), 20000);
+}
+
+}  // namespace
+}  // namespace report
+}  // namespace cartographer_ext

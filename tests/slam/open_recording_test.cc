@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/slam/open_recording.h"
+
+#include "gtest/gtest.h"
+#include "tests/test_data.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+TEST(OpenRecordingTest, OpensLogsAndWorlds) {
+  const auto log = OpenRecording(test::OwnData("flaser.clf"), {}, 0);
+  ASSERT_TRUE(log.ok()) << log.status();
+  EXPECT_EQ((*log)->info().format, "carmen");
+  const auto world =
+      OpenRecording("configuration_files/worlds/circular_room.world", {}, 1);
+  ASSERT_TRUE(world.ok()) << world.status();
+  EXPECT_EQ((*world)->info().format, "world");
+  EXPECT_GT((*world)->info().num_scans, 0);
+}
+
+TEST(OpenRecordingTest, MissingFilesAreErrors) {
+  EXPECT_FALSE(OpenRecording("/nowhere/run.clf", {}, 0).ok());
+  EXPECT_FALSE(OpenRecording("/nowhere/run.world", {}, 0).ok());
+}
+
+TEST(OpenRecordingTest, TakesTheSettingsOfTheConfiguration) {
+  SensorSettings settings;
+  settings.odometry_source = "scan";
+  settings.tracking_frame = "base_footprint";
+  const io::SensorSourceOptions options = ToSourceOptions(settings);
+  EXPECT_EQ(options.odometry_source, "scan");
+  EXPECT_EQ(options.tracking_frame, "base_footprint");
+}
+
+}  // namespace
+}  // namespace evaluation
+}  // namespace cartographer_ext
