@@ -104,7 +104,7 @@ class Searcher {
     *statistics = result.statistics;
     if (!result.found) return false;
     *score = result.score;
-    *pose = scan_matching::FastCorrelativeMatcher2D::ToRigid2d(result.pose);
+    *pose = ToRigid(result.pose);
     return true;
   }
 

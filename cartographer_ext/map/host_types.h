@@ -8,7 +8,7 @@
 #include "Eigen/Geometry"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/rigid_transform.h"
-#include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/io/sensor_source.h"
 
@@ -43,10 +43,7 @@ inline Eigen::Isometry3d FromHostPose(
 
 // x, y and yaw of a spatial pose.
 inline Pose2 ToPlanarPose(const cartographer::transform::Rigid3d& pose) {
-  const cartographer::transform::Rigid2d planar =
-      cartographer::transform::Project2D(pose);
-  return Pose2(planar.translation().x(), planar.translation().y(),
-               planar.normalized_angle());
+  return cartographer_ext::ToPose2(pose);
 }
 
 }  // namespace evaluation

@@ -3,69 +3,38 @@
 #include "cartographer_ext/optimization/condensed_graph.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "Eigen/LU"
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/optimization/block_ldlt.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-// A measurement (a <- b) with its covariance in the frame of a.
-struct Link {
-  Pose2 measurement;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
+using uncertainty::UncertainPose;
 
-// Information matrices are in the frame of the measured end.
-Link ToLink(const PoseGraphEdge& edge) {
-  Link link;
-  link.measurement = edge.measurement;
-  const Eigen::Matrix3d rotation = PlanarRotation(edge.measurement.theta);
-  Eigen::Matrix3d covariance;
-  if (!InvertSpd(edge.information, &covariance)) {
-    covariance = edge.information.inverse();
-  }
-  link.covariance = rotation * covariance * rotation.transpose();
-  return link;
+// The information of an edge and the covariance of an uncertain pose are both
+// in the frame of the measured end.
+Eigen::Matrix3d Inverse(const Eigen::Matrix3d& matrix) {
+  Eigen::Matrix3d inverse;
+  if (!InvertSpd(matrix, &inverse)) inverse = matrix.inverse();
+  return inverse;
 }
 
-Eigen::Matrix3d InformationOf(const Link& link) {
-  const Eigen::Matrix3d rotation = PlanarRotation(link.measurement.theta);
-  Eigen::Matrix3d information;
-  if (!InvertSpd(link.covariance, &information)) {
-    information = link.covariance.inverse();
-  }
-  information = rotation.transpose() * information * rotation;
-  return Symmetric(information);
+UncertainPose ToUncertainPose(const PoseGraphEdge& edge) {
+  UncertainPose pose;
+  pose.pose = edge.measurement;
+  pose.covariance = Inverse(edge.information);
+  return pose;
 }
 
-// (a <- c) from (a <- b) and (b <- c).
-Link Compose(const Link& ab, const Link& bc) {
-  Link result;
-  result.measurement = ab.measurement * bc.measurement;
-  Eigen::Matrix3d first = Eigen::Matrix3d::Identity();
-  first(0, 2) = -(result.measurement.y - ab.measurement.y);
-  first(1, 2) = result.measurement.x - ab.measurement.x;
-  const Eigen::Matrix3d second = PlanarRotation(ab.measurement.theta);
-  result.covariance = first * ab.covariance * first.transpose() +
-                      second * bc.covariance * second.transpose();
-  return result;
-}
-
-// (b <- a) from (a <- b).
-Link Inverse(const Link& link) {
-  Link result;
-  result.measurement = link.measurement.Inverse();
-  Eigen::Matrix3d jacobian = PlanarRotation(result.measurement.theta);
-  jacobian(0, 2) = -result.measurement.y;
-  jacobian(1, 2) = result.measurement.x;
-  result.covariance = jacobian * link.covariance * jacobian.transpose();
-  return result;
+void SetMeasurement(const UncertainPose& pose, PoseGraphEdge* const edge) {
+  edge->measurement = pose.pose;
+  edge->information = Symmetric(Inverse(pose.covariance));
 }
 
 // Joins `edge` to `sum`, which goes between the same poses.
@@ -90,7 +59,7 @@ class Condenser {
         previous_(graph.poses.size(), -1),
         is_neighbour_(graph.edges.size(), false),
         anchor_(graph.poses.size()),
-        links_(graph.poses.size()) {
+        paths_(graph.poses.size()) {
     for (const int i : neighbours) {
       const PoseGraphEdge& edge = graph.edges[i];
       is_neighbour_[i] = true;
@@ -146,29 +115,27 @@ class Condenser {
     result_.loop_of_edge.push_back(loop);
   }
 
-  // Walks each stretch and notes how its poses hang on the one before.
+  // Walks each stretch and composes the path from its first pose to each.
   void AddChain() {
     for (const int start : result_.pose_of_vertex) {
       anchor_[start] = start;
-      Link link;
+      UncertainPose path;
       int steps = 0;
       for (int v = start; next_[v] >= 0;) {
         const PoseGraphEdge& step = graph_.edges[next_[v]];
-        link = steps == 0 ? ToLink(step) : Compose(link, ToLink(step));
+        path = steps == 0 ? ToUncertainPose(step)
+                          : Compose(path, ToUncertainPose(step));
         ++steps;
         v = step.to;
         if (vertex_[v] < 0) {
           anchor_[v] = start;
-          links_[v] = link;
+          paths_[v] = path;
           continue;
         }
         PoseGraphEdge edge = step;
         edge.from = vertex_[start];
         edge.to = vertex_[v];
-        if (steps > 1) {
-          edge.measurement = link.measurement;
-          edge.information = InformationOf(link);
-        }
+        if (steps > 1) SetMeasurement(path, &edge);
         result_.chain.push_back(result_.graph.edges.size());
         result_.chain_steps.push_back(steps);
         AddEdge(edge, -1);
@@ -188,11 +155,10 @@ class Condenser {
       PoseGraphEdge edge = graph_.edges[i];
       const int from = anchor_[edge.from], to = anchor_[edge.to];
       if (from != edge.from || to != edge.to) {
-        Link link = ToLink(edge);
-        if (from != edge.from) link = Compose(links_[edge.from], link);
-        if (to != edge.to) link = Compose(link, Inverse(links_[edge.to]));
-        edge.measurement = link.measurement;
-        edge.information = InformationOf(link);
+        UncertainPose path = ToUncertainPose(edge);
+        if (from != edge.from) path = Compose(paths_[edge.from], path);
+        if (to != edge.to) path = Compose(path, Invert(paths_[edge.to]));
+        SetMeasurement(path, &edge);
         if (from == to) continue;  // within one stretch
       }
       edge.from = vertex_[from];
@@ -218,9 +184,9 @@ class Condenser {
   const PoseGraph& graph_;
   std::vector<int> next_, previous_;  // edge along the chain, or -1
   std::vector<bool> is_neighbour_;
-  std::vector<int> anchor_;  // kept pose that a pose hangs on
-  std::vector<Link> links_;  // from the anchor to the pose
-  std::vector<int> vertex_;  // of a kept pose; else -1
+  std::vector<int> anchor_;           // kept pose before, or itself
+  std::vector<UncertainPose> paths_;  // (anchor <- pose)
+  std::vector<int> vertex_;           // of a kept pose; else -1
   CondensedGraph result_;
 };
 

@@ -6,14 +6,14 @@
 // loops is said as well by one edge per stretch of the chain between
 // neighbouring poses:
 //
-//   z_ac = z_ab z_bc,  P_ac = J_1 P_ab J_1' + J_2 P_bc J_2'
+//   z_ac = z_ab z_bc,  C_ac = Ad C_ab Ad^T + C_bc   (uncertain_pose.h)
 //
-// with P the covariance of the measurement and J its derivatives. A trusted
-// edge to a pose that goes is moved along the chain to the kept pose before it,
-// and edges which then join the same two poses become one (their information
-// adds up). This is exact for trusted edges that agree with each other, as the
-// output of local SLAM does, and as long as the chain within a stretch is stiff
-// compared with the edges moved along it.
+// with C the covariance of the measurement z and Ad the adjoint of z_cb. A
+// trusted edge to a pose that goes is moved along the chain to the kept pose
+// before it, and edges which then join the same two poses become one (their
+// information adds up). This is exact for trusted edges that agree with each
+// other, as the output of local SLAM does, and as long as the chain within a
+// stretch is stiff compared with the edges moved along it.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_CONDENSED_GRAPH_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_CONDENSED_GRAPH_H_
 

@@ -10,6 +10,7 @@
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
 #include "cartographer_ext/front_end/front_end_options.h"
@@ -27,11 +28,6 @@ using cartographer::transform::Rigid2d;
 using cartographer::transform::Rigid3d;
 
 namespace mapping = cartographer::mapping;
-
-Pose2 ToPose2(const Rigid3d& pose) {
-  return Pose2(pose.translation().x(), pose.translation().y(),
-               cartographer::transform::GetYaw(pose.rotation()));
-}
 
 // Below this weight a direction counts as not determined by the scan.
 constexpr double kDetermined = 0.5;
@@ -215,7 +211,7 @@ AdaptiveLocalTrajectoryBuilder2D::MatchAndInsert(
   record.set_time(cartographer::common::ToUniversal(time));
   MatchScan(Seconds(time), prediction, cloud, &record);
 
-  const Rigid2d pose(Eigen::Vector2d(pose_.x, pose_.y), pose_.theta);
+  const Rigid2d pose = ToRigid2d(pose_);
   const Rigid3d local_pose =
       cartographer::transform::Embed3D(pose) * Rigid3d::Rotation(alignment);
   const auto pose_3d = cartographer::transform::Embed3D(pose.cast<float>());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/options/option_description.h"
@@ -39,15 +40,6 @@ constexpr double kContradictingTurn = 5. * kPi / 180.;  // radians
 constexpr size_t kMaxStarts = 4;
 // A search result stands for itself; the motion it came from hardly pulls.
 constexpr double kSearchSpread = 100.;
-
-Rigid2d ToRigid(const Pose2& pose) {
-  return Rigid2d(Eigen::Vector2d(pose.x, pose.y), pose.theta);
-}
-
-Pose2 FromRigid(const Rigid2d& pose) {
-  return Pose2(pose.translation().x(), pose.translation().y(),
-               pose.normalized_angle());
-}
 
 // The block of the scan matcher, or its defaults.
 proto::ScanMatcherOptions MatcherExtension(
@@ -96,10 +88,10 @@ LocalMatch LocalMatcher::MatchFrom(const Prediction& prediction,
                                    const PointCloud& cloud,
                                    const Grid2D& grid) const {
   LocalMatch match;
-  Rigid2d pose = ToRigid(initial);
-  matcher_.MatchWithPrediction(prediction, ToRigid(initial), cloud, grid, &pose,
-                               &match.report);
-  match.pose = FromRigid(pose);
+  Rigid2d pose = ToRigid2d(initial);
+  matcher_.MatchWithPrediction(prediction, ToRigid2d(initial), cloud, grid,
+                               &pose, &match.report);
+  match.pose = ToPose2(pose);
   match.score = scan_matching::MeanScore(match.pose, cloud, grid);
   return match;
 }
@@ -128,9 +120,9 @@ Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
   options.set_translation_delta_cost_weight(kSearchPenalty);
   options.set_rotation_delta_cost_weight(kSearchPenalty);
   const scan_matching::RealTimeMatcher2D search(options);
-  Rigid2d found = ToRigid(center);
-  search.Match(ToRigid(center), cloud, grid, &found);
-  return FromRigid(found);
+  Rigid2d found = ToRigid2d(center);
+  search.Match(ToRigid2d(center), cloud, grid, &found);
+  return ToPose2(found);
 }
 
 LocalMatch LocalMatcher::Match(const Pose2& last_pose,

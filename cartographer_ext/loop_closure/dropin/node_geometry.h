@@ -13,7 +13,7 @@
 #include "cartographer/mapping/id.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/transform/rigid_transform.h"
-#include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/loop_verifier.h"
 #include "cartographer_ext/uncertainty/ids.h"
@@ -29,27 +29,18 @@ inline uncertainty::SubmapId ToKey(const cartographer::mapping::SubmapId& id) {
   return uncertainty::SubmapId{id.trajectory_id, id.submap_index};
 }
 
-inline Pose2 PlanarPose(const cartographer::transform::Rigid2d& pose) {
-  return Pose2(pose.translation().x(), pose.translation().y(),
-               pose.normalized_angle());
-}
-
-inline cartographer::transform::Rigid2d ToRigid2d(const Pose2& pose) {
-  return cartographer::transform::Rigid2d(pose.translation(), pose.theta);
-}
-
 // (local <- tracking frame)
 inline Pose2 LocalPose(
     const cartographer::mapping::TrajectoryNode::Data& node) {
-  return PlanarPose(cartographer::transform::Project2D(node.local_pose));
+  return ToPose2(node.local_pose);
 }
 
 // (gravity-aligned frame <- tracking frame), a rotation.
 inline Pose2 FromRobot(
     const cartographer::mapping::TrajectoryNode::Data& node) {
-  const Pose2 aligned = PlanarPose(cartographer::transform::Project2D(
-      node.local_pose * cartographer::transform::Rigid3d::Rotation(
-                            node.gravity_alignment.inverse())));
+  const Pose2 aligned =
+      ToPose2(node.local_pose * cartographer::transform::Rigid3d::Rotation(
+                                    node.gravity_alignment.inverse()));
   return Pose2(0., 0., NormalizeAngle(LocalPose(node).theta - aligned.theta));
 }
 

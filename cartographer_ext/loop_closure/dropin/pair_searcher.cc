@@ -114,7 +114,7 @@ Pose2 PairSearcher::Refine(const Submap2D& submap,
   ceres::Solver::Summary unused_summary;
   ceres_scan_matcher_.Match(refined.translation(), refined, cloud,
                             *submap.grid(), &refined, &unused_summary);
-  return PlanarPose(refined);
+  return ToPose2(refined);
 }
 
 }  // namespace loop_closure

@@ -155,7 +155,7 @@ PlaceResult PlaceSearch::Search(PlaceNode node,
       placed.refined = refiner(submap, from.cloud, placed.matched);
       placed.information =
           MatchInformation(*submap.grid(), from.cloud, placed.refined,
-                           PlanarPose(ComputeSubmapPose(submap)));
+                           ToPose2(ComputeSubmapPose(submap)));
       result.placed.push_back(placed);
     }
   }

@@ -58,9 +58,8 @@ SubmapMatch SubmapMatcher::Match(const Pose2& initial,
   scan_matching::SearchWindow window;
   window.linear = linear_window;
   window.angular = angular_window;
-  return ToMatch(matcher_.Match(
-      scan_matching::FastCorrelativeMatcher2D::ToRigid2d(initial), cloud,
-      window, static_cast<float>(min_score), Budget()));
+  return ToMatch(matcher_.Match(ToRigid2d(initial), cloud, window,
+                                static_cast<float>(min_score), Budget()));
 }
 
 SubmapMatch SubmapMatcher::MatchFullSubmap(

@@ -120,7 +120,7 @@ SubmapEntry* VerifiedConstraintBuilder2D::Offer(const SubmapId& submap_id,
   if (is_new) {
     // Not again: tasks read it.
     entry->submap = submap;
-    entry->local_pose = PlanarPose(ComputeSubmapPose(*submap));
+    entry->local_pose = ToPose2(ComputeSubmapPose(*submap));
     entry->first_group = num_groups_;
     if (newest != newest_nodes_.end()) {
       entry->newest_node_at_first = newest->second;
@@ -183,7 +183,7 @@ void VerifiedConstraintBuilder2D::MaybeAddConstraint(
   absl::MutexLock lock(&mutex_);
   const SubmapEntry* const entry = Offer(submap_id, submap, node_id, *node);
   pairs_.push_back(OfferedPair{
-      submap_id, node_id, node, false, PlanarPose(initial_relative_pose),
+      submap_id, node_id, node, false, ToPose2(initial_relative_pose),
       FromRobot(*node), Anchor(submap_id, *entry, node_id.trajectory_id)});
   MeasureFit(pairs_.back(), *entry);
 }

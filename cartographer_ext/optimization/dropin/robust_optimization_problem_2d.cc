@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/full_information.h"
 #include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
 #include "cartographer_ext/optimization/robust_solver.h"
@@ -26,11 +27,6 @@ using TrajectoryState = mapping::PoseGraphInterface::TrajectoryState;
 
 // Standard deviation (metres, radians) that holds frozen trajectories in place.
 constexpr double kFrozenSigma = 1e-4;
-
-Pose2 ToPose2(const transform::Rigid2d& pose) {
-  return Pose2(pose.translation().x(), pose.translation().y(),
-               pose.normalized_angle());
-}
 
 // Factor from the relative weights of the problem to real ones: the median loop
 // has the given sigma.

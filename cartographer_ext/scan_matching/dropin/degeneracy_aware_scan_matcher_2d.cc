@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/scan_matching/dropin/grid_cells.h"
 #include "cartographer_ext/scan_matching/scan_match.h"
 #include "glog/logging.h"
@@ -17,11 +18,6 @@ namespace mapping = cartographer::mapping;
 namespace sensor = cartographer::sensor;
 namespace transform = cartographer::transform;
 using StockOptions = mapping::scan_matching::proto::CeresScanMatcherOptions2D;
-
-Pose2 ToPose2(const transform::Rigid2d& pose) {
-  return Pose2(pose.translation().x(), pose.translation().y(),
-               pose.rotation().angle());
-}
 
 std::vector<Eigen::Vector2d> ToPoints(const sensor::PointCloud& cloud) {
   std::vector<Eigen::Vector2d> points;
@@ -118,9 +114,9 @@ void DegeneracyAwareScanMatcher2D::MatchWithPrediction(
     return;
   }
   const Pose2 pose =
-      MatchScan(options_, prediction, ToPose2(initial_pose_estimate),
+      MatchScan(options_, prediction, ToUnwrappedPose2(initial_pose_estimate),
                 ToPoints(point_cloud), GridCells(&grid), report);
-  *pose_estimate = transform::Rigid2d({pose.x, pose.y}, pose.theta);
+  *pose_estimate = ToRigid2d(pose);
 }
 
 void DegeneracyAwareScanMatcher2D::MatchTsdf(
@@ -139,7 +135,7 @@ void DegeneracyAwareScanMatcher2D::MatchTsdf(
   report->covariance = Eigen::Vector3d(t * t, t * t, r * r).asDiagonal();
   report->information =
       Eigen::Vector3d(1. / (t * t), 1. / (t * t), 1. / (r * r)).asDiagonal();
-  report->match = ToPose2(*pose_estimate);
+  report->match = ToUnwrappedPose2(*pose_estimate);
   report->disagreement << report->match.x - prediction.pose.x,
       report->match.y - prediction.pose.y,
       NormalizeAngle(report->match.theta - prediction.pose.theta);

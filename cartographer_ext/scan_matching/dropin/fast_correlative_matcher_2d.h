@@ -15,6 +15,7 @@
 #include "cartographer/mapping/proto/scan_matching/fast_correlative_scan_matcher_options_2d.pb.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/scan_matching/fast_correlative_search_2d.h"
 
 namespace cartographer_ext {
@@ -91,7 +92,7 @@ class FastCorrelativeMatcher2D {
   bool Match(const Rigid2d& initial_pose_estimate,
              const PointCloud& point_cloud, const float min_score,
              float* const score, Rigid2d* const pose_estimate) const {
-    return Unpack(search_.Match(ToPose2(initial_pose_estimate),
+    return Unpack(search_.Match(ToUnwrappedPose2(initial_pose_estimate),
                                 ToPlanarCloud(point_cloud), min_score),
                   score, pose_estimate);
   }
@@ -107,7 +108,7 @@ class FastCorrelativeMatcher2D {
   SearchResult Match(const Rigid2d& initial_pose_estimate,
                      const PointCloud& point_cloud, const SearchWindow& window,
                      const float min_score, const SearchBudget& budget) const {
-    return search_.Match(ToPose2(initial_pose_estimate),
+    return search_.Match(ToUnwrappedPose2(initial_pose_estimate),
                          ToPlanarCloud(point_cloud), window, min_score, budget);
   }
   SearchResult MatchFullSubmap(const PointCloud& point_cloud,
@@ -120,14 +121,6 @@ class FastCorrelativeMatcher2D {
   // For SearchTask.
   const FastCorrelativeSearch2D& search() const { return search_; }
   size_t MemoryBytes() const { return search_.MemoryBytes(); }
-
-  static Pose2 ToPose2(const Rigid2d& pose) {
-    return Pose2(pose.translation().x(), pose.translation().y(),
-                 pose.rotation().angle());
-  }
-  static Rigid2d ToRigid2d(const Pose2& pose) {
-    return Rigid2d({pose.x, pose.y}, pose.theta);
-  }
 
  private:
   static bool Unpack(const SearchResult& result, float* const score,

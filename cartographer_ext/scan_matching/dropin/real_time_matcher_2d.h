@@ -15,6 +15,7 @@
 #include "cartographer/mapping/proto/scan_matching/real_time_correlative_scan_matcher_options.pb.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/scan_matching/dropin/fast_correlative_matcher_2d.h"
 #include "cartographer_ext/scan_matching/real_time_search_2d.h"
 
@@ -95,8 +96,7 @@ class RealTimeMatcher2D {
                const cartographer::sensor::PointCloud& point_cloud,
                const cartographer::mapping::Grid2D& grid,
                Rigid2d* const pose_estimate) const {
-    const auto initial =
-        FastCorrelativeMatcher2D::ToPose2(initial_pose_estimate);
+    const auto initial = ToUnwrappedPose2(initial_pose_estimate);
     if (point_cloud.empty()) {
       *pose_estimate = initial_pose_estimate;
       return 0.;
@@ -108,7 +108,7 @@ class RealTimeMatcher2D {
       const RealTimeSearchResult result =
           SearchInRealTime(options_, view, initial, ToPlanarCloud(point_cloud));
       if (result.complete) {
-        *pose_estimate = FastCorrelativeMatcher2D::ToRigid2d(result.pose);
+        *pose_estimate = ToRigid2d(result.pose);
         return result.score;
       }
     }

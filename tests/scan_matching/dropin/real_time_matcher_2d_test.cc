@@ -138,7 +138,7 @@ TEST(RealTimeSearchTest, ScoresFewPosesAndRefusesBadInput) {
   const PlanarCloud cloud =
       ToPlanarCloud(test::RandomCloud(*grid, truth, 80, &random));
   RealTimeSearchOptions options;
-  const Pose2 initial = FastCorrelativeMatcher2D::ToPose2(truth);
+  const Pose2 initial = ToUnwrappedPose2(truth);
   const RealTimeSearchResult result =
       SearchInRealTime(options, view, initial, cloud);
   EXPECT_TRUE(result.complete);
