@@ -7,17 +7,11 @@
 
 #include "Eigen/Eigenvalues"
 #include "cartographer_ext/common/planar_matrix.h"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/uncertainty/match_information.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
-
-double Belief(const double information, const double floor,
-              const double full_ratio) {
-  if (!(information > 0.) || information <= floor) return 0.;
-  if (floor <= 0. || information >= full_ratio * floor) return 1.;
-  const double t = std::log(information / floor) / std::log(full_ratio);
-  return t * t * (3. - 2. * t);
-}
 
 DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
                                    const Eigen::Matrix3d& hessian) {
@@ -60,12 +54,12 @@ DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
     case DegeneracyMode::kNoiseFloor: {
       for (int i = 0; i < 2; ++i) {
         result.translation_weights(i) =
-            Belief(result.eigenvalues(i), options.translation_floor,
-                   options.full_ratio);
+            uncertainty::Belief(result.eigenvalues(i),
+                                options.translation_floor, options.full_ratio);
       }
       result.rotation_weight =
-          Belief(result.rotation_information, options.rotation_floor,
-                 options.full_ratio);
+          uncertainty::Belief(result.rotation_information,
+                              options.rotation_floor, options.full_ratio);
       break;
     }
     case DegeneracyMode::kPaperLiteral:
@@ -93,21 +87,6 @@ DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
         rotation ? DegeneracyState::kRotation : DegeneracyState::kNone;
   }
   return result;
-}
-
-Pose2 RemapSolution(const DegeneracyResult& degeneracy, const Pose2& prediction,
-                    const Pose2& match) {
-  const Eigen::Vector2d difference =
-      match.translation() - prediction.translation();
-  Eigen::Vector2d accepted = Eigen::Vector2d::Zero();
-  for (int i = 0; i < 2; ++i) {
-    const Eigen::Vector2d v = degeneracy.eigenvectors.col(i);
-    accepted += degeneracy.translation_weights(i) * v.dot(difference) * v;
-  }
-  const double turn = degeneracy.rotation_weight *
-                      NormalizeAngle(match.theta - prediction.theta);
-  return Pose2(prediction.x + accepted.x(), prediction.y + accepted.y(),
-               NormalizeAngle(prediction.theta + turn));
 }
 
 }  // namespace scan_matching

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where a scan cannot tell the robot's pose, and what to do about it (paper G,
-// improved graph optimisation 2024, section 3.3, eq. 17 to 19).
+// Which motions of the robot a scan does not observe (paper G, improved graph
+// optimisation 2024, section 3.3, eq. 17 and 18).
 //
 // A laser in a corridor sees nothing that moves when the robot does: the cost
 // of the scan matcher has no curvature along the corridor, and whatever it
@@ -11,11 +11,16 @@
 //
 //   G eq. 17   Sigma = [cov(x,x) cov(x,y); cov(y,x) cov(y,y)]
 //   G eq. 18   C_d, C_n, C_f: rows are the degenerate, the other, all
-//   eigenvectors G eq. 19   X_f = C_f^-1 C_d X_0 + C_f^-1 C_n X_s
+//              eigenvectors
+//   G eq. 19   X_f = C_f^-1 C_d X_0 + C_f^-1 C_n X_s
 //
-// with X_0 the prediction (odometry) and X_s the match. (The print of eq. 19
-// has the singular C_d^-1 in the first term.) With orthonormal eigenvectors v_i
-// this is  X_f = sum_i v_i v_i^T (w_i X_s + (1 - w_i) X_0),  w_i = 0 or 1.
+// with X_0 the prediction (odometry) and X_s the match. (Eq. 19 as printed has
+// the singular C_d^-1 in the first term.) With orthonormal eigenvectors v_i
+// this is
+//
+//   X_f = sum over i of  v_i v_i^T (w_i X_s + (1 - w_i) X_0),   w_i = 0 or 1.
+//
+// This file finds v_i and w_i; eq. 19 is applied in scan_information.h.
 //
 // What is different here, and why:
 //  * The matrix is the information of the occupied space alone. The Hessian of
@@ -26,7 +31,7 @@
 //    decomposed; the rotation has its own information c - b^T A^-1 b.
 //  * A bare ratio of eigenvalues fails, because a quantised wall has spurious
 //    information along itself. An eigenvalue counts only as far as it exceeds a
-//    floor (see scan_information.h for where the floor comes from).
+//    floor (see match_information.h for where the floor comes from).
 //  * w_i changes smoothly from 0 at the floor to 1 at `full_ratio` times the
 //    floor, so that the map does not jump when a door comes into view.
 //
@@ -36,15 +41,14 @@
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_DEGENERACY_H_
 
 #include "Eigen/Core"
-#include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
 
 enum class DegeneracyMode {
   kNoiseFloor,    // as described above
-  kPaperLiteral,  // eq. 17, 18: ratio of the covariance eigenvalues, hard
-                  // switch
+  kPaperLiteral,  // eq. 17, 18: ratio of the covariance eigenvalues, all or
+                  // nothing
 };
 
 struct DegeneracyOptions {
@@ -86,20 +90,11 @@ struct DegeneracyResult {
   double ratio = 1.;
 };
 
-// How far information is believed: 0 up to the floor, 1 from `full_ratio` times
-// the floor on, in between 3 t^2 - 2 t^3 with t on a logarithmic scale.
-double Belief(double information, double floor, double full_ratio);
-
 // `hessian` is the information of the scan about (x, y, theta), metres and
 // radians, in any frame and any unit of cost. A matrix with NaN or infinity
 // counts as without information.
 DegeneracyResult AnalyzeDegeneracy(const DegeneracyOptions& options,
                                    const Eigen::Matrix3d& hessian);
-
-// G eq. 19 with smooth weights: the match where it is believed, the prediction
-// elsewhere. Both poses in the frame of the Hessian.
-Pose2 RemapSolution(const DegeneracyResult& degeneracy, const Pose2& prediction,
-                    const Pose2& match);
 
 }  // namespace scan_matching
 }  // namespace cartographer_ext

@@ -26,8 +26,9 @@
 #include "cartographer_ext/scan_matching/match_report.h"
 #include "cartographer_ext/scan_matching/occupied_space_cost.h"
 #include "cartographer_ext/scan_matching/pose_solver.h"
-#include "cartographer_ext/scan_matching/scan_curvature.h"
 #include "cartographer_ext/scan_matching/scan_information.h"
+#include "cartographer_ext/uncertainty/scan_curvature.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -84,7 +85,7 @@ struct Prior {
 
 // Returns X_f (grid <- node), its angle on the same turn as the initial one.
 // `prediction.covariance` as in match_report.h; `initial` is where the solver
-// starts. Points that are not finite are left out; a prediction or initial pose
+// starts. Points that are not finite are ignored; a prediction or initial pose
 // that is not finite is replaced by the other. `cells` as in
 // occupied_space_cost.h. `report` may be null.
 template <typename Cells>
@@ -92,9 +93,176 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
                 const Pose2& initial, std::vector<Eigen::Vector2d> points,
                 const Cells& cells, MatchReport* report);
 
+// The curvature of the mean cost around the pose of `motion`. `hessian`, about
+// (x, y, theta), is any symmetric matrix with similar axes; `step` in cells.
+template <typename Cells>
+uncertainty::ScanCurvature MeasureCurvature(
+    const OccupiedSpaceCost<Cells>& cost,
+    const uncertainty::ScaledMotion& motion, const Eigen::Matrix3d& hessian,
+    double step);
+
 // The angle nearest to `reference` that is the same direction as `angle`.
 inline double UnwrapAngle(const double angle, const double reference) {
   return reference + NormalizeAngle(angle - reference);
+}
+
+namespace internal {
+
+// A scan match in progress. `Cells` as in occupied_space_cost.h.
+template <typename Cells>
+class ScanMatch {
+ public:
+  // Points, prediction and initial pose are finite.
+  ScanMatch(const ScanMatchOptions& options, const Prediction& prediction,
+            const Pose2& initial, std::vector<Eigen::Vector2d> points,
+            const Cells& cells)
+      : options_(options),
+        covariance_(prediction.covariance),
+        scans_in_map_(prediction.scans_in_map),
+        predicted_(prediction.pose),
+        start_(initial),
+        num_points_(static_cast<int>(points.size())),
+        weight2_(options.occupied_space_weight * options.occupied_space_weight),
+        scale_(num_points_ == 0 ? 0. : weight2_ / num_points_),
+        resolution_(cells.resolution()),
+        cost_(&cells, std::move(points)) {
+    covariance_is_known_ =
+        uncertainty::InvertCovariance(covariance_, &prediction_information_);
+    const double translation2 =
+        options.translation_weight * options.translation_weight;
+    const double rotation2 = options.rotation_weight * options.rotation_weight;
+    stock_prior_ = Prior{Eigen::Vector3d(translation2, translation2, rotation2),
+                         predicted_};
+    prior_ = stock_prior_;
+    if (covariance_is_known_ && options.remap) {
+      const uncertainty::ScaledMotion motion(cost_.points(), resolution_,
+                                             start_);
+      prior_.weights =
+          kWeakPrior * weight2_ * motion.FromPose().diagonal().cwiseAbs2();
+      // A start that a search has found may be far from the prediction.
+      prior_.pose = start_;
+    }
+  }
+
+  // Steps 1 to 3 of the file comment.
+  Pose2 Match(MatchReport* const report) {
+    const PoseSolution solution =
+        SolvePose(options_.solver, start_,
+                  [this](const Pose2& pose) { return Evaluate(pose); });
+    Pose2 match = solution.pose;
+    if (!IsFinite(match)) match = start_;
+    if (!options_.remap && report == nullptr && !covariance_is_known_) {
+      return match;
+    }
+    ScanInformation scan = NoInformation();
+    if (num_points_ > 0) {
+      // The Gauss-Newton part alone, without the prior.
+      Eigen::Matrix3d hessian = solution.at_pose.hessian;
+      hessian.diagonal() -= prior_.weights;
+      scan = Analyze(match, hessian);
+    }
+    Pose2 result = match;
+    if (options_.remap) {
+      result =
+          Remap(scan, covariance_is_known_ ? &prediction_information_ : nullptr,
+                predicted_, match);
+    }
+    result.theta = UnwrapAngle(result.theta, start_.theta);
+    if (report != nullptr) Report(solution, scan, match, result, report);
+    return result;
+  }
+
+ private:
+  PoseCost Evaluate(const Pose2& pose) {
+    const OccupiedSpaceSums sums = cost_.Evaluate(pose);
+    if (is_first_) squares_at_start_ = sums.squares;
+    is_first_ = false;
+    PoseCost result;
+    result.cost = 0.5 * scale_ * sums.squares + prior_.Cost(pose);
+    result.gradient = scale_ * sums.gradient +
+                      prior_.weights.cwiseProduct(prior_.Difference(pose));
+    result.hessian = scale_ * sums.hessian;
+    result.hessian.diagonal() += prior_.weights;
+    return result;
+  }
+
+  ScanInformation Analyze(const Pose2& match,
+                          const Eigen::Matrix3d& hessian) const {
+    const uncertainty::ScaledMotion motion(cost_.points(), resolution_, match);
+    ScanInformationOptions information = options_.information;
+    const double noise = YoungMapNoise(scans_in_map_);
+    information.map_noise *= noise;
+    information.point_noise *= noise;
+    return AnalyzeScan(
+        information, motion,
+        MeasureCurvature(cost_, motion, hessian, options_.curvature_step),
+        num_points_, hessian);
+  }
+
+  void Report(const PoseSolution& solution, const ScanInformation& scan,
+              const Pose2& match, const Pose2& result,
+              MatchReport* const report) {
+    report->degeneracy = scan.degeneracy;
+    report->scan_information = scan.information;
+    if (!covariance_is_known_) {
+      prediction_information_.setZero();
+      const double t = options_.prediction_translation_sigma;
+      const double r = options_.prediction_rotation_sigma;
+      prediction_information_.diagonal() << 1. / (t * t), 1. / (t * t),
+          1. / (r * r);
+    }
+    report->information = scan.information + prediction_information_;
+    if (!uncertainty::InvertCovariance(report->information,
+                                       &report->covariance)) {
+      report->information = prediction_information_;
+      if (!uncertainty::InvertCovariance(report->information,
+                                         &report->covariance)) {
+        report->information.setIdentity();
+        report->covariance.setIdentity();
+      }
+    }
+    report->initial_cost =
+        0.5 * scale_ * squares_at_start_ + stock_prior_.Cost(start_);
+    report->final_cost = 0.5 * scale_ * cost_.Evaluate(result).squares +
+                         stock_prior_.Cost(result);
+    report->iterations = solution.iterations;
+    report->converged = solution.converged;
+    report->match = Pose2(match.x, match.y, NormalizeAngle(match.theta));
+    Compare(scan, predicted_, covariance_is_known_ ? &covariance_ : nullptr,
+            match, report);
+  }
+
+  const ScanMatchOptions& options_;
+  const Eigen::Matrix3d covariance_;  // of the prediction
+  const int scans_in_map_;
+  const Pose2 predicted_;
+  const Pose2 start_;
+  const int num_points_;
+  const double weight2_;  // of the occupied space
+  const double scale_;
+  const double resolution_;
+  OccupiedSpaceCost<Cells> cost_;
+  bool covariance_is_known_ = false;
+  Eigen::Matrix3d prediction_information_;
+  Prior stock_prior_;
+  Prior prior_;
+  bool is_first_ = true;
+  double squares_at_start_ = 0.;
+};
+
+}  // namespace internal
+
+template <typename Cells>
+uncertainty::ScanCurvature MeasureCurvature(
+    const OccupiedSpaceCost<Cells>& cost,
+    const uncertainty::ScaledMotion& motion, const Eigen::Matrix3d& hessian,
+    const double step) {
+  const double per_point = 0.5 / static_cast<double>(cost.points().size());
+  return uncertainty::MeasureCurvature(
+      [&](const Eigen::Vector3d& scaled) {
+        return per_point * cost.LinearSquares(motion.Moved(scaled));
+      },
+      motion.ToPose().transpose() * hessian * motion.ToPose(), step);
 }
 
 template <typename Cells>
@@ -108,113 +276,13 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
                points.end());
   Pose2 start = internal::IsFinite(initial) ? initial : prediction.pose;
   if (!internal::IsFinite(start)) start = Pose2();
-  Pose2 predicted =
-      internal::IsFinite(prediction.pose) ? prediction.pose : start;
+  Prediction predicted = prediction;
+  if (!internal::IsFinite(predicted.pose)) predicted.pose = start;
   // One branch for all angles.
-  predicted.theta = UnwrapAngle(predicted.theta, start.theta);
-  Eigen::Matrix3d prediction_information;
-  const bool covariance_is_known =
-      InvertCovariance(prediction.covariance, &prediction_information);
-
-  const int num_points = static_cast<int>(points.size());
-  const double weight2 =
-      options.occupied_space_weight * options.occupied_space_weight;
-  const double scale = num_points == 0 ? 0. : weight2 / num_points;
-  OccupiedSpaceCost<Cells> cost(&cells, std::move(points));
-  const ScaledMotion motion_at_start(cost.points(), cells.resolution(), start);
-
-  const double translation2 =
-      options.translation_weight * options.translation_weight;
-  const double rotation2 = options.rotation_weight * options.rotation_weight;
-  const internal::Prior stock_prior{
-      Eigen::Vector3d(translation2, translation2, rotation2), predicted};
-  internal::Prior prior = stock_prior;
-  if (covariance_is_known && options.remap) {
-    prior.weights = internal::kWeakPrior * weight2 *
-                    motion_at_start.FromPose().diagonal().cwiseAbs2();
-    // A start that a search has found may be far from the prediction.
-    prior.pose = start;
-  }
-  bool is_first = true;
-  double squares_at_start = 0.;
-  const auto evaluate = [&](const Pose2& pose) {
-    const OccupiedSpaceSums sums = cost.Evaluate(pose);
-    if (is_first) squares_at_start = sums.squares;
-    is_first = false;
-    PoseCost result;
-    result.cost = 0.5 * scale * sums.squares + prior.Cost(pose);
-    result.gradient = scale * sums.gradient +
-                      prior.weights.cwiseProduct(prior.Difference(pose));
-    result.hessian = scale * sums.hessian;
-    result.hessian.diagonal() += prior.weights;
-    return result;
-  };
-  const PoseSolution solution = SolvePose(options.solver, start, evaluate);
-  Pose2 match = solution.pose;
-  if (!internal::IsFinite(match)) match = start;
-
-  if (!options.remap && report == nullptr && !covariance_is_known) return match;
-  ScanInformation scan = NoInformation();
-  if (num_points > 0) {
-    const ScaledMotion motion(cost.points(), cells.resolution(), match);
-    // The Gauss-Newton part alone, without the prior.
-    Eigen::Matrix3d hessian = solution.at_pose.hessian;
-    hessian.diagonal() -= prior.weights;
-    const double per_point = 0.5 / num_points;
-    const auto half_mean_squares = [&](const Eigen::Vector3d& step) {
-      return per_point * cost.LinearSquares(motion.Moved(step));
-    };
-    ScanInformationOptions information = options.information;
-    const double noise = internal::YoungMapNoise(prediction.scans_in_map);
-    information.map_noise *= noise;
-    information.point_noise *= noise;
-    scan = AnalyzeScan(information, motion,
-                       MeasureCurvature(half_mean_squares,
-                                        motion.ToPose().transpose() * hessian *
-                                            motion.ToPose(),
-                                        options.curvature_step),
-                       num_points, hessian);
-  }
-  Pose2 result = match;
-  if (options.remap) {
-    const bool by_covariance =
-        covariance_is_known &&
-        options.information.mode == DegeneracyMode::kNoiseFloor;
-    result = by_covariance
-                 ? Fuse(scan, predicted, prediction_information, match)
-                 : Remap(scan, options.information.mode, predicted, match);
-  }
-  result.theta = UnwrapAngle(result.theta, start.theta);
-  if (report == nullptr) return result;
-
-  report->degeneracy = scan.degeneracy;
-  report->scan_information = scan.information;
-  if (!covariance_is_known) {
-    prediction_information.setZero();
-    const double t = options.prediction_translation_sigma;
-    const double r = options.prediction_rotation_sigma;
-    prediction_information.diagonal() << 1. / (t * t), 1. / (t * t),
-        1. / (r * r);
-  }
-  report->information = scan.information + prediction_information;
-  if (!InvertCovariance(report->information, &report->covariance)) {
-    report->information = prediction_information;
-    if (!InvertCovariance(report->information, &report->covariance)) {
-      report->information.setIdentity();
-      report->covariance.setIdentity();
-    }
-  }
-  report->initial_cost =
-      0.5 * scale * squares_at_start + stock_prior.Cost(start);
-  report->final_cost =
-      0.5 * scale * cost.Evaluate(result).squares + stock_prior.Cost(result);
-  report->iterations = solution.iterations;
-  report->converged = solution.converged;
-  report->match = Pose2(match.x, match.y, NormalizeAngle(match.theta));
-  Compare(scan, predicted,
-          covariance_is_known ? &prediction.covariance : nullptr, match,
-          report);
-  return result;
+  predicted.pose.theta = UnwrapAngle(predicted.pose.theta, start.theta);
+  internal::ScanMatch<Cells> match(options, predicted, start, std::move(points),
+                                   cells);
+  return match.Match(report);
 }
 
 }  // namespace scan_matching

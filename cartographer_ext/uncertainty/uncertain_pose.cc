@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "Eigen/Cholesky"
+#include "cartographer_ext/common/planar_matrix.h"
+
 namespace cartographer_ext {
 namespace uncertainty {
 
@@ -33,6 +36,23 @@ UncertainPose Invert(const UncertainPose& pose) {
 
 UncertainPose Between(const UncertainPose& a, const UncertainPose& b) {
   return Compose(Invert(a), b);
+}
+
+bool InvertCovariance(const Eigen::Matrix3d& covariance,
+                      Eigen::Matrix3d* const information) {
+  if (!covariance.allFinite()) return false;
+  // Metres and radians may be orders of magnitude apart: factor the matrix of
+  // correlations.
+  const Eigen::Vector3d variances = covariance.diagonal();
+  if (!(variances.minCoeff() > 0.)) return false;
+  const Eigen::Vector3d scale = variances.cwiseSqrt().cwiseInverse();
+  const Eigen::Matrix3d correlation =
+      scale.asDiagonal() * Symmetric(covariance) * scale.asDiagonal();
+  const Eigen::LLT<Eigen::Matrix3d> factor(correlation);
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::Matrix3d inverse = factor.solve(Eigen::Matrix3d::Identity());
+  *information = scale.asDiagonal() * Symmetric(inverse) * scale.asDiagonal();
+  return information->allFinite();
 }
 
 }  // namespace uncertainty

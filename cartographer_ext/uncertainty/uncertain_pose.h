@@ -56,6 +56,10 @@ UncertainPose Invert(const UncertainPose& pose);
 // (a <- b) from (m <- a) and (m <- b) with independent errors.
 UncertainPose Between(const UncertainPose& a, const UncertainPose& b);
 
+// The inverse where `covariance` is finite and positive definite, else false.
+bool InvertCovariance(const Eigen::Matrix3d& covariance,
+                      Eigen::Matrix3d* information);
+
 }  // namespace uncertainty
 }  // namespace cartographer_ext
 

@@ -81,49 +81,7 @@ TEST(DegeneracyTest, WeightIsSmoothAndMonotonic) {
   EXPECT_EQ(last, 1.);
 }
 
-TEST(DegeneracyTest, RemapKeepsPredictionOnlyInTheWeakDirection) {
-  const DegeneracyResult corridor =
-      AnalyzeDegeneracy(Options(), Wall(M_PI / 2., 1e4));
-  const Pose2 prediction(1., 2., 0.1), match(1.7, 2.3, 0.2);
-  const Pose2 remapped = RemapSolution(corridor, prediction, match);
-  EXPECT_NEAR(remapped.x, 1., 1e-9);   // along the corridor: prediction
-  EXPECT_NEAR(remapped.y, 2.3, 1e-9);  // across: match
-  EXPECT_NEAR(remapped.theta, 0.2, 1e-9);
-
-  const DegeneracyResult full =
-      AnalyzeDegeneracy(Options(), 1e6 * Eigen::Matrix3d::Identity());
-  const Pose2 unchanged = RemapSolution(full, prediction, match);
-  EXPECT_NEAR(unchanged.x, match.x, 1e-12);
-  EXPECT_NEAR(unchanged.theta, match.theta, 1e-12);
-}
-
-// Eq. 19 with matrices, as corrected, against the sum over eigenvectors.
-TEST(DegeneracyTest, EquationNineteenWithMatrices) {
-  DegeneracyOptions options = Options();
-  options.mode = DegeneracyMode::kPaperLiteral;
-  const DegeneracyResult result = AnalyzeDegeneracy(options, Wall(0.7, 1e4));
-  const Eigen::Matrix2d c_f = result.eigenvectors.transpose();
-  Eigen::Matrix2d c_d = Eigen::Matrix2d::Zero(), c_n = Eigen::Matrix2d::Zero();
-  c_d.row(0) = c_f.row(0);
-  c_n.row(1) = c_f.row(1);
-  const Eigen::Vector2d x_0(0.3, -0.4), x_s(1.1, 0.6);
-  const Eigen::Vector2d expected =
-      c_f.transpose() * c_d * x_0 + c_f.transpose() * c_n * x_s;
-  const Pose2 remapped = RemapSolution(result, Pose2(x_0.x(), x_0.y(), 0.),
-                                       Pose2(x_s.x(), x_s.y(), 0.));
-  EXPECT_NEAR(remapped.x, expected.x(), 1e-12);
-  EXPECT_NEAR(remapped.y, expected.y(), 1e-12);
-}
-
-TEST(DegeneracyTest, AngleIsRemappedTheShortWay) {
-  DegeneracyResult result;
-  result.rotation_weight = 0.5;
-  const Pose2 remapped = RemapSolution(result, Pose2(0., 0., M_PI - 0.1),
-                                       Pose2(0., 0., -M_PI + 0.1));
-  EXPECT_NEAR(std::abs(remapped.theta), M_PI, 1e-9);
-}
-
-TEST(DegeneracyTest, NothingSeenMeansPrediction) {
+TEST(DegeneracyTest, NothingSeenMeansNoBelief) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Eigen::Matrix3d bad = Eigen::Matrix3d::Identity();
   bad(0, 1) = nan;
@@ -132,10 +90,8 @@ TEST(DegeneracyTest, NothingSeenMeansPrediction) {
     const DegeneracyResult result = AnalyzeDegeneracy(Options(), h);
     EXPECT_EQ(result.state, DegeneracyState::kEverything);
     EXPECT_TRUE(result.eigenvectors.allFinite());
-    const Pose2 remapped =
-        RemapSolution(result, Pose2(1., 2., 0.5), Pose2(9., 9., 1.));
-    EXPECT_NEAR(remapped.x, 1., 1e-12);
-    EXPECT_NEAR(remapped.theta, 0.5, 1e-12);
+    EXPECT_EQ(result.translation_weights, Eigen::Vector2d(0., 0.));
+    EXPECT_EQ(result.rotation_weight, 0.);
   }
 }
 

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/uncertainty/uncertain_pose.h"
 
+#include <limits>
+
 #include "Eigen/Cholesky"
+#include "Eigen/LU"
 #include "cartographer_ext/common/random.h"
 #include "gtest/gtest.h"
 
@@ -136,6 +139,20 @@ TEST(UncertainPoseTest, MonteCarlo) {
   EXPECT_TRUE(of_composed.isApprox(composed.covariance, 0.03)) << of_composed;
   EXPECT_TRUE(of_inverse.isApprox(inverse.covariance, 0.03)) << of_inverse;
   EXPECT_TRUE(of_between.isApprox(between.covariance, 0.03)) << of_between;
+}
+
+TEST(UncertainPoseTest, InvertsCovariancesOfMetresAndRadians) {
+  const Eigen::Matrix3d round = Covariance(1.);
+  const Eigen::DiagonalMatrix<double, 3> scale(1., 1., 1e-6);
+  Eigen::Matrix3d information;
+  ASSERT_TRUE(InvertCovariance(scale * round * scale, &information));
+  EXPECT_TRUE(Eigen::Matrix3d(scale * information * scale)
+                  .isApprox(round.inverse(), 1e-9));
+  EXPECT_FALSE(InvertCovariance(Eigen::Matrix3d::Zero(), &information));
+  EXPECT_FALSE(InvertCovariance(-Eigen::Matrix3d::Identity(), &information));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(
+      InvertCovariance(nan * Eigen::Matrix3d::Identity(), &information));
 }
 
 }  // namespace

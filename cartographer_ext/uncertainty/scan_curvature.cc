@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/scan_matching/scan_curvature.h"
+#include "cartographer_ext/uncertainty/scan_curvature.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,7 +9,7 @@
 #include "Eigen/LU"
 
 namespace cartographer_ext {
-namespace scan_matching {
+namespace uncertainty {
 namespace {
 
 // One point has no spread, and turning it moves nothing.
@@ -61,5 +61,5 @@ void Sort(ScanCurvature* const curvature) {
 }
 
 }  // namespace internal
-}  // namespace scan_matching
+}  // namespace uncertainty
 }  // namespace cartographer_ext

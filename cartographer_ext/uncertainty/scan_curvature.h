@@ -28,8 +28,8 @@
 //   sqrt 2,
 //
 // since the cost saturates a few cells away from a wall and is not quadratic.
-#ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_CURVATURE_H_
-#define CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_CURVATURE_H_
+#ifndef CARTOGRAPHER_EXT_UNCERTAINTY_SCAN_CURVATURE_H_
+#define CARTOGRAPHER_EXT_UNCERTAINTY_SCAN_CURVATURE_H_
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@
 #include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
-namespace scan_matching {
+namespace uncertainty {
 
 // Scaled motions (cells, cells, cells at the spread) of a scan at a pose.
 class ScaledMotion {
@@ -135,7 +135,7 @@ ScanCurvature MeasureCurvature(const Function& half_mean_squares,
   return curvature;
 }
 
-}  // namespace scan_matching
+}  // namespace uncertainty
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_CURVATURE_H_
+#endif  // CARTOGRAPHER_EXT_UNCERTAINTY_SCAN_CURVATURE_H_

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/scan_matching/scan_curvature.h"
+#include "cartographer_ext/uncertainty/scan_curvature.h"
 
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
-namespace scan_matching {
+namespace uncertainty {
 namespace {
 
 TEST(ScaledMotionTest, TurnsAboutTheCentroid) {
@@ -106,5 +106,5 @@ TEST(MeasureCurvatureTest, NonsenseGivesFiniteAxes) {
 }
 
 }  // namespace
-}  // namespace scan_matching
+}  // namespace uncertainty
 }  // namespace cartographer_ext
