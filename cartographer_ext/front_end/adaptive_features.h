@@ -7,9 +7,9 @@
 //   G eq. 1    C = 1/k sum_j (p_ij - m)(p_ij - m)^T           m = mean of p_ij
 //   G eq. 2    C = 1/k sum_j w_j (p_ij - m)(p_ij - m)^T
 //              w_j = exp(-|p_ij - p_i|^2 / r^2)
-//   G eq. 3    sigma(p_i) = 2 lambda_1 / (lambda_1 + lambda_2),  lambda_1 <=
-//   lambda_2 G eq. 4    eps_i = 1/k sum_j sigma(p_ij);  keep p_i when
-//   sigma(p_i) > eps_i
+//   G eq. 3    sigma(p_i) = 2 lambda_1 / (lambda_1 + lambda_2)
+//              lambda_1 <= lambda_2
+//   G eq. 4    eps_i = 1/k sum_j sigma(p_ij);  keep p_i when sigma(p_i) > eps_i
 //
 // over the k nearest neighbours p_ij of p_i (exact, kd-tree). sigma is 0 on a
 // straight wall and 1 where the neighbourhood is round. r is the radius of the

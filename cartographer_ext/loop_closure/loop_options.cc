@@ -102,8 +102,8 @@ uncertainty::PathNoiseOptions ToPathNoiseOptions(
   to.rotation_per_radian = from.rotation_per_radian();
   to.heading_drift = from.heading_drift();
   to.scale_error = from.scale_error();
-  to.free_metres = from.free_metres();
-  to.free_radians = from.free_radians();
+  to.jump_threshold_metres = from.free_metres();
+  to.jump_threshold_radians = from.free_radians();
   return to;
 }
 

@@ -10,8 +10,8 @@ namespace cartographer_ext {
 namespace scan_matching {
 namespace {
 
-// The values of so many points fit into 16 bits, in multiples of what fits into
-// a byte.
+// The values of this many points fit into 16 bits; a multiple of the number
+// that fits into a byte.
 constexpr int kPointsPerWord =
     65535 / (CoarseMaxima::kMaxValue * CoarseMaxima::kNumPerByte) *
     CoarseMaxima::kNumPerByte;

@@ -16,7 +16,7 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
-// Bounds are kept after each part of the scan but the last.
+// Bounds are stored after each part of the scan but the last.
 constexpr int kNumPartialSums = RotatedScans::kNumParts - 1;
 
 struct CoarseNode {
@@ -30,8 +30,11 @@ struct CoarseNode {
 class CoarseSearch {
  public:
   // Only nodes with poses whose sum may exceed `threshold` are of interest.
-  // References and pointers must stay valid.
+  // `grid` and `scans` must outlive this.
   CoarseSearch(const PreparedGrid& grid, RotatedScans* scans, int threshold);
+
+  CoarseSearch(const CoarseSearch&) = delete;
+  CoarseSearch& operator=(const CoarseSearch&) = delete;
 
   // The nodes, largest bounds first, equal ones in the order of scoring. False
   // where there are too many.
@@ -70,6 +73,7 @@ class CoarseSearch {
   std::vector<uint16_t> word_sums_;
   std::vector<int32_t> wide_sums_;
   std::vector<uint16_t> partial_sums_[kNumPartialSums];
+  // Of the current call of `Score`.
   SearchStatistics* statistics_ = nullptr;
   std::vector<CoarseNode>* nodes_ = nullptr;
 };

@@ -23,7 +23,7 @@ namespace scan_matching {
 
 class CorrelativeSearchRun {
  public:
-  // Computes the coarse bounds. All references must stay.
+  // Computes the coarse bounds. `grid` must outlive this.
   CorrelativeSearchRun(const PreparedGrid& grid, const PlanarCloud& cloud,
                        const Pose2& initial, const SearchWindow& window,
                        float min_score);
@@ -35,11 +35,11 @@ class CorrelativeSearchRun {
   // Goes on until done, until the upper bound is below `score`, or until the
   // meter is used up.
   void Run(float score, BudgetMeter* meter);
-  // At the end.
+  // After the last `Run`.
   SearchResult Result();
 
  private:
-  // 16 bits hold the values of so many points.
+  // The values of this many points fit into 16 bits.
   static constexpr int kPointsPerSquareSum = 257;
   struct Block {
     int32_t sum;  // bound
@@ -64,7 +64,7 @@ class CorrelativeSearchRun {
   const PreparedGrid& grid_;
   RotatedScans scans_;
   bool complete_ = true;
-  int threshold_ = 0;  // sums up to this one are not wanted
+  int threshold_ = 0;  // only larger sums are of interest
   int best_sum_ = -1;
   // With the best sum; when there are too many of them, only the first few.
   std::vector<DiscretePose> best_;

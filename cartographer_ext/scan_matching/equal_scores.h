@@ -26,7 +26,8 @@ struct DiscretePose {
 
 class EqualScores {
  public:
-  // All must stay. `cells` has squares of one cell, `blocks` of kBlockSize.
+  // All arguments must outlive this. `cells` has squares of one cell, `blocks`
+  // of kBlockSize.
   EqualScores(const RectangleMaxima& cells, const RectangleMaxima& blocks,
               int depth, RotatedScans* scans);
 

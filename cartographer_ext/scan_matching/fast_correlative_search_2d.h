@@ -17,7 +17,7 @@
 //    the largest value of all cells it can meet: between two rotations it moves
 //    by less than one cell, in proportion to its range and across its ray, so
 //    that one of five rectangles of cells is enough. Bounds of all coarse nodes
-//    are computed at once: cells eight apart are kept next to each other,
+//    are computed at once: cells eight apart are stored side by side,
 //    so that one vector addition serves 32 nodes. Values have 5 bits there,
 //    rounded up, so that eight points fit one byte.
 //  * block: one rotation x 8 x 8 offsets.
@@ -26,7 +26,7 @@
 //    cannot reach the best pose so far.
 // The node with the largest bound comes next, until no bound exceeds the best
 // score. Where nothing is above the minimum, the coarse bounds sometimes say so
-// alone, and the search is over before it began ("rejected").
+// alone, and no node is opened ("rejected early").
 //
 // Ties: of poses with equal sums the one is returned that Cartographer's
 // depth-first search meets first, see equal_scores.h.
@@ -79,7 +79,7 @@ struct FastCorrelativeSearchOptions {
 struct SearchBudget {
   // Nodes and poses scored after the coarse bounds; deterministic.
   int64_t max_candidates = 0;
-  // Wall time after the coarse bounds, looked at now and then; makes results
+  // Wall time after the coarse bounds, checked every few nodes; makes results
   // depend on the machine.
   double max_seconds = 0.;
 };
@@ -136,7 +136,7 @@ class FastCorrelativeSearch2D {
   size_t MemoryBytes() const;
   const FastCorrelativeSearchOptions& options() const;
 
-  // Prepared for searching; for MatchBestFew. Null when there is nothing.
+  // For MatchBestFew. Null for a grid that cannot be searched.
   const PreparedGrid* prepared() const { return grid_.get(); }
 
  private:
@@ -144,7 +144,8 @@ class FastCorrelativeSearch2D {
   std::unique_ptr<const PreparedGrid> grid_;
 };
 
-// One of several places where a scan may belong. What it points to must stay.
+// One of several places where a scan may belong. Pointees must outlive the
+// search.
 struct SearchTask {
   const FastCorrelativeSearch2D* grid = nullptr;
   const PlanarCloud* cloud = nullptr;
@@ -161,9 +162,9 @@ struct SearchTaskResult {
 
 // The results of the `num_best` tasks whose best poses score highest, best
 // first (of equals the earlier task first); fewer when fewer exceed their
-// minimum. All tasks share one queue, so that places that turn out worse are
-// left alone as soon as that is clear. With a budget, which is for all tasks
-// together, results may be incomplete. `total`, if any, gets the sums.
+// minimum. All tasks share one queue, so that a worse place is
+// abandoned as soon as its bound shows it. With a budget, which is for all
+// tasks together, results may be incomplete. `total`, if any, gets the sums.
 std::vector<SearchTaskResult> MatchBestFew(const std::vector<SearchTask>& tasks,
                                            int num_best,
                                            const SearchBudget& budget,

@@ -22,8 +22,8 @@ struct Prediction {
   // Symmetric and positive definite. One that is not finite or not positive
   // definite counts as "not known": the match uses the weights of the options.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  // Scans that the map is made of; 0 when that is not known. A map of a single
-  // scan has its noise and its cells in all walls alike.
+  // Number of scans in the map; 0 when it is not known. All walls of a map of a
+  // single scan have the noise and the rounding of that scan.
   int scans_in_map = 0;
 };
 
@@ -48,8 +48,8 @@ struct MatchReport {
   // False when the iterations ran out.
   bool converged = false;
 
-  // X_s of G eq. 19: the solution before the prediction took over what the
-  // scan does not determine.
+  // X_s of G eq. 19: the solution before the directions that the scan does not
+  // observe were taken from the prediction.
   Pose2 match;
   // The match minus the prediction, angle wrapped, along what the scan
   // determines; zero along the rest.

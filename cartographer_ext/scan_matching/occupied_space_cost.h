@@ -20,7 +20,7 @@
 //
 // c = u(f_row)^T P u(f_column) with P the 4 x 4 cells around the point, and the
 // derivatives have u' in place of one u. The solver evaluates a scan a few
-// times at nearly the same pose, so P is kept as long as the point stays in its
+// times at nearly the same pose, so P is reused while the point stays in its
 // cell. The arithmetic is done for several points at once (bicubic_kernels.h).
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_OCCUPIED_SPACE_COST_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_OCCUPIED_SPACE_COST_H_
@@ -44,8 +44,8 @@ struct OccupiedSpaceSums {
 };
 
 // `Cells` is a grid of costs whose cell (row, column) has its centre at
-//   x = max_x() - resolution() (row + 1/2), y = max_y() - resolution() (column
-//   + 1/2):
+//   x = max_x() - resolution() (row + 1/2)
+//   y = max_y() - resolution() (column + 1/2)
 //
 //   double resolution() const, max_x() const, max_y() const;  // metres
 //   int num_rows() const, num_columns() const;
@@ -75,7 +75,7 @@ class OccupiedSpaceCost {
 
   const std::vector<Eigen::Vector2d>& points() const { return points_; }
 
-  // At the pose (grid <- node). Not const: cells are kept.
+  // At the pose (grid <- node). Not const: cells are cached.
   OccupiedSpaceSums Evaluate(const Pose2& pose) {
     Sample(pose);
     const double* const costs = Array(kCost);
@@ -148,7 +148,7 @@ class OccupiedSpaceCost {
   }
 
  private:
-  // The 4 x 4 cells from (row - 1, column - 1) on that are kept of a point.
+  // The 4 x 4 cells from (row - 1, column - 1) on that are cached for a point.
   struct Patch {
     int row = kNoRow;
     int column = 0;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Finds the best pose of a scan in a small window of a grid that changes all
-// the time, so that nothing can be prepared: the same optimum as Cartographer's
-// real-time correlative matcher, bit for bit.
+// Finds the best pose of a scan in a small window of a grid that changes with
+// every scan, so that nothing can be prepared: the same optimum as
+// Cartographer's real-time correlative matcher, bit for bit.
 //
 // A pose scores the mean probability of the cells that the points fall into,
 // summed in single precision in the order of the points, times

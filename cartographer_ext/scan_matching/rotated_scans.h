@@ -67,9 +67,9 @@ struct RotatedScan {
 
 class RotatedScans {
  public:
-  // Points are kept in another order: every fourth, from the first, the second,
-  // the third, and the fourth on. So these parts of a scan are much alike, and
-  // one of them shows whether a pose is any good.
+  // Points are stored in another order: every fourth point, starting with the
+  // first, then with the second, the third and the fourth. These parts of a
+  // scan resemble each other, so that one shows whether a pose is promising.
   static constexpr int kNumParts = 4;
 
   // Half sizes in metres and radians; `initial` is (grid <- cloud). The cloud
@@ -95,14 +95,14 @@ class RotatedScans {
   // Part `part` consists of points PartBegin(part) to PartBegin(part + 1) - 1.
   int PartBegin(const int part) const { return part_begin_[part]; }
 
-  // Where the cloud's point i is kept.
+  // Where the cloud's point i is stored.
   int PlaceOf(const int i) const {
     return first_of_turn_[i % kNumParts] + i / kNumParts;
   }
 
   // How many cells the point may move from a rotation to the next, at most.
   double CellsPerStep(int point) const;
-  // Of that, what rounding may add to the way between any two rotations.
+  // Of that, what rounding may add between any two rotations.
   double RoundingCells() const;
 
   // Of the initial pose, in fractions of cells.
@@ -119,13 +119,13 @@ class RotatedScans {
   // The smallest rectangle of cells with all (finite) points.
   OffsetBounds CellBounds(const int32_t* x, const int32_t* y) const;
 
-  // The same as FindCells, kept; with bounds.
+  // The same as FindCells with bounds; computed once.
   const RotatedScan& Get(int rotation);
 
   // What `offsets` are for points in these cells.
   OffsetBounds BoundsFor(const OffsetBounds& cells) const;
 
-  // Relative to nothing: (grid <- cloud); the angle is not wrapped.
+  // (grid <- cloud); the angle is not wrapped.
   Pose2 PoseOf(int rotation, int offset_x, int offset_y) const;
 
  private:

@@ -15,7 +15,8 @@
 //                   K = (L + P^-1)^-1 L,
 //
 //                 the Kalman gain: along a corridor L vanishes and the
-//                 prediction is kept; in between both count by what they know.
+//                 prediction is kept; in between both are weighed by their
+//                 information.
 //                 Place and heading are corrected together, so that in a round
 //                 room the walls still fit after the heading was corrected.
 //   directions    Where P is not known: K = sum of w_i v_i v_i^T over the
@@ -54,7 +55,7 @@ struct ScanInformation : uncertainty::MatchInformation {
   Eigen::Vector2d direction_weights = Eigen::Vector2d::Zero();
 };
 
-// `gauss_newton` (any unit) is looked at in kPaperLiteral only.
+// `gauss_newton` (any unit) is used in kPaperLiteral only.
 ScanInformation AnalyzeScan(const ScanInformationOptions& options,
                             const uncertainty::ScaledMotion& motion,
                             const uncertainty::ScanCurvature& curvature,

@@ -6,13 +6,16 @@
 //
 //   1. minimise  w^2 / (2 n) sum c^2  +  prior            (pose_solver.h)
 //   2. measure how fast that sum rises around the minimum (scan_curvature.h)
-//   3. keep of the minimum what the scan determines, take the rest from the
+//   3. keep of the minimum what the scan observes, take the rest from the
 //      prediction                                         (scan_information.h)
 //
-// The prior of step 1 is that of the stock matcher, (w_t |t - t_0|)^2 / 2 +
-// (w_r (theta - theta_0))^2 / 2, where the prediction comes without covariance.
-// With a covariance the prior is only a weak one that keeps the solver near its
-// start (G eq. 16 has none), and step 3 weighs both.
+// Without a covariance of the prediction, the prior of step 1 is that of the
+// stock matcher,
+//
+//   (w_t |t - t_0|)^2 / 2 + (w_r (theta - theta_0))^2 / 2.
+//
+// With a covariance it is a weak one that keeps the solver near its start (G
+// eq. 16 has none), and step 3 weighs both.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_MATCH_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_MATCH_H_
 
@@ -42,7 +45,7 @@ struct ScanMatchOptions {
   double curvature_step = 2.;  // cells, > 0
   ScanInformationOptions information;
   // Standard deviations of a prediction whose covariance is not known; they
-  // only enter the covariance that is reported.
+  // only enter the reported covariance.
   double prediction_translation_sigma = 0.1;  // metres, > 0
   double prediction_rotation_sigma = 0.05;    // radians, > 0
 };

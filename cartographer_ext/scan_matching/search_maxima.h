@@ -15,7 +15,7 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
-// Offsets are searched in blocks of so many in x and in y.
+// Offsets are searched in blocks of this many in x and in y.
 constexpr int kBlockSize = 8;
 
 // Element (x, y), at row-major place, is the largest value of the `width` x
@@ -46,8 +46,7 @@ RectangleMaxima CellMaxima(const std::vector<uint8_t>& cells, int num_x,
 
 // Rectangles larger by `more_x` <= width and `more_y` <= height cells.
 RectangleMaxima Widen(const RectangleMaxima& maxima, int more_x, int more_y);
-// The same, in memory that is there already where it suffices. `*wide` must be
-// another object.
+// The same; reuses the memory of `*wide`, another object, where it suffices.
 void WidenInto(const RectangleMaxima& maxima, int more_x, int more_y,
                RectangleMaxima* wide);
 
@@ -60,7 +59,7 @@ RectangleMaxima ToCoarse(const RectangleMaxima& maxima);
 // is a row-major picture, at (c / 8, r / 8).
 class CoarseMaxima {
  public:
-  // So many values added give at most 255.
+  // This many values sum to at most 255.
   static constexpr int kNumPerByte = 8;
   static constexpr int kMaxValue = 31;
 

@@ -19,9 +19,9 @@ Eigen::Matrix3d StepCovariance(const PathNoiseOptions& options,
                                const bool are_nodes, const double metres,
                                const double radians) {
   const double jump =
-      are_nodes ? std::max(0., metres - options.free_metres) : 0.;
+      are_nodes ? std::max(0., metres - options.jump_threshold_metres) : 0.;
   const double turn =
-      are_nodes ? std::max(0., radians - options.free_radians) : 0.;
+      are_nodes ? std::max(0., radians - options.jump_threshold_radians) : 0.;
   const double translation = Squared(options.translation_per_metre) * metres +
                              Squared(options.translation_per_radian) * radians +
                              Squared(jump);

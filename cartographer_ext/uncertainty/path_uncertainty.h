@@ -17,8 +17,8 @@
 //
 // Where local SLAM moves farther from one node to the next than nodes are
 // apart, it may have been misled (a jump of the odometry, a gap in the data):
-// the excess of a step over `free_metres` and `free_radians` counts as its
-// standard deviation.
+// the excess of a step over the jump thresholds counts as its standard
+// deviation.
 //
 // Not thread-safe; vertices may be added in any order.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_PATH_UNCERTAINTY_H_
@@ -50,8 +50,8 @@ struct PathNoiseOptions {
   double heading_drift = 0.;  // radians per metre, >= 0
   double scale_error = 0.;    // >= 0
   // Steps between nodes up to this length are no jumps, > 0.
-  double free_metres = std::numeric_limits<double>::infinity();
-  double free_radians = std::numeric_limits<double>::infinity();
+  double jump_threshold_metres = std::numeric_limits<double>::infinity();
+  double jump_threshold_radians = std::numeric_limits<double>::infinity();
 };
 
 class PathUncertainty {

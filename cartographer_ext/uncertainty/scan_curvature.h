@@ -17,15 +17,16 @@
 //
 // which along that wall is 0.02 times that across it.
 //
-// Motions are scaled so that metres and radians can be compared at all: turning
-// is about the centroid of the points, and all three unknowns are in cells that
-// a point moves (root mean square). That makes the noise of e the same for all
+// Motions are scaled to make metres and radians comparable: the scan turns
+// about the centroid of its points, and all three unknowns are in cells that a
+// point moves (root mean square). That makes the noise of e the same for all
 // motions. Axes are found in three steps: the eigenvectors of the Hessian; the
 // second differences along and between them, which give a 3 x 3 matrix and its
-// eigenvectors; the second differences along these. Between means crosswise,
+// eigenvectors; the second differences along these. Those between two axes are
+// taken along their diagonals,
 //
-//   e_kl = (F(u) + F(-u) - F(w) - F(-w)) / (2 s^2),  u, w = s (v_k +- v_l) /
-//   sqrt 2,
+//   e_kl = (F(u) + F(-u) - F(w) - F(-w)) / (2 s^2),
+//   u = s (v_k + v_l) / sqrt 2,   w = s (v_k - v_l) / sqrt 2,
 //
 // since the cost saturates a few cells away from a wall and is not quadratic.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_SCAN_CURVATURE_H_

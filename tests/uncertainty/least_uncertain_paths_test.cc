@@ -26,7 +26,7 @@ class LeastUncertainPathsTest : public testing::Test {
     options.translation_per_radian = 0.;
     options.rotation_per_metre = 1e-9;
     options.rotation_per_radian = 0.;
-    options.free_metres = 5.;
+    options.jump_threshold_metres = 5.;
     return options;
   }
 
@@ -53,7 +53,8 @@ TEST_F(LeastUncertainPathsTest, PathCostIsMetresOfDriving) {
   EXPECT_NEAR(*paths_.PathCost(NodeId{0, 30}, NodeId{0, 10}), 20., 1e-6);
   EXPECT_FALSE(paths_.PathCost(NodeId{0, 10}, NodeId{1, 10}).has_value());
   EXPECT_FALSE(paths_.PathCost(NodeId{0, 10}, NodeId{0, 999}).has_value());
-  // A jump of 10 m where 5 m are free: 10 m driven and 5^2 of variance.
+  // A jump of 10 m beyond the threshold of 5 m: 10 m driven and 5^2 of
+  // variance.
   paths_.Add(NodeId{0, 301}, Pose2(310., 0., 0.));
   EXPECT_NEAR(*paths_.PathCost(NodeId{0, 300}, NodeId{0, 301}), 35., 1e-6);
   EXPECT_NEAR(paths_.PathCostOf(Eigen::Vector3d(4., 4., 0.).asDiagonal()), 4.,

@@ -137,8 +137,8 @@ TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
   options.rotation_per_metre = 0.;
   options.translation_per_radian = 0.;
   options.rotation_per_radian = 0.;
-  options.free_metres = 0.5;
-  options.free_radians = 0.4;
+  options.jump_threshold_metres = 0.5;
+  options.jump_threshold_radians = 0.4;
   PathUncertainty paths(options, 100);
   paths.Add(Key(0), Pose2(0., 0., 0.));
   paths.Add(Key(1), Pose2(0.5, 0., 0.4));
@@ -160,7 +160,7 @@ TEST(PathUncertaintyTest, NearestAmongSomeNodes) {
 
 TEST(PathUncertaintyTest, SubmapsHaveASequenceOfTheirOwnWithoutJumps) {
   PathNoiseOptions options = Noise();
-  options.free_metres = 0.5;
+  options.jump_threshold_metres = 0.5;
   PathUncertainty paths(options, 2);
   paths.Add(Key(0), Pose2());
   paths.Add(Key(1), Pose2(4., 0., 0.));

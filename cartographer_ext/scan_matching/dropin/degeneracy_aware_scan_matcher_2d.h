@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // CeresScanMatcher2D for options with our block: the same cost on probability
-// grids, minimised by a solver made for three unknowns, and what the scan does
-// not determine taken from the prediction (degeneracy.h). A TSDF goes to the
-// stock matcher.
+// grids, minimised by a solver made for three unknowns; directions that the
+// scan does not observe are taken from the prediction (scan_information.h). A
+// TSDF goes to the stock matcher.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_DEGENERACY_AWARE_SCAN_MATCHER_2D_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_DEGENERACY_AWARE_SCAN_MATCHER_2D_H_
 
@@ -28,7 +28,7 @@ namespace scan_matching {
 // prediction.
 class DegeneracyAwareScanMatcher2D {
  public:
-  // The weights of `options` must be positive, as the stock matcher demands.
+  // The weights of `options` must be positive, as the stock matcher requires.
   DegeneracyAwareScanMatcher2D(const cartographer::mapping::scan_matching::
                                    proto::CeresScanMatcherOptions2D& options,
                                const proto::ScanMatcherOptions& extension);
@@ -40,7 +40,7 @@ class DegeneracyAwareScanMatcher2D {
   // As the stock matcher: poses are (grid <- cloud), `pose_estimate` may be one
   // of the inputs, `summary` (may be null) gets costs, iterations and
   // termination. The prediction is `target_translation` with the angle of
-  // `initial_pose_estimate`; how sure it is say the weights of the options.
+  // `initial_pose_estimate`; the weights of the options are its confidence.
   void Match(const Eigen::Vector2d& target_translation,
              const cartographer::transform::Rigid2d& initial_pose_estimate,
              const cartographer::sensor::PointCloud& point_cloud,

@@ -72,7 +72,7 @@ inline PlanarCloud ToPlanarCloud(
   return result;
 }
 
-// Copies what it needs of the grid. May be used by several threads at once.
+// Copies what it needs from the grid. May be used by several threads at once.
 class FastCorrelativeMatcher2D {
  public:
   using PointCloud = cartographer::sensor::PointCloud;

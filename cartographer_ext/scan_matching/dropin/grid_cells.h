@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A probability grid of the host as OccupiedSpaceCost wants it. Host indices
-// are (column, row).
+// A probability grid of the host in the form that OccupiedSpaceCost expects.
+// Host indices are (column, row).
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_GRID_CELLS_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_GRID_CELLS_H_
 

@@ -24,7 +24,7 @@ namespace scan_matching {
 
 class ProbabilityGridView : public ProbabilityView {
  public:
-  // The grid must stay.
+  // The grid must outlive this.
   explicit ProbabilityGridView(
       const cartographer::mapping::ProbabilityGrid& grid)
       : grid_(grid) {}
