@@ -16,7 +16,7 @@
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
-#include "cartographer_ext/scan_matching/fast_correlative_search_2d.h"
+#include "cartographer_ext/scan_matching/correlative_search/fast_correlative_search_2d.h"
 
 namespace cartographer_ext {
 namespace scan_matching {

@@ -16,8 +16,8 @@
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
+#include "cartographer_ext/scan_matching/correlative_search/real_time_search_2d.h"
 #include "cartographer_ext/scan_matching/dropin/fast_correlative_matcher_2d.h"
-#include "cartographer_ext/scan_matching/real_time_search_2d.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
