@@ -27,6 +27,7 @@ include_guard(GLOBAL)
 cmake_policy(VERSION 3.16)
 
 get_filename_component(CARTOGRAPHER_EXT_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
+include("${CMAKE_CURRENT_LIST_DIR}/CartographerExtApi.cmake")
 set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder ceres_scan_matcher optimization_problem local_trajectory_builder
     full_information)
 
@@ -187,6 +188,17 @@ function(cartographer_ext_find_stock_source target suffix result listed_result)
   set(${listed_result} "${listed}" PARENT_SCOPE)
 endfunction()
 
+# The folder that holds the cartographer/ of the sources of `target`, by the first stock source of the first swap.
+function(cartographer_ext_tree_of target swaps result)
+  list(GET swaps 0 swap)
+  cartographer_ext_swap_renames(${swap} renames)
+  list(GET renames 0 rename)
+  string(REGEX REPLACE "\\|.*" "" suffix "${rename}")
+  cartographer_ext_find_stock_source(${target} "${suffix}" source listed)
+  string(REGEX REPLACE "/cartographer/mapping/internal/${suffix}$" "" root "${source}")
+  set(${result} "${root}" PARENT_SCOPE)
+endfunction()
+
 # Fails unless the header beside the stock source declares what we front.
 function(cartographer_ext_check_declaration swap source suffix name header)
   string(REGEX REPLACE "/cartographer/mapping/internal/${suffix}$" "" root "${source}")
@@ -304,9 +316,11 @@ function(cartographer_ext_swap_into target)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     message(FATAL_ERROR "cartographer_ext: the overlay headers need #include_next (GCC or Clang)")
   endif()
+  cartographer_ext_tree_of(${target} "${ARG_SWAPS}" tree)
   foreach(swap IN LISTS ARG_SWAPS)
     cartographer_ext_apply_swap(${target} ${swap})
   endforeach()
+  cartographer_ext_check_api("${tree}" "${ARG_SWAPS}")
   cartographer_ext_write_swaps_header(${target} "${ARG_SWAPS}")
 
   # The modules as objects; a library of its own would have to be installed and exported with Cartographer's.
