@@ -7,7 +7,6 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
-#include <tuple>
 
 #include "Eigen/Eigenvalues"
 #include "glog/logging.h"
@@ -20,7 +19,7 @@ using proto::LoopDecision;
 
 // A whole submap costs a hundred windows.
 constexpr size_t kFullSearchesPerNode = 1;
-// Loops nearer than this to each other tell of the same ways, metres.
+// Loops nearer than this to each other give the same paths, metres.
 constexpr double kLoopSpacing = 3.;
 // Searched nodes remembered, oldest forgotten first.
 constexpr size_t kMaxNodesPerSubmap = 20000;
@@ -46,79 +45,85 @@ SearchPlanner::SearchPlanner(const proto::LoopClosureOptions::Search& options,
       default_linear_window_(default_linear_window),
       default_angular_window_(default_angular_window),
       paths_(CHECK_NOTNULL(paths)),
-      ways_(kLoopSpacing, paths) {}
+      least_uncertain_paths_(kLoopSpacing, paths) {}
 
-bool SearchPlanner::HasNear(const Nodes& nodes, const SearchPair& pair,
+bool SearchPlanner::HasNear(const Nodes& nodes, const LoopCandidate& candidate,
                             const double distance,
                             const double duration) const {
   if (distance <= 0.) return false;
   const double ticks = 1e7 * duration;
   const auto near = [&](const Nodes::value_type& other) {
-    if (std::abs(static_cast<double>(other.second - pair.node_time)) > ticks) {
+    if (std::abs(static_cast<double>(other.second - candidate.node_time)) >
+        ticks) {
       return false;
     }
     const absl::optional<double> travelled =
-        paths_->Travelled(other.first, pair.node);
+        paths_->Travelled(other.first, candidate.node);
     return travelled.has_value() && *travelled < distance;
   };
-  const auto after = nodes.lower_bound(pair.node);
+  const auto after = nodes.lower_bound(candidate.node);
   if (after != nodes.end() && near(*after)) return true;
   return after != nodes.begin() && near(*std::prev(after));
 }
 
-SearchPlan SearchPlanner::PlanAlone(const SearchPair& pair) {
+bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
+                               SearchPlan* const plan) {
+  const double distance = candidate.SearchCenter().translation().norm();
+  const absl::optional<uncertainty::UncertainPose> path =
+      candidate.anchor.has_value()
+          ? least_uncertain_paths_.Between(*candidate.anchor, candidate.node)
+          : absl::nullopt;
+  if (!path.has_value()) {
+    plan->out_of_reach = distance > reach_;
+    plan->linear_window = default_linear_window_;
+    plan->angular_window = default_angular_window_;
+    return false;
+  }
+  plan->translation_sigma = WorstSigma(path->covariance);
+  plan->rotation_sigma = std::sqrt(std::max(0., path->covariance(2, 2)));
+  const double wanted = options_.window_sigmas() * plan->translation_sigma;
+  plan->full_submap =
+      wanted > options_.max_linear_window() && options_.global_search();
+  plan->linear_window = std::min(std::max(wanted, options_.min_linear_window()),
+                                 options_.max_linear_window());
+  plan->angular_window =
+      std::min(kPi, std::max(options_.min_angular_window(),
+                             options_.window_sigmas() * plan->rotation_sigma));
+  plan->out_of_reach =
+      distance > reach_ + (plan->full_submap ? wanted : plan->linear_window);
+  return true;
+}
+
+SearchPlan SearchPlanner::PlanAlone(const LoopCandidate& candidate) {
   SearchPlan plan;
-  // First what costs little: most pairs end here.
-  const auto found = submaps_.find(
-      std::make_pair(pair.submap_trajectory_id, pair.submap_index));
+  // First what costs little: most candidates end here.
+  const auto found = submaps_.find(candidate.submap);
   const SubmapMemory* const memory =
       found == submaps_.end() ? nullptr : &found->second;
   if (memory != nullptr &&
-      HasNear(memory->accepted, pair, options_.redundant_distance(),
+      HasNear(memory->accepted, candidate, options_.redundant_distance(),
               options_.redundant_time())) {
     plan.skipped = LoopDecision::SKIPPED_REDUNDANT;
     return plan;
   }
   const bool near_searched =
       memory != nullptr &&
-      HasNear(memory->searched, pair, options_.search_spacing(),
+      HasNear(memory->searched, candidate, options_.search_spacing(),
               options_.redundant_time());
-  // A robot that stands still would cost too much.
+  // Searching whole submaps from a stationary robot would cost too much, so
+  // that time does not count.
   const bool near_searched_fully =
       memory != nullptr &&
-      HasNear(memory->searched_fully, pair, options_.full_search_spacing(),
+      HasNear(memory->searched_fully, candidate, options_.full_search_spacing(),
               std::numeric_limits<double>::infinity());
   if (near_searched && (near_searched_fully || !options_.global_search())) {
     plan.skipped = LoopDecision::SKIPPED_SPACING;
     return plan;
   }
-
-  const double distance = pair.predicted.translation().norm();
-  const absl::optional<uncertainty::UncertainPose> way =
-      pair.anchor.has_value() ? ways_.Between(*pair.anchor, pair.node)
-                              : absl::nullopt;
-  if (!way.has_value()) {
-    plan.out_of_reach = distance > reach_;
-    plan.linear_window = default_linear_window_;
-    plan.angular_window = default_angular_window_;
-  } else {
-    plan.translation_sigma = WorstSigma(way->covariance);
-    plan.rotation_sigma = std::sqrt(std::max(0., way->covariance(2, 2)));
-    const double wanted = options_.window_sigmas() * plan.translation_sigma;
-    plan.full_submap =
-        wanted > options_.max_linear_window() && options_.global_search();
-    plan.linear_window =
-        std::min(std::max(wanted, options_.min_linear_window()),
-                 options_.max_linear_window());
-    plan.angular_window =
-        std::min(kPi, std::max(options_.min_angular_window(),
-                               options_.window_sigmas() * plan.rotation_sigma));
-    plan.out_of_reach =
-        distance > reach_ + (plan.full_submap ? wanted : plan.linear_window);
-  }
+  const bool is_certain = PlanWindow(candidate, &plan) &&
+                          plan.translation_sigma < options_.informative_sigma();
   if (plan.out_of_reach) return plan;
-  if (way.has_value() &&
-      plan.translation_sigma < options_.informative_sigma()) {
+  if (is_certain) {
     plan.skipped = LoopDecision::SKIPPED_UNINFORMATIVE;
   } else if (plan.full_submap ? near_searched_fully : near_searched) {
     plan.skipped = LoopDecision::SKIPPED_SPACING;
@@ -126,77 +131,74 @@ SearchPlan SearchPlanner::PlanAlone(const SearchPair& pair) {
   return plan;
 }
 
-double SearchPlanner::Promise(const SearchPair& pair,
+double SearchPlanner::Promise(const LoopCandidate& candidate,
                               const SearchPlan& plan) const {
   const double sigma = std::max(plan.translation_sigma, 1e-3);
   const double gain = std::log1p(sigma / WorstSigma(loop_covariance_));
-  const double beyond =
-      std::max(0., pair.predicted.translation().norm() - 0.5 * reach_);
+  const double beyond = std::max(
+      0., candidate.SearchCenter().translation().norm() - 0.5 * reach_);
   const double scale = sigma + 0.25 * reach_;
   return gain * std::exp(-0.5 * beyond * beyond / (scale * scale));
 }
 
+void SearchPlanner::ApplyCap(
+    const std::vector<const LoopCandidate*>& candidates,
+    const std::vector<size_t>& indices, std::vector<SearchPlan>* const plans) {
+  const size_t cap = static_cast<size_t>(options_.max_searches_per_node());
+  std::vector<double> promise(indices.size());
+  std::vector<size_t> order(indices.size());
+  std::iota(order.begin(), order.end(), 0);
+  for (size_t k = 0; k < indices.size(); ++k) {
+    promise[k] = Promise(*candidates[indices[k]], (*plans)[indices[k]]);
+  }
+  std::stable_sort(
+      order.begin(), order.end(),
+      [&](const size_t a, const size_t b) { return promise[a] > promise[b]; });
+  size_t num_searched = 0;
+  size_t num_searched_fully = 0;
+  for (const size_t k : order) {
+    const LoopCandidate& candidate = *candidates[indices[k]];
+    SearchPlan& plan = (*plans)[indices[k]];
+    if (num_searched < cap &&
+        (!plan.full_submap || num_searched_fully < kFullSearchesPerNode)) {
+      ++num_searched;
+      if (plan.full_submap) ++num_searched_fully;
+      continue;
+    }
+    plan.skipped = LoopDecision::SKIPPED_BUDGET;
+    // The next node may try.
+    submaps_[candidate.submap].Searched(plan)->erase(candidate.node);
+  }
+}
+
 std::vector<SearchPlan> SearchPlanner::Plan(
-    const std::vector<SearchPair>& pairs) {
-  std::vector<SearchPlan> plans(pairs.size());
+    const std::vector<const LoopCandidate*>& candidates) {
+  std::vector<SearchPlan> plans(candidates.size());
   std::map<uncertainty::NodeId, std::vector<size_t>> of_node;
-  for (size_t i = 0; i < pairs.size(); ++i) {
+  for (size_t i = 0; i < candidates.size(); ++i) {
     // One by one, since the searches of a burst space each other out.
-    plans[i] = PlanAlone(pairs[i]);
+    plans[i] = PlanAlone(*candidates[i]);
     if (plans[i].out_of_reach || plans[i].skipped != LoopDecision::NONE) {
       continue;
     }
-    of_node[pairs[i].node].push_back(i);
-    SubmapMemory& memory = submaps_[std::make_pair(
-        pairs[i].submap_trajectory_id, pairs[i].submap_index)];
-    Nodes& searched =
-        plans[i].full_submap ? memory.searched_fully : memory.searched;
-    searched.emplace(pairs[i].node, pairs[i].node_time);
-    if (searched.size() > kMaxNodesPerSubmap) searched.erase(searched.begin());
-  }
-  const size_t cap = static_cast<size_t>(options_.max_searches_per_node());
-  for (auto& entry : of_node) {
-    std::vector<size_t>& candidates = entry.second;
-    std::vector<double> promise(candidates.size());
-    std::vector<size_t> order(candidates.size());
-    std::iota(order.begin(), order.end(), 0);
-    for (size_t k = 0; k < candidates.size(); ++k) {
-      promise[k] = Promise(pairs[candidates[k]], plans[candidates[k]]);
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](const size_t a, const size_t b) {
-                       return promise[a] > promise[b];
-                     });
-    size_t num_full = 0;
-    size_t num_taken = 0;
-    for (size_t k = 0; k < order.size(); ++k) {
-      const size_t i = candidates[order[k]];
-      if (num_taken < cap &&
-          (!plans[i].full_submap || num_full < kFullSearchesPerNode)) {
-        ++num_taken;
-        if (plans[i].full_submap) ++num_full;
-        continue;
-      }
-      plans[i].skipped = LoopDecision::SKIPPED_BUDGET;
-      // The next node may try.
-      SubmapMemory& memory = submaps_[std::make_pair(
-          pairs[i].submap_trajectory_id, pairs[i].submap_index)];
-      (plans[i].full_submap ? memory.searched_fully : memory.searched)
-          .erase(pairs[i].node);
+    of_node[candidates[i]->node].push_back(i);
+    Nodes* const searched = submaps_[candidates[i]->submap].Searched(plans[i]);
+    searched->emplace(candidates[i]->node, candidates[i]->node_time);
+    if (searched->size() > kMaxNodesPerSubmap) {
+      searched->erase(searched->begin());
     }
   }
+  for (const auto& entry : of_node) ApplyCap(candidates, entry.second, &plans);
   return plans;
 }
 
-void SearchPlanner::AddAcceptedLoop(const int submap_trajectory_id,
-                                    const int submap_index,
+void SearchPlanner::AddAcceptedLoop(const uncertainty::SubmapId& submap,
                                     const uncertainty::LoopEdge& loop,
                                     const int64_t node_time) {
-  Nodes& accepted =
-      submaps_[std::make_pair(submap_trajectory_id, submap_index)].accepted;
+  Nodes& accepted = submaps_[submap].accepted;
   accepted.emplace(loop.b, node_time);
   if (accepted.size() > kMaxNodesPerSubmap) accepted.erase(accepted.begin());
-  ways_.Add(loop);
+  least_uncertain_paths_.Add(loop);
 }
 
 void SearchPlanner::ForgetLoops(const int trajectory_id,
@@ -206,11 +208,11 @@ void SearchPlanner::ForgetLoops(const int trajectory_id,
     return node.IsNodeOf(trajectory_id) && node.index() <= last_node_index;
   };
   // Between trajectories the anchor is the submap itself.
-  ways_.RemoveIf([&](const uncertainty::LoopEdge& loop) {
+  least_uncertain_paths_.RemoveIf([&](const uncertainty::LoopEdge& loop) {
     return is_old(loop.b) && loop.a.IsSubmapOf(submap_trajectory_id);
   });
   for (auto& submap : submaps_) {
-    if (submap.first.first != submap_trajectory_id) continue;
+    if (submap.first.trajectory_id != submap_trajectory_id) continue;
     Nodes& accepted = submap.second.accepted;
     for (auto it = accepted.begin(); it != accepted.end();) {
       it = is_old(it->first) ? accepted.erase(it) : std::next(it);
@@ -218,9 +220,15 @@ void SearchPlanner::ForgetLoops(const int trajectory_id,
   }
 }
 
-void SearchPlanner::DeleteSubmap(const int submap_trajectory_id,
-                                 const int submap_index) {
-  submaps_.erase(std::make_pair(submap_trajectory_id, submap_index));
+void SearchPlanner::DeleteSubmap(const uncertainty::SubmapId& submap) {
+  submaps_.erase(submap);
+}
+
+void SearchPlanner::DeleteTrajectory(const int trajectory_id) {
+  least_uncertain_paths_.RemoveIf([&](const uncertainty::LoopEdge& loop) {
+    return loop.a.trajectory_id() == trajectory_id ||
+           loop.b.trajectory_id() == trajectory_id;
+  });
 }
 
 }  // namespace loop_closure

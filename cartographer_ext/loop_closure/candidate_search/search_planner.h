@@ -1,35 +1,36 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which pairs of a node and a submap are searched for a loop, and how far
-// around the prediction.
+// Which candidates are searched for a loop, and how widely around the
+// prediction.
 //
-//   window     `window_sigmas` standard deviations of the most certain way from
-//              the submap to the node, along the trajectory and over accepted
-//              loops (least_uncertain_paths.h). A node that has just closed a
-//              loop is searched closely, one that has gone far since is
-//              searched widely, and one that may be anywhere in the whole
+//   window     `window_sigmas` standard deviations of the least uncertain path
+//              from the submap to the node, along the trajectory and over
+//              accepted loops (least_uncertain_paths.h). A node that has just
+//              closed a loop is searched closely, one that has driven far since
+//              is searched widely, and one that may be anywhere in the whole
 //              submap.
-//   spacing    A submap is searched again after some way only; after an
+//   spacing    A submap is searched again after some distance only; after an
 //              accepted loop after a longer one or some time; not at all while
-//              the way to it is known better than a loop could tell.
-//   cap        Of the pairs of one node that are left the most promising are
-//              searched: much to be learnt, and near enough to overlap.
+//              the path to it is less uncertain than a loop would be.
+//   cap        Of the candidates of one node that remain the most promising are
+//              searched: those with much to gain that are near enough to
+//              overlap.
 //
-// Everything depends on what was offered and decided before, in this order, and
+// The plans depend on what was proposed and decided before, in this order, and
 // on nothing else. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_PLANNER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_PLANNER_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <utility>
 #include <vector>
 
-#include "absl/types/optional.h"
-#include "cartographer_ext/common/pose2.h"
+#include "Eigen/Core"
+#include "cartographer_ext/loop_closure/candidate_search/search_result.h"
+#include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
-#include "cartographer_ext/loop_decision.pb.h"
 #include "cartographer_ext/uncertainty/ids.h"
 #include "cartographer_ext/uncertainty/least_uncertain_paths.h"
 #include "cartographer_ext/uncertainty/loop_edge.h"
@@ -37,30 +38,6 @@
 
 namespace cartographer_ext {
 namespace loop_closure {
-
-struct SearchPair {
-  // Of the submap.
-  int submap_trajectory_id = 0;
-  int submap_index = 0;
-  // A node of the submap, or the submap itself; absent where none is known.
-  absl::optional<uncertainty::VertexId> anchor;
-  uncertainty::NodeId node;
-  int64_t node_time = 0;  // host ticks, 100 ns
-  Pose2 predicted;        // (submap <- node)
-};
-
-struct SearchPlan {
-  // NONE: to be searched. Otherwise why not.
-  proto::LoopDecision::Reason skipped = proto::LoopDecision::NONE;
-  // Farther away than any window reaches: not even a candidate.
-  bool out_of_reach = false;
-  bool full_submap = false;
-  double linear_window = 0.;   // metres, half width
-  double angular_window = 0.;  // radians, half width
-  // Standard deviations of the prediction; 0 where it is not known.
-  double translation_sigma = 0.;  // metres, in the worst direction
-  double rotation_sigma = 0.;     // radians
-};
 
 class SearchPlanner {
  public:
@@ -76,18 +53,20 @@ class SearchPlanner {
   SearchPlanner(const SearchPlanner&) = delete;
   SearchPlanner& operator=(const SearchPlanner&) = delete;
 
-  // One plan for each pair, in their order. Pairs of one node have to come in
-  // one call for the cap to count them together.
-  std::vector<SearchPlan> Plan(const std::vector<SearchPair>& pairs);
+  // One plan for each candidate, in their order. Candidates of one node have to
+  // come in one call for the cap to count them together.
+  std::vector<SearchPlan> Plan(
+      const std::vector<const LoopCandidate*>& candidates);
 
   // (anchor <- node) of a loop that was accepted.
-  void AddAcceptedLoop(int submap_trajectory_id, int submap_index,
+  void AddAcceptedLoop(const uncertainty::SubmapId& submap,
                        const uncertainty::LoopEdge& loop, int64_t node_time);
-  void DeleteSubmap(int submap_trajectory_id, int submap_index);
   // Accepted loops of nodes of a trajectory up to an index with submaps of
-  // another one no longer tell where a node is.
+  // another one no longer locate its nodes.
   void ForgetLoops(int trajectory_id, int submap_trajectory_id,
                    int last_node_index);
+  void DeleteSubmap(const uncertainty::SubmapId& submap);
+  void DeleteTrajectory(int trajectory_id);
 
  private:
   // With their times.
@@ -96,15 +75,27 @@ class SearchPlanner {
     Nodes searched;
     Nodes searched_fully;
     Nodes accepted;
+
+    Nodes* Searched(const SearchPlan& plan) {
+      return plan.full_submap ? &searched_fully : &searched;
+    }
   };
 
-  // Whether a node of `nodes` is nearer to `node` than `distance` metres of
-  // travel and `duration` seconds.
-  bool HasNear(const Nodes& nodes, const SearchPair& pair, double distance,
-               double duration) const;
-  SearchPlan PlanAlone(const SearchPair& pair);
+  // Whether a node of `nodes` is nearer to that of the candidate than
+  // `distance` metres of travel and `duration` seconds.
+  bool HasNear(const Nodes& nodes, const LoopCandidate& candidate,
+               double distance, double duration) const;
+  // Without regard to the other candidates of the node.
+  SearchPlan PlanAlone(const LoopCandidate& candidate);
+  // The window for the uncertainty of the prediction, into the plan; returns
+  // whether the uncertainty is known.
+  bool PlanWindow(const LoopCandidate& candidate, SearchPlan* plan);
   // Larger is better.
-  double Promise(const SearchPair& pair, const SearchPlan& plan) const;
+  double Promise(const LoopCandidate& candidate, const SearchPlan& plan) const;
+  // Skips all but the most promising of the candidates of one node, `indices`.
+  void ApplyCap(const std::vector<const LoopCandidate*>& candidates,
+                const std::vector<size_t>& indices,
+                std::vector<SearchPlan>* plans);
 
   const proto::LoopClosureOptions::Search options_;
   const Eigen::Matrix3d loop_covariance_;
@@ -112,8 +103,8 @@ class SearchPlanner {
   const double default_linear_window_;
   const double default_angular_window_;
   const uncertainty::PathUncertainty* const paths_;
-  std::map<std::pair<int, int>, SubmapMemory> submaps_;
-  uncertainty::LeastUncertainPaths ways_;
+  std::map<uncertainty::SubmapId, SubmapMemory> submaps_;
+  uncertainty::LeastUncertainPaths least_uncertain_paths_;
 };
 
 }  // namespace loop_closure

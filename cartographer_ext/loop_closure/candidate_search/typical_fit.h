@@ -39,6 +39,7 @@ class TypicalFit {
   void Add(int trajectory_id, double fit);
   // By which floors of scores are multiplied, in [least_scale, 1].
   double Scale(int trajectory_id) const;
+  void DeleteTrajectory(int trajectory_id) { fits_.erase(trajectory_id); }
 
  private:
   const TypicalFitOptions options_;

@@ -273,7 +273,7 @@ std::vector<SubsetDecision> CompatibleSubset::Flush() {
   return decisions;
 }
 
-std::vector<int64_t> CompatibleSubset::Withdraw(
+std::vector<int64_t> CompatibleSubset::Remove(
     const std::function<bool(const LoopEvidence&)>& condition) {
   std::vector<int64_t> ids;
   for (int i = num_clusters() - 1; i >= 0; --i) {
@@ -351,14 +351,6 @@ int CompatibleSubset::num_undecided() const {
     count += static_cast<int>(cluster.undecided.size());
   }
   return count;
-}
-
-std::vector<uncertainty::LoopEdge> CompatibleSubset::AcceptedLoops() const {
-  std::vector<uncertainty::LoopEdge> loops;
-  for (const Cluster& cluster : clusters_) {
-    if (cluster.accepted) loops.push_back(cluster.leader.edge);
-  }
-  return loops;
 }
 
 }  // namespace loop_closure

@@ -126,9 +126,9 @@ class CompatibleSubset {
   // clusters stay known.
   std::vector<SubsetDecision> Flush();
 
-  // Takes back undecided loops, for submaps or nodes that are deleted; returns
-  // their ids in the order of adding.
-  std::vector<int64_t> Withdraw(
+  // Removes undecided loops, such as those of submaps or nodes that are
+  // deleted; returns their ids in the order of adding.
+  std::vector<int64_t> Remove(
       const std::function<bool(const LoopEvidence&)>& condition);
 
   // Accepted loops no longer count, where the condition holds for the first of
@@ -145,8 +145,6 @@ class CompatibleSubset {
   int num_overturned() const { return num_overturned_; }
   // Whether the last clique search was exact.
   bool exact() const { return exact_; }
-  // The leaders of the accepted clusters.
-  std::vector<uncertainty::LoopEdge> AcceptedLoops() const;
 
  private:
   enum class Relation : char {

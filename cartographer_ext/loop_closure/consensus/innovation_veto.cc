@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 
+#include "cartographer_ext/loop_closure/information/loop_information.h"
+#include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
+
 namespace cartographer_ext {
 namespace loop_closure {
 
@@ -18,8 +22,37 @@ InnovationResult TestInnovation(const InnovationOptions& options,
   InnovationResult result;
   result.innovation = test.error;
   result.chi_square = test.chi_square;
+  result.bound = options.chi_square_bound;
   result.vetoed = !test.compatible;
   return result;
+}
+
+void VetoByInnovation(const proto::LoopClosureOptions& options,
+                      const uncertainty::PathUncertainty& paths,
+                      LoopCandidate* const candidate) {
+  if (!options.innovation_veto().enabled() ||
+      candidate->is_inter_trajectory()) {
+    return;
+  }
+  absl::optional<uncertainty::VertexId> anchor = candidate->anchor;
+  if (!anchor.has_value()) {
+    const absl::optional<uncertainty::NodeId> nearest =
+        paths.Nearest(candidate->submap.trajectory_id,
+                      candidate->submap_local_pose.translation());
+    if (!nearest.has_value()) return;
+    anchor = *nearest;
+  }
+  const absl::optional<uncertainty::UncertainPose> prior =
+      paths.Between(*anchor, candidate->node);
+  if (!prior.has_value()) return;
+  uncertainty::UncertainPose loop;
+  loop.pose = candidate->RefinedFromAnchor(*paths.LocalPose(*anchor));
+  loop.covariance = MatchCovariance(options, *candidate);
+  candidate->innovation =
+      TestInnovation(ToInnovationOptions(options), *prior, loop);
+  if (candidate->innovation->vetoed) {
+    candidate->Reject(proto::LoopDecision::INNOVATION_TOO_LARGE);
+  }
 }
 
 }  // namespace loop_closure

@@ -5,8 +5,8 @@
 // G, improved graph optimisation 2024, section 3.4, checks odometry after the
 // optimisation; this is the cheap question before.)
 //
-// The most certain way between the loop's two nodes predicts where the one lies
-// from the other; the innovation is what the loop demands beyond that:
+// The path of the odometry between the two nodes of a loop predicts their
+// relative pose; the innovation is what the loop measures beyond that:
 //
 //   E = prior^-1 (b <- a)  loop (a <- b),   chi^2 = E^T cov(E)^-1 E.
 //
@@ -15,10 +15,14 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 
+#include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/uncertainty/cycle_consistency.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
+
+struct LoopCandidate;
 
 struct InnovationOptions {
   double chi_square_bound = 21.108;  // chi^2, 3 degrees of freedom, 0.9999
@@ -27,12 +31,21 @@ struct InnovationOptions {
 struct InnovationResult {
   Pose2 innovation;        // E above; (b <- b), metres and radians
   double chi_square = 0.;  // infinity when E is not zero but certain to be
+  double bound = 0.;       // on chi_square
   bool vetoed = false;
 };
 
 InnovationResult TestInnovation(const InnovationOptions& options,
                                 const uncertainty::UncertainPose& prior,
                                 const uncertainty::UncertainPose& loop);
+
+// Tests a candidate within one trajectory against the path from its anchor to
+// its node (without an anchor: from the node next to the submap's origin), into
+// `innovation`, and rejects it where that is vetoed. Only the odometry counts:
+// a loop that contradicts accepted ones may still win the consensus.
+void VetoByInnovation(const proto::LoopClosureOptions& options,
+                      const uncertainty::PathUncertainty& paths,
+                      LoopCandidate* candidate);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

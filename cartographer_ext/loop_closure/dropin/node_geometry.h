@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The host's ids, poses and nodes as the loop closure takes them. A node of the
-// host stands for the gravity-aligned frame, which does not turn with the
-// robot.
+// The host's ids, poses and nodes as loop closure uses them. A node of the host
+// is the gravity-aligned frame, which does not turn with the robot.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_
 
@@ -15,7 +14,6 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/loop_closure/loop_verifier.h"
 #include "cartographer_ext/uncertainty/ids.h"
 
 namespace cartographer_ext {
@@ -36,7 +34,7 @@ inline Pose2 LocalPose(
 }
 
 // (gravity-aligned frame <- tracking frame), a rotation.
-inline Pose2 FromRobot(
+inline Pose2 AlignedFromTracking(
     const cartographer::mapping::TrajectoryNode::Data& node) {
   const Pose2 aligned =
       ToPose2(node.local_pose * cartographer::transform::Rigid3d::Rotation(
@@ -47,12 +45,12 @@ inline Pose2 FromRobot(
 // Points of the cloud in the tracking frame.
 inline std::vector<Eigen::Vector2f> PlanarPoints(
     const cartographer::mapping::TrajectoryNode::Data& node) {
-  const Pose2 to_robot = FromRobot(node).Inverse();
+  const Pose2 tracking_from_aligned = AlignedFromTracking(node).Inverse();
   std::vector<Eigen::Vector2f> points;
   points.reserve(node.filtered_gravity_aligned_point_cloud.size());
   for (const auto& point : node.filtered_gravity_aligned_point_cloud) {
     const Eigen::Vector2d aligned = point.position.head<2>().cast<double>();
-    points.push_back((to_robot * aligned).cast<float>());
+    points.push_back((tracking_from_aligned * aligned).cast<float>());
   }
   return points;
 }

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "cartographer/common/time.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/match_information.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
@@ -18,72 +17,70 @@ using cartographer::mapping::Submap2D;
 using cartographer::transform::Rigid2d;
 using proto::LoopDecision;
 
-constexpr int SubmapEntry::kUnknownNode;
-
 PairSearcher::PairSearcher(
     const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
         options)
     : options_(options),
       ceres_scan_matcher_(options.ceres_scan_matcher_options()) {}
 
-void PairSearcher::Search(PairCandidate* const candidate) const {
+void PairSearcher::Search(SearchJob* const job) const {
   const ConstraintMetrics& metrics = *ConstraintMetrics::Global();
-  const SubmapEntry& entry = *candidate->entry;
-  const SearchPlan& plan = candidate->plan;
-  const auto& cloud =
-      candidate->pair.node->filtered_gravity_aligned_point_cloud;
-  SubmapMatch match;
+  const SubmapEntry& entry = *job->entry;
+  const SearchPlan& plan = job->candidate.plan;
+  const auto& cloud = job->node->filtered_gravity_aligned_point_cloud;
+  SubmapMatch found;
   {
     const StageMeter meter(metrics.search_cpu);
     if (plan.full_submap) {
       metrics.searched_global->Increment();
-      match = entry.matcher->MatchFullSubmap(
-          cloud,
-          candidate->floor_scale * options_.global_localization_min_score());
+      found = entry.matcher->MatchFullSubmap(
+          cloud, job->score_scale * options_.global_localization_min_score());
     } else {
       metrics.searched_local->Increment();
-      match =
-          entry.matcher->Match(entry.local_pose * candidate->pair.predicted,
-                               plan.linear_window, plan.angular_window, cloud,
-                               candidate->floor_scale * options_.min_score());
+      found = entry.matcher->Match(
+          entry.local_pose * job->candidate.SearchCenter(), plan.linear_window,
+          plan.angular_window, cloud, job->score_scale * options_.min_score());
     }
-    candidate->search_seconds = meter.seconds();
+    job->candidate.times.search = meter.seconds();
   }
-  candidate->score = match.score;
-  if (!match.found) return;
+  SearchMatch& match = job->candidate.match;
+  match.score = found.score;
+  if (!found.found) return;
   (plan.full_submap ? metrics.found_global : metrics.found_local)->Increment();
-  metrics.grid_scores->Observe(match.score);
-  candidate->found = true;
-  candidate->matched = Between(entry.local_pose, match.pose);
+  metrics.grid_scores->Observe(found.score);
+  match.found = true;
+  match.has_pose = true;
+  match.matched = Between(entry.local_pose, found.pose);
 
   const StageMeter meter(metrics.refinement_cpu);
-  const Pose2 refined = Refine(*entry.submap, cloud, match.pose);
-  candidate->refined = Between(entry.local_pose, refined);
-  candidate->information =
+  const Pose2 refined = Refine(*entry.submap, cloud, found.pose);
+  match.refined = Between(entry.local_pose, refined);
+  match.information =
       MatchInformation(*entry.submap->grid(), cloud, refined, entry.local_pose);
-  candidate->refinement_seconds = meter.seconds();
+  job->candidate.times.refinement = meter.seconds();
 }
 
 void PairSearcher::SearchPlace(PlaceQuery* const query) const {
   const ConstraintMetrics& metrics = *ConstraintMetrics::Global();
   const StageMeter meter(metrics.search_cpu);
-  const OfferedPair& pair = query->candidates.front()->pair;
   std::vector<PlaceSubmap> submaps;
-  for (const PairCandidate* const candidate : query->candidates) {
+  for (const SearchJob* const job : query->jobs) {
     PlaceSubmap submap;
-    submap.submap_index = candidate->pair.submap_id.submap_index;
-    submap.matcher = candidate->entry->matcher.get();
-    submap.submap = candidate->entry->submap;
-    submap.search = candidate->plan.skipped == LoopDecision::NONE;
+    submap.submap_index = job->candidate.submap.submap_index;
+    submap.matcher = job->entry->matcher.get();
+    submap.submap = job->entry->submap;
+    submap.search = job->candidate.plan.skipped == LoopDecision::NONE;
     if (submap.search) metrics.searched_global->Increment();
     submaps.push_back(submap);
   }
+  const SearchJob& first = *query->jobs.front();
   PlaceNode node;
-  node.node_index = pair.node_id.node_index;
-  node.time = cartographer::common::ToUniversal(pair.node->time);
-  node.local_pose = LocalPose(*pair.node) * pair.from_robot.Inverse();
-  node.from_robot = pair.from_robot;
-  node.cloud = pair.node->filtered_gravity_aligned_point_cloud;
+  node.node_index = first.candidate.node.node_index;
+  node.time = first.candidate.node_time;
+  node.aligned_from_tracking = first.candidate.aligned_from_tracking;
+  node.local_pose =
+      LocalPose(*first.node) * node.aligned_from_tracking.Inverse();
+  node.cloud = first.node->filtered_gravity_aligned_point_cloud;
   query->places->DeleteNodes(query->forget_up_to);
   query->result = query->places->Search(
       std::move(node), submaps, query->is_known,
@@ -93,16 +90,17 @@ void PairSearcher::SearchPlace(PlaceQuery* const query) const {
   size_t next = 0;
   const double share =
       meter.seconds() / std::max<size_t>(1, query->result.scores.size());
-  for (PairCandidate* const candidate : query->candidates) {
-    if (candidate->plan.skipped != LoopDecision::NONE) continue;
-    candidate->score = query->result.scores[next];
-    candidate->found = candidate->score > 0.;
-    if (candidate->found) metrics.found_global->Increment();
-    candidate->plan.skipped = candidate->found ? LoopDecision::FOLLOWED
-                              : query->result.outscored[next]
-                                  ? LoopDecision::OUTSCORED
-                                  : LoopDecision::LOW_GRID_SCORE;
-    candidate->search_seconds = share;
+  for (SearchJob* const job : query->jobs) {
+    LoopCandidate& candidate = job->candidate;
+    if (candidate.plan.skipped != LoopDecision::NONE) continue;
+    candidate.match.score = query->result.scores[next];
+    candidate.match.found = candidate.match.score > 0.;
+    if (candidate.match.found) metrics.found_global->Increment();
+    candidate.Reject(candidate.match.found ? LoopDecision::FOLLOWED
+                     : query->result.outscored[next]
+                         ? LoopDecision::OUTSCORED
+                         : LoopDecision::LOW_GRID_SCORE);
+    candidate.times.search = share;
     ++next;
   }
 }

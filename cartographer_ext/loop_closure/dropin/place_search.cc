@@ -21,9 +21,10 @@ using cartographer::mapping::constraints::ComputeSubmapPose;
 // A track is expected within this of where the motion of the run puts it.
 constexpr double kFollowMetres = 0.5;
 constexpr double kFollowRadians = 0.06;
-// A node of a place that was decided for is given out in so many submaps.
+// A node of a place that was decided for is returned in at most this number of
+// submaps.
 constexpr size_t kSubmapsPerNode = 4;
-// Of so many nodes back, where the place is thought to be known.
+// The newest nodes that decide where the place is thought to be known.
 constexpr int kNodesWhenKnown = 5;
 
 PlaceTrackerOptions ToPlaceTrackerOptions(
@@ -52,10 +53,9 @@ PlaceSearch::PlaceSearch(const proto::LocalizationOptions& options,
       min_score_(min_score),
       tracker_(ToPlaceTrackerOptions(options)) {}
 
-PlaceResult PlaceSearch::Search(PlaceNode node,
-                                const std::vector<PlaceSubmap>& submaps,
-                                const bool is_known, const Refiner& refiner) {
-  PlaceResult result;
+std::vector<PlaceMatch> PlaceSearch::FindPlaces(
+    const PlaceNode& node, const std::vector<PlaceSubmap>& submaps,
+    PlaceResult* const result) const {
   std::vector<const SubmapMatcher*> searched;
   std::vector<int> searched_index;
   for (const PlaceSubmap& submap : submaps) {
@@ -67,50 +67,108 @@ PlaceResult PlaceSearch::Search(PlaceNode node,
       searched, node.cloud, min_score_, options_.places_per_query());
   const bool is_full =
       static_cast<int>(ranking.size()) == options_.places_per_query();
-  result.scores.assign(searched.size(), 0.);
-  result.outscored.assign(searched.size(), is_full);
+  result->scores.assign(searched.size(), 0.);
+  result->outscored.assign(searched.size(), is_full);
   std::vector<PlaceMatch> found;
   for (const SubmapRanking& ranked : ranking) {
-    result.scores[ranked.submap] = ranked.match.score;
-    result.outscored[ranked.submap] = false;
+    result->scores[ranked.submap] = ranked.match.score;
+    result->outscored[ranked.submap] = false;
     PlaceMatch match;
     match.submap_index = searched_index[ranked.submap];
     match.pose = ranked.match.pose;
     match.score = ranked.match.score;
     found.push_back(match);
   }
+  return found;
+}
 
-  // Places are followed along the way only.
+absl::optional<PlaceMatch> PlaceSearch::MatchNearby(
+    const int node_index, const Pose2& guess, const PlaceSubmap& submap,
+    const double min_score) const {
+  absl::optional<PlaceMatch> result;
+  if (!Covers(*submap.submap, guess)) return result;
+  const SubmapMatch match =
+      submap.matcher->Match(guess, kFollowMetres, kFollowRadians,
+                            nodes_.at(node_index).cloud, min_score);
+  if (!match.found) return result;
+  result = PlaceMatch();
+  result->submap_index = submap.submap_index;
+  result->pose = match.pose;
+  result->score = match.score;
+  return result;
+}
+
+absl::optional<PlaceMatch> PlaceSearch::Follow(
+    const int node_index, const Pose2& guess,
+    const std::vector<PlaceSubmap>& submaps) const {
+  absl::optional<PlaceMatch> best;
+  for (const PlaceSubmap& submap : submaps) {
+    const absl::optional<PlaceMatch> match = MatchNearby(
+        node_index, guess, submap, best.has_value() ? best->score : 0.);
+    if (match.has_value()) best = match;
+  }
+  return best;
+}
+
+void PlaceSearch::AppendCandidates(
+    const int node_index, const Pose2& place,
+    const std::vector<PlaceSubmap>& submaps, const Refiner& refiner,
+    std::vector<LoopCandidate>* const candidates) const {
+  // In each of the submaps that know the place: those of one visit confirm
+  // each other, those of several visits lie too far apart for that.
+  const PlaceNode& node = nodes_.at(node_index);
+  std::vector<std::pair<PlaceMatch, const Submap2D*>> matches;
+  for (const PlaceSubmap& submap : submaps) {
+    const absl::optional<PlaceMatch> match =
+        MatchNearby(node_index, place, submap, min_score_);
+    if (match.has_value()) matches.emplace_back(*match, submap.submap);
+  }
+  std::stable_sort(matches.begin(), matches.end(),
+                   [](const std::pair<PlaceMatch, const Submap2D*>& a,
+                      const std::pair<PlaceMatch, const Submap2D*>& b) {
+                     return a.first.score > b.first.score;
+                   });
+  if (matches.size() > kSubmapsPerNode) matches.resize(kSubmapsPerNode);
+  for (const auto& match_and_submap : matches) {
+    const PlaceMatch& match = match_and_submap.first;
+    const Submap2D& submap = *match_and_submap.second;
+    const Pose2 submap_pose = ToPose2(ComputeSubmapPose(submap));
+    const Pose2 refined = refiner(submap, node.cloud, match.pose);
+    LoopCandidate candidate;
+    candidate.submap.submap_index = match.submap_index;
+    candidate.submap_local_pose = submap_pose;
+    candidate.node.node_index = node.node_index;
+    candidate.node_time = node.time;
+    candidate.aligned_from_tracking = node.aligned_from_tracking;
+    candidate.relocalized = true;
+    candidate.plan.full_submap = true;
+    candidate.match.found = true;
+    candidate.match.has_pose = true;
+    candidate.match.score = match.score;
+    candidate.match.matched = Between(submap_pose, match.pose);
+    candidate.match.refined = Between(submap_pose, refined);
+    candidate.match.information =
+        MatchInformation(*submap.grid(), node.cloud, refined, submap_pose);
+    candidates->push_back(candidate);
+  }
+}
+
+PlaceResult PlaceSearch::Search(PlaceNode node,
+                                const std::vector<PlaceSubmap>& submaps,
+                                const bool is_known, const Refiner& refiner) {
+  PlaceResult result;
+  const std::vector<PlaceMatch> found = FindPlaces(node, submaps, &result);
+
+  // Places are followed forwards only.
   const int node_index = node.node_index;
   if (node_index <= newest_node_) return result;
   newest_node_ = node_index;
   const Pose2 local_pose = node.local_pose;
   nodes_.emplace(node_index, std::move(node));
-  const auto match_nearby = [&](const int index, const Pose2& guess,
-                                const PlaceSubmap& submap,
-                                const double min_score) {
-    absl::optional<PlaceMatch> result_here;
-    if (!Covers(*submap.submap, guess)) return result_here;
-    const SubmapMatch match =
-        submap.matcher->Match(guess, kFollowMetres, kFollowRadians,
-                              nodes_.at(index).cloud, min_score);
-    if (!match.found) return result_here;
-    result_here = PlaceMatch();
-    result_here->submap_index = submap.submap_index;
-    result_here->pose = match.pose;
-    result_here->score = match.score;
-    return result_here;
-  };
-  const auto follow = [&](const int index, const Pose2& guess) {
-    absl::optional<PlaceMatch> best;
-    for (const PlaceSubmap& submap : submaps) {
-      const absl::optional<PlaceMatch> match = match_nearby(
-          index, guess, submap, best.has_value() ? best->score : 0.);
-      if (match.has_value()) best = match;
-    }
-    return best;
-  };
-  tracker_.AddNode(node_index, local_pose, found, follow);
+  tracker_.AddNode(node_index, local_pose, found,
+                   [&](const int index, const Pose2& guess) {
+                     return Follow(index, guess, submaps);
+                   });
   while (!nodes_.empty() && nodes_.begin()->first < tracker_.oldest_node()) {
     nodes_.erase(nodes_.begin());
   }
@@ -125,41 +183,15 @@ PlaceResult PlaceSearch::Search(PlaceNode node,
   result.decided_submap = decision.matches.back().submap_index;
   if (is_known) return result;
   for (size_t k = 0; k < decision.nodes.size(); ++k) {
-    if (decision.nodes[k] <= last_given_out_) continue;
-    // In each of the submaps that know the place: those of one visit confirm
-    // each other, those of several visits lie too far apart for that.
-    const PlaceNode& from = nodes_.at(decision.nodes[k]);
-    std::vector<std::pair<PlaceMatch, const Submap2D*>> here;
-    for (const PlaceSubmap& submap : submaps) {
-      const absl::optional<PlaceMatch> match = match_nearby(
-          from.node_index, decision.matches[k].pose, submap, min_score_);
-      if (match.has_value()) here.emplace_back(*match, submap.submap);
-    }
-    std::stable_sort(here.begin(), here.end(),
-                     [](const std::pair<PlaceMatch, const Submap2D*>& a,
-                        const std::pair<PlaceMatch, const Submap2D*>& b) {
-                       return a.first.score > b.first.score;
-                     });
-    if (here.size() > kSubmapsPerNode) here.resize(kSubmapsPerNode);
-    for (const auto& match_and_submap : here) {
-      const PlaceMatch& match = match_and_submap.first;
-      const Submap2D& submap = *match_and_submap.second;
-      PlacedNode placed;
-      placed.node_index = from.node_index;
-      placed.first_node_index = decision.nodes.front();
-      placed.time = from.time;
-      placed.from_robot = from.from_robot;
-      placed.submap_index = match.submap_index;
-      placed.matched = match.pose;
-      placed.score = match.score;
-      placed.refined = refiner(submap, from.cloud, placed.matched);
-      placed.information =
-          MatchInformation(*submap.grid(), from.cloud, placed.refined,
-                           ToPose2(ComputeSubmapPose(submap)));
-      result.placed.push_back(placed);
-    }
+    if (decision.nodes[k] <= last_returned_) continue;
+    AppendCandidates(decision.nodes[k], decision.matches[k].pose, submaps,
+                     refiner, &result.placed);
   }
-  last_given_out_ = node_index;
+  for (LoopCandidate& candidate : result.placed) {
+    // The motion from nodes before the first one may be wrong.
+    candidate.first_node_index = decision.nodes.front();
+  }
+  last_returned_ = node_index;
   return result;
 }
 

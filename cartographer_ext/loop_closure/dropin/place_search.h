@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Looks for a run in the whole map of another run: a node is searched in all
+// Relocalises a run in the whole map of another run: a node is searched in all
 // submaps, and the places found are followed by PlaceTracker until one of them
 // is decided for. Keeps copies of the clouds of the nodes it follows; the host
 // guarantees its own only until the callback.
@@ -15,12 +15,13 @@
 #include <map>
 #include <vector>
 
-#include "Eigen/Core"
+#include "absl/types/optional.h"
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/localization_options.pb.h"
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
+#include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure/relocalization/place_tracker.h"
 
 namespace cartographer_ext {
@@ -37,25 +38,10 @@ struct PlaceSubmap {
 
 struct PlaceNode {
   int node_index = 0;
-  int64_t time = 0;  // host ticks
-  Pose2 local_pose;  // (local <- node), gravity-aligned
-  Pose2 from_robot;  // (gravity-aligned <- tracking frame), a rotation
+  int64_t time = 0;             // host ticks
+  Pose2 local_pose;             // (local <- node), gravity-aligned
+  Pose2 aligned_from_tracking;  // a rotation
   cartographer::sensor::PointCloud cloud;
-};
-
-// A node that belongs to the place that was decided for.
-struct PlacedNode {
-  int node_index = 0;
-  // The first one that belongs to the place: the motion from those before may
-  // be wrong.
-  int first_node_index = 0;
-  int64_t time = 0;
-  Pose2 from_robot;
-  int submap_index = 0;
-  Pose2 matched;  // (local frame of the map <- node), gravity-aligned
-  Pose2 refined;
-  double score = 0.;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // (submap frame)
 };
 
 struct PlaceResult {
@@ -68,9 +54,10 @@ struct PlaceResult {
   // Of the newest node, (local frame of the map <- node).
   Pose2 decided_pose;
   int decided_submap = -1;
-  // Nodes of the decided place that were not given out before, each in the
-  // submaps where it fits best.
-  std::vector<PlacedNode> placed;
+  // Nodes of the decided place that were not returned before, each in the
+  // submaps where it fits best: candidates with a match and without
+  // trajectories.
+  std::vector<LoopCandidate> placed;
 };
 
 class PlaceSearch {
@@ -84,9 +71,9 @@ class PlaceSearch {
   PlaceSearch(const proto::LocalizationOptions& options, double min_score);
 
   // The next node of the run; places are not followed to nodes that are older
-  // than the one before. `is_known`: its place is thought to be known, and
-  // this is to find out whether that is right; then fewer nodes decide, and
-  // nothing is given out.
+  // than the one before. `is_known`: its place is thought to be known, and the
+  // search is to confirm that; then fewer nodes decide, and no candidates are
+  // returned.
   PlaceResult Search(PlaceNode node, const std::vector<PlaceSubmap>& submaps,
                      bool is_known, const Refiner& refiner);
 
@@ -97,12 +84,30 @@ class PlaceSearch {
   void DeleteNodes(int last_node_index);
 
  private:
+  // Matches the node in the submaps to be searched; scores into the result.
+  std::vector<PlaceMatch> FindPlaces(const PlaceNode& node,
+                                     const std::vector<PlaceSubmap>& submaps,
+                                     PlaceResult* result) const;
+  // A kept node in one submap near a guess, (local frame of the map <- node).
+  absl::optional<PlaceMatch> MatchNearby(int node_index, const Pose2& guess,
+                                         const PlaceSubmap& submap,
+                                         double min_score) const;
+  // The same in the submap where it fits best.
+  absl::optional<PlaceMatch> Follow(
+      int node_index, const Pose2& guess,
+      const std::vector<PlaceSubmap>& submaps) const;
+  // The candidates of a kept node at a place, refined.
+  void AppendCandidates(int node_index, const Pose2& place,
+                        const std::vector<PlaceSubmap>& submaps,
+                        const Refiner& refiner,
+                        std::vector<LoopCandidate>* candidates) const;
+
   const proto::LocalizationOptions options_;
   const double min_score_;
   PlaceTracker tracker_;
   std::map<int, PlaceNode> nodes_;  // those of the tracker
   int newest_node_ = -1;
-  int last_given_out_ = -1;
+  int last_returned_ = -1;
 };
 
 }  // namespace loop_closure

@@ -2,47 +2,30 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // ConstraintBuilder2D for options with our block: the same calls on the same
-// threads, another way to constraints.
+// threads. It adapts LoopClosure2D, which does the work, to the host's tasks
+// and callbacks:
 //
-//   offered    Nodes are remembered, pairs wait for the end of their node.
-//   planned    At the end of a node PairPlanner chooses which of its pairs
-//              are searched and how widely; the others get their record.
-//   searched   Each in a task of its own: correlative search, refinement,
-//              information of the match. All submaps of another run, where the
-//              place in it is not known (MapLocalization), in one task.
-//   verified   In the task behind WhenDone, pair by pair in the order they were
-//              offered: LoopVerifier. What it accepts, now or of earlier
-//              rounds, is reported; what lacks evidence waits for the next
-//              round. What still waits when the builder is destroyed goes to
-//              the decision log.
+//   MaybeAdd(Global)Constraint   queue pairs of one node
+//   NotifyEndOfNode              plans the queued pairs and schedules searches
+//   searches (pool)              each on its own, without any lock
+//   WhenDone -> callback (pool)  verifies in the order of the pairs, calls back
 //
-// Only planning and verification have memory, and both see the same sequence
-// for any number of threads.
-//
-// A node of the host stands for the gravity-aligned frame, which does not turn
-// with the robot. Searching and constraints keep to that; what knows about
-// motion (paths, signatures, verification, records) has the tracking frame.
-//
-// The pose graph deletes nodes together with the submaps they belong to, and
-// tells about the submaps only. A constraint with a node that is gone would be
-// fatal there, so with a submap all undecided loops of nodes are given up that
-// may have been part of it: those up to the newest one known when the submap
-// had been complete for a while.
+// Two mutexes. `mutex_` guards the queue, the counters and the tasks; it is
+// held for moments only, never while something is planned, searched or
+// verified. `work_mutex_` is held while LoopClosure2D plans or verifies, which
+// keeps both in one sequence and so makes the results the same for any number
+// of threads. Only the calls that need this sequence wait for it, as said at
+// each of them.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 
-#include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <map>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
-#include "absl/types/optional.h"
 #include "cartographer/common/task.h"
 #include "cartographer/common/thread_pool.h"
 #include "cartographer/mapping/2d/submap_2d.h"
@@ -52,17 +35,13 @@
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/metrics/family_factory.h"
 #include "cartographer/transform/rigid_transform.h"
-#include "cartographer_ext/common/full_information.h"
-#include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
-#include "cartographer_ext/loop_closure/dropin/pair_planner.h"
-#include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
-#include "cartographer_ext/loop_closure/dropin/place_search.h"
-#include "cartographer_ext/loop_closure/loop_verifier.h"
+#include "cartographer_ext/loop_closure/dropin/loop_closure_2d.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Thread-safe.
 class VerifiedConstraintBuilder2D {
  public:
   using Constraint = cartographer::mapping::PoseGraphInterface::Constraint;
@@ -72,119 +51,80 @@ class VerifiedConstraintBuilder2D {
   using Submap2D = cartographer::mapping::Submap2D;
   using NodeData = cartographer::mapping::TrajectoryNode::Data;
 
+  // `extension` is our block of `options`. The pool has to outlive this.
   VerifiedConstraintBuilder2D(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
       const proto::LoopClosureOptions& extension,
       cartographer::common::ThreadPoolInterface* thread_pool);
+  // WhenDone must have been called, and have called back, since the last node.
+  // What is still undecided is rejected and goes to the decision log.
   ~VerifiedConstraintBuilder2D();
   VerifiedConstraintBuilder2D(const VerifiedConstraintBuilder2D&) = delete;
   VerifiedConstraintBuilder2D& operator=(const VerifiedConstraintBuilder2D&) =
       delete;
 
-  // As those of ConstraintBuilder2D.
+  // Proposes a pair around (submap <- node) = `initial_relative_pose`, which
+  // may or may not be searched. The submap has to be finished. Submap and node
+  // data must live until WhenDone has called back. Never waits.
   void MaybeAddConstraint(
       const SubmapId& submap_id, const Submap2D* submap, const NodeId& node_id,
       const NodeData* node,
       const cartographer::transform::Rigid2d& initial_relative_pose)
-      ABSL_LOCKS_EXCLUDED(mutex_);
+      ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
+
+  // The same without a prediction: somewhere in the whole submap.
   void MaybeAddGlobalConstraint(const SubmapId& submap_id,
                                 const Submap2D* submap, const NodeId& node_id,
                                 const NodeData* node)
-      ABSL_LOCKS_EXCLUDED(mutex_);
-  void NotifyEndOfNode() ABSL_LOCKS_EXCLUDED(mutex_);
+      ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
+
+  // The pairs since the last call were proposed when one node was added. Plans
+  // them together and schedules their searches. Waits for verification, if that
+  // is under way.
+  void NotifyEndOfNode() ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
+
+  // Calls back once, on the pool and without a lock, when the searches of all
+  // nodes so far are done and verified. The result is what became certain since
+  // the last callback, in the order of the pairs, which includes pairs of
+  // earlier rounds that waited for evidence. The callback may use the builder.
+  // One callback at a time.
   void WhenDone(const std::function<void(const Result&)>& callback)
-      ABSL_LOCKS_EXCLUDED(mutex_);
-  int GetNumFinishedNodes() ABSL_LOCKS_EXCLUDED(mutex_);
-  void DeleteScanMatcher(const SubmapId& submap_id) ABSL_LOCKS_EXCLUDED(mutex_);
+      ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
+
+  // Nodes whose searches are done, over the whole life of the builder. Never
+  // waits.
+  int GetNumFinishedNodes() ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
+
+  // Forgets a submap, and rejects the undecided pairs of it and of nodes that
+  // the pose graph may delete with it. None of its pairs may be under way.
+  // Waits for verification, if that is under way.
+  void DeleteScanMatcher(const SubmapId& submap_id)
+      ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
 
   static void RegisterMetrics(
       cartographer::metrics::FamilyFactory* family_factory);
 
  private:
-  SubmapEntry* Offer(const SubmapId& submap_id, const Submap2D* submap,
-                     const NodeId& node_id, const NodeData& node)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void RememberNode(const NodeId& node_id, const NodeData& node)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // How a node fits a submap of its run that ended right before it.
-  void MeasureFit(const OfferedPair& pair, const SubmapEntry& entry)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  absl::optional<uncertainty::VertexId> Anchor(const SubmapId& submap_id,
-                                               const SubmapEntry& entry,
-                                               int trajectory_id) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Schedule(PairCandidate* candidate) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void ScheduleQuery(const std::vector<PairCandidate*>& candidates)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // What a search in the submap of the candidate needs, before `task`.
-  void AwaitSubmap(const PairCandidate& candidate,
-                   cartographer::common::Task* task)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void ScheduleMatcher(const std::shared_ptr<SubmapEntry>& entry)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void ScheduleViews(const SubmapId& submap_id)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  LoopCandidate MakeLoopCandidate(const PairCandidate& candidate) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // What is the same for all candidates of a submap.
-  LoopCandidate StartCandidate(const SubmapId& submap_id,
-                               const SubmapEntry& entry, bool with_maps) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void VerifyQuery(const PlaceQuery& query)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // A run has found its place again: what told its place before it was lost is
-  // given no information, so that the optimisation goes without it.
-  void TakeBackLoops(int trajectory_id, int map_id)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // (anchor <- node)
-  absl::optional<uncertainty::LoopEdge> MakeLoopEdge(
-      const LoopOutcome& outcome) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  Result Verify() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void CallBack() ABSL_LOCKS_EXCLUDED(mutex_);
+  void Propose(const LoopClosure2D::Proposal& proposal)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  void CallBack() ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
 
-  const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
-      options_;
-  const proto::LoopClosureOptions extension_;
   cartographer::common::ThreadPoolInterface* const thread_pool_;
-  const PairSearcher searcher_;
-  int64_t pending_id_ = 0;
+  int64_t pending_id_ = 0;  // at the decision recorder
+
+  absl::Mutex work_mutex_ ABSL_ACQUIRED_BEFORE(mutex_);
+  LoopClosure2D loop_closure_ ABSL_GUARDED_BY(work_mutex_);
 
   absl::Mutex mutex_;
-  LoopVerifier verifier_ ABSL_GUARDED_BY(mutex_);
-  PairPlanner planner_ ABSL_GUARDED_BY(mutex_);
-  TypicalFit typical_fit_ ABSL_GUARDED_BY(mutex_);
-  std::map<SubmapId, std::shared_ptr<SubmapEntry>> submaps_
-      ABSL_GUARDED_BY(mutex_);
-  std::map<int, int> newest_nodes_ ABSL_GUARDED_BY(mutex_);
-  std::map<int, int64_t> newest_times_ ABSL_GUARDED_BY(mutex_);
   // Of the node that is not complete yet.
-  std::vector<OfferedPair> pairs_ ABSL_GUARDED_BY(mutex_);
-  // Of all complete nodes since the last callback; they stay where they are.
-  // The first so many belong to the callback that is due.
-  size_t num_candidates_due_ ABSL_GUARDED_BY(mutex_) = 0;
-  size_t num_queries_due_ ABSL_GUARDED_BY(mutex_) = 0;
-  std::deque<PairCandidate> candidates_ ABSL_GUARDED_BY(mutex_);
-  std::deque<PlaceQuery> queries_ ABSL_GUARDED_BY(mutex_);
-  // By run and map, with the task of the last query of each.
-  std::map<std::pair<int, int>, std::unique_ptr<PlaceSearch>> places_
-      ABSL_GUARDED_BY(mutex_);
-  std::map<std::pair<int, int>, std::weak_ptr<cartographer::common::Task>>
-      place_tasks_ ABSL_GUARDED_BY(mutex_);
-  // Accepted loops of each run in each map, node index and constraint.
-  std::map<std::pair<int, int>, std::deque<std::pair<int, ConstraintBits>>>
-      foreign_loops_ ABSL_GUARDED_BY(mutex_);
-  // Up to these nodes places are to be forgotten.
-  std::map<std::pair<int, int>, int> forgotten_nodes_ ABSL_GUARDED_BY(mutex_);
-  int64_t num_groups_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::vector<LoopClosure2D::Proposal> proposals_ ABSL_GUARDED_BY(mutex_);
   std::function<void(const Result&)> callback_ ABSL_GUARDED_BY(mutex_);
-  std::unique_ptr<cartographer::common::Task> end_of_node_task_
-      ABSL_GUARDED_BY(mutex_);
+  // Collects dependencies until it is scheduled.
   std::unique_ptr<cartographer::common::Task> callback_task_
       ABSL_GUARDED_BY(mutex_);
   int num_started_nodes_ ABSL_GUARDED_BY(mutex_) = 0;
   int num_finished_nodes_ ABSL_GUARDED_BY(mutex_) = 0;
-  int num_matchers_ ABSL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace loop_closure

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 
 #include "glog/logging.h"
 
@@ -102,6 +103,14 @@ int MapLocalization::LastNodeBeforeLost(const int trajectory_id,
   const auto it =
       states_.find(std::make_pair(trajectory_id, map_trajectory_id));
   return it == states_.end() ? -1 : it->second.last_before_lost;
+}
+
+void MapLocalization::DeleteTrajectory(const int trajectory_id) {
+  for (auto it = states_.begin(); it != states_.end();) {
+    const bool is_of_it =
+        it->first.first == trajectory_id || it->first.second == trajectory_id;
+    it = is_of_it ? states_.erase(it) : std::next(it);
+  }
 }
 
 }  // namespace loop_closure

@@ -70,8 +70,11 @@ class MapLocalization {
                    bool agrees);
 
   bool IsKnown(int trajectory_id, int map_trajectory_id) const;
-  // The last node from before that, -1 without.
+  // The last node from before the run was lost, -1 without.
   int LastNodeBeforeLost(int trajectory_id, int map_trajectory_id) const;
+
+  // Frees what is remembered of a run, and of runs in it as a map.
+  void DeleteTrajectory(int trajectory_id);
 
  private:
   struct State {

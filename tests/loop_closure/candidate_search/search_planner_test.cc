@@ -15,7 +15,7 @@ namespace {
 
 using proto::LoopDecision;
 
-// A straight way of 200 m, a node every metre. Only the translation is
+// A straight path of 200 m, a node every metre. Only the translation is
 // uncertain, 0.1 m per root metre.
 class SearchPlannerTest : public testing::Test {
  protected:
@@ -56,17 +56,23 @@ class SearchPlannerTest : public testing::Test {
 
   // Submap `s` has its origin at node `anchor`; the node is predicted `x`
   // metres from it.
-  static SearchPair Pair(int s, int anchor, int node, double x) {
-    SearchPair pair;
-    pair.submap_index = s;
+  static LoopCandidate Pair(int s, int anchor, int node, double x) {
+    LoopCandidate pair;
+    pair.submap.submap_index = s;
     pair.anchor = uncertainty::NodeId{0, anchor};
     pair.node = uncertainty::NodeId{0, node};
     pair.predicted = Pose2(x, 0., 0.);
     return pair;
   }
 
-  SearchPlan PlanOne(const SearchPair& pair) {
-    return planner_->Plan({pair}).front();
+  SearchPlan PlanOne(const LoopCandidate& pair) {
+    return planner_->Plan({&pair}).front();
+  }
+
+  std::vector<SearchPlan> PlanAll(const std::vector<LoopCandidate>& pairs) {
+    std::vector<const LoopCandidate*> candidates;
+    for (const LoopCandidate& pair : pairs) candidates.push_back(&pair);
+    return planner_->Plan(candidates);
   }
 
   uncertainty::PathUncertainty paths_;
@@ -74,7 +80,7 @@ class SearchPlannerTest : public testing::Test {
   std::unique_ptr<SearchPlanner> planner_;
 };
 
-TEST_F(SearchPlannerTest, WindowFollowsTheUncertaintyOfTheWay) {
+TEST_F(SearchPlannerTest, WindowFollowsTheUncertaintyOfThePath) {
   MakePlanner();
   const SearchPlan plan = PlanOne(Pair(0, 0, 100, 3.));
   EXPECT_EQ(plan.skipped, LoopDecision::NONE);
@@ -82,7 +88,7 @@ TEST_F(SearchPlannerTest, WindowFollowsTheUncertaintyOfTheWay) {
   EXPECT_NEAR(plan.translation_sigma, 1., 1e-12);
   EXPECT_NEAR(plan.linear_window, 3., 1e-12);
   EXPECT_EQ(plan.angular_window, 0.2);
-  // A short way: the smallest window.
+  // A short path: the smallest window.
   EXPECT_EQ(PlanOne(Pair(1, 0, 4, 3.)).linear_window, 1.);
 }
 
@@ -102,17 +108,17 @@ TEST_F(SearchPlannerTest, SearchesTheWholeSubmapWhereTheWindowIsTooSmall) {
 
 TEST_F(SearchPlannerTest, WithoutAnchorTheDefaultWindowHolds) {
   MakePlanner();
-  SearchPair pair = Pair(0, 0, 100, 3.);
+  LoopCandidate pair = Pair(0, 0, 100, 3.);
   pair.anchor.reset();
   const SearchPlan plan = PlanOne(pair);
   EXPECT_EQ(plan.linear_window, 7.);
   EXPECT_EQ(plan.angular_window, 0.5);
   EXPECT_EQ(plan.translation_sigma, 0.);
-  pair.predicted.x = 15.1;
+  pair.predicted->x = 15.1;
   EXPECT_TRUE(PlanOne(pair).out_of_reach);
 }
 
-TEST_F(SearchPlannerTest, SkipsWhatTellsNothingNew) {
+TEST_F(SearchPlannerTest, SkipsWhatIsUninformative) {
   MakePlanner();
   EXPECT_EQ(PlanOne(Pair(0, 0, 2, 2.)).skipped,
             LoopDecision::SKIPPED_UNINFORMATIVE);
@@ -127,7 +133,7 @@ TEST_F(SearchPlannerTest, SpacesSearchesOfASubmap) {
   EXPECT_EQ(PlanOne(Pair(0, 0, 99, 3.)).skipped, LoopDecision::SKIPPED_SPACING);
   EXPECT_EQ(PlanOne(Pair(1, 0, 101, 3.)).skipped, LoopDecision::NONE);
   EXPECT_EQ(PlanOne(Pair(0, 0, 102, 3.)).skipped, LoopDecision::NONE);
-  planner_->DeleteSubmap(0, 0);
+  planner_->DeleteSubmap(uncertainty::SubmapId{0, 0});
   EXPECT_EQ(PlanOne(Pair(0, 0, 101, 3.)).skipped, LoopDecision::NONE);
 }
 
@@ -137,7 +143,7 @@ TEST_F(SearchPlannerTest, AcceptedLoopsNarrowTheWindowAndRestTheSubmap) {
   loop.a = uncertainty::NodeId{0, 10};
   loop.b = uncertainty::NodeId{0, 150};
   loop.pose.covariance = LoopCovariance();
-  planner_->AddAcceptedLoop(0, 7, loop, 0);
+  planner_->AddAcceptedLoop(uncertainty::SubmapId{0, 7}, loop, 0);
   // 10 m before the loop, 9 m behind it, and the loop itself.
   const SearchPlan plan = PlanOne(Pair(1, 0, 159, 3.));
   EXPECT_NEAR(plan.translation_sigma, std::sqrt(0.1 + 0.09 + 0.01), 1e-12);
@@ -149,7 +155,7 @@ TEST_F(SearchPlannerTest, AcceptedLoopsNarrowTheWindowAndRestTheSubmap) {
 TEST_F(SearchPlannerTest, AfterSomeTimeASubmapIsSearchedAgain) {
   options_.set_redundant_time(10.);
   MakePlanner();
-  SearchPair pair = Pair(0, 0, 100, 3.);
+  LoopCandidate pair = Pair(0, 0, 100, 3.);
   pair.node_time = 1000000000;
   EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::NONE);
   pair.node.node_index = 101;
@@ -162,7 +168,7 @@ TEST_F(SearchPlannerTest, AfterSomeTimeASubmapIsSearchedAgain) {
   loop.a = uncertainty::NodeId{0, 10};
   loop.b = uncertainty::NodeId{0, 150};
   loop.pose.covariance = LoopCovariance();
-  planner_->AddAcceptedLoop(0, 7, loop, 1000000000);
+  planner_->AddAcceptedLoop(uncertainty::SubmapId{0, 7}, loop, 1000000000);
   pair = Pair(7, 10, 153, 3.);
   pair.node_time = 1100000000;
   EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_REDUNDANT);
@@ -174,22 +180,35 @@ TEST_F(SearchPlannerTest, CapsTheSearchesOfANode) {
   MakePlanner();
   // Of equal uncertainty; the nearest are the most promising.
   const std::vector<SearchPlan> plans =
-      planner_->Plan({Pair(0, 0, 100, 14.), Pair(1, 0, 100, 2.),
-                      Pair(2, 0, 100, 12.), Pair(3, 0, 100, 1.)});
+      PlanAll({Pair(0, 0, 100, 14.), Pair(1, 0, 100, 2.), Pair(2, 0, 100, 12.),
+               Pair(3, 0, 100, 1.)});
   EXPECT_EQ(plans[0].skipped, LoopDecision::SKIPPED_BUDGET);
   EXPECT_EQ(plans[1].skipped, LoopDecision::NONE);
   EXPECT_EQ(plans[2].skipped, LoopDecision::SKIPPED_BUDGET);
   EXPECT_EQ(plans[3].skipped, LoopDecision::NONE);
-  // What was left out may be searched from the next node.
+  // What was skipped may be searched from the next node.
   EXPECT_EQ(PlanOne(Pair(0, 0, 101, 14.)).skipped, LoopDecision::NONE);
 }
 
 TEST_F(SearchPlannerTest, OneWholeSubmapANode) {
   MakePlanner();
   const std::vector<SearchPlan> plans =
-      planner_->Plan({Pair(0, 0, 200, 3.), Pair(1, 0, 200, 3.)});
+      PlanAll({Pair(0, 0, 200, 3.), Pair(1, 0, 200, 3.)});
   EXPECT_EQ(plans[0].skipped, LoopDecision::NONE);
   EXPECT_EQ(plans[1].skipped, LoopDecision::SKIPPED_BUDGET);
+}
+
+TEST_F(SearchPlannerTest, LoopsOfADeletedTrajectoryNoLongerPredict) {
+  MakePlanner();
+  uncertainty::LoopEdge loop;
+  loop.a = uncertainty::NodeId{0, 10};
+  loop.b = uncertainty::NodeId{0, 150};
+  loop.pose.covariance = LoopCovariance();
+  planner_->AddAcceptedLoop(uncertainty::SubmapId{0, 7}, loop, 0);
+  planner_->DeleteTrajectory(1);
+  EXPECT_LT(PlanOne(Pair(1, 0, 159, 3.)).translation_sigma, 0.5);
+  planner_->DeleteTrajectory(0);
+  EXPECT_GT(PlanOne(Pair(2, 0, 159, 3.)).translation_sigma, 1.2);
 }
 
 TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
@@ -200,8 +219,9 @@ TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
     paths_.Add(uncertainty::NodeId{1, i}, Pose2(i, 0., 0.));
   options_.set_search_spacing(0.);
   MakePlanner();
-  SearchPair pair;
+  LoopCandidate pair;
   pair.anchor = submap;
+  pair.predicted = Pose2();
   pair.node = uncertainty::NodeId{1, 16};
   // Nothing is known about it.
   EXPECT_EQ(PlanOne(pair).linear_window, 7.);
@@ -209,7 +229,7 @@ TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
   loop.a = submap;
   loop.b = uncertainty::NodeId{1, 10};
   loop.pose.covariance = LoopCovariance();
-  planner_->AddAcceptedLoop(0, 0, loop, 0);
+  planner_->AddAcceptedLoop(uncertainty::SubmapId{0, 0}, loop, 0);
   pair.node = uncertainty::NodeId{1, 20};
   EXPECT_LT(PlanOne(pair).linear_window, 2.);
   // Not up to there, or of another map.

@@ -75,7 +75,7 @@ TEST_F(CompatibleSubsetTest, TwoRevisitsConfirmEachOther) {
   EXPECT_EQ(decisions[0].support, 1);
   EXPECT_EQ(decisions[0].subset_size, 2);
   EXPECT_EQ(subset.num_undecided(), 0);
-  EXPECT_EQ(subset.AcceptedLoops().size(), 2u);
+  EXPECT_EQ(subset.num_clusters(), 2);
   // What belongs to an accepted revisit follows at once.
   subset.Add(Loop(3, 12, 0.));
   const auto joining = subset.Decide();
@@ -137,7 +137,9 @@ TEST_F(CompatibleSubsetTest, ForgottenLoopsNoLongerCount) {
   EXPECT_EQ(subset.num_clusters(), 1);
   EXPECT_THAT(Accepted(subset.Decide()), IsEmpty());
   EXPECT_EQ(subset.num_undecided(), 1);
-  EXPECT_THAT(subset.AcceptedLoops(), IsEmpty());
+  // Nor does another one join it.
+  subset.Add(Loop(4, 31, 0.));
+  EXPECT_THAT(Accepted(subset.Decide()), IsEmpty());
 }
 
 TEST_F(CompatibleSubsetTest, BadlyPredictedPlacesNeedMore) {
@@ -281,16 +283,16 @@ TEST_F(CompatibleSubsetTest, LoopsBetweenTrajectoriesInEitherDirection) {
   EXPECT_THAT(Accepted(apart.Decide()), ElementsAre(2, 3));
 }
 
-TEST_F(CompatibleSubsetTest, WithdrawnLoopsAreForgotten) {
+TEST_F(CompatibleSubsetTest, RemovedLoopsAreForgotten) {
   CompatibleSubset subset(options_, &paths_);
   subset.Add(Loop(1, 10, 0.));
   subset.Add(Loop(2, 11, 0.));
-  EXPECT_THAT(subset.Withdraw([](const LoopEvidence& loop) {
+  EXPECT_THAT(subset.Remove([](const LoopEvidence& loop) {
     return loop.edge.a.index() == 10;
   }),
               ElementsAre(1));
   EXPECT_EQ(subset.num_clusters(), 1);
-  EXPECT_THAT(subset.Withdraw([](const LoopEvidence&) { return true; }),
+  EXPECT_THAT(subset.Remove([](const LoopEvidence&) { return true; }),
               ElementsAre(2));
   EXPECT_EQ(subset.num_clusters(), 0);
   subset.Add(Loop(3, 30, 0.));

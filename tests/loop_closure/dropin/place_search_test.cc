@@ -82,7 +82,7 @@ class PlaceSearchTest : public testing::Test {
   std::vector<std::unique_ptr<const SubmapMatcher>> matchers_;
 };
 
-TEST_F(PlaceSearchTest, DecidesAfterAFewNodesAndGivesThemOutOnce) {
+TEST_F(PlaceSearchTest, DecidesAfterAFewNodesAndReturnsThemOnce) {
   PlaceSearch places(options_, 0.5);
   for (int i = 0; i < 3; ++i) {
     const PlaceResult result = Search(&places, i, false);
@@ -98,22 +98,26 @@ TEST_F(PlaceSearchTest, DecidesAfterAFewNodesAndGivesThemOutOnce) {
   // Each in both submaps.
   ASSERT_EQ(result.placed.size(), 8u);
   for (int k = 0; k < 8; ++k) {
-    const PlacedNode& placed = result.placed[k];
+    const LoopCandidate& placed = result.placed[k];
     const int i = k / 2;
-    EXPECT_EQ(placed.node_index, i);
-    EXPECT_NE(placed.submap_index, result.placed[k ^ 1].submap_index);
+    EXPECT_EQ(placed.node.node_index, i);
+    EXPECT_NE(placed.submap.submap_index,
+              result.placed[k ^ 1].submap.submap_index);
     EXPECT_EQ(placed.first_node_index, 0);
-    EXPECT_EQ(placed.time, 100 + i);
-    EXPECT_GT(placed.score, 0.5);
-    EXPECT_LT(Between(Truth(i), placed.refined).translation().norm(), 0.1);
-    EXPECT_GT(placed.information(0, 0), 0.);
+    EXPECT_EQ(placed.node_time, 100 + i);
+    EXPECT_GT(placed.match.score, 0.5);
+    EXPECT_LT(Between(Truth(i), placed.submap_local_pose * placed.match.refined)
+                  .translation()
+                  .norm(),
+              0.1);
+    EXPECT_GT(placed.match.information(0, 0), 0.);
   }
   const PlaceResult next = Search(&places, 4, false);
   ASSERT_EQ(next.placed.size(), 2u);
-  EXPECT_EQ(next.placed[0].node_index, 4);
+  EXPECT_EQ(next.placed[0].node.node_index, 4);
 }
 
-TEST_F(PlaceSearchTest, NothingIsGivenOutWhereThePlaceIsKnown) {
+TEST_F(PlaceSearchTest, NothingIsReturnedWhereThePlaceIsKnown) {
   PlaceSearch places(options_, 0.5);
   for (int i = 0; i < 5; ++i) {
     const PlaceResult result = Search(&places, i, true);

@@ -8,6 +8,7 @@
 
 #include "absl/memory/memory.h"
 #include "absl/synchronization/notification.h"
+#include "absl/time/time.h"
 #include "cartographer/common/internal/testing/thread_pool_for_testing.h"
 #include "cartographer/common/thread_pool.h"
 #include "cartographer/mapping/2d/probability_grid.h"
@@ -15,6 +16,7 @@
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/random.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
+#include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
 #include "tests/host/mapping_test_helpers.h"
@@ -416,6 +418,84 @@ TEST_F(VerifiedConstraintBuilder2DTest, UnknownNodesAreAllGivenUp) {
   for (const LoopDecision& decision : DecisionRecorder::Global()->All()) {
     EXPECT_NE(decision.verdict(), LoopDecision::UNDECIDED);
   }
+}
+
+// A gauge that verification sets at its end and that holds it there.
+class BlockingGauge : public cartographer::metrics::Gauge {
+ public:
+  void Increment() override {}
+  void Increment(double) override {}
+  void Decrement() override {}
+  void Decrement(double) override {}
+  void Set(double) override {
+    reached_.Notify();
+    released_.WaitForNotification();
+  }
+
+  void WaitUntilReached() { reached_.WaitForNotification(); }
+  void Release() { released_.Notify(); }
+
+ private:
+  absl::Notification reached_;
+  absl::Notification released_;
+};
+
+TEST_F(VerifiedConstraintBuilder2DTest, VerificationHoldsUpNoProposals) {
+  cartographer::common::ThreadPool pool(2);
+  Builder builder(StockOptions(), Defaults(), &pool);
+  Offer(&builder, 0, 0);
+  builder.NotifyEndOfNode();
+  BlockingGauge gauge;
+  auto* const before = ConstraintMetrics::Global()->undecided;
+  ConstraintMetrics::Global()->undecided = &gauge;
+  absl::Notification called_back;
+  builder.WhenDone([&](const Builder::Result&) { called_back.Notify(); });
+  gauge.WaitUntilReached();
+  absl::Notification returned;
+  std::thread thread([&]() {
+    EXPECT_EQ(builder.GetNumFinishedNodes(), 1);
+    Offer(&builder, 0, 1);
+    builder.MaybeAddGlobalConstraint(SubmapId{0, 1}, submaps_[1].get(),
+                                     NodeId{0, 1}, &nodes_[1]);
+    returned.Notify();
+  });
+  EXPECT_TRUE(returned.WaitForNotificationWithTimeout(absl::Seconds(60)));
+  EXPECT_FALSE(called_back.HasBeenNotified());
+  gauge.Release();
+  thread.join();
+  called_back.WaitForNotification();
+  ConstraintMetrics::Global()->undecided = before;
+  builder.NotifyEndOfNode();
+  Collect(&builder);
+  EXPECT_EQ(builder.GetNumFinishedNodes(), 2);
+}
+
+TEST_F(VerifiedConstraintBuilder2DTest, FreesDeletedTrajectories) {
+  DecisionRecorder::Global()->Start(100000);
+  proto::LoopClosureOptions options = Defaults();
+  options.mutable_compatible_subset()->set_min_revisits(50);
+  options.mutable_compatible_subset()->set_single_strong(false);
+  cartographer::common::ThreadPool pool(2);
+  Builder builder(StockOptions(), options, &pool);
+  Drive(&builder);
+  for (int s = 0; s < 3; ++s) builder.DeleteScanMatcher(SubmapId{0, s});
+  // Another run goes on for long enough.
+  for (int i = 0; i < 110; ++i) {
+    builder.MaybeAddConstraint(SubmapId{1, 0}, submaps_[0].get(), NodeId{1, i},
+                               &nodes_[i % kNumNodes],
+                               Relative(0, i % kNumNodes));
+    builder.NotifyEndOfNode();
+    if (i % 10 == 9) Collect(&builder);
+  }
+  for (const LoopDecision& decision : DecisionRecorder::Global()->All()) {
+    if (decision.verdict() == LoopDecision::UNDECIDED) {
+      EXPECT_EQ(decision.node_trajectory_id(), 1);
+    }
+  }
+  // The first run may go on all the same.
+  for (int s = 0; s < 3; ++s) Offer(&builder, s, kNumNodes - 1);
+  builder.NotifyEndOfNode();
+  Collect(&builder);
 }
 
 // The callback uses the builder again, from the pool.

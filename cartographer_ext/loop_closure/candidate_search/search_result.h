@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the first stage of loop closure, candidate search, finds out about a
+// candidate: whether and how widely it is searched (search_planner.h), and
+// where the scan fits.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_RESULT_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_RESULT_H_
+
+#include <cstdint>
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_decision.pb.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+struct SearchPlan {
+  // NONE: to be searched. Otherwise why not.
+  proto::LoopDecision::Reason skipped = proto::LoopDecision::NONE;
+  // Farther away than any window reaches: not even a candidate.
+  bool out_of_reach = false;
+  bool full_submap = false;
+  double linear_window = 0.;   // metres, half width
+  double angular_window = 0.;  // radians, half width
+  // Standard deviations of the prediction; 0 where it is not known.
+  double translation_sigma = 0.;  // metres, in the worst direction
+  double rotation_sigma = 0.;     // radians
+  // Candidates of equal numbers >= 0 are matched together, to relocalise their
+  // node in a whole map. Those that are skipped are in it because places are
+  // followed into their submaps.
+  int64_t query = -1;
+};
+
+// Of the correlative search and of the refinement that starts from its result.
+struct SearchMatch {
+  bool found = false;
+  double score = 0.;  // S_g, mean probability under the points, in [0, 1]
+  // (submap <- node), gravity-aligned; only the score is known of a candidate
+  // of a query.
+  bool has_pose = false;
+  Pose2 matched;
+  Pose2 refined;
+  // Of the refined pose from the scan alone, (submap <- node), metres and
+  // radians; zero where it is not known.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_RESULT_H_

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/consensus/loop_consensus.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "cartographer_ext/loop_closure/information/loop_information.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
+#include "cartographer_ext/loop_closure/stage_timer.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using proto::LoopDecision;
+
+LoopDecision::Reason ToReason(const SubsetReason reason) {
+  switch (reason) {
+    case SubsetReason::kSupported:
+      return LoopDecision::CONFIRMED_BY_SUBSET;
+    case SubsetReason::kSingleStrong:
+      return LoopDecision::SINGLE_STRONG;
+    case SubsetReason::kJoinsAccepted:
+      return LoopDecision::JOINED_ACCEPTED;
+    case SubsetReason::kContradicted:
+      return LoopDecision::CONTRADICTED;
+    case SubsetReason::kRival:
+      return LoopDecision::RIVAL;
+    case SubsetReason::kUnsupported:
+      break;
+  }
+  return LoopDecision::UNSUPPORTED;
+}
+
+double PriorSigma(const LoopCandidate& candidate) {
+  double sigma = candidate.plan.translation_sigma;
+  // With another trajectory zero means that nobody knows.
+  if (candidate.is_inter_trajectory() &&
+      (sigma == 0. || candidate.relocalized)) {
+    sigma = std::numeric_limits<double>::infinity();
+  }
+  if (!candidate.predicted.has_value() || candidate.relocalized) return sigma;
+  const double offset =
+      (candidate.InTrackingFrame(*candidate.predicted).translation() -
+       candidate.RefinedInTrackingFrame().translation())
+          .norm();
+  return std::min(sigma, offset);
+}
+
+}  // namespace
+
+LoopConsensus::LoopConsensus(const proto::LoopClosureOptions& options,
+                             const uncertainty::PathUncertainty* const paths)
+    : options_(options),
+      paths_(CHECK_NOTNULL(paths)),
+      subset_(ToCompatibleSubsetOptions(options), paths) {}
+
+LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
+  LoopEvidence evidence;
+  evidence.id = candidate.number;
+  evidence.edge.a = candidate.submap;
+  evidence.edge.b = candidate.node;
+  evidence.edge.pose.pose = candidate.RefinedInTrackingFrame();
+  // Within a trajectory the path runs along the nodes, which know about jumps.
+  if (candidate.anchor.has_value() &&
+      candidate.anchor->IsNodeOf(candidate.node.trajectory_id)) {
+    const absl::optional<Pose2> anchor_pose =
+        paths_->LocalPose(*candidate.anchor);
+    if (anchor_pose.has_value()) {
+      evidence.edge.a = *candidate.anchor;
+      evidence.edge.pose.pose = candidate.RefinedFromAnchor(*anchor_pose);
+    }
+  }
+  evidence.edge.pose.covariance = MatchCovariance(options_, candidate);
+  evidence.score = candidate.FinalScore();
+  evidence.prior_sigma = PriorSigma(candidate);
+  return evidence;
+}
+
+void LoopConsensus::Add(LoopCandidate candidate) {
+  const LoopEvidence evidence = MakeEvidence(candidate);
+  Waiting& waiting = waiting_[candidate.number];
+  waiting.candidate = std::move(candidate);
+  const StageTimer timer(options_.log().times(),
+                         &waiting.candidate.times.consensus);
+  subset_.Add(evidence);
+}
+
+ConsensusResult LoopConsensus::MakeResult(const SubsetDecision& decision,
+                                          const Waiting& waiting) const {
+  ConsensusResult result;
+  result.decision = decision;
+  result.num_tests = waiting.num_tests;
+  result.exact = subset_.exact();
+  return result;
+}
+
+std::vector<LoopCandidate> LoopConsensus::Settle(
+    const std::vector<SubsetDecision>& decisions) {
+  for (auto& entry : waiting_) ++entry.second.num_tests;
+  std::vector<LoopCandidate> settled;
+  for (const SubsetDecision& decision : decisions) {
+    const auto it = waiting_.find(decision.id);
+    CHECK(it != waiting_.end());
+    LoopCandidate& candidate = it->second.candidate;
+    candidate.consensus = MakeResult(decision, it->second);
+    if (decision.accepted) {
+      candidate.Accept(ToReason(decision.reason));
+    } else {
+      candidate.Reject(ToReason(decision.reason));
+    }
+    settled.push_back(std::move(candidate));
+    waiting_.erase(it);
+  }
+  return settled;
+}
+
+std::vector<LoopCandidate> LoopConsensus::Decide() {
+  return Settle(subset_.Decide());
+}
+
+std::vector<LoopCandidate> LoopConsensus::Flush() {
+  return Settle(subset_.Flush());
+}
+
+std::vector<LoopCandidate> LoopConsensus::Remove(const Condition& condition) {
+  std::vector<LoopCandidate> removed;
+  for (const int64_t id : subset_.Remove([&](const LoopEvidence& evidence) {
+         const auto it = waiting_.find(evidence.id);
+         return it != waiting_.end() && condition(it->second.candidate);
+       })) {
+    const auto it = waiting_.find(id);
+    removed.push_back(std::move(it->second.candidate));
+    waiting_.erase(it);
+  }
+  return removed;
+}
+
+void LoopConsensus::ForgetAccepted(const int trajectory_id,
+                                   const int submap_trajectory_id,
+                                   const int last_node_index) {
+  subset_.ForgetAccepted([&](const LoopEvidence& evidence) {
+    return evidence.edge.b.IsNodeOf(trajectory_id) &&
+           evidence.edge.b.index() <= last_node_index &&
+           evidence.edge.a.IsSubmapOf(submap_trajectory_id);
+  });
+}
+
+std::vector<LoopCandidate> LoopConsensus::Undecided() const {
+  std::vector<LoopCandidate> candidates;
+  for (const SubsetDecision& decision : subset_.Undecided()) {
+    const Waiting& waiting = waiting_.at(decision.id);
+    candidates.push_back(waiting.candidate);
+    candidates.back().consensus = MakeResult(decision, waiting);
+    candidates.back().reason = ToReason(decision.reason);
+  }
+  return candidates;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

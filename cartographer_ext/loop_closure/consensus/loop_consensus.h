@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The last stage of loop closure: candidates wait here until enough others
+// agree with them (paper G, improved graph optimisation 2024, section 3.4,
+// eq. 20 and 21; compatible_subset.h). What the subset compares of a candidate
+// is
+//
+//   the loop     (anchor <- node) with the covariance of its match,
+//   its score    S_final where scores were fused, otherwise S_g,
+//   its prior    how well its place was predicted: the standard deviation of
+//                the prediction, or, where that is less, how far from the
+//                prediction the match was found. Infinity without a prediction.
+//
+// Not thread-safe; candidates are added in the order of their numbers.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_LOOP_CONSENSUS_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_LOOP_CONSENSUS_H_
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
+#include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure_options.pb.h"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+class LoopConsensus {
+ public:
+  using Condition = std::function<bool(const LoopCandidate&)>;
+
+  // `paths` has to outlive this and to know the submaps and nodes of the
+  // candidates.
+  LoopConsensus(const proto::LoopClosureOptions& options,
+                const uncertainty::PathUncertainty* paths);
+
+  void Add(LoopCandidate candidate);
+
+  // The candidates that can be decided now, accepted or rejected; `Flush`
+  // rejects whatever is still undecided then.
+  std::vector<LoopCandidate> Decide();
+  std::vector<LoopCandidate> Flush();
+
+  // Removes the undecided candidates for which the condition holds.
+  std::vector<LoopCandidate> Remove(const Condition& condition);
+  // Accepted loops of nodes of a trajectory up to an index with submaps of
+  // another one no longer count.
+  void ForgetAccepted(int trajectory_id, int submap_trajectory_id,
+                      int last_node_index);
+
+  // What waits and why, in the order of the numbers.
+  std::vector<LoopCandidate> Undecided() const;
+  int num_undecided() const { return subset_.num_undecided(); }
+
+ private:
+  struct Waiting {
+    LoopCandidate candidate;
+    int num_tests = 0;
+  };
+
+  LoopEvidence MakeEvidence(const LoopCandidate& candidate) const;
+  ConsensusResult MakeResult(const SubsetDecision& decision,
+                             const Waiting& waiting) const;
+  std::vector<LoopCandidate> Settle(
+      const std::vector<SubsetDecision>& decisions);
+
+  const proto::LoopClosureOptions options_;
+  const uncertainty::PathUncertainty* const paths_;
+  CompatibleSubset subset_;
+  std::map<int64_t, Waiting> waiting_;  // by number
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_LOOP_CONSENSUS_H_

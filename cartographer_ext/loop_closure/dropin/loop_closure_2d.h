@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Loop closure of one pose graph, on the host's types:
+//
+//   proposed   Nodes and submaps of the pairs are remembered.
+//   planned    PairPlanner chooses which pairs of a node are searched and how
+//              widely; the others only get a record.
+//   searched   Each in a task of its own: correlative search, refinement,
+//              information of the match (PairSearcher). Where the place in
+//              another trajectory is not known, all of its submaps in one task
+//              (Relocalizer).
+//   verified   Pair by pair, in the order of the proposals: LoopPipeline. What
+//              it accepts, now or from earlier rounds, becomes a constraint;
+//              what lacks evidence waits for the next round.
+//
+// Only planning and verification have memory, and both see the same sequence
+// for any number of threads.
+//
+// A node of the host is the gravity-aligned frame, which does not turn with the
+// robot. Searches and constraints use it; whatever concerns motion (paths,
+// scans of several nodes, records) uses the tracking frame.
+//
+// The pose graph deletes nodes together with their submaps, but announces the
+// submaps only. A constraint with a deleted node would be fatal there, so with
+// a submap all undecided loops are rejected of nodes that may have belonged to
+// it (SubmapStore).
+//
+// Not thread-safe, except that its tasks run on the pool at any time.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_LOOP_CLOSURE_2D_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_LOOP_CLOSURE_2D_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <vector>
+
+#include "absl/types/optional.h"
+#include "cartographer/common/task.h"
+#include "cartographer/common/thread_pool.h"
+#include "cartographer/mapping/2d/submap_2d.h"
+#include "cartographer/mapping/id.h"
+#include "cartographer/mapping/pose_graph_interface.h"
+#include "cartographer/mapping/proto/pose_graph/constraint_builder_options.pb.h"
+#include "cartographer/mapping/trajectory_node.h"
+#include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
+#include "cartographer_ext/loop_closure/dropin/inter_trajectory_loops.h"
+#include "cartographer_ext/loop_closure/dropin/pair_planner.h"
+#include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
+#include "cartographer_ext/loop_closure/dropin/relocalizer.h"
+#include "cartographer_ext/loop_closure/dropin/submap_store.h"
+#include "cartographer_ext/loop_closure/loop_pipeline.h"
+#include "cartographer_ext/loop_closure_options.pb.h"
+#include "cartographer_ext/loop_decision.pb.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+class LoopClosure2D {
+ public:
+  using Constraint = cartographer::mapping::PoseGraphInterface::Constraint;
+  using NodeData = cartographer::mapping::TrajectoryNode::Data;
+
+  // A pair that the pose graph proposes. Submap and node have to live until
+  // `Verify` has returned.
+  struct Proposal {
+    cartographer::mapping::SubmapId submap_id;
+    const cartographer::mapping::Submap2D* submap;
+    cartographer::mapping::NodeId node_id;
+    const NodeData* node;
+    // (submap <- node); none where the whole submap is to be searched.
+    absl::optional<cartographer::transform::Rigid2d> initial_relative_pose;
+  };
+  struct Outcome {
+    std::vector<Constraint> constraints;
+    std::vector<proto::LoopDecision> decisions;  // of all that were decided
+  };
+
+  LoopClosure2D(
+      const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
+          options,
+      const proto::LoopClosureOptions& extension,
+      cartographer::common::ThreadPoolInterface* thread_pool);
+  LoopClosure2D(const LoopClosure2D&) = delete;
+  LoopClosure2D& operator=(const LoopClosure2D&) = delete;
+
+  // Plans the pairs proposed when one node was added and schedules their
+  // searches before `end_of_node`.
+  void AddNode(const std::vector<Proposal>& proposals,
+               cartographer::common::Task* end_of_node);
+  // The next `Verify` is for the nodes added so far.
+  void MarkDue();
+  // Takes the candidates that are due through the stages after the search. The
+  // tasks of their nodes have to have run.
+  Outcome Verify();
+  // Leaves nothing undecided.
+  std::vector<proto::LoopDecision> Flush();
+  bool has_candidates() const { return !jobs_.empty(); }
+
+  void DeleteSubmap(const cartographer::mapping::SubmapId& submap_id);
+
+  // Records of what waits for other loops, as UNDECIDED.
+  std::vector<proto::LoopDecision> Undecided() const;
+
+ private:
+  LoopCandidate Propose(const Proposal& proposal);
+  void RememberNode(const Proposal& proposal);
+  // How well a node fits a submap of its trajectory that ended right before it.
+  void MeasureFit(const Proposal& proposal, const LoopCandidate& candidate,
+                  const SubmapEntry& entry);
+  void ScheduleSearch(SearchJob* job, cartographer::common::Task* end_of_node);
+  void ScheduleQuery(const std::vector<SearchJob*>& jobs,
+                     cartographer::common::Task* end_of_node);
+  void ProcessQuery(const PlaceQuery& query);
+  // An accepted candidate as a constraint.
+  Constraint Close(const LoopCandidate& accepted);
+  // Frees trajectories that the pose graph has deleted, as it seems.
+  void FreeDormantTrajectories();
+  proto::LoopDecision Record(const LoopCandidate& candidate) const;
+
+  const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
+      options_;
+  const proto::LoopClosureOptions extension_;
+  cartographer::common::ThreadPoolInterface* const thread_pool_;
+  const PairSearcher searcher_;
+  LoopPipeline pipeline_;
+  PairPlanner planner_;
+  SubmapStore submaps_;
+  Relocalizer relocalizer_;
+  TypicalFit typical_fit_;
+  InterTrajectoryLoops inter_trajectory_loops_;
+  // Of all nodes since the last `Verify`; they stay where they are. The first
+  // ones, as many as are due, belong to the next `Verify`.
+  std::deque<SearchJob> jobs_;
+  std::deque<PlaceQuery> queries_;
+  size_t num_jobs_due_ = 0;
+  size_t num_queries_due_ = 0;
+  // Trajectories whose last known submap was deleted, with the number of nodes
+  // added before.
+  std::map<int, int64_t> dormant_since_;
+  int64_t num_nodes_added_ = 0;
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_LOOP_CLOSURE_2D_H_

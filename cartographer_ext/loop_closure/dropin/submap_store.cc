@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/dropin/submap_store.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/memory/memory.h"
+#include "cartographer/mapping/internal/constraints/constraint_builder_2d.h"
+#include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
+#include "cartographer_ext/loop_closure/dropin/node_geometry.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
+#include "cartographer_ext/loop_closure/verification/beam_agreement.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+using cartographer::common::Task;
+using cartographer::mapping::Submap2D;
+using cartographer::mapping::constraints::ComputeSubmapPose;
+using uncertainty::SubmapId;
+
+constexpr int SubmapEntry::kUnknownNode;
+
+SubmapStore::SubmapStore(
+    const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
+        options,
+    const proto::LoopClosureOptions& extension,
+    cartographer::common::ThreadPoolInterface* const thread_pool)
+    : options_(options),
+      temporal_options_(ToTemporalVerificationOptions(extension)),
+      with_views_(extension.temporal_verification().enabled()),
+      num_neighbours_(extension.temporal_verification().num_neighbours()),
+      thread_pool_(thread_pool) {}
+
+void SubmapStore::AddNode(const uncertainty::NodeId& node, const int64_t time) {
+  const NewestNode added{node.node_index, time};
+  const auto newest = newest_nodes_.emplace(node.trajectory_id, added).first;
+  if (added.node_index >= newest->second.node_index) newest->second = added;
+}
+
+std::shared_ptr<SubmapEntry> SubmapStore::AddPair(
+    const SubmapId& submap_id, const Submap2D* const submap,
+    const int node_trajectory_id) {
+  std::shared_ptr<SubmapEntry>& entry = submaps_[submap_id];
+  const auto newest = newest_nodes_.find(submap_id.trajectory_id);
+  if (entry == nullptr) {
+    // Set once: tasks read it.
+    entry = std::make_shared<SubmapEntry>();
+    entry->submap = submap;
+    entry->local_pose = ToPose2(ComputeSubmapPose(*submap));
+    entry->first_group = num_groups_;
+    if (newest != newest_nodes_.end()) {
+      entry->newest_node_at_first = newest->second.node_index;
+      entry->time_at_first = newest->second.time;
+    }
+  } else if (entry->newest_node_bound == SubmapEntry::kUnknownNode &&
+             num_groups_ > entry->first_group &&
+             node_trajectory_id == submap_id.trajectory_id) {
+    // A later node of its own trajectory meets it as a complete one.
+    entry->newest_node_bound = newest->second.node_index;
+  }
+  return entry;
+}
+
+std::shared_ptr<SubmapEntry> SubmapStore::Find(const SubmapId& id) const {
+  const auto it = submaps_.find(id);
+  return it == submaps_.end() ? nullptr : it->second;
+}
+
+bool SubmapStore::HasSubmapsOf(const int trajectory_id) const {
+  const auto it = submaps_.lower_bound(
+      SubmapId{trajectory_id, std::numeric_limits<int>::min()});
+  return it != submaps_.end() && it->first.trajectory_id == trajectory_id;
+}
+
+int SubmapStore::Erase(const SubmapId& id) {
+  const auto it = submaps_.find(id);
+  if (it == submaps_.end()) return SubmapEntry::kUnknownNode;
+  const int newest_node = it->second->newest_node_bound;
+  if (it->second->has_matcher) {
+    ConstraintMetrics::Global()->num_matchers->Set(--num_matchers_);
+  }
+  submaps_.erase(it);
+  return newest_node;
+}
+
+absl::optional<uncertainty::VertexId> SubmapStore::Anchor(
+    const SubmapId& id, const SubmapEntry& entry, const int node_trajectory_id,
+    const uncertainty::PathUncertainty& paths) const {
+  if (node_trajectory_id != id.trajectory_id) {
+    return uncertainty::VertexId(id);
+  }
+  if (entry.newest_node_at_first < 0) return absl::nullopt;
+  // Two submaps are active at a time, so the nodes of this one are newer than
+  // the end of the last but one.
+  int oldest = 0;
+  const auto before =
+      submaps_.find(SubmapId{id.trajectory_id, id.submap_index - 2});
+  if (before != submaps_.end()) {
+    oldest = std::max(0, before->second->newest_node_at_first);
+  }
+  const absl::optional<uncertainty::NodeId> nearest =
+      paths.Nearest(id.trajectory_id, entry.local_pose.translation(), oldest,
+                    entry.newest_node_at_first);
+  if (!nearest.has_value()) return absl::nullopt;
+  return uncertainty::VertexId(*nearest);
+}
+
+LoopCandidate SubmapStore::MakeCandidate(
+    const SubmapId& id, const SubmapEntry& entry, const int node_trajectory_id,
+    const uncertainty::PathUncertainty& paths) const {
+  LoopCandidate candidate;
+  candidate.submap = id;
+  candidate.submap_local_pose = entry.local_pose;
+  // Of another trajectory: as old as can be.
+  candidate.submap_age = 1e9;
+  candidate.anchor = Anchor(id, entry, node_trajectory_id, paths);
+  return candidate;
+}
+
+void SubmapStore::AddMaps(LoopCandidate* const candidate) const {
+  for (int k = 0; k <= 2 * num_neighbours_; ++k) {
+    // The submap, then its neighbours from near to far.
+    const int offset = k % 2 == 1 ? (k + 1) / 2 : -k / 2;
+    const auto it =
+        submaps_.find(SubmapId{candidate->submap.trajectory_id,
+                               candidate->submap.submap_index + offset});
+    if (it == submaps_.end()) continue;
+    absl::MutexLock lock(&it->second->view_mutex);
+    if (it->second->view == nullptr) continue;
+    candidate->views.push_back(it->second->view);
+    candidate->maps.push_back(
+        ReferenceMap{it->second->view.get(), candidate->submap_local_pose});
+  }
+}
+
+void SubmapStore::AwaitSubmap(const SubmapId& id, Task* const search,
+                              Task* const end_of_node) {
+  const std::shared_ptr<SubmapEntry>& entry = submaps_.at(id);
+  if (!entry->has_matcher) ScheduleMatcher(entry);
+  search->AddDependency(entry->matcher_task);
+  if (!with_views_) return;
+  for (int k = -num_neighbours_; k <= num_neighbours_; ++k) {
+    const auto it =
+        submaps_.find(SubmapId{id.trajectory_id, id.submap_index + k});
+    if (it != submaps_.end() && !it->second->has_view) {
+      ScheduleView(it->second, end_of_node);
+    }
+  }
+}
+
+void SubmapStore::ScheduleMatcher(const std::shared_ptr<SubmapEntry>& entry) {
+  entry->has_matcher = true;
+  ConstraintMetrics::Global()->num_matchers->Set(++num_matchers_);
+  auto task = absl::make_unique<Task>();
+  const auto& matcher_options =
+      options_.fast_correlative_scan_matcher_options();
+  task->SetWorkItem([entry, matcher_options]() {
+    const StageMeter meter(ConstraintMetrics::Global()->build_cpu);
+    entry->matcher = absl::make_unique<const SubmapMatcher>(
+        *entry->submap->grid(), matcher_options);
+  });
+  entry->matcher_task = thread_pool_->Schedule(std::move(task));
+}
+
+void SubmapStore::ScheduleView(const std::shared_ptr<SubmapEntry>& entry,
+                               Task* const end_of_node) {
+  entry->has_view = true;
+  auto task = absl::make_unique<Task>();
+  task->SetWorkItem([this, entry]() {
+    const StageMeter meter(ConstraintMetrics::Global()->build_cpu);
+    auto view = std::make_shared<OccupancyView>(
+        MakeOccupancyView(*entry->submap->grid()));
+    if (temporal_options_.comparison == ScanComparison::kBeams) {
+      view->FindDistances(
+          DistanceReach(temporal_options_.beams, view->resolution()));
+    }
+    // Verification may be under way.
+    absl::MutexLock lock(&entry->view_mutex);
+    entry->view = std::move(view);
+  });
+  end_of_node->AddDependency(thread_pool_->Schedule(std::move(task)));
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How certain a loop is: the covariance of its match, which consensus uses, and
+// the weights and the full information of its constraint
+// (constraint_information.h).
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_INFORMATION_LOOP_INFORMATION_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_INFORMATION_LOOP_INFORMATION_H_
+
+#include "Eigen/Core"
+#include "cartographer_ext/loop_closure/information/constraint_information.h"
+#include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure_options.pb.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+// Of the match of a candidate, in the frame of the node: the constant part that
+// the options give, and what the scan leaves unobservable, such as the
+// direction along a corridor.
+Eigen::Matrix3d MatchCovariance(const proto::LoopClosureOptions& options,
+                                const LoopCandidate& candidate);
+
+// Weights from the final score (C eq. 8 to 11) and, where the options ask for
+// it and the information of the match is known, the full matrix.
+void WeighConstraint(const proto::LoopClosureOptions& options,
+                     const ConstraintWeights& stock_weights,
+                     LoopCandidate* candidate);
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_INFORMATION_LOOP_INFORMATION_H_

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/loop_pipeline.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
+#include "cartographer_ext/loop_closure/information/loop_information.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+using proto::LoopDecision;
+
+LoopPipeline::LoopPipeline(const proto::LoopClosureOptions& options,
+                           const ConstraintWeights& stock_weights)
+    : options_(options),
+      stock_weights_(stock_weights),
+      history_(options.temporal_verification().max_history_nodes()),
+      paths_(ToPathNoiseOptions(options),
+             options.temporal_verification().max_history_nodes()),
+      scores_(options),
+      consensus_(options, &paths_) {}
+
+bool LoopPipeline::AddNode(const int trajectory_id, HistoryNode node) {
+  paths_.Add(uncertainty::NodeId{trajectory_id, node.node_index},
+             node.local_pose);
+  return history_.Add(trajectory_id, std::move(node));
+}
+
+void LoopPipeline::AddSubmap(const uncertainty::SubmapId& submap,
+                             const Pose2& local_pose) {
+  paths_.Add(submap, local_pose);
+}
+
+bool LoopPipeline::HasNode(const uncertainty::NodeId& node) const {
+  return history_.Contains(node.trajectory_id, node.node_index);
+}
+
+void LoopPipeline::Process(LoopCandidate candidate) {
+  candidate.number = num_candidates_++;
+
+  // Candidate search, which ran before: the plan and the grid score S_g.
+  if (candidate.plan.skipped != LoopDecision::NONE) {
+    candidate.Reject(candidate.plan.skipped);
+  } else if (!candidate.match.found && !candidate.is_rejected()) {
+    candidate.Reject(LoopDecision::LOW_GRID_SCORE);
+  }
+  if (candidate.is_rejected()) return Settle({std::move(candidate)});
+  AddSubmap(candidate.submap, candidate.submap_local_pose);
+
+  // Verification: S_t (C eq. 4), tau (C eq. 1-3), S_final (C eq. 5-7).
+  scores_.ComputeTemporalScore(history_, &candidate);
+  scores_.TestTemporalScore(&candidate);
+  scores_.FuseScores(&candidate);
+  if (candidate.is_rejected()) return Settle({std::move(candidate)});
+
+  // Could odometry have drifted so far: chi^2 (G section 3.4).
+  VetoByInnovation(options_, paths_, &candidate);
+  if (candidate.is_rejected()) return Settle({std::move(candidate)});
+
+  // Information of the constraint: Omega (C eq. 8-11).
+  WeighConstraint(options_, stock_weights_, &candidate);
+
+  // Consensus: the largest compatible subset (G eq. 20, 21) decides, maybe
+  // later.
+  candidate.maps.clear();
+  candidate.views.clear();
+  if (options_.compatible_subset().enabled()) {
+    consensus_.Add(std::move(candidate));
+  } else {
+    candidate.Accept(LoopDecision::ALL_STAGES_PASSED);
+    Settle({std::move(candidate)});
+  }
+}
+
+void LoopPipeline::Settle(std::vector<LoopCandidate> candidates) {
+  std::move(candidates.begin(), candidates.end(), std::back_inserter(settled_));
+}
+
+std::vector<LoopCandidate> LoopPipeline::TakeSettled() {
+  std::vector<LoopCandidate> candidates = std::move(settled_);
+  settled_.clear();
+  std::sort(candidates.begin(), candidates.end(),
+            [](const LoopCandidate& a, const LoopCandidate& b) {
+              return a.number < b.number;
+            });
+  return candidates;
+}
+
+std::vector<LoopCandidate> LoopPipeline::Decide() {
+  Settle(consensus_.Decide());
+  return TakeSettled();
+}
+
+std::vector<LoopCandidate> LoopPipeline::Flush() {
+  Settle(consensus_.Flush());
+  return TakeSettled();
+}
+
+void LoopPipeline::RejectIf(const LoopConsensus::Condition& condition,
+                            const LoopCandidate::Reason reason) {
+  // The consensus may have decided some already, to stay within its bounds.
+  Settle(consensus_.Decide());
+  for (LoopCandidate& candidate : settled_) {
+    if (candidate.is_accepted() && condition(candidate)) {
+      candidate.Reject(reason);
+    }
+  }
+  std::vector<LoopCandidate> removed = consensus_.Remove(condition);
+  for (LoopCandidate& candidate : removed) candidate.Reject(reason);
+  Settle(std::move(removed));
+}
+
+void LoopPipeline::ForgetLoops(const int trajectory_id,
+                               const int submap_trajectory_id,
+                               const int last_node_index) {
+  RejectIf(
+      [&](const LoopCandidate& candidate) {
+        return candidate.node.trajectory_id == trajectory_id &&
+               candidate.submap.trajectory_id == submap_trajectory_id &&
+               candidate.node.node_index <= last_node_index &&
+               !candidate.plan.full_submap;
+      },
+      LoopDecision::OUT_OF_DATE);
+  consensus_.ForgetAccepted(trajectory_id, submap_trajectory_id,
+                            last_node_index);
+}
+
+void LoopPipeline::DeleteSubmap(const uncertainty::SubmapId& submap) {
+  RejectIf([&](const LoopCandidate& c) { return c.submap == submap; },
+           LoopDecision::SUBMAP_DELETED);
+}
+
+void LoopPipeline::DeleteNodes(const int trajectory_id,
+                               const int last_node_index) {
+  RejectIf(
+      [&](const LoopCandidate& candidate) {
+        return candidate.node.trajectory_id == trajectory_id &&
+               candidate.node.node_index <= last_node_index;
+      },
+      LoopDecision::NODE_DELETED);
+}
+
+void LoopPipeline::DeleteTrajectory(const int trajectory_id) {
+  history_.DeleteTrajectory(trajectory_id);
+  paths_.DeleteTrajectory(trajectory_id);
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

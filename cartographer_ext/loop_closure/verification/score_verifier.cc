@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/verification/score_verifier.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "cartographer_ext/loop_closure/loop_options.h"
+#include "cartographer_ext/loop_closure/stage_timer.h"
+#include "cartographer_ext/loop_closure/verification/dtw.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using proto::LoopDecision;
+using FusionOptions = proto::LoopClosureOptions::Fusion;
+
+// The mixture moves slowly; it is fitted once in this many candidates.
+constexpr int64_t kFitInterval = 10;
+// Nodes looked at to find one node of the query.
+constexpr int kScanPerNode = 50;
+// Probability of a candidate about which nothing is known.
+constexpr double kNeutralScore = 0.5;
+
+bool IsScored(const LoopCandidate& candidate) {
+  return candidate.temporal.has_value() && candidate.temporal->is_scored();
+}
+
+MixtureDescription Describe(const MixtureComponent& component) {
+  MixtureDescription description;
+  description.weight = component.weight;
+  description.mean_grid = component.mean.x();
+  description.mean_temporal = component.mean.y();
+  description.variance_grid = component.covariance(0, 0);
+  description.covariance = component.covariance(0, 1);
+  description.variance_temporal = component.covariance(1, 1);
+  return description;
+}
+
+}  // namespace
+
+ScoreVerifier::ScoreVerifier(const proto::LoopClosureOptions& options)
+    : options_(options),
+      temporal_options_(ToTemporalVerificationOptions(options)),
+      threshold_(ToDynamicThresholdOptions(options)),
+      fusion_(ToScoreFusionOptions(options)),
+      mixture_(ToLoopMixtureOptions(options)) {}
+
+void ScoreVerifier::ComputeTemporalScore(const NodeHistory& history,
+                                         LoopCandidate* const candidate) const {
+  if (!options_.temporal_verification().enabled()) return;
+  const StageTimer timer(options_.log().times(), &candidate->times.temporal);
+  candidate->temporal = TemporalScore();
+  TemporalScore& temporal = *candidate->temporal;
+  temporal.window =
+      VariableWindow(ToVariableWindowOptions(options_), candidate->submap_age);
+  std::vector<const HistoryNode*> sequence = history.Sequence(
+      candidate->node.trajectory_id, candidate->node.node_index,
+      temporal.window, options_.temporal_verification().spacing(),
+      kScanPerNode * temporal.window);
+  sequence.erase(sequence.begin(),
+                 std::find_if(sequence.begin(), sequence.end(),
+                              [&](const HistoryNode* const node) {
+                                return node->node_index >=
+                                       candidate->first_node_index;
+                              }));
+  temporal.result =
+      VerifySequence(temporal_options_, sequence,
+                     candidate->RefinedInTrackingFrame(), candidate->maps);
+}
+
+void ScoreVerifier::TestTemporalScore(LoopCandidate* const candidate) {
+  if (!candidate->temporal.has_value()) return;
+  TemporalScore& temporal = *candidate->temporal;
+  temporal.threshold = options_.dynamic_threshold().enabled()
+                           ? threshold_.Current()
+                           : options_.dynamic_threshold().base_threshold();
+  temporal.score_variance = threshold_.Variance();
+  if (!temporal.is_scored()) return;
+  threshold_.AddScore(temporal.result.score);
+  if (temporal.result.score < temporal.threshold) {
+    candidate->Reject(LoopDecision::LOW_TEMPORAL_SCORE);
+  }
+}
+
+void ScoreVerifier::FuseScores(LoopCandidate* const candidate) {
+  if (!options_.fusion().enabled()) return;
+  const StageTimer timer(options_.log().times(), &candidate->times.fusion);
+  ScoreFusionResult result;
+  if (options_.fusion().mode() == FusionOptions::LIKELIHOOD_RATIO) {
+    FuseByLikelihoodRatio(*candidate, &result);
+  } else {
+    FuseByLambda(*candidate, &result);
+  }
+  candidate->fusion = result;
+  // What could not be scored is left to the stages that follow.
+  const bool is_comparable =
+      IsScored(*candidate) || !options_.temporal_verification().enabled();
+  if (!candidate->is_rejected() && is_comparable &&
+      result.final_score < options_.fusion().min_final_score()) {
+    candidate->Reject(LoopDecision::LOW_FINAL_SCORE);
+  }
+}
+
+void ScoreVerifier::FuseByLikelihoodRatio(const LoopCandidate& candidate,
+                                          ScoreFusionResult* const result) {
+  result->mixture = std::array<MixtureDescription, 2>{
+      {Describe(mixture_.components()[0]), Describe(mixture_.components()[1])}};
+  result->final_score = kNeutralScore;
+  if (!IsScored(candidate)) return;
+  const double grid_score = candidate.match.score;
+  const double temporal_score = candidate.temporal->result.score;
+  result->final_score = mixture_.ProbabilityTrue(grid_score, temporal_score);
+  mixture_.Add(grid_score, temporal_score);
+  if (++num_mixture_candidates_ % kFitInterval == 0) mixture_.Fit();
+}
+
+void ScoreVerifier::FuseByLambda(const LoopCandidate& candidate,
+                                 ScoreFusionResult* const result) {
+  const double grid_score = candidate.match.score;
+  if (!IsScored(candidate)) {
+    result->final_score = std::min(grid_score, kNeutralScore);
+    return;
+  }
+  const double temporal_score = candidate.temporal->result.score;
+  const FusedScore fused = fusion_.Fuse(grid_score, temporal_score);
+  fusion_.AddScores(grid_score, temporal_score);
+  result->lambda = fused.lambda;
+  result->final_score = fused.score;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

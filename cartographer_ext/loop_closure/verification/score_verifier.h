@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Verification of a candidate that the search has matched (paper C, optimised
+// Cartographer 2025, sections 1.2 and 1.3). Three steps, each of which can be
+// off:
+//
+//   temporal score   S_t: do the last N nodes before the candidate's fit the
+//                    submap along the path that the robot took (eq. 4 gives N;
+//                    temporal_verification.h)?
+//   threshold        S_t >= tau, where tau follows the variance of the last
+//                    scores (eq. 1 to 3; dynamic_threshold.h).
+//   fusion           S_final from S_g and S_t, by the paper's weight lambda
+//                    (eq. 5 to 7; score_fusion.h) or as the probability of a
+//                    true loop (loop_mixture.h).
+//
+// A candidate without S_t (too few nodes, a path that the maps do not know) is
+// not rejected for it, but its final score is neutral at best, so that it needs
+// the confirmation of others.
+//
+// The steps remember the scores of the candidates before: the result depends on
+// the order of the calls. Not thread-safe.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_VERIFIER_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_VERIFIER_H_
+
+#include <cstdint>
+
+#include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure/verification/dynamic_threshold.h"
+#include "cartographer_ext/loop_closure/verification/loop_mixture.h"
+#include "cartographer_ext/loop_closure/verification/node_history.h"
+#include "cartographer_ext/loop_closure/verification/score_fusion.h"
+#include "cartographer_ext/loop_closure/verification/temporal_verification.h"
+#include "cartographer_ext/loop_closure_options.pb.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+class ScoreVerifier {
+ public:
+  explicit ScoreVerifier(const proto::LoopClosureOptions& options);
+
+  // How `history` describes scans (DescribeScan).
+  const TemporalVerificationOptions& temporal_options() const {
+    return temporal_options_;
+  }
+
+  // S_t and N of eq. 4, into `temporal`.
+  void ComputeTemporalScore(const NodeHistory& history,
+                            LoopCandidate* candidate) const;
+  // tau of eq. 1 to 3 in force, into `temporal`; rejects S_t < tau.
+  void TestTemporalScore(LoopCandidate* candidate);
+  // S_final of eq. 5 to 7, into `fusion`; rejects what is too low. Also to be
+  // called for candidates that were rejected: it learns from their scores.
+  void FuseScores(LoopCandidate* candidate);
+
+ private:
+  void FuseByLikelihoodRatio(const LoopCandidate& candidate,
+                             ScoreFusionResult* result);
+  void FuseByLambda(const LoopCandidate& candidate, ScoreFusionResult* result);
+
+  const proto::LoopClosureOptions options_;
+  const TemporalVerificationOptions temporal_options_;
+  DynamicThreshold threshold_;
+  ScoreFusion fusion_;
+  LoopMixture mixture_;
+  int64_t num_mixture_candidates_ = 0;
+};
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_VERIFIER_H_

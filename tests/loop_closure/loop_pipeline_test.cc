@@ -1,0 +1,416 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/loop_pipeline.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cartographer_ext/loop_closure/decision_record.h"
+#include "cartographer_ext/options/option_description.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using proto::LoopDecision;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr double kResolution = 0.1;
+constexpr double kLength = 40.;  // metres
+
+// A corridor from (0, -1) to (40, 1); its ends are closed. With `wide` the
+// middle is twice as wide to the left.
+OccupancyView Corridor(bool wide) {
+  const int nx = static_cast<int>(std::lround(kLength / kResolution));
+  const int ny = 32;
+  OccupancyView view(Eigen::Vector2d(0., -1.1), kResolution, nx, ny);
+  for (int i = 0; i < nx; ++i) {
+    const double x = (i + 0.5) * kResolution;
+    const int top = wide && x > 10. && x < 30. ? 31 : 21;
+    for (int j = 0; j < ny; ++j) {
+      const bool wall = j == 0 || j >= top || i == 0 || i == nx - 1;
+      view.Set(i, j, wall ? CellState::kOccupied : CellState::kFree);
+    }
+  }
+  return view;
+}
+
+// Forth and back through the corridor, a node every half metre; submap s has
+// its origin at x = 5 s and is seen on the way forth.
+class LoopPipelineTest : public testing::Test {
+ protected:
+  LoopPipelineTest() : world_(Corridor(true)), other_(Corridor(false)) {
+    options::SetDefaults(&options_);
+    options_.mutable_compatible_subset()->set_single_strong(false);
+    // The robot turns round in one step.
+    options_.mutable_path_noise()->set_free_radians(4.);
+    options_.mutable_temporal_verification()->set_comparison(
+        proto::LoopClosureOptions::TemporalVerification::SECTORS);
+    options_.mutable_temporal_verification()->set_max_range(10.);
+    options_.mutable_temporal_verification()->set_clip(1.);
+    options_.mutable_temporal_verification()->set_minimum_overlap(0.5);
+    options_.mutable_fusion()->set_mode(
+        proto::LoopClosureOptions::Fusion::AS_PRINTED);
+  }
+
+  static Pose2 True(int i) {
+    return i <= 76 ? Pose2(1. + 0.5 * i, 0., 0.)
+                   : Pose2(39. - 0.5 * (i - 76), 0., kPi);
+  }
+
+  void MakePipeline() {
+    pipeline_.reset(
+        new LoopPipeline(options_, ConstraintWeights{1000., 2000.}));
+    for (int i = 0; i <= 152; ++i) {
+      HistoryNode node;
+      node.node_index = i;
+      node.local_pose = True(i);
+      node.signature = PredictSignature(pipeline_->temporal_options().signature,
+                                        world_, True(i));
+      EXPECT_TRUE(pipeline_->AddNode(0, node));
+    }
+  }
+
+  // Node `i` found in submap `s`, wrong by `offset` metres. `map` is what the
+  // submap shows, in the world's frame.
+  LoopCandidate Candidate(int s, int i, double offset,
+                          const OccupancyView* map) {
+    LoopCandidate candidate;
+    candidate.submap = uncertainty::SubmapId{0, s};
+    candidate.node = uncertainty::NodeId{0, i};
+    candidate.submap_local_pose = Pose2(5. * s, 0., 0.);
+    candidate.match.refined =
+        Pose2(offset, 0., 0.) * Between(candidate.submap_local_pose, True(i));
+    candidate.match.found = true;
+    candidate.match.has_pose = true;
+    candidate.match.score = 0.7;
+    candidate.maps = {{map, candidate.submap_local_pose}};
+    return candidate;
+  }
+
+  LoopDecision Record(const LoopCandidate& candidate) const {
+    return MakeDecisionRecord(candidate, options_.log().times());
+  }
+
+  OccupancyView world_;
+  OccupancyView other_;
+  proto::LoopClosureOptions options_;
+  std::unique_ptr<LoopPipeline> pipeline_;
+};
+
+TEST_F(LoopPipelineTest, ConfirmedLoopsGoThroughAllStages) {
+  MakePipeline();
+  EXPECT_TRUE(pipeline_->HasNode(uncertainty::NodeId{0, 3}));
+  EXPECT_FALSE(pipeline_->HasNode(uncertainty::NodeId{0, 300}));
+  pipeline_->Process(Candidate(5, 100, 0., &world_));
+  EXPECT_THAT(pipeline_->Decide(), IsEmpty());
+  EXPECT_EQ(pipeline_->num_undecided(), 1);
+  pipeline_->Process(Candidate(3, 120, 0., &world_));
+  const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
+  ASSERT_EQ(outcomes.size(), 2u);
+  for (const LoopCandidate& outcome : outcomes) {
+    const LoopDecision decision = Record(outcome);
+    EXPECT_TRUE(outcome.is_accepted());
+    EXPECT_EQ(decision.reason(), LoopDecision::CONFIRMED_BY_SUBSET);
+    EXPECT_EQ(decision.temporal().outcome(), LoopDecision::Temporal::SCORED);
+    EXPECT_GT(decision.temporal().score(), 0.95);
+    EXPECT_EQ(decision.temporal().window(), 12);
+    EXPECT_EQ(decision.temporal().threshold(), 0.5);
+    EXPECT_EQ(decision.fusion().lambda(), 0.5);
+    EXPECT_NEAR(decision.fusion().final_score(),
+                0.5 * (0.7 + decision.temporal().score()), 1e-12);
+    EXPECT_LT(decision.innovation().chi_square(), 1e-6);
+    EXPECT_EQ(decision.subset().support(), 1);
+    EXPECT_NEAR(outcome.weights->translation,
+                1000. * std::pow(decision.fusion().final_score() / 0.6, 0.6),
+                1e-6);
+    EXPECT_NEAR(outcome.weights->rotation,
+                2000. * std::pow(decision.fusion().final_score() / 0.6, 0.75),
+                1e-6);
+  }
+  EXPECT_EQ(Record(outcomes[0]).candidate(), 0);
+  EXPECT_EQ(Record(outcomes[0]).subset().num_tests(), 2);
+  EXPECT_EQ(Record(outcomes[1]).submap_index(), 3);
+  EXPECT_EQ(Record(outcomes[1]).node_index(), 120);
+  EXPECT_EQ(Record(outcomes[1]).subset().num_tests(), 1);
+}
+
+TEST_F(LoopPipelineTest, AnotherWayScoresLow) {
+  options_.mutable_dynamic_threshold()->set_base_threshold(0.9);
+  MakePipeline();
+  pipeline_->Process(Candidate(3, 120, 0., &other_));
+  const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_EQ(Record(outcomes[0]).reason(), LoopDecision::LOW_TEMPORAL_SCORE);
+  EXPECT_LT(Record(outcomes[0]).temporal().score(), 0.85);
+  EXPECT_FALSE(Record(outcomes[0]).has_innovation());
+}
+
+TEST_F(LoopPipelineTest, ComparesNothingFromBeforeTheFirstNode) {
+  MakePipeline();
+  LoopCandidate candidate = Candidate(3, 120, 0., &world_);
+  candidate.first_node_index = 116;
+  pipeline_->Process(candidate);
+  candidate.first_node_index = 120;
+  pipeline_->Process(candidate);
+  const std::vector<LoopCandidate> outcomes = pipeline_->Flush();
+  ASSERT_EQ(outcomes.size(), 2u);
+  EXPECT_EQ(Record(outcomes[0]).temporal().num_query(), 5);
+  EXPECT_EQ(Record(outcomes[1]).temporal().outcome(),
+            LoopDecision::Temporal::SHORT_HISTORY);
+}
+
+TEST_F(LoopPipelineTest, SkippedAndUnmatchedCandidatesAreRecorded) {
+  MakePipeline();
+  LoopCandidate candidate = Candidate(3, 120, 0., &world_);
+  candidate.match = SearchMatch();
+  pipeline_->Process(candidate);
+  candidate.plan.skipped = LoopDecision::SKIPPED_BUDGET;
+  pipeline_->Process(candidate);
+  candidate.plan.skipped = LoopDecision::NONE;
+  candidate.Reject(LoopDecision::OUTSCORED);
+  pipeline_->Process(candidate);
+  std::vector<LoopDecision::Reason> reasons;
+  for (const LoopCandidate& rejected : pipeline_->Decide()) {
+    const LoopDecision record = Record(rejected);
+    EXPECT_EQ(record.candidate(), static_cast<int64_t>(reasons.size()));
+    EXPECT_EQ(record.verdict(), LoopDecision::REJECTED);
+    EXPECT_TRUE(record.has_search());
+    EXPECT_FALSE(record.search().has_refined());
+    EXPECT_FALSE(record.has_temporal());
+    reasons.push_back(record.reason());
+  }
+  EXPECT_THAT(reasons, ElementsAre(LoopDecision::LOW_GRID_SCORE,
+                                   LoopDecision::SKIPPED_BUDGET,
+                                   LoopDecision::OUTSCORED));
+}
+
+TEST_F(LoopPipelineTest, NothingIsRememberedOfADeletedTrajectory) {
+  MakePipeline();
+  pipeline_->DeleteTrajectory(1);
+  EXPECT_TRUE(pipeline_->HasNode(uncertainty::NodeId{0, 3}));
+  pipeline_->DeleteTrajectory(0);
+  EXPECT_FALSE(pipeline_->HasNode(uncertainty::NodeId{0, 3}));
+  EXPECT_FALSE(
+      pipeline_->paths().LocalPose(uncertainty::NodeId{0, 3}).has_value());
+}
+
+TEST_F(LoopPipelineTest, LowFinalScoreIsRejected) {
+  options_.mutable_fusion()->set_min_final_score(0.95);
+  MakePipeline();
+  pipeline_->Process(Candidate(3, 120, 0., &world_));
+  const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_EQ(Record(outcomes[0]).reason(), LoopDecision::LOW_FINAL_SCORE);
+}
+
+TEST_F(LoopPipelineTest, ImpossibleInnovationIsVetoed) {
+  options_.mutable_temporal_verification()->set_enabled(false);
+  MakePipeline();
+  pipeline_->Process(Candidate(3, 60, 15., &world_));
+  const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_EQ(Record(outcomes[0]).reason(), LoopDecision::INNOVATION_TOO_LARGE);
+  EXPECT_GT(Record(outcomes[0]).innovation().chi_square(), 21.108);
+  EXPECT_NEAR(std::abs(Record(outcomes[0]).innovation().pose().x()), 15., 1e-6);
+}
+
+TEST_F(LoopPipelineTest, WithoutHistoryTheOthersDecide) {
+  options_.mutable_fusion()->set_mode(
+      proto::LoopClosureOptions::Fusion::LIKELIHOOD_RATIO);
+  MakePipeline();
+  // Maps that show nothing.
+  const OccupancyView empty(Eigen::Vector2d::Zero(), 0.1, 10, 10);
+  pipeline_->Process(Candidate(5, 100, 0., &empty));
+  pipeline_->Process(Candidate(3, 120, 0., &empty));
+  const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
+  ASSERT_EQ(outcomes.size(), 2u);
+  EXPECT_TRUE(outcomes[0].is_accepted());
+  EXPECT_EQ(Record(outcomes[0]).temporal().outcome(),
+            LoopDecision::Temporal::UNKNOWN_WAY);
+  EXPECT_EQ(Record(outcomes[0]).fusion().final_score(), 0.5);
+  EXPECT_GT(Record(outcomes[0]).fusion().true_loops().mean_temporal(),
+            Record(outcomes[0]).fusion().false_loops().mean_temporal());
+}
+
+TEST_F(LoopPipelineTest, EveryCombinationOfStagesRuns) {
+  for (int mask = 0; mask < 64; ++mask) {
+    options_.mutable_temporal_verification()->set_enabled(mask & 1);
+    options_.mutable_dynamic_threshold()->set_enabled(mask & 2);
+    options_.mutable_fusion()->set_enabled(mask & 4);
+    options_.mutable_information()->set_enabled(mask & 8);
+    options_.mutable_compatible_subset()->set_enabled(mask & 16);
+    options_.mutable_innovation_veto()->set_enabled(mask & 32);
+    MakePipeline();
+    pipeline_->Process(Candidate(5, 100, 0., &world_));
+    pipeline_->Process(Candidate(3, 120, 0., &world_));
+    const std::vector<LoopCandidate> outcomes = pipeline_->Flush();
+    ASSERT_EQ(outcomes.size(), 2u) << mask;
+    const LoopDecision decision = Record(outcomes[1]);
+    EXPECT_TRUE(outcomes[1].is_accepted()) << mask;
+    EXPECT_EQ(decision.has_temporal(), (mask & 1) != 0);
+    EXPECT_EQ(decision.has_fusion(), (mask & 4) != 0);
+    EXPECT_EQ(decision.has_subset(), (mask & 16) != 0);
+    EXPECT_EQ(decision.has_innovation(), (mask & 32) != 0);
+    if (!(mask & 8)) {
+      EXPECT_EQ(outcomes[1].weights->translation, 1000.);
+    }
+  }
+}
+
+TEST_F(LoopPipelineTest, FlushDecidesTheRest) {
+  MakePipeline();
+  pipeline_->Process(Candidate(5, 100, 0., &world_));
+  const std::vector<LoopCandidate> outcomes = pipeline_->Flush();
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_EQ(Record(outcomes[0]).verdict(), LoopDecision::REJECTED);
+  EXPECT_EQ(Record(outcomes[0]).reason(), LoopDecision::UNSUPPORTED);
+  EXPECT_THAT(pipeline_->Flush(), IsEmpty());
+}
+
+TEST_F(LoopPipelineTest, NothingIsAcceptedForWhatIsDeleted) {
+  MakePipeline();
+  pipeline_->Process(Candidate(5, 100, 0., &world_));
+  pipeline_->Process(Candidate(3, 120, 0., &world_));
+  pipeline_->Process(Candidate(1, 140, 0., &world_));
+  pipeline_->DeleteSubmap(uncertainty::SubmapId{0, 5});
+  pipeline_->DeleteNodes(0, 125);
+  pipeline_->DeleteNodes(1, 1000);
+  std::vector<LoopDecision::Reason> reasons;
+  for (const LoopCandidate& outcome : pipeline_->Flush()) {
+    reasons.push_back(Record(outcome).reason());
+  }
+  EXPECT_THAT(reasons, ElementsAre(LoopDecision::SUBMAP_DELETED,
+                                   LoopDecision::NODE_DELETED,
+                                   LoopDecision::CONFIRMED_BY_SUBSET));
+}
+
+TEST_F(LoopPipelineTest, BadNumbersDoNotCrash) {
+  MakePipeline();
+  LoopCandidate candidate = Candidate(5, 100, 0., &world_);
+  candidate.match.refined.x = std::numeric_limits<double>::quiet_NaN();
+  pipeline_->Process(candidate);
+  candidate = Candidate(3, 999, 0., &world_);  // a node never seen
+  pipeline_->Process(candidate);
+  candidate = Candidate(3, 120, 0., &world_);
+  candidate.maps.clear();
+  pipeline_->Process(candidate);
+  EXPECT_EQ(pipeline_->Flush().size(), 3u);
+}
+
+TEST_F(LoopPipelineTest, RepeatsExactly) {
+  std::vector<std::string> first;
+  for (int run = 0; run < 2; ++run) {
+    options_.mutable_fusion()->set_mode(
+        proto::LoopClosureOptions::Fusion::LIKELIHOOD_RATIO);
+    MakePipeline();
+    std::vector<std::string> records;
+    for (int k = 0; k < 40; ++k) {
+      pipeline_->Process(Candidate(1 + k % 6, 90 + k, k % 3 == 0 ? 2. : 0.,
+                                   k % 4 == 0 ? &other_ : &world_));
+      for (const LoopCandidate& outcome : pipeline_->Decide()) {
+        records.push_back(Record(outcome).SerializeAsString());
+      }
+    }
+    for (const LoopCandidate& outcome : pipeline_->Flush()) {
+      records.push_back(Record(outcome).SerializeAsString());
+    }
+    EXPECT_EQ(records.size(), 40u);
+    if (run == 0) {
+      first = records;
+    } else {
+      EXPECT_EQ(records, first);
+    }
+  }
+}
+
+TEST_F(LoopPipelineTest, TimesAndFullMatrixOnlyWhereAskedFor) {
+  for (const bool asked : {false, true}) {
+    options_.mutable_log()->set_times(asked);
+    options_.mutable_information()->set_full_matrix(asked);
+    MakePipeline();
+    for (const int submap : {5, 3}) {
+      LoopCandidate candidate =
+          Candidate(submap, submap == 5 ? 100 : 120, 0., &world_);
+      candidate.times.search = 0.5;
+      candidate.times.refinement = 0.25;
+      // Nothing is known of the way along the corridor.
+      candidate.match.information = Eigen::Vector3d(0., 1e6, 1e6).asDiagonal();
+      pipeline_->Process(candidate);
+    }
+    const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
+    ASSERT_EQ(outcomes.size(), 2u);
+    for (const LoopCandidate& outcome : outcomes) {
+      ASSERT_EQ(Record(outcome).has_times(), asked);
+      ASSERT_EQ(outcome.full_information.isZero(0.), !asked);
+      if (!asked) continue;
+      EXPECT_EQ(Record(outcome).times().search_seconds(), 0.5);
+      EXPECT_EQ(Record(outcome).times().refinement_seconds(), 0.25);
+      EXPECT_GT(Record(outcome).times().temporal_seconds(), 0.);
+      const double whole =
+          outcome.weights->translation * outcome.weights->translation;
+      // A loop has 0.05 m, the way along the corridor 0.3 m.
+      EXPECT_NEAR(outcome.full_information(0, 0),
+                  whole * 0.0025 / (0.0025 + 0.09), 1e-3 * whole);
+      EXPECT_NEAR(outcome.full_information(1, 1), whole, 0.02 * whole);
+    }
+  }
+}
+
+TEST_F(LoopPipelineTest, UnpredictedLoopsOfAnotherRunNeedMorePlaces) {
+  options_.mutable_compatible_subset()->set_single_strong(true);
+  MakePipeline();
+  // Run 1 repeats the way of run 0, in whose submaps it is found.
+  for (int i = 0; i <= 60; ++i) {
+    HistoryNode node;
+    node.node_index = i;
+    node.local_pose = True(i);
+    node.signature = PredictSignature(pipeline_->temporal_options().signature,
+                                      world_, True(i));
+    pipeline_->AddNode(1, node);
+  }
+  for (int s = 0; s < 8; ++s) {
+    pipeline_->AddSubmap(uncertainty::SubmapId{0, s}, Pose2(5. * s, 0., 0.));
+  }
+  const auto found = [this](const int s, const int i) {
+    LoopCandidate candidate = Candidate(s, i, 0., &world_);
+    candidate.node.trajectory_id = 1;
+    candidate.relocalized = true;
+    candidate.plan.full_submap = true;
+    return candidate;
+  };
+  for (const int i : {10, 38}) {
+    pipeline_->Process(found(1, i));
+    pipeline_->Process(found(2, i));
+    EXPECT_THAT(pipeline_->Decide(), IsEmpty()) << i;
+  }
+  pipeline_->Process(found(4, 52));
+  EXPECT_EQ(pipeline_->Decide().size(), 5u);
+  // Another one joins them.
+  pipeline_->Process(found(4, 53));
+  EXPECT_EQ(pipeline_->Decide().size(), 1u);
+  // Unless they are forgotten; what was found without a prediction waits.
+  pipeline_->ForgetLoops(1, 0, 60);
+  pipeline_->Process(found(4, 54));
+  LoopCandidate predicted = found(5, 55);
+  predicted.relocalized = false;
+  predicted.plan.full_submap = false;
+  pipeline_->Process(predicted);
+  EXPECT_EQ(pipeline_->num_undecided(), 2);
+  EXPECT_THAT(pipeline_->Decide(), IsEmpty());
+  pipeline_->ForgetLoops(1, 0, 60);
+  const std::vector<LoopCandidate> rejected = pipeline_->Decide();
+  ASSERT_EQ(rejected.size(), 1u);
+  EXPECT_EQ(Record(rejected[0]).reason(), LoopDecision::OUT_OF_DATE);
+  EXPECT_EQ(rejected[0].node.node_index, 55);
+}
+
+}  // namespace
+}  // namespace loop_closure
+}  // namespace cartographer_ext
