@@ -3,7 +3,7 @@
 //
 // Lua code to plain values. The host's parameter dictionary ends the program
 // when something is wrong and wants every key read once; a search wants to look
-// at a configuration and to tell the user what is wrong with his search file.
+// at a configuration and to report what is wrong in a search file.
 #ifndef CARTOGRAPHER_EXT_CONFIGURATION_LUA_VALUE_H_
 #define CARTOGRAPHER_EXT_CONFIGURATION_LUA_VALUE_H_
 

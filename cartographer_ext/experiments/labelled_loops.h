@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How well do the scores of loop candidates tell true from false ones? Every
+// How well do the scores of loop candidates separate true from false ones? Every
 // candidate that the search found gets a label by truth, as loop_statistics.h
 // judges loops; each score then gives a curve of rates over its thresholds.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_LABELLED_LOOPS_H_
@@ -28,7 +28,7 @@ struct LabelledLoop {
 // `graph` with the candidates of `decisions` that the search found in place of
 // its loops, in their order: what loop statistics can judge. `candidates` gets
 // the decision of each loop. Candidates whose submap or node the graph does
-// not have are left out.
+// not have are skipped.
 MapGraph CandidateGraph(const MapGraph& graph,
                         const std::vector<proto::LoopDecision>& decisions,
                         std::vector<proto::LoopDecision>* candidates);
@@ -60,7 +60,7 @@ std::vector<RatePoint> RateCurve(std::vector<ScoredLabel> labels);
 absl::optional<double> AreaUnderCurve(std::vector<ScoredLabel> labels);
 
 // Labelled candidates with the score that `kind` names; those without it are
-// left out.
+// skipped.
 enum class ScoreKind { kGrid, kTemporal, kFused };
 std::vector<ScoredLabel> Scores(const std::vector<LabelledLoop>& loops,
                                 ScoreKind kind);

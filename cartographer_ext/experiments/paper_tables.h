@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The printed tables of the ACS and R-iSAM papers, to stand beside our figures.
+// The printed tables of the ACS and R-iSAM papers, for comparison with our figures.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_PAPER_TABLES_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_PAPER_TABLES_H_
 

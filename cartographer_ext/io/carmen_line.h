@@ -15,7 +15,7 @@
 //
 // Older layouts lack the last stamp or the host as well, the velocities of
 // ODOM, one of the two poses of FLASER, or the remissions of the lasers. They
-// are told apart by the number of words.
+// are distinguished by the number of words.
 //
 // In FLASER, x y theta is the pose of the laser and the odom_ fields are the
 // pose of the robot, both in the odometry frame (or the first one in a map
@@ -62,7 +62,7 @@ struct CarmenLine {
   Pose2 robot_pose;           // (odometry <- robot)
 };
 
-// Beams of a FLASER line, which does not tell: beam 0 points to -90 degrees.
+// Beams of a FLASER line, which does not say: beam 0 points to -90 degrees.
 // n = 180, 360, ...: steps of 180/n; 181, 361, ...: steps of 180/(n-1);
 // n = 101, 201, 401: the 100 degree mode of SICK lasers, from -50 degrees.
 void FrontLaserAngles(int n, double* angle_min, double* angle_increment);

@@ -6,7 +6,7 @@
 //
 // Scans. FLASER or ROBOTLASER1 lines, whichever are more (logs converted
 // between the two formats hold both); RAWLASER1 where there are neither. Other
-// lasers are left out, with a warning that counts them.
+// lasers are dropped, with a warning that counts them.
 //
 // Odometry, SensorSourceOptions::odometry_source. A laser line repeats the pose
 // of the odometry message before it under the later stamp of the scan: in ACES

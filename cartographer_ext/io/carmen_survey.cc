@@ -112,6 +112,12 @@ class Survey {
   absl::StatusOr<CarmenPlan> Plan(const std::string& odometry_source) const;
 
  private:
+  void WarnOfIgnored(CarmenPlan* plan) const;
+  // Which lines the odometry is taken from; `disordered` messages have an
+  // earlier stamp than the one before them.
+  void ChooseOdometry(const std::string& odometry_source, int64_t disordered,
+                      CarmenPlan* plan) const;
+  void OrderEvents(CarmenPlan* plan) const;
   int64_t Count(CarmenKind kind) const {
     const auto it = counts_.find(kind);
     return it == counts_.end() ? 0 : it->second;
@@ -245,6 +251,89 @@ int64_t Survey::CountBackwards(CarmenKind kind) const {
   return count;
 }
 
+void Survey::WarnOfIgnored(CarmenPlan* const plan) const {
+  SensorSourceInfo& info = plan->info;
+  if (num_malformed_ > 0) {
+    info.warnings.push_back(absl::StrCat(first_malformed_, "; ", num_malformed_,
+                                         num_malformed_ == 1
+                                             ? " malformed line skipped"
+                                             : " malformed lines skipped"));
+  }
+  int64_t num_other_lasers = Count(CarmenKind::kRearLaser);
+  for (const CarmenKind kind :
+       {CarmenKind::kFrontLaser, CarmenKind::kRobotLaser,
+        CarmenKind::kRawLaser}) {
+    if (kind != plan->scan_kind) num_other_lasers += Count(kind);
+  }
+  if (num_other_lasers > 0) {
+    info.warnings.push_back(absl::StrCat(
+        filename_, ": ", num_other_lasers,
+        " scans of other lasers or in another format ignored (RLASER, ...)"));
+  }
+}
+
+void Survey::ChooseOdometry(const std::string& odometry_source,
+                            const int64_t disordered,
+                            CarmenPlan* const plan) const {
+  SensorSourceInfo& info = plan->info;
+  const bool has_poses = plan->scan_kind != CarmenKind::kRawLaser;
+  if (odometry_source == "both") {
+    plan->use_odometry_lines = true;
+    plan->use_scan_poses = has_poses;
+  } else if (odometry_source == "odom") {
+    plan->use_odometry_lines = true;
+  } else if (odometry_source == "scan") {
+    plan->use_scan_poses = has_poses;
+  } else {
+    const bool cover = OdometryLinesCoverScans(plan->scan_kind);
+    const bool stamps_usable =
+        disordered <= kMaxBackwardShare * static_cast<double>(lines_.size());
+    plan->use_odometry_lines = !has_poses || (cover && stamps_usable);
+    plan->use_scan_poses = !plan->use_odometry_lines;
+    if (plan->use_scan_poses && cover) {
+      info.warnings.push_back(absl::StrCat(
+          filename_,
+          ": stamps are too disordered to pair ODOM lines with scans; odometry "
+          "is taken from the scan lines"));
+    } else if (plan->use_scan_poses && Count(CarmenKind::kOdometry) > 0) {
+      info.warnings.push_back(absl::StrCat(
+          filename_, ": too few ODOM lines (", Count(CarmenKind::kOdometry),
+          "); odometry is taken from the scan lines"));
+    }
+  }
+}
+
+void Survey::OrderEvents(CarmenPlan* const plan) const {
+  SensorSourceInfo& info = plan->info;
+  std::vector<EventKey> keys;
+  int64_t ordinal = 0;
+  CarmenEvent events[2];
+  for (const LineKey& line : lines_) {
+    const int n =
+        CarmenEventsOfLine(*plan, line.kind, line.time, &ordinal, events);
+    for (int i = 0; i < n; ++i) keys.push_back(events[i].key);
+  }
+  plan->reordering = PlanReordering(keys, kMaxReorderWindow);
+  if (!plan->reordering.dropped.empty()) {
+    info.warnings.push_back(absl::StrCat(
+        filename_, ": ", plan->reordering.dropped.size(),
+        " messages more than ", kMaxReorderWindow, " messages late dropped"));
+  }
+  info.begin = std::numeric_limits<TimeNs>::max();
+  info.end = 0;
+  size_t next_dropped = 0;
+  for (const EventKey& key : keys) {
+    if (next_dropped < plan->reordering.dropped.size() &&
+        plan->reordering.dropped[next_dropped] == key.ordinal) {
+      ++next_dropped;
+      continue;
+    }
+    ++(key.rank == 1 ? info.num_scans : info.num_odometry);
+    info.begin = std::min(info.begin, key.time);
+    info.end = std::max(info.end, key.time);
+  }
+}
+
 absl::StatusOr<CarmenPlan> Survey::Plan(
     const std::string& odometry_source) const {
   CarmenPlan plan;
@@ -259,52 +348,10 @@ absl::StatusOr<CarmenPlan> Survey::Plan(
             : absl::StrCat(", ", num_malformed_, " malformed lines, first ",
                            first_malformed_)));
   }
-  if (num_malformed_ > 0) {
-    info.warnings.push_back(absl::StrCat(first_malformed_, "; ", num_malformed_,
-                                         num_malformed_ == 1
-                                             ? " malformed line skipped"
-                                             : " malformed lines skipped"));
-  }
-  int64_t num_other_lasers = Count(CarmenKind::kRearLaser);
-  for (const CarmenKind kind :
-       {CarmenKind::kFrontLaser, CarmenKind::kRobotLaser,
-        CarmenKind::kRawLaser}) {
-    if (kind != plan.scan_kind) num_other_lasers += Count(kind);
-  }
-  if (num_other_lasers > 0) {
-    info.warnings.push_back(absl::StrCat(
-        filename_, ": ", num_other_lasers,
-        " scans of other lasers or in another format ignored (RLASER, ...)"));
-  }
-
+  WarnOfIgnored(&plan);
   const int64_t backward_scans = CountBackwards(plan.scan_kind);
   int64_t backward_odometry = CountBackwards(CarmenKind::kOdometry);
-  const bool has_poses = plan.scan_kind != CarmenKind::kRawLaser;
-  if (odometry_source == "both") {
-    plan.use_odometry_lines = true;
-    plan.use_scan_poses = has_poses;
-  } else if (odometry_source == "odom") {
-    plan.use_odometry_lines = true;
-  } else if (odometry_source == "scan") {
-    plan.use_scan_poses = has_poses;
-  } else {
-    const bool cover = OdometryLinesCoverScans(plan.scan_kind);
-    const bool stamps_usable =
-        backward_scans + backward_odometry <=
-        kMaxBackwardShare * static_cast<double>(lines_.size());
-    plan.use_odometry_lines = !has_poses || (cover && stamps_usable);
-    plan.use_scan_poses = !plan.use_odometry_lines;
-    if (plan.use_scan_poses && cover) {
-      info.warnings.push_back(absl::StrCat(
-          filename_,
-          ": stamps are too disordered to pair ODOM lines with scans; odometry "
-          "is taken from the scan lines"));
-    } else if (plan.use_scan_poses && Count(CarmenKind::kOdometry) > 0) {
-      info.warnings.push_back(absl::StrCat(
-          filename_, ": too few ODOM lines (", Count(CarmenKind::kOdometry),
-          "); odometry is taken from the scan lines"));
-    }
-  }
+  ChooseOdometry(odometry_source, backward_scans + backward_odometry, &plan);
   plan.laser_pose = ChooseLaserPose(plan.scan_kind, &info.warnings);
   plan.range_max = ranges_.at(plan.scan_kind).RangeMax();
   if (!plan.use_odometry_lines) backward_odometry = 0;
@@ -315,34 +362,7 @@ absl::StatusOr<CarmenPlan> Survey::Plan(
                         "backwards; sorted",
                         filename_, backward_scans, backward_odometry));
   }
-
-  std::vector<EventKey> keys;
-  int64_t ordinal = 0;
-  CarmenEvent events[2];
-  for (const LineKey& line : lines_) {
-    const int n =
-        CarmenEventsOfLine(plan, line.kind, line.time, &ordinal, events);
-    for (int i = 0; i < n; ++i) keys.push_back(events[i].key);
-  }
-  plan.reordering = PlanReordering(keys, kMaxReorderWindow);
-  if (!plan.reordering.dropped.empty()) {
-    info.warnings.push_back(absl::StrCat(
-        filename_, ": ", plan.reordering.dropped.size(), " messages more than ",
-        kMaxReorderWindow, " messages late left out"));
-  }
-  info.begin = std::numeric_limits<TimeNs>::max();
-  info.end = 0;
-  size_t next_dropped = 0;
-  for (const EventKey& key : keys) {
-    if (next_dropped < plan.reordering.dropped.size() &&
-        plan.reordering.dropped[next_dropped] == key.ordinal) {
-      ++next_dropped;
-      continue;
-    }
-    ++(key.rank == 1 ? info.num_scans : info.num_odometry);
-    info.begin = std::min(info.begin, key.time);
-    info.end = std::max(info.end, key.time);
-  }
+  OrderEvents(&plan);
   return plan;
 }
 

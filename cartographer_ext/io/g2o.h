@@ -47,7 +47,7 @@ struct G2oGraph {
 // that are not finite, duplicate ids, edges or FIX of missing vertices, edges
 // from a vertex to itself, information that is not positive definite. Several
 // edges between the same vertices are fine. Elements of other dimensions
-// (VERTEX_SE3:QUAT, VERTEX_XY, ...) are refused by name.
+// (VERTEX_SE3:QUAT, VERTEX_XY, ...) are errors that name them.
 absl::StatusOr<G2oGraph> ReadG2o(const std::string& filename);
 
 // Writes vertices by id, then FIX, then edges in their order, with all digits

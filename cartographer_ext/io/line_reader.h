@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Lines of a text file, plain or compressed by gzip, bzip2 or xz (told by the
+// Lines of a text file, plain or compressed by gzip, bzip2 or xz (recognised by the
 // content, not by the name), in bounded memory.
 #ifndef CARTOGRAPHER_EXT_IO_LINE_READER_H_
 #define CARTOGRAPHER_EXT_IO_LINE_READER_H_
@@ -28,7 +28,7 @@ absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
 
 class LineReader {
  public:
-  // Longer lines are cut off there; `truncated` tells.
+  // Longer lines are cut off there; `truncated` is set.
   static constexpr size_t kMaxLineLength = 1 << 20;
 
   static absl::StatusOr<std::unique_ptr<LineReader>> Open(

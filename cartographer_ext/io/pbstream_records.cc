@@ -18,7 +18,7 @@ namespace {
 constexpr size_t kNumberSize = 8;
 constexpr size_t kChunkSize = 1 << 16;
 
-// Ends the expansion on every way out.
+// Ends the expansion on every return path.
 class Inflater {
  public:
   explicit Inflater(absl::string_view compressed) {

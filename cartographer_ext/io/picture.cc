@@ -115,7 +115,7 @@ class Picture::Canvas {
     cairo_stroke(context_);
   }
 
-  // Adds the points to the path, starting anew behind points left out.
+  // Adds the points to the path, restarting behind points that are skipped.
   void Path(const std::vector<Eigen::Vector2d>& points) {
     bool connected = false;
     for (const Eigen::Vector2d& point : points) {

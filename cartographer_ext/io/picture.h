@@ -32,7 +32,7 @@ struct Color {
   double alpha = 1.;
 };
 
-// The palette of Okabe and Ito, told apart by colour-blind readers too.
+// The palette of Okabe and Ito, distinguishable by colour-blind readers too.
 namespace palette {
 constexpr Color kBlack{0., 0., 0.};
 constexpr Color kGrey{0.6, 0.6, 0.6};

@@ -35,7 +35,7 @@ struct ReorderPlan {
   // Most events that wait for a later one at any time.
   size_t window = 0;
   // Ordinals of events that come so late that not even `max_window` events
-  // could wait for them; they have to be left out. Ascending.
+  // could wait for them; they have to be dropped. Ascending.
   std::vector<int64_t> dropped;
 };
 

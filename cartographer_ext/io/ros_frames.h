@@ -19,12 +19,12 @@ namespace io {
 
 class RosFrames {
  public:
-  // The first pose of a frame counts; later ones tell whether it moves. At most
+  // The first pose of a frame counts; later ones show whether it moves. At most
   // 10,000 frames are kept.
   void Add(const RosTransform& transform);
 
   // (target <- source) if a chain of frames joins the two. Frames that move
-  // against their parents on the way are put into `moving`.
+  // against their parents on the chain are put into `moving`.
   absl::optional<Eigen::Isometry3d> Lookup(
       const std::string& target, const std::string& source,
       std::vector<std::string>* moving = nullptr) const;

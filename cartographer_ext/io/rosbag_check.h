@@ -11,7 +11,7 @@
 //   header length (uint32), header, data length (uint32), data
 // where a header is a list of
 //   field length (uint32), name '=' value
-// Little endian. The field "op" tells the kind: 3 file header, 5 chunk (its
+// Little endian. The field "op" is the kind: 3 file header, 5 chunk (its
 // data are records of kinds 7 and 2, maybe compressed), 4 index of the chunk
 // before it, 7 connection, 6 chunk summary, 2 message.
 #ifndef CARTOGRAPHER_EXT_IO_ROSBAG_CHECK_H_
@@ -25,7 +25,7 @@ namespace cartographer_ext {
 namespace io {
 
 // OK if the bag is safe to open. Errors name the file and, where it helps, the
-// offset. Unindexed (unfinished) bags are told apart.
+// offset. Unindexed (unfinished) bags are recognised.
 absl::Status CheckRosbag(const std::string& filename);
 
 }  // namespace io

@@ -261,7 +261,7 @@ absl::Status RosbagSource::Survey() {
   if (!reordering_.dropped.empty()) {
     info_.warnings.push_back(absl::StrCat(
         filename_, ": ", reordering_.dropped.size(), " messages more than ",
-        kMaxReorderWindow, " messages late left out"));
+        kMaxReorderWindow, " messages late dropped"));
   }
   int64_t counts[kNumRanks] = {};
   info_.begin = std::numeric_limits<TimeNs>::max();
@@ -331,7 +331,8 @@ void RosbagSource::Place(Decoded* decoded) {
   if (decoded->rank == kScanRank) {
     LaserScan& scan = absl::get<LaserScan>(decoded->event);
     scan.laser_pose = Planar(sensor);
-    if (sensor.linear()(2, 2) < 0.) {  // Upside down: beams run the other way.
+    if (sensor.linear()(2, 2) <
+        0.) {  // Upside down: beams run in the other direction.
       scan.angle_min = -scan.angle_min;
       scan.angle_increment = -scan.angle_increment;
     }

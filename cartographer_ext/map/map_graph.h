@@ -3,9 +3,9 @@
 //
 // The pose graph of a finished map in plain types: what the metrics, the
 // exporters and the loop statistics look at. All poses are x, y and yaw, and a
-// node stands for the tracking frame at its stamp, so that poses of nodes can
-// be compared with each other and with truth. (Inside the host a node stands
-// for the gravity-aligned frame, whose yaw against the tracking frame differs
+// node represents the tracking frame at its stamp, so that poses of nodes can
+// be compared with each other and with ground truth. (In the host it represents
+// the gravity-aligned frame, whose yaw against the tracking frame differs
 // from node to node.) Submaps being level,
 //   relative_pose = submap_pose^-1 * node_pose
 // holds for the yaw, too, whatever the tilt.

@@ -13,7 +13,7 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// Nodes and submaps without a global pose are left out.
+// Nodes and submaps without a global pose are skipped.
 MapGraph MakeMapGraph(const io::Pbstream& pbstream);
 
 // Of all submaps with a global pose, metres a cell.

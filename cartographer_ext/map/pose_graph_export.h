@@ -25,7 +25,7 @@ namespace evaluation {
 int64_t SubmapVertexId(const GraphId& id);
 int64_t NodeVertexId(const GraphId& id);
 
-// Constraints of missing submaps or nodes, or of weight zero, are left out. An
+// Constraints of missing submaps or nodes, or of weight zero, are skipped. An
 // error when an index does not fit the scheme above.
 absl::StatusOr<io::G2oGraph> ToG2o(const MapGraph& graph);
 

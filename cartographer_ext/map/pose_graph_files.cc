@@ -129,7 +129,7 @@ absl::Status WriteComparisonPicture(const PoseGraph& graph,
   io::PictureBounds before, after;
   for (const Pose2& pose : graph.poses) before.Add(pose.translation());
   for (const Pose2& pose : result.poses) after.Add(pose.translation());
-  // The second panel stands to the right, its lower edge level with the first.
+  // The second panel is to the right, its lower edge level with the first.
   const double gap =
       0.1 * std::max(before.max_x - before.min_x, after.max_x - after.min_x);
   const Eigen::Vector2d shift(before.max_x + gap - after.min_x,

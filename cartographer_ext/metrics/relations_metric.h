@@ -12,7 +12,7 @@
 // taken. No alignment is needed, and being metres off far away does not count
 // against relations that are right near by. The length of the translation
 // depends on the direction of the relation (an error of rotation levers the
-// expected translation), so relations are used as they stand.
+// expected translation), so relations are used as they are.
 //
 // A folded map looks good on the relations between successive scans. They are
 // therefore reported apart from those that close a loop, which are taken to be

@@ -11,7 +11,7 @@
 //   products) of the centred points). What is left of each distance is the
 //   error. One wrong turn early on spreads over the whole run.
 // * RPE: motion over a stretch of given length, estimate against reference;
-//   needs no alignment and tells about drift.
+//   needs no alignment and measures drift.
 #ifndef CARTOGRAPHER_EXT_METRICS_TRAJECTORY_METRICS_H_
 #define CARTOGRAPHER_EXT_METRICS_TRAJECTORY_METRICS_H_
 
@@ -38,7 +38,7 @@ std::vector<PosePair> Associate(const Trajectory& estimate,
                                 const Trajectory& reference,
                                 io::TimeNs tolerance);
 
-// (reference <- map) of least squares. Where the positions do not tell the
+// (reference <- map) of least squares. Where the positions do not determine the
 // rotation (a robot that stays in place) the mean heading does.
 Pose2 AlignInPlane(const std::vector<PosePair>& pairs);
 

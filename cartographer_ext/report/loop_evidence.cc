@@ -117,7 +117,7 @@ std::string VerdictInWords(const proto::LoopDecision& decision) {
     case proto::LoopDecision::ACCEPTED:
       return absl::StrCat("accepted: ", reason);
     case proto::LoopDecision::REJECTED:
-      return absl::StrCat("refused: ", reason);
+      return absl::StrCat("rejected: ", reason);
     default:
       return "undecided at the end";
   }
@@ -127,7 +127,7 @@ std::string Describe(const LoopEvidence& evidence) {
   std::string text =
       absl::StrCat("submap ", evaluation::ToString(evidence.submap_id),
                    " - node ", evaluation::ToString(evidence.node_id));
-  if (!evidence.accepted) absl::StrAppend(&text, ", refused");
+  if (!evidence.accepted) absl::StrAppend(&text, ", rejected");
   if (evidence.score >= 0.) {
     absl::StrAppendFormat(&text, "\nscore on the grid %.3f", evidence.score);
   }

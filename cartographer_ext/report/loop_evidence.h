@@ -13,7 +13,7 @@
 namespace cartographer_ext {
 namespace report {
 
-// A loop of the graph, or a candidate that was refused.
+// A loop of the graph, or a rejected candidate.
 struct LoopEvidence {
   evaluation::GraphId submap_id, node_id;
   bool accepted = true;
@@ -38,7 +38,7 @@ struct LoopEvidence {
   double badness() const;
 };
 
-// The loops in the order of the constraints, then the refused candidates that
+// The loops in the order of the constraints, then the rejected candidates that
 // have a pose, in the order of the records. Points into `run`.
 std::vector<LoopEvidence> CollectEvidence(
     const ReportRun& run, const evaluation::MapContents& contents);
@@ -49,7 +49,7 @@ std::string Describe(const LoopEvidence& evidence);
 // "low temporal score", of the enumeration.
 std::string ReasonInWords(proto::LoopDecision::Reason reason);
 
-// "refused: low temporal score", "not searched: budget", "undecided".
+// "rejected: low temporal score", "not searched: budget", "undecided".
 std::string VerdictInWords(const proto::LoopDecision& decision);
 
 }  // namespace report

@@ -17,7 +17,7 @@
 namespace cartographer_ext {
 namespace report {
 
-// Pictures used by several figures stand in the page once.
+// Pictures used by several figures are embedded once.
 class ImageStore {
  public:
   // Under this id, which must be new.
@@ -48,7 +48,7 @@ class MapFigure {
             const std::string& label, const std::string& hover);
   void Legend(const std::string& label, const std::string& style);
 
-  // With a scale bar; the legend stands below.
+  // With a scale bar; the legend is below.
   std::string ToHtml() const;
 
  private:

@@ -13,7 +13,7 @@ namespace cartographer_ext {
 namespace report {
 namespace {
 
-// Figures, with the little that may stand around them.
+// Figures, with the few characters that may surround them.
 bool LooksLikeNumber(const std::string& text) {
   constexpr size_t kMaxLength = 24;
   if (text.empty() || text.size() > kMaxLength) return false;

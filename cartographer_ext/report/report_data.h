@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Everything that a report tells.
+// Everything that a report shows.
 #ifndef CARTOGRAPHER_EXT_REPORT_REPORT_DATA_H_
 #define CARTOGRAPHER_EXT_REPORT_REPORT_DATA_H_
 

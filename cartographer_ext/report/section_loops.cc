@@ -68,7 +68,7 @@ void AddLoopFigure(const ReportRun& run, const std::string& image_id,
         "s2 bad");
   }
   if (styles.count("s6 bad") > 0) {
-    figure.Legend("candidate that was refused", "s6 bad");
+    figure.Legend("rejected candidate", "s6 bad");
   }
   page->Open("figure");
   page->Raw(figure.ToHtml());

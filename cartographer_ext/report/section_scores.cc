@@ -16,33 +16,44 @@ constexpr int kBins = 40;
 constexpr size_t kMaxPoints = 2500;
 
 // Two sets of values, one on the other.
-std::string StackedHistogram(const std::string& title, const std::string& label,
-                             const double low, const double high,
-                             const std::vector<double>& good,
-                             const std::vector<double>& bad,
-                             const std::vector<std::string>& names,
-                             const double mark, const std::string& mark_label) {
+// Values of good and bad loops.
+struct TwoSamples {
+  std::vector<double> good;
+  std::vector<double> bad;
+  std::string good_name;
+  std::string bad_name;
+};
+
+struct Mark {
+  double value = 0.;
+  std::string label;
+};
+
+std::string StackedHistogram(const std::string& title, const Axis& axis,
+                             const TwoSamples& samples, const Mark& mark) {
+  const double low = axis.low, high = axis.high;
+  const std::vector<double>& good = samples.good;
+  const std::vector<double>& bad = samples.bad;
   const auto good_counts = Histogram(good, low, high, kBins);
   const auto bad_counts = Histogram(bad, low, high, kBins);
   int highest = 1;
   for (int i = 0; i < kBins; ++i) {
     highest = std::max(highest, good_counts[i] + bad_counts[i]);
   }
-  Chart chart(title, {label, low, high}, {"loops", 0., 1.05 * highest}, 560,
-              240);
+  Chart chart(title, axis, {"loops", 0., 1.05 * highest}, 560, 240);
   const double width = (high - low) / kBins;
   for (int i = 0; i < kBins; ++i) {
     const double left = low + i * width;
     const std::string range =
         absl::StrFormat("%.3g to %.3g: ", left, left + width);
     chart.Bar(left, left + 0.92 * width, good_counts[i] + bad_counts[i], "s1",
-              absl::StrCat(range, good_counts[i], " ", names[0]));
+              absl::StrCat(range, good_counts[i], " ", samples.good_name));
     chart.Bar(left, left + 0.92 * width, bad_counts[i], "s2",
-              absl::StrCat(range, bad_counts[i], " ", names[1]));
+              absl::StrCat(range, bad_counts[i], " ", samples.bad_name));
   }
-  if (mark > low) chart.VerticalMark(mark, mark_label);
-  chart.Legend(names[0], "s1");
-  if (!bad.empty()) chart.Legend(names[1], "s2");
+  if (mark.value > low) chart.VerticalMark(mark.value, mark.label);
+  chart.Legend(samples.good_name, "s1");
+  if (!bad.empty()) chart.Legend(samples.bad_name, "s2");
   return chart.ToSvg();
 }
 
@@ -60,30 +71,33 @@ void AddHistograms(const ReportData& data, const size_t index,
     }
   }
   if (good.empty() && bad.empty()) return;
-  const bool refused =
+  const bool rejected =
       std::any_of(evidence.begin(), evidence.end(),
                   [](const LoopEvidence& loop) { return !loop.accepted; });
-  const std::vector<std::string> names = {
-      "fine", refused ? "refused or suspicious" : "suspicious"};
+  const std::string bad_name =
+      rejected ? "rejected or suspicious" : "suspicious";
   page->Element("h3", {}, absl::StrCat("Map ", run.name));
   page->Open("div", {{"class", "pair"}});
   page->Open("figure");
   page->Raw(StackedHistogram(
-      "Scores of loops", "score of the loop on the grid", 0.3, 1., good, bad,
-      names, data.stock_min_score,
-      absl::StrFormat("min_score %.2f", data.stock_min_score)));
+      "Scores of loops", {"score of the loop on the grid", 0.3, 1.},
+      {good, bad, "fine", bad_name},
+      {data.stock_min_score,
+       absl::StrFormat("min_score %.2f", data.stock_min_score)}));
   page->Element("figcaption", {},
                 "How well the scan fits the submap's grid at the loop's pose. "
                 "Where good and suspicious loops overlap, no threshold on this "
-                "score parts them.");
+                "score separates them.");
   page->Close();
   page->Open("figure");
-  page->Raw(StackedHistogram(
-      "Residuals of loops", "distance from the map, log10 of metres", -3., 1.5,
-      good_residuals, bad_residuals, names, std::log10(0.5), "0.5 m"));
+  page->Raw(
+      StackedHistogram("Residuals of loops",
+                       {"distance from the map, log10 of metres", -3., 1.5},
+                       {good_residuals, bad_residuals, "fine", bad_name},
+                       {std::log10(0.5), "0.5 m"}));
   page->Element("figcaption", {},
                 "How far each loop is from where the optimised map has it. "
-                "Loops right of the mark have been overruled.");
+                "The optimisation disagrees with loops right of the mark.");
   page->Close();
   page->Close();
 }
@@ -141,7 +155,7 @@ void AddScatter(const ReportRun& run, Markup* const page) {
     chart.Legend("false", "s4");
   }
   chart.Legend("accepted", "s1");
-  chart.Legend("refused", "s2");
+  chart.Legend("rejected", "s2");
   page->Open("figure");
   page->Raw(chart.ToSvg());
   page->Element("figcaption", {},

@@ -42,8 +42,50 @@ struct Row {
   std::function<std::string(const ReportRun&)> cell;
 };
 
-std::vector<Row> Rows() {
-  std::vector<Row> rows;
+// Against ground truth.
+void AddAccuracyRows(std::vector<Row>* const rows) {
+  rows->push_back({"verdict", [](const ReportRun& run) {
+                     return evaluation::Judge(run.evaluation).word;
+                   }});
+  rows->push_back({"loops", [](const ReportRun& run) {
+                     return absl::StrCat(run.graph.num_loops());
+                   }});
+  rows->push_back({"loops right / judged by truth", [](const ReportRun& run) {
+                     const auto& loops = run.evaluation.loops;
+                     return loops.has_value() && loops->judged > 0
+                                ? absl::StrCat(loops->correct, " / ",
+                                               loops->judged)
+                                : std::string("-");
+                   }});
+  rows->push_back({"recall of revisits", [](const ReportRun& run) {
+                     const auto& loops = run.evaluation.loops;
+                     return loops.has_value() && loops->recall.has_value()
+                                ? Percent(*loops->recall)
+                                : std::string("-");
+                   }});
+  rows->push_back({"relations, mean error", [](const ReportRun& run) {
+                     const auto& relations = run.evaluation.relations;
+                     return relations.has_value()
+                                ? absl::StrFormat(
+                                      "%.4f m", relations->all.translation.mean)
+                                : std::string("-");
+                   }});
+  rows->push_back({"relations off by > 0.5 m", [](const ReportRun& run) {
+                     const auto& relations = run.evaluation.relations;
+                     return relations.has_value()
+                                ? Percent(
+                                      relations->all.fraction_above_half_metre)
+                                : std::string("-");
+                   }});
+  rows->push_back({"trajectory error (rmse)", [](const ReportRun& run) {
+                     const auto& errors = run.evaluation.trajectory;
+                     return errors.has_value()
+                                ? absl::StrFormat("%.3f m", errors->ate.rmse)
+                                : std::string("-");
+                   }});
+}
+
+void AddConsistencyRows(std::vector<Row>* const rows) {
   const auto consistency =
       [](const std::function<std::string(const evaluation::SelfConsistency&)>&
              cell) {
@@ -53,67 +95,29 @@ std::vector<Row> Rows() {
                      : std::string();
         };
       };
-  rows.push_back({"verdict", [](const ReportRun& run) {
-                    return evaluation::Judge(run.evaluation).word;
-                  }});
-  rows.push_back({"loops", [](const ReportRun& run) {
-                    return absl::StrCat(run.graph.num_loops());
-                  }});
-  rows.push_back({"loops right / judged by truth", [](const ReportRun& run) {
-                    const auto& loops = run.evaluation.loops;
-                    return loops.has_value() && loops->judged > 0
-                               ? absl::StrCat(loops->correct, " / ",
-                                              loops->judged)
-                               : std::string("-");
-                  }});
-  rows.push_back({"recall of revisits", [](const ReportRun& run) {
-                    const auto& loops = run.evaluation.loops;
-                    return loops.has_value() && loops->recall.has_value()
-                               ? Percent(*loops->recall)
-                               : std::string("-");
-                  }});
-  rows.push_back({"relations, mean error", [](const ReportRun& run) {
-                    const auto& relations = run.evaluation.relations;
-                    return relations.has_value()
-                               ? absl::StrFormat(
-                                     "%.4f m", relations->all.translation.mean)
-                               : std::string("-");
-                  }});
-  rows.push_back({"relations off by > 0.5 m", [](const ReportRun& run) {
-                    const auto& relations = run.evaluation.relations;
-                    return relations.has_value()
-                               ? Percent(
-                                     relations->all.fraction_above_half_metre)
-                               : std::string("-");
-                  }});
-  rows.push_back({"trajectory error (rmse)", [](const ReportRun& run) {
-                    const auto& errors = run.evaluation.trajectory;
-                    return errors.has_value()
-                               ? absl::StrFormat("%.3f m", errors->ate.rmse)
-                               : std::string("-");
-                  }});
-  rows.push_back(
+  rows->push_back(
       {"nodes in severe contradiction",
        consistency([](const auto& c) { return Percent(c.severe_share); })});
-  rows.push_back({"rays contradicted", consistency([](const auto& c) {
-                    return Percent(c.contradictions.ray_fraction());
-                  })});
-  rows.push_back({"loop cycles that stay open", consistency([](const auto& c) {
-                    return Percent(c.cycles.fraction());
-                  })});
-  rows.push_back({"mean map entropy", consistency([](const auto& c) {
-                    return absl::StrFormat("%.3f", c.sharpness.mean_entropy);
-                  })});
-  rows.push_back({"walls, one visit", consistency([](const auto& c) {
-                    return absl::StrFormat(
-                        "%.1f cm",
-                        100. * c.sharpness.single_visit_thickness.mean);
-                  })});
-  rows.push_back({"walls, all visits", consistency([](const auto& c) {
-                    return absl::StrFormat(
-                        "%.1f cm", 100. * c.sharpness.revisited_thickness.mean);
-                  })});
-  rows.push_back(
+  rows->push_back({"rays contradicted", consistency([](const auto& c) {
+                     return Percent(c.contradictions.ray_fraction());
+                   })});
+  rows->push_back({"loop cycles that stay open", consistency([](const auto& c) {
+                     return Percent(c.cycles.fraction());
+                   })});
+  rows->push_back({"mean map entropy", consistency([](const auto& c) {
+                     return absl::StrFormat("%.3f", c.sharpness.mean_entropy);
+                   })});
+  rows->push_back({"walls, one visit", consistency([](const auto& c) {
+                     return absl::StrFormat(
+                         "%.1f cm",
+                         100. * c.sharpness.single_visit_thickness.mean);
+                   })});
+  rows->push_back({"walls, all visits", consistency([](const auto& c) {
+                     return absl::StrFormat(
+                         "%.1f cm",
+                         100. * c.sharpness.revisited_thickness.mean);
+                   })});
+  rows->push_back(
       {"loop residual, mean", [](const ReportRun& run) {
          return run.evaluation.loops.has_value()
                     ? absl::StrFormat(
@@ -121,6 +125,12 @@ std::vector<Row> Rows() {
                           run.evaluation.loops->residual_translation.mean)
                     : std::string("-");
        }});
+}
+
+std::vector<Row> Rows() {
+  std::vector<Row> rows;
+  AddAccuracyRows(&rows);
+  AddConsistencyRows(&rows);
   return rows;
 }
 

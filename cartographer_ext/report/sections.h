@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The parts of the page, in its order. Each adds a heading with an anchor and
-// what belongs under it, or nothing where there is nothing to tell.
+// what belongs under it, or nothing where there is nothing to show.
 #ifndef CARTOGRAPHER_EXT_REPORT_SECTIONS_H_
 #define CARTOGRAPHER_EXT_REPORT_SECTIONS_H_
 
@@ -40,7 +40,7 @@ void AddLoops(const ReportData& data, const Prepared& prepared, Markup* page);
 void AddScores(const ReportData& data, const Prepared& prepared, Markup* page);
 // What is known along the path: contradiction, odometry, degeneracy.
 void AddPath(const ReportData& data, const Prepared& prepared, Markup* page);
-// Which loops the runs have in common, and why candidates were refused.
+// Which loops the runs have in common, and why candidates were rejected.
 void AddComparison(const ReportData& data, Markup* page);
 // The worst loops with their scans, as pictures and as a table.
 void AddWorstLoops(const ReportData& data, const Prepared& prepared,

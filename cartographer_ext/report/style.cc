@@ -5,8 +5,9 @@
 namespace cartographer_ext {
 namespace report {
 
-const char* StyleSheet() {
-  return R"css(
+namespace {
+
+constexpr char kStyleSheet[] = R"css(
 :root{color-scheme:light dark;--ground:#fff;--panel:#f6f7f8;--ink:#1c2126;
 --soft:#5b646d;--rule:#d5dade;--blue:#0072b2;--sky:#56b4e9;--green:#009e73;
 --orange:#c87f00;--red:#d55e00;--purple:#b0528a;--map-filter:none}
@@ -124,16 +125,19 @@ table{font-size:8.5pt}th,td{padding:2px 7px 2px 0}.number{white-space:normal}
 .grid3 svg.map-figure{height:6.5cm}
 svg.map-figure{max-height:9.3cm}#map+figure svg.map-figure{max-height:17cm}}
 )css";
-}
 
-const char* Script() {
-  return R"js(
+constexpr char kScript[] = R"js(
 document.querySelectorAll('.slider input').forEach(function(input){
 var box=document.getElementById(input.dataset.target);
 function move(){box.style.setProperty('--split',input.value+'%');}
 input.addEventListener('input',move);move();});
 )js";
-}
+
+}  // namespace
+
+const char* StyleSheet() { return kStyleSheet; }
+
+const char* Script() { return kScript; }
 
 }  // namespace report
 }  // namespace cartographer_ext

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // How the report looks, on a screen, light or dark, and on paper. The colours
-// of data are those of Okabe and Ito, told apart by colour-blind readers, too;
+// of data are those of Okabe and Ito, distinguishable by colour-blind readers, too;
 // where a colour means good or bad, the line is solid or dashed as well.
 #ifndef CARTOGRAPHER_EXT_REPORT_STYLE_H_
 #define CARTOGRAPHER_EXT_REPORT_STYLE_H_
@@ -13,7 +13,7 @@ namespace report {
 const char* StyleSheet();
 
 // Moves the dividing line of the picture comparison. All the script there is;
-// without it the two pictures stand side by side.
+// without it the two pictures are side by side.
 const char* Script();
 
 }  // namespace report

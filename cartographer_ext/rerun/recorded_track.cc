@@ -32,7 +32,7 @@ GraphId ToGraphId(const SubmapId& id) {
 }  // namespace
 
 // Solves as its base does, with the stored poses of loops that were found
-// again, and tells the track when a node has its first pose.
+// again, and notifies the track when a node has its first pose.
 class RecordedTrack::FollowingProblem : public RecordedTrack::Problem {
  public:
   FollowingProblem(const cartographer::mapping::optimization::proto::
@@ -156,7 +156,7 @@ std::vector<RecordedTrack::Constraint> RecordedTrack::Follow(
                         ids_.StoredNode(ToGraphId(constraint.node_id))});
     if (recorded == recorded_.end()) continue;
     result.push_back(constraint);
-    // Inside the pose graph a node stands for the gravity-aligned frame.
+    // Inside the pose graph a node represents the gravity-aligned frame.
     const Rigid3d stored_pose =
         recorded->second * Rigid3d::Rotation(problem.node_data()
                                                  .at(constraint.node_id)

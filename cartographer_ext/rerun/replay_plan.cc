@@ -45,7 +45,7 @@ std::vector<GraphId> FeedingOrder(const MapGraph& graph) {
   return order;
 }
 
-// What the constraints tell of a stored submap.
+// What the constraints reveal of a stored submap.
 struct SubmapUse {
   int last_node = 0;           // index of the last node inserted
   bool has_successor = false;  // a node is in it and in a later one

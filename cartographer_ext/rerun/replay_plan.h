@@ -29,7 +29,7 @@ struct ReplaySubmap {
   // Position in ReplayPlan::steps of the first and of the last node.
   size_t first_step = 0;
   size_t last_step = 0;
-  // The stored submap is finished, and the pose graph is to be told with the
+  // The stored submap is finished, and the pose graph is informed with the
   // last node.
   bool finished = false;
 

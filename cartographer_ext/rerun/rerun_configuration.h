@@ -3,7 +3,7 @@
 //
 // With which options a stored map is run again. A map keeps the options of its
 // local SLAM but not those of the pose graph, so these come from a Lua file or
-// are assumed; what the map does tell, the weights of its constraints, is taken
+// are assumed; what the map does store, the weights of its constraints, is taken
 // from it.
 #ifndef CARTOGRAPHER_EXT_RERUN_RERUN_CONFIGURATION_H_
 #define CARTOGRAPHER_EXT_RERUN_RERUN_CONFIGURATION_H_

@@ -44,8 +44,8 @@ MotionState Advance(const MotionState& state, const double time) {
   MotionState next = state;
   next.speed = state.speed + state.acceleration * time;
   next.turn_rate = state.turn_rate + state.turn_acceleration * time;
-  next.way =
-      state.way + state.speed * time + 0.5 * state.acceleration * time * time;
+  next.distance = state.distance + state.speed * time +
+                  0.5 * state.acceleration * time * time;
   next.heading = state.heading + state.turn_rate * time +
                  0.5 * state.turn_acceleration * time * time;
   double dx = 0., dy = 0.;
@@ -65,8 +65,8 @@ MotionState Advance(const MotionState& state, const double time) {
 
 // Waypoints driven without a stop, in one direction.
 struct Leg {
-  std::vector<Eigen::Vector2d> points;  // begins where the robot stands
-  std::vector<double> speeds;           // of the way to point i; [0] unused
+  std::vector<Eigen::Vector2d> points;  // starts at the robot
+  std::vector<double> speeds;           // of the path to point i; [0] unused
   bool backwards = false;
 };
 
@@ -146,9 +146,9 @@ class Driver {
     state_.turn_acceleration = Limited(
         (turn_rate - state_.turn_rate) / kDriveStep, robot_.turn_acceleration);
     states_.push_back(state_);
-    const double before = state_.way;
+    const double before = state_.distance;
     state_ = Advance(state_, kDriveStep);
-    length_ += std::abs(state_.way - before);
+    length_ += std::abs(state_.distance - before);
     return true;
   }
 
@@ -169,14 +169,14 @@ class Driver {
         (leg.points[to] - leg.points[to - 1]).normalized();
     const double left = (leg.points[to] - position()).dot(along);
     if (to + 1 == leg.points.size()) return left < kReached;
-    // Round a corner the next stretch takes over half-way.
+    // Round a corner the next segment takes over halfway.
     const Eigen::Vector2d onwards =
         (leg.points[to + 1] - leg.points[to]).normalized();
     const Eigen::Vector2d bisector = along + onwards;
     return (leg.points[to] - position()).dot(bisector) < 0.;
   }
 
-  // The point of the way one lookahead ahead of the robot.
+  // The point of the path one lookahead ahead of the robot.
   Eigen::Vector2d Carrot(const Leg& leg, size_t to, double lookahead) const {
     Eigen::Vector2d from = leg.points[to - 1];
     const Eigen::Vector2d along = (leg.points[to] - from).normalized();
@@ -241,7 +241,7 @@ class Driver {
     if (std::abs(curvature) * speed > robot_.turn_rate) {
       speed = std::max(0.02, robot_.turn_rate / std::abs(curvature));
     }
-    // Backwards the robot turns the same way its tail must go.
+    // Backwards the robot turns to where its tail must go.
     const double turn = Limited(
         curvature * std::max(std::abs(state_.speed), .02), robot_.turn_rate);
     return Step(leg.backwards ? -speed : speed, turn);

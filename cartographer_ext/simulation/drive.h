@@ -5,11 +5,11 @@
 //
 // The waypoints are driven once, in advance, by a pure-pursuit follower
 // (Coulter 1992) with bounded acceleration and turn acceleration: it aims at
-// the point of the way one lookahead ahead, slows down before corners and
-// stops, and turns in place where the way turns back. The result is a list of
+// the point of the path one lookahead ahead, slows down before corners and
+// stops, and turns in place where the path turns back. The result is a list of
 // 10 ms steps, each of constant acceleration and constant turn acceleration, so
 // that speed and turn rate are continuous and inside a step
-//   s(t)     = s0 + v t + a t^2 / 2            (signed way)
+//   s(t)     = s0 + v t + a t^2 / 2            (signed distance)
 //   theta(t) = theta0 + w t + alpha t^2 / 2
 //   x(t)     = x0 + integral (v + a u) cos theta(u) du   (Gauss-Legendre)
 // hold exactly: wheels, gyroscope and laser are computed from one and the same
@@ -30,7 +30,7 @@ namespace simulation {
 struct MotionState {
   Pose2 pose;                // (world <- robot)
   double heading = 0.;       // as pose.theta but not wrapped
-  double way = 0.;           // metres since the start, backwards counts down
+  double distance = 0.;      // metres since the start, backwards counts down
   double speed = 0.;         // m/s, negative backwards
   double turn_rate = 0.;     // rad/s
   double acceleration = 0.;  // m/s^2 along the robot's x axis
@@ -45,7 +45,8 @@ class Drive {
 
   // Seconds from start to end.
   double duration() const;
-  // `time` in seconds since the start; before and after, the robot stands.
+  // `time` in seconds since the start; before and after, the robot is
+  // stationary.
   MotionState At(double time) const;
   Pose2 PoseAt(double time) const { return At(time).pose; }
   // Metres driven, forwards and backwards together.

@@ -19,15 +19,15 @@ ObstacleMotion::ObstacleMotion(const std::vector<MovingObstacle>& obstacles,
     loop.speed = obstacle.speed;
     loop.path = obstacle.path;
     loop.path.push_back(obstacle.path.front());
-    loop.way.push_back(0.);
+    loop.distances.push_back(0.);
     for (size_t i = 1; i != loop.path.size(); ++i) {
-      loop.way.push_back(loop.way.back() +
-                         (loop.path[i] - loop.path[i - 1]).norm());
+      loop.distances.push_back(loop.distances.back() +
+                               (loop.path[i] - loop.path[i - 1]).norm());
     }
     // Drawn for everyone: one obstacle's setting does not move the others.
     const double drawn = random.Uniform();
-    loop.start =
-        (obstacle.random_phase ? drawn : obstacle.phase) * loop.way.back();
+    loop.start = (obstacle.random_phase ? drawn : obstacle.phase) *
+                 loop.distances.back();
     loops_.push_back(loop);
   }
 }
@@ -35,15 +35,16 @@ ObstacleMotion::ObstacleMotion(const std::vector<MovingObstacle>& obstacles,
 Eigen::Vector2d ObstacleMotion::Position(const size_t obstacle,
                                          const double time) const {
   const Loop& loop = loops_[obstacle];
-  const double length = loop.way.back();
+  const double length = loop.distances.back();
   if (length == 0.) return loop.path.front();
-  double way = std::fmod(loop.start + loop.speed * time, length);
-  if (way < 0.) way += length;
-  const auto next =
-      std::upper_bound(loop.way.begin() + 1, loop.way.end() - 1, way);
-  const size_t i = next - loop.way.begin();
-  const double stretch = loop.way[i] - loop.way[i - 1];
-  const double ratio = stretch > 0. ? (way - loop.way[i - 1]) / stretch : 0.;
+  double distance = std::fmod(loop.start + loop.speed * time, length);
+  if (distance < 0.) distance += length;
+  const auto next = std::upper_bound(loop.distances.begin() + 1,
+                                     loop.distances.end() - 1, distance);
+  const size_t i = next - loop.distances.begin();
+  const double segment = loop.distances[i] - loop.distances[i - 1];
+  const double ratio =
+      segment > 0. ? (distance - loop.distances[i - 1]) / segment : 0.;
   return loop.path[i - 1] + ratio * (loop.path[i] - loop.path[i - 1]);
 }
 

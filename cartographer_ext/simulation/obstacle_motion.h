@@ -34,7 +34,7 @@ class ObstacleMotion {
     double speed = 0.;
     double start = 0.;                  // metres along the loop at time 0
     std::vector<Eigen::Vector2d> path;  // first point repeated at the end
-    std::vector<double> way;            // metres from the first point
+    std::vector<double> distances;      // metres from the first point
   };
 
   std::vector<Loop> loops_;

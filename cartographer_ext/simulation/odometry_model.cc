@@ -22,23 +22,25 @@ bool InWindow(const OdometryFault& fault, const double time) {
 }
 
 // Step (ds, dtheta) on an arc of constant curvature.
-Pose2 ArcStep(const double way, const double angle) {
+Pose2 ArcStep(const double distance, const double angle) {
   const double half = 0.5 * angle;
-  const double chord = std::abs(half) < 1e-6 ? way * (1. - half * half / 6.)
-                                             : way * std::sin(half) / half;
+  const double chord = std::abs(half) < 1e-6
+                           ? distance * (1. - half * half / 6.)
+                           : distance * std::sin(half) / half;
   return Pose2(chord * std::cos(half), chord * std::sin(half), angle);
 }
 
-// One wheel: true way in, counted way out.
+// One wheel: true distance in, counted distance out.
 class Wheel {
  public:
   Wheel(const double scale, const double noise, const double ticks_per_meter)
       : scale_(scale), noise_(noise), ticks_per_meter_(ticks_per_meter) {}
 
-  // The change of the counted way over a true change `way` with extra `slip`.
-  double Advance(const double way, const double slip, Random* random) {
-    turned_ += (1. + scale_) * way + slip +
-               noise_ * std::sqrt(std::abs(way)) * random->Normal();
+  // The change of the counted distance over a true `distance` with extra
+  // `slip`.
+  double Advance(const double distance, const double slip, Random* random) {
+    turned_ += (1. + scale_) * distance + slip +
+               noise_ * std::sqrt(std::abs(distance)) * random->Normal();
     const double counted =
         ticks_per_meter_ > 0.
             ? std::floor(turned_ * ticks_per_meter_) / ticks_per_meter_
@@ -123,7 +125,7 @@ class Odometer {
     open_[fault].open = false;
   }
 
-  // The time whose wheels a message stamped `stamp` tells.
+  // The time of the wheel readings in a message stamped `stamp`.
   double MeasuringTime(const double stamp) {
     double time = stamp;
     for (size_t i = 0; i != faults_.size(); ++i) {
@@ -137,11 +139,11 @@ class Odometer {
 
   void Integrate(const double from, const double to, const double stamp) {
     const MotionState before = drive_.At(from), after = drive_.At(to);
-    const double way = after.way - before.way;
+    const double distance = after.distance - before.distance;
     const double turn = after.heading - before.heading;
     const double half_base = 0.5 * settings_.wheel_base;
-    const double left = way - half_base * turn;
-    const double right = way + half_base * turn;
+    const double left = distance - half_base * turn;
+    const double right = distance + half_base * turn;
     double slip_left = 0., slip_right = 0.;
     for (size_t i = 0; i != faults_.size(); ++i) {
       const OdometryFault& fault = faults_[i];
@@ -164,7 +166,7 @@ class Odometer {
     const double counted_right = right_.Advance(right, slip_right, &noise_);
     double counted = 0.5 * (counted_left + counted_right);
     for (size_t i = 0; i != faults_.size(); ++i) {
-      if (faults_[i].kind == Kind::kReverse && way < 0. && counted < 0. &&
+      if (faults_[i].kind == Kind::kReverse && distance < 0. && counted < 0. &&
           InWindow(faults_[i], from)) {
         Mark(i, last_stamp_, stamp, -2. * counted, 0.);
         counted = -counted;

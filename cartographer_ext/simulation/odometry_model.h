@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Wheel odometry of a differential drive. The true way of a wheel follows from
-// the drive, d_right/left = ds +- b / 2 dtheta with wheel base b; the measured
-// way adds scale, noise, slip and ticks (OdometrySettings), and the robot
-// integrates it with the wheel base it believes in:
+// Wheel odometry of a differential drive. The true distance of a wheel follows
+// from the drive, d_right/left = ds +- b / 2 dtheta with wheel base b; the
+// measured distance adds scale, noise, slip and ticks (OdometrySettings), and
+// the robot integrates it with the wheel base it believes in:
 //   ds = (d_right + d_left) / 2,  dtheta = (d_right - d_left) / b',
 //   x += ds sinc(dtheta / 2) cos(theta + dtheta / 2), y likewise with sin
 // (exact for a constant curvature). Noise grows with the square root of the
-// way, as for many independent small errors (Chong and Kleeman 1997).
+// distance, as for many independent small errors (Chong and Kleeman 1997).
 //
-// Faults come on top and are told in labels. The odometry frame starts at the
+// Faults come on top and are listed as labels. The odometry frame starts at the
 // robot's start, so that its first pose is the origin.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_ODOMETRY_MODEL_H_
 #define CARTOGRAPHER_EXT_SIMULATION_ODOMETRY_MODEL_H_
@@ -28,7 +28,7 @@ namespace cartographer_ext {
 namespace simulation {
 
 // A span of time in which odometry says something else than the wheels' honest
-// (if noisy) way over the ground.
+// (if noisy) distance over the ground.
 struct FaultLabel {
   OdometryFault::Kind kind = OdometryFault::Kind::kSlip;
   double start = 0.;  // stamps in seconds, as the messages bear them

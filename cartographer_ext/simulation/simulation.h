@@ -32,7 +32,7 @@ struct SimulationOptions {
 
 class Simulation {
  public:
-  // An error tells which waypoint cannot be reached, or where and when the
+  // An error names which waypoint cannot be reached, or where and when the
   // robot would touch a wall or an obstacle.
   static absl::StatusOr<std::unique_ptr<const Simulation>> Create(
       World world, const SimulationOptions& options);

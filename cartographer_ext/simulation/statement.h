@@ -6,7 +6,7 @@
 //   circle 3 4 0.5 reflectivity=0.3      # comment
 //
 // Values are read through checked accessors that remember the first mistake, so
-// that a statement's reader is a list of its fields; `Finish` then tells the
+// that a statement's reader is a list of its fields; `Finish` then reports the
 // mistake (file, line, key, value, allowed range), or names what was left over.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_STATEMENT_H_
 #define CARTOGRAPHER_EXT_SIMULATION_STATEMENT_H_

@@ -37,10 +37,10 @@ struct TrueRelation {
 std::vector<TrueRelation> SequentialRelations(
     const std::vector<TruePose>& trajectory);
 
-// Samples (about 1 m apart) that stand within 1.5 m of an earlier pass more
+// Samples (about 1 m apart) that lie within 1.5 m of an earlier pass more
 // than 60 s before, with the straight line between them free of walls. One
 // relation per earlier pass: the nearest sample of it. A laser that sees less
-// than 270 degrees must also look the same way within 60 degrees.
+// than 270 degrees must also have the same heading within 60 degrees.
 std::vector<TrueRelation> LoopRelations(
     const Simulation& simulation, const std::vector<TruePose>& trajectory);
 

@@ -61,8 +61,8 @@ class Painter {
   void Free(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
             const double length) {
     const double step = 0.5 * map_->resolution;
-    for (double way = 0.; way < length; way += step) {
-      float* const cell = Cell(origin + way * direction);
+    for (double along = 0.; along < length; along += step) {
+      float* const cell = Cell(origin + along * direction);
       if (cell != nullptr && *cell != kOccupied) *cell = kFree;
     }
   }
@@ -100,19 +100,19 @@ absl::StatusOr<io::OccupancyMap> MakeTruthMap(const Simulation& simulation,
       Pose2(low(min.x()) * resolution, low(min.y()) * resolution, 0.));
   Painter painter(simulation, &map);
   const Drive& drive = simulation.drive();
-  double last_way = -kViewDistance;
+  double last_distance = -kViewDistance;
   double last_heading = 0.;
-  double way = 0.;
-  double signed_way = 0.;
+  double distance = 0.;
+  double signed_distance = 0.;
   for (double time = 0.; time <= drive.duration(); time += kViewTime) {
     const MotionState motion = drive.At(time);
-    way += std::abs(motion.way - signed_way);
-    signed_way = motion.way;
-    if (way - last_way < kViewDistance &&
+    distance += std::abs(motion.distance - signed_distance);
+    signed_distance = motion.distance;
+    if (distance - last_distance < kViewDistance &&
         std::abs(motion.heading - last_heading) < 0.2) {
       continue;
     }
-    last_way = way;
+    last_distance = distance;
     last_heading = motion.heading;
     painter.View(motion.pose * simulation.world().laser.mounting);
   }

@@ -54,7 +54,7 @@ struct OdometrySettings {
   double scale_right = 0.;
   double scale_sigma = 0.;       // common to both wheels, one draw a run
   double mismatch_sigma = 0.;    // right minus left, one draw a run
-  double wheel_base_error = 0.;  // believed / true - 1
+  double wheel_base_error = 0.;  // assumed / true - 1
   double wheel_base_sigma = 0.;  // one draw a run
   double noise = 0.;             // metres per square root of a metre
 };
@@ -105,11 +105,11 @@ struct DriveCommand {
 // What goes wrong with the odometry. Times count from the start of the drive.
 struct OdometryFault {
   enum class Kind {
-    kSlip,     // wheels turn by (1 + gain) of the way, plus spin
+    kSlip,     // wheels turn by (1 + gain) of the distance, plus spin
     kStale,    // the messages repeat one pose, then jump to the present
     kJump,     // the odometry frame moves at once by (distance, angle)
     kReverse,  // driving backwards is reported as driving forwards
-    kOffset,   // a message stamped t tells the wheels at t + seconds
+    kOffset,   // a message stamped t holds the odometry at t + seconds
   };
   Kind kind = Kind::kSlip;
   double start = 0.;      // seconds; of kReverse and kOffset too

@@ -203,7 +203,7 @@ class Parser {
  private:
   void TakeOther(Statement* s) {
     const std::string& keyword = s->keyword();
-    // The settings of a sensor or of the robot stand in one place.
+    // The settings of a sensor or of the robot are given in one place.
     if (keyword == "world" || keyword == "laser" || keyword == "odometry" ||
         keyword == "imu" || keyword == "robot" || keyword == "start" ||
         keyword == "begin") {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the metrics tell of the back end, whichever constraint builder it has.
+// What the metrics report of the back end, whichever constraint builder it has.
 #ifndef CARTOGRAPHER_EXT_SLAM_BACK_END_METRICS_H_
 #define CARTOGRAPHER_EXT_SLAM_BACK_END_METRICS_H_
 
@@ -24,12 +24,12 @@ constexpr char kOurCpuMetric[] = "cartographer_ext_loop_cpu_seconds";
 double CountPairs(const MetricsCollector& metrics, const std::string& matcher);
 
 // CPU seconds that closing loops has taken so far, of either builder, the
-// optimisation aside. Zero for a real library, which does not tell.
+// optimisation aside. Zero for a real library, which does not report it.
 struct LoopCpu {
   // Correlative search and the refinement of what it finds.
   double search = 0.;
   double build = 0.;  // preparing submaps to be searched
-  // Which searches to make and which matches to believe; ours only.
+  // Planning of searches and verification of matches; ours only.
   double verification = 0.;
 
   double total() const { return search + build + verification; }

@@ -33,7 +33,7 @@ absl::StatusOr<std::vector<proto::LoopDecision>> ReadDecisions(
 
 struct DecisionCounts {
   int64_t accepted = 0;
-  int64_t rejected = 0;   // searched and found, but refused
+  int64_t rejected = 0;   // matched, but rejected
   int64_t not_found = 0;  // searched, nothing good enough there
   int64_t undecided = 0;
   int64_t skipped = 0;  // never searched

@@ -25,14 +25,14 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// Scans and optimisations may be told by different threads.
+// Scans and optimisations may be added by different threads.
 class OnlinePoses {
  public:
   OnlinePoses() = default;
   OnlinePoses(const OnlinePoses&) = delete;
   OnlinePoses& operator=(const OnlinePoses&) = delete;
 
-  // (map <- local) until the first optimisation; identity unless told.
+  // (map <- local) until the first optimisation; identity unless set.
   void Start(const Eigen::Isometry3d& map_from_local)
       ABSL_LOCKS_EXCLUDED(mutex_);
   // That the scan at `time` became this node. In any order.
@@ -42,7 +42,7 @@ class OnlinePoses {
       ABSL_LOCKS_EXCLUDED(mutex_);
 
   // (map <- robot) at each of the scans, which are (local <- robot) in order of
-  // time. An optimisation of a node that was never told changes nothing.
+  // time. An optimisation of a node that was never added has no effect.
   std::vector<StampedPose> At(const std::vector<StampedPose>& local_scans) const
       ABSL_LOCKS_EXCLUDED(mutex_);
 

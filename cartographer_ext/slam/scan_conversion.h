@@ -10,7 +10,7 @@ namespace cartographer_ext {
 namespace evaluation {
 
 // The scan as points in the tracking frame with the laser as origin. Beams
-// that saw nothing are left out: NaN, infinite, and ranges outside the laser's
+// without an echo are skipped: NaN, infinite, and ranges outside the laser's
 // own limits and outside [min_range, max_range] (metres). What is a hit and
 // what only clears free space is decided further on, by the range limits of
 // local SLAM. The time of a point counts from the stamp of the scan, which is

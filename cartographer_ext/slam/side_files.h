@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Records that stand beside a map: FILE.pbstream has FILE.KIND.pb (messages)
+// Records stored beside a map: FILE.pbstream has FILE.KIND.pb (messages)
 // and FILE.KIND.csv (the same as a table).
 #ifndef CARTOGRAPHER_EXT_SLAM_SIDE_FILES_H_
 #define CARTOGRAPHER_EXT_SLAM_SIDE_FILES_H_

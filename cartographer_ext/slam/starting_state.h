@@ -33,7 +33,7 @@ absl::StatusOr<std::map<int, int>> LoadStartingState(
     const StartingState& state,
     cartographer::mapping::MapBuilderInterface* map_builder);
 
-// Tells the host where a trajectory begins, in the way the host knows: relative
+// Sets where a trajectory starts, in the form the host has for it: relative
 // to the first node of trajectory `to_trajectory_id`. An error where that has
 // no nodes.
 absl::Status SetInitialPose(

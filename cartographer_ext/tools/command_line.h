@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the commands share: how flags are read, errors are told and results are
+// What the commands share: how flags are read, errors are reported and results are
 // written. Exit codes: 0 success, 1 bad input, 2 wrong usage.
 //
 //   DEFINE_string(input_filename, "", "what to read");

@@ -46,7 +46,7 @@ struct Inspected {
 
 Inspected Inspect(const std::string& filename) {
   Inspected result;
-  // Problems are to be listed, not refused.
+  // Problems are listed; they are no error here.
   io::PbstreamReaderOptions options;
   options.validate = false;
   result.pbstream = io::ReadPbstream(filename, options);

@@ -221,7 +221,7 @@ absl::Status WriteReport(const report::ReportData& data,
 }
 
 // The runs over the map, for the report and the JSON. A map that cannot be run
-// again still has its report: `run_again` tells why.
+// again still has its report: `run_again` says why.
 absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data,
                       absl::Status* const run_again) {
   report::RunInputs runs;
@@ -280,6 +280,20 @@ std::string RunsToText(const report::ReportData& data) {
   return text;
 }
 
+// The records beside the map, if any; counts what was not accepted.
+absl::Status ReadDecisionsBeside(evaluation::LoopStatistics* const loops,
+                                 std::vector<proto::LoopDecision>* decisions) {
+  auto beside = evaluation::ReadDecisions(
+      evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename));
+  if (absl::IsNotFound(beside.status())) return absl::OkStatus();
+  if (!beside.ok()) return beside.status();
+  *decisions = *std::move(beside);
+  const evaluation::DecisionCounts counts =
+      evaluation::CountDecisions(*decisions);
+  loops->rejected = counts.rejected + counts.undecided;
+  return absl::OkStatus();
+}
+
 absl::Status Run(const std::string& command_line) {
   std::vector<std::string> outputs = {FLAGS_constraints_filename,
                                       FLAGS_relation_errors_filename,
@@ -313,20 +327,13 @@ absl::Status Run(const std::string& command_line) {
                                              : FLAGS_trajectory_filename,
                                      ": ", result.status().message()));
   }
+  absl::Status status;
   std::vector<proto::LoopDecision> decisions;
   if (has_map && result->loops.has_value()) {
-    auto beside = evaluation::ReadDecisions(
-        evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename));
-    if (beside.ok()) {
-      decisions = *std::move(beside);
-      const evaluation::DecisionCounts counts =
-          evaluation::CountDecisions(decisions);
-      result->loops->rejected = counts.rejected + counts.undecided;
-    } else if (!absl::IsNotFound(beside.status())) {
-      return beside.status();
-    }
+    status = ReadDecisionsBeside(&*result->loops, &decisions);
+    if (!status.ok()) return status;
   }
-  absl::Status status = WriteTables(inputs, *result);
+  status = WriteTables(inputs, *result);
   if (!status.ok()) return status;
 
   report::ReportData data;
@@ -382,7 +389,7 @@ int main(int argc, char** argv) {
   if (FLAGS_pbstream_filename.empty() && FLAGS_relations_filename.empty() &&
       FLAGS_reference_trajectory_filename.empty()) {
     return tools::UsageError(
-        "a trajectory alone tells nothing: -relations_filename or "
+        "a trajectory alone cannot be judged: -relations_filename or "
         "-reference_trajectory_filename is needed");
   }
   if (!FLAGS_constraints_filename.empty() && FLAGS_pbstream_filename.empty()) {

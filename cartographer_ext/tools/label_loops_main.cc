@@ -65,7 +65,7 @@ using evaluation::LoopStatistics;
 using evaluation::LoopStatisticsOptions;
 
 constexpr char kDescription[] =
-    R"(Labels every loop candidate as true or false and tells how well the scores know.
+    R"(Labels every loop candidate as true or false and reports how well the scores separate them.
 
   cartographer_ext_label_loops -input_filename=aces.clf
       -relations_filename=aces.relations -csv_filename=loops.csv
@@ -139,6 +139,56 @@ nlohmann::ordered_json ToJson(const LoopStatistics& loops,
           {"search_cpu_seconds", search_cpu_seconds}};
 }
 
+// The map of a run and why its loop candidates were accepted or not.
+struct DecidedMap {
+  evaluation::MapGraph graph;
+  std::vector<proto::LoopDecision> decisions;
+  int64_t searches = 0;
+  double search_cpu_seconds = 0.;
+};
+
+absl::StatusOr<DecidedMap> RunOrReadMap() {
+  DecidedMap map;
+  if (FLAGS_pbstream_filename.empty()) {
+    const auto run = RunWith(FLAGS_configuration_basename);
+    if (!run.ok()) return run.status();
+    map.graph = evaluation::MakeMapGraph(*run->map_builder->pose_graph());
+    map.decisions = run->decisions;
+    map.searches = run->loop_searches;
+    map.search_cpu_seconds = run->loop_search_cpu_seconds;
+  } else {
+    const auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
+    if (!pbstream.ok()) return pbstream.status();
+    map.graph = evaluation::MakeMapGraph(*pbstream);
+    auto records = evaluation::ReadDecisions(
+        evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename));
+    if (!records.ok()) return records.status();
+    map.decisions = *std::move(records);
+  }
+  if (map.decisions.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(FLAGS_configuration_basename,
+                     ": no loop candidates; is POSE_GRAPH.constraint_builder."
+                     "cartographer_ext set?"));
+  }
+  return map;
+}
+
+absl::Status WriteLabels(const std::vector<evaluation::LabelledLoop>& loops) {
+  if (!FLAGS_csv_filename.empty()) {
+    const absl::Status status =
+        WriteFileAtomically(FLAGS_csv_filename, evaluation::LabelledCsv(loops));
+    if (!status.ok()) return status;
+  }
+  if (FLAGS_picture_filename.empty()) return absl::OkStatus();
+  return WriteFileAtomically(
+      FLAGS_picture_filename,
+      evaluation::CurvesSvg(loops,
+                            tools::BaseName(FLAGS_pbstream_filename.empty()
+                                                ? FLAGS_input_filename
+                                                : FLAGS_pbstream_filename)));
+}
+
 absl::Status Run() {
   const absl::Status writable = tools::CheckWritable(
       {FLAGS_csv_filename, FLAGS_picture_filename, FLAGS_json});
@@ -149,37 +199,15 @@ absl::Status Run() {
   nlohmann::ordered_json json;
   json["input"] = FLAGS_input_filename;
   json["configuration"] = FLAGS_configuration_basename;
-  evaluation::MapGraph graph;
-  std::vector<proto::LoopDecision> decisions;
-  int64_t searches = 0;
-  double search_cpu_seconds = 0.;
-  if (FLAGS_pbstream_filename.empty()) {
-    const auto run = RunWith(FLAGS_configuration_basename);
-    if (!run.ok()) return run.status();
-    graph = evaluation::MakeMapGraph(*run->map_builder->pose_graph());
-    decisions = run->decisions;
-    searches = run->loop_searches;
-    search_cpu_seconds = run->loop_search_cpu_seconds;
-  } else {
+  if (!FLAGS_pbstream_filename.empty()) {
     json["pbstream"] = FLAGS_pbstream_filename;
-    const auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
-    if (!pbstream.ok()) return pbstream.status();
-    graph = evaluation::MakeMapGraph(*pbstream);
-    auto records = evaluation::ReadDecisions(
-        evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename));
-    if (!records.ok()) return records.status();
-    decisions = *std::move(records);
   }
-  if (decisions.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(FLAGS_configuration_basename,
-                     ": no loop candidates; is POSE_GRAPH.constraint_builder."
-                     "cartographer_ext set?"));
-  }
-  const LoopStatistics ours = JudgeLoops(graph, *truth);
+  const auto map = RunOrReadMap();
+  if (!map.ok()) return map.status();
+  const LoopStatistics ours = JudgeLoops(map->graph, *truth);
   std::vector<proto::LoopDecision> candidates;
   const evaluation::MapGraph candidate_graph =
-      evaluation::CandidateGraph(graph, decisions, &candidates);
+      evaluation::CandidateGraph(map->graph, map->decisions, &candidates);
   const std::vector<evaluation::LabelledLoop> loops =
       evaluation::LabelLoops(candidates, JudgeLoops(candidate_graph, *truth));
   const evaluation::ChainRates chain = evaluation::RatesOfChain(loops);
@@ -197,7 +225,7 @@ absl::Status Run() {
                    {"recall", Number(chain.recall())},
                    {"true_accepted", chain.true_accepted},
                    {"false_accepted", chain.false_accepted}};
-  json["ours"] = ToJson(ours, searches, search_cpu_seconds);
+  json["ours"] = ToJson(ours, map->searches, map->search_cpu_seconds);
   json["stock"] = {{"precision", nullptr}, {"recall", nullptr}};
   if (FLAGS_pbstream_filename.empty() &&
       !FLAGS_stock_configuration_basename.empty()) {
@@ -209,20 +237,8 @@ absl::Status Run() {
         stock->loop_searches, stock->loop_search_cpu_seconds);
   }
 
-  if (!FLAGS_csv_filename.empty()) {
-    const absl::Status status =
-        WriteFileAtomically(FLAGS_csv_filename, evaluation::LabelledCsv(loops));
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_picture_filename.empty()) {
-    const absl::Status status = WriteFileAtomically(
-        FLAGS_picture_filename,
-        evaluation::CurvesSvg(loops,
-                              tools::BaseName(FLAGS_pbstream_filename.empty()
-                                                  ? FLAGS_input_filename
-                                                  : FLAGS_pbstream_filename)));
-    if (!status.ok()) return status;
-  }
+  const absl::Status written = WriteLabels(loops);
+  if (!written.ok()) return written;
   if (FLAGS_json != "-") {
     std::cout << absl::StrFormat(
         "%d candidates, %d true, %d false; accepted %d true, %d false\n",

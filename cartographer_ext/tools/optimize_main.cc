@@ -70,12 +70,12 @@ namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Optimises a pose graph and tells right loops from wrong ones.
+    R"(Optimises a pose graph and separates right loops from wrong ones.
 
   cartographer_ext_optimize -input_filename=graph.g2o -kernel=auto
       -output_filename=optimised.g2o -verdicts_filename=loops.csv
       -picture_filename=before_after.png -json=-
-A finished map; the loops found wrong are left out of the new one:
+A finished map; the rejected loops are removed from the new one:
   cartographer_ext_optimize -input_filename=map.pbstream -nokeep_rejected
       -output_filename=better.pbstream
 Undo one loop (ids as in the CSV of cartographer_ext_export) and solve again:

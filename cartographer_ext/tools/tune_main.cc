@@ -63,11 +63,11 @@ DEFINE_double(min_fidelity, 0.3,
               "halving: the smallest part of the recordings that is tried "
               "first; the parts are 1, 1/3, 1/9 ...");
 DEFINE_int32(folds, 0,
-             "Search this often with a part of the inputs left out and try the "
+             "Search this often with a part of the inputs held out and try the "
              "result on it; 0: not.");
 DEFINE_bool(prune, true,
             "At the end set back each changed key in turn, keep those that "
-            "gain something, and tell how much.");
+            "gain something, and report how much.");
 DEFINE_int32(workers, 0,
              "Runs at the same time; 0: as many as there are processors. Under "
              "mpirun the other ranks are the workers.");
@@ -232,8 +232,8 @@ absl::Status Run(const tuning::MpiSession& session) {
   }
 
   const std::unique_ptr<tuning::WorkerPool> pool = CreatePool(session);
-  tuning::Tuner tuner(*configuration, setup->spec.parameters,
-                      setup->spec.objective, setup->inputs, setup->holdout,
+  tuning::Tuner tuner({*configuration, setup->spec.parameters,
+                       setup->spec.objective, setup->inputs, setup->holdout},
                       setup->options, pool.get(), journal->get());
   Progress progress("Trial", FLAGS_max_trials);
   tuner.SetProgressCallback([&progress](const tuning::TunerProgress& state) {

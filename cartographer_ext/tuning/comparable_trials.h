@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which trials of a search tell how much a key matters? Objectives of parts of
+// From which trials of a search can be computed how much a key matters? Objectives of parts of
 // the recordings cannot be held against those of the whole. Trials on whole
 // recordings are taken where there are enough; a search by halving may have
 // few, and these are its best, so that they differ little: then those of the

@@ -20,9 +20,9 @@ namespace {
 
 constexpr char kBlockName[] = "cartographer_ext";
 
-// Makes the tables on the way where they are absent; whether they may be is
-// checked before. Our blocks may be one table in several places, so they are
-// copied before they are changed.
+// Creates the tables that lead to the key where they are absent; whether they
+// may be is checked before. Our blocks may be one table in several places, so
+// they are copied before they are changed.
 constexpr char kAssignFunction[] = R"(
 local function assign(path, value)
   local names = {}

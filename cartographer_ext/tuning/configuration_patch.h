@@ -7,7 +7,7 @@
 //
 // Keys are checked before the first trial: they must exist, must take the
 // values of their range, and must make a difference to 2D SLAM. Keys of our own
-// blocks (...cartographer_ext...) may be left out of the file; then they have
+// blocks (...cartographer_ext...) may be absent from the file; then they have
 // their default, but the block itself must be there.
 #ifndef CARTOGRAPHER_EXT_TUNING_CONFIGURATION_PATCH_H_
 #define CARTOGRAPHER_EXT_TUNING_CONFIGURATION_PATCH_H_

@@ -47,8 +47,8 @@ absl::StatusOr<RunRecord> RunFromJson(const nlohmann::json& json);
 
 class Journal {
  public:
-  // Opens or starts the journal. `fingerprint` tells what the runs depend on
-  // besides their key; a journal of another fingerprint is refused. Errors name
+  // Opens or starts the journal. `fingerprint` identifies what the runs depend on
+  // besides their key; a journal of another fingerprint is an error. Errors name
   // the file, and the line where there is one. An empty name gives a journal
   // that is not kept.
   static absl::StatusOr<std::unique_ptr<Journal>> Open(

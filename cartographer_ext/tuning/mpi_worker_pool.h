@@ -30,7 +30,7 @@ bool HasMpi();
 class MpiSession {
  public:
   MpiSession(int* argc, char*** argv);
-  // On rank 0, tells the others that nothing more comes.
+  // On rank 0, informs the others that nothing more follows.
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The derivative-free optimisers of NLopt as a sampler. NLopt calls the
-// objective and waits; a sampler is asked and told. Its algorithms being
+// objective and waits; a sampler is asked for points and given results. Its algorithms being
 // deterministic, the one is made of the other by starting anew at every
-// question: the objectives told so far are replayed, and the first point beyond
+// question: the objectives given so far are replayed, and the first point beyond
 // them is the answer. The replay costs microseconds, a trial costs minutes.
 //
 // A failed trial counts as twice as far from the best as the worst one. When
@@ -21,7 +21,7 @@
 namespace cartographer_ext {
 namespace tuning {
 
-// nlopt_global and nlopt_local stand for DIRECT-L and Sbplx.
+// nlopt_global and nlopt_local are DIRECT-L and Sbplx.
 std::vector<std::string> NloptMethodNames();
 
 class NloptSampler : public Sampler {
@@ -31,7 +31,7 @@ class NloptSampler : public Sampler {
   NloptSampler(const std::vector<Parameter>& parameters,
                const std::string& method, uint64_t seed, const Point& start);
 
-  // One trial at a time: nothing until the last one is told.
+  // One trial at a time: nothing until the last result is given.
   absl::optional<TrialRequest> Ask() override;
   void Tell(size_t index, absl::optional<double> objective) override;
   bool Done() const override { return done_; }

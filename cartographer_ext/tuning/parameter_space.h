@@ -58,7 +58,7 @@ struct Parameter {
 absl::StatusOr<std::vector<Parameter>> ParseParameters(
     const nlohmann::json& array);
 
-// Whether the key stands for a file to be included.
+// Whether the key names a file to be included.
 bool IsIncludeKey(const std::string& key);
 
 // Parameter by parameter.

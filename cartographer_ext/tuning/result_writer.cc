@@ -32,7 +32,7 @@ absl::optional<double> ObjectiveOf(const absl::optional<Trial>& trial) {
 }
 
 // Our blocks may be one table in several places, and tables in them may be left
-// out, so those on the way to a key are replaced by copies.
+// out, so those that lead to a key are replaced by copies.
 constexpr char kCopyFunction[] = R"(
 local function copied(original)
   local copy = {}
@@ -124,7 +124,7 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
     absl::StrAppendFormat(&text,
                           "-- Searched without %d of them: %.6g -> "
                           "%.6g on these\n",
-                          fold.left_out.size(), fold.before, fold.after);
+                          fold.held_out.size(), fold.before, fold.after);
   }
   if (result.keys.empty()) {
     return text +
@@ -191,7 +191,7 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
   for (const FoldResult& fold : result.folds) {
     absl::StrAppendFormat(&text, "Fold       %.6g -> %.6g  %s on", fold.before,
                           fold.after, Change(fold.before, fold.after));
-    for (const std::string& name : fold.left_out) {
+    for (const std::string& name : fold.held_out) {
       absl::StrAppend(&text, " ", name);
     }
     absl::StrAppend(&text, "\n");
@@ -265,7 +265,7 @@ nlohmann::ordered_json ToJson(const TuneResult& result,
   json["folds"] = nlohmann::ordered_json::array();
   for (const FoldResult& fold : result.folds) {
     json["folds"].push_back(
-        {{"left_out", fold.left_out},
+        {{"held_out", fold.held_out},
          {"values", ToAssignment(context.parameters, fold.point)},
          {"before", fold.before},
          {"after", fold.after}});

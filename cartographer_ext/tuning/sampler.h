@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Which configurations to try, and in which order. A sampler is asked for
-// trials and told how they went. What it asks for depends on its seed and on
-// the objectives it was told, never on when it was told them: any number of
+// trials and given their objectives. What it asks for depends on its seed and on
+// these objectives, never on when they arrive: any number of
 // workers gives the same list of trials.
 //
 // * Grid: all combinations of GridValues, the last parameter fastest.
@@ -102,7 +102,7 @@ class HalvingSampler : public Sampler {
   RandomSampler draws_;
   std::vector<double> fidelities_;  // ascending, the last is 1
   size_t num_asked_ = 0;            // of all brackets
-  // The rung under way.
+  // The current rung.
   size_t rung_ = 0;
   size_t first_index_ = 0;  // of its first trial
   std::vector<Point> points_;

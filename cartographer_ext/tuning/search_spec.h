@@ -19,7 +19,7 @@
 //     holdout = { "c.clf" },
 //   }
 //
-// All but `parameters` may be left out.
+// All but `parameters` are optional.
 #ifndef CARTOGRAPHER_EXT_TUNING_SEARCH_SPEC_H_
 #define CARTOGRAPHER_EXT_TUNING_SEARCH_SPEC_H_
 

@@ -41,7 +41,7 @@ absl::StatusOr<RunRequest> RequestFromJson(const nlohmann::json& json);
 // Metrics by the names of objective.h, and besides them nodes, submaps, loops,
 // loop_precision, loop_recall, node_contradiction, ray_contradiction,
 // cycle_contradiction, wall_doubling. What cannot be known, for example
-// relations without truth, is left out.
+// relations without ground truth, is skipped.
 absl::StatusOr<std::map<std::string, double>> RunTrial(
     const RunRequest& request);
 

@@ -46,15 +46,13 @@ std::vector<size_t> Range(const size_t begin, const size_t end) {
 
 }  // namespace
 
-Tuner::Tuner(BaseConfiguration configuration, std::vector<Parameter> parameters,
-             Objective objective, std::vector<TuneInput> inputs,
-             std::vector<TuneInput> holdout, const TunerOptions& options,
+Tuner::Tuner(TuneProblem problem, const TunerOptions& options,
              WorkerPool* const pool, Journal* const journal)
-    : configuration_(std::move(configuration)),
-      parameters_(std::move(parameters)),
-      objective_(std::move(objective)),
-      all_inputs_(Concatenate(inputs, holdout)),
-      num_inputs_(inputs.size()),
+    : configuration_(std::move(problem.configuration)),
+      parameters_(std::move(problem.parameters)),
+      objective_(std::move(problem.objective)),
+      all_inputs_(Concatenate(problem.inputs, problem.holdout)),
+      num_inputs_(problem.inputs.size()),
       options_(options),
       pool_(pool),
       journal_(journal),
@@ -379,7 +377,7 @@ absl::Status Tuner::RunFolds(const double seconds_each) {
     if (!after.ok()) return after.status();
     FoldResult result;
     for (const size_t i : test) {
-      result.left_out.push_back(all_inputs_[i].name);
+      result.held_out.push_back(all_inputs_[i].name);
     }
     result.point = search->best.point;
     result.before = before->objective;

@@ -13,7 +13,7 @@
 // 4. The result on the recordings held out, which nothing above has seen.
 //
 // With folds, steps 2 and 3 are done before for each part of the recordings
-// left out, and the result of each is tried on that part: what a user may
+// held out, and the result of each is tried on that part: what a user may
 // expect on a building that was not searched on.
 //
 // Every run goes through the journal, so whatever was done before is not done
@@ -80,9 +80,9 @@ struct KeyResult {
 };
 
 struct FoldResult {
-  std::vector<std::string> left_out;  // recordings
+  std::vector<std::string> held_out;  // recordings
   Point point;
-  double before = 0.;  // objective on the recordings left out
+  double before = 0.;  // objective on the recordings held out
   double after = 0.;
 };
 
@@ -111,13 +111,20 @@ struct TunerProgress {
   const char* step = "";
 };
 
+// What is searched for.
+struct TuneProblem {
+  BaseConfiguration configuration;
+  std::vector<Parameter> parameters;
+  Objective objective;
+  std::vector<TuneInput> inputs;
+  std::vector<TuneInput> holdout;
+};
+
 class Tuner {
  public:
   // `pool` and `journal` must outlive it.
-  Tuner(BaseConfiguration configuration, std::vector<Parameter> parameters,
-        Objective objective, std::vector<TuneInput> inputs,
-        std::vector<TuneInput> holdout, const TunerOptions& options,
-        WorkerPool* pool, Journal* journal);
+  Tuner(TuneProblem problem, const TunerOptions& options, WorkerPool* pool,
+        Journal* journal);
 
   // Called now and then.
   void SetProgressCallback(std::function<void(const TunerProgress&)> callback);

@@ -74,7 +74,7 @@ TEST(LoopEvidenceTest, VerdictsInWords) {
   EXPECT_EQ(VerdictInWords(decision), "accepted: single strong");
   decision.set_verdict(proto::LoopDecision::REJECTED);
   decision.set_reason(proto::LoopDecision::LOW_TEMPORAL_SCORE);
-  EXPECT_EQ(VerdictInWords(decision), "refused: low temporal score");
+  EXPECT_EQ(VerdictInWords(decision), "rejected: low temporal score");
   decision.set_reason(proto::LoopDecision::SKIPPED_BUDGET);
   EXPECT_EQ(VerdictInWords(decision), "not searched: budget");
   // Of a later version.
@@ -93,11 +93,11 @@ TEST(LoopEvidenceTest, DescribesWhatIsKnown) {
   EXPECT_THAT(accepted, HasSubstr("3 revisits confirm, 0 contradict"));
   EXPECT_THAT(accepted, Not(HasSubstr("score on the grid")));
   EXPECT_THAT(accepted, Not(HasSubstr("truth")));
-  const std::string refused = Describe(evidence[2]);
-  EXPECT_THAT(refused, HasSubstr("node (0, 4), refused"));
-  EXPECT_THAT(refused, HasSubstr("score on the grid 0.600"));
-  EXPECT_THAT(refused, HasSubstr("refused: low temporal score"));
-  EXPECT_THAT(refused, Not(HasSubstr("against the map")));
+  const std::string rejected = Describe(evidence[2]);
+  EXPECT_THAT(rejected, HasSubstr("node (0, 4), rejected"));
+  EXPECT_THAT(rejected, HasSubstr("score on the grid 0.600"));
+  EXPECT_THAT(rejected, HasSubstr("rejected: low temporal score"));
+  EXPECT_THAT(rejected, Not(HasSubstr("against the map")));
 }
 
 }  // namespace

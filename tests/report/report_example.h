@@ -53,7 +53,7 @@ inline ReportRun ExampleRun(const std::string& name, const std::string& style) {
   return run;
 }
 
-// A refused candidate and a skipped one, and the record of the first loop.
+// A rejected candidate and a skipped one, and the record of the first loop.
 inline evaluation::Rerun ExampleRerun() {
   evaluation::Rerun rerun;
   rerun.name = "ours";
@@ -72,16 +72,16 @@ inline evaluation::Rerun ExampleRerun() {
   accepted.mutable_fusion()->set_final_score(0.95);
   accepted.mutable_subset()->set_support(3);
   rerun.decisions.push_back(accepted);
-  proto::LoopDecision refused;
-  refused.set_submap_index(1);
-  refused.set_node_index(4);
-  refused.set_verdict(proto::LoopDecision::REJECTED);
-  refused.set_reason(proto::LoopDecision::LOW_TEMPORAL_SCORE);
-  refused.mutable_search()->set_grid_score(0.6);
-  refused.mutable_search()->mutable_refined()->set_x(7.);
-  refused.mutable_temporal()->set_score(0.2);
-  refused.mutable_temporal()->set_threshold(0.4);
-  rerun.decisions.push_back(refused);
+  proto::LoopDecision rejected;
+  rejected.set_submap_index(1);
+  rejected.set_node_index(4);
+  rejected.set_verdict(proto::LoopDecision::REJECTED);
+  rejected.set_reason(proto::LoopDecision::LOW_TEMPORAL_SCORE);
+  rejected.mutable_search()->set_grid_score(0.6);
+  rejected.mutable_search()->mutable_refined()->set_x(7.);
+  rejected.mutable_temporal()->set_score(0.2);
+  rejected.mutable_temporal()->set_threshold(0.4);
+  rerun.decisions.push_back(rejected);
   proto::LoopDecision skipped;
   skipped.set_node_index(1);
   skipped.set_verdict(proto::LoopDecision::REJECTED);

@@ -206,7 +206,7 @@ TEST_F(ReportTest, EvidenceOfRefusedCandidates) {
   EXPECT_FALSE(evidence.back().accepted);
   EXPECT_EQ(evidence.back().relative_pose.x, 3.);
   const std::string text = Describe(evidence.back());
-  EXPECT_THAT(text, HasSubstr("submap (0, 1) - node (0, 77), refused"));
+  EXPECT_THAT(text, HasSubstr("submap (0, 1) - node (0, 77), rejected"));
   EXPECT_THAT(text, HasSubstr("score on the grid 0.625"));
   EXPECT_THAT(text, HasSubstr("temporal score 0.500"));
   EXPECT_THAT(text, HasSubstr("contradicted"));

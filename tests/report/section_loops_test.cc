@@ -19,11 +19,11 @@ TEST(SectionLoopsTest, LinesByVerdict) {
   const std::string& html = page.str();
   EXPECT_THAT(html, HasSubstr("<h2 id=\"loops\">Loops</h2>"));
   EXPECT_EQ(test::Count(html, "<figure"), 2u);
-  // Two fine and one suspicious; then one of each and the refused candidate.
+  // Two fine and one suspicious; then one of each and the rejected candidate.
   EXPECT_EQ(test::Count(html, "class=\"loop s5\""), 3u);
   EXPECT_EQ(test::Count(html, "class=\"loop s2 bad\""), 2u);
   EXPECT_EQ(test::Count(html, "class=\"loop s6 bad\""), 1u);
-  EXPECT_EQ(test::Count(html, "candidate that was refused"), 1u);
+  EXPECT_EQ(test::Count(html, "rejected candidate"), 1u);
   EXPECT_THAT(html, Not(HasSubstr("right by truth")));
   EXPECT_THAT(html, Not(HasSubstr("th is drawn")));
 }
@@ -53,7 +53,7 @@ TEST(SectionLoopsTest, WhatBecameOfTheLoops) {
   EXPECT_THAT(html, HasSubstr("2 to 5 cm"));
   // Verdicts of the records.
   EXPECT_THAT(html, HasSubstr("accepted: confirmed by subset"));
-  EXPECT_THAT(html, HasSubstr("refused: low temporal score"));
+  EXPECT_THAT(html, HasSubstr("rejected: low temporal score"));
   EXPECT_THAT(html, HasSubstr("not searched: budget"));
   // The third stored loop has no record in the run.
   EXPECT_THAT(html, HasSubstr("not a candidate there"));

@@ -44,7 +44,7 @@ TEST(SectionScoresTest, FineAndSuspiciousLoopsStandOnEachOther) {
   EXPECT_THAT(html, HasSubstr(": 1 suspicious"));
   // Two loops lie where the map has them, in the first bar.
   EXPECT_THAT(html, HasSubstr("-3 to -2.89: 2 fine"));
-  EXPECT_THAT(html, Not(HasSubstr("refused or suspicious")));
+  EXPECT_THAT(html, Not(HasSubstr("rejected or suspicious")));
   EXPECT_THAT(html, Not(HasSubstr("nan")));
 }
 
@@ -56,7 +56,7 @@ TEST(SectionScoresTest, TheTwoScoresAgainstEachOther) {
   EXPECT_THAT(html, HasSubstr("Grid score against temporal score"));
   EXPECT_THAT(html, HasSubstr("submap (0, 0) - node (0, 2)"));
   EXPECT_THAT(html, HasSubstr("S_g 0.600, S_t 0.200"));
-  EXPECT_THAT(html, HasSubstr("refused or suspicious"));
+  EXPECT_THAT(html, HasSubstr("rejected or suspicious"));
   // No mixture was in force.
   EXPECT_THAT(html, Not(HasSubstr("ellipses")));
   auto* const parts = data.runs[1].rerun->decisions[0].mutable_fusion();

@@ -40,7 +40,7 @@ TEST(DriveTest, StraightLineTakesTheTrapezoidalTime) {
   EXPECT_EQ(end.speed, 0.);
   // 1 s after the start: v = a t, s = a t^2 / 2.
   EXPECT_NEAR(drive.At(1.).speed, 0.5, 1e-9);
-  EXPECT_NEAR(drive.At(1.).way, 0.25, 1e-9);
+  EXPECT_NEAR(drive.At(1.).distance, 0.25, 1e-9);
   EXPECT_NEAR(drive.At(5.).speed, 1., 1e-9);
 }
 
@@ -60,7 +60,7 @@ TEST(DriveTest, ReversesWithoutTurningRound) {
   EXPECT_NEAR(end.pose.x, 1., 0.05);
   EXPECT_NEAR(end.pose.theta, 0., 1e-6);
   EXPECT_NEAR(drive.length(), 5., 0.1);
-  EXPECT_NEAR(end.way, 1., 0.05);  // three forwards, two back
+  EXPECT_NEAR(end.distance, 1., 0.05);  // three forwards, two back
 }
 
 TEST(DriveTest, HairpinIsTurnedInPlace) {
@@ -101,7 +101,7 @@ TEST(DriveTest, IsConsistentWithItsRates) {
     ASSERT_NEAR(change.x, a.speed * step, 1e-7);
     ASSERT_NEAR(change.y, 0., 1e-7);
     ASSERT_NEAR(change.theta, a.turn_rate * step, 1e-7);
-    ASSERT_NEAR(b.way - a.way, a.speed * step, 1e-7);
+    ASSERT_NEAR(b.distance - a.distance, a.speed * step, 1e-7);
     ASSERT_NEAR(
         NormalizeAngle(b.heading - b.pose.theta -
                        2. * kPi *

@@ -155,7 +155,8 @@ TEST(OdometryFaultTest, SlipInATimeWindow) {
   const Recording run =
       Simulate(std::string(kStraightDrive) +
                "fault slip start=10 duration=2 left=0.5 right=0.5");
-  const double extra = 0.5 * (run.drive.At(12.).way - run.drive.At(10.).way);
+  const double extra =
+      0.5 * (run.drive.At(12.).distance - run.drive.At(10.).distance);
   EXPECT_NEAR(extra, 0.7, 0.01);
   EXPECT_NEAR(run.odometry.readings.back().pose.x, run.drive.length() + extra,
               0.03);
@@ -210,7 +211,7 @@ TEST(OdometryFaultTest, JumpMovesTheFrameForGood) {
   EXPECT_NEAR(Between(before, after).x, 0.8 + 0.035, 0.01);
   // Then it drives on in the new direction.
   EXPECT_NEAR(ReportedAt(run, 15.).y - after.y,
-              run.drive.At(15.).way - run.drive.At(10.).way, 1e-3);
+              run.drive.At(15.).distance - run.drive.At(10.).distance, 1e-3);
   ASSERT_EQ(run.odometry.labels.size(), 1);
   EXPECT_EQ(run.odometry.labels[0].distance, 0.8);
   EXPECT_NEAR(run.odometry.labels[0].end - run.odometry.labels[0].start, 0.05,

@@ -150,8 +150,9 @@ absl::StatusOr<TuneResult> Tune(const Case& c) {
   FakePool pool(c.workers, c.order);
   pool.hang_after = c.hang_after;
   pool.fail_below_score = c.fail_below_score;
-  Tuner tuner(*configuration, Parameters(), Objective(), Inputs(c.inputs),
-              Inputs({"held out"}), options, &pool, journal->get());
+  Tuner tuner({*configuration, Parameters(), Objective(), Inputs(c.inputs),
+               Inputs({"held out"})},
+              options, &pool, journal->get());
   auto result = tuner.Run();
   if (c.started != nullptr) *c.started = pool.started;
   return result;
@@ -304,12 +305,12 @@ TEST(TunerTest, FoldsLeaveEachRecordingOutOnce) {
   const auto result = Tune(c);
   ASSERT_TRUE(result.ok()) << result.status();
   ASSERT_EQ(result->folds.size(), 3u);
-  std::multiset<std::string> left_out;
+  std::multiset<std::string> held_out;
   for (const FoldResult& fold : result->folds) {
     EXPECT_LT(fold.after, fold.before);
-    left_out.insert(fold.left_out.begin(), fold.left_out.end());
+    held_out.insert(fold.held_out.begin(), fold.held_out.end());
   }
-  EXPECT_THAT(left_out, testing::UnorderedElementsAre("a1", "a2", "b1"));
+  EXPECT_THAT(held_out, testing::UnorderedElementsAre("a1", "a2", "b1"));
 }
 
 }  // namespace

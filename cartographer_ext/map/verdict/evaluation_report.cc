@@ -50,7 +50,7 @@ ordered_json OrNull(const absl::optional<double>& value) {
 ordered_json ToJson(const LoopStatistics& loops) {
   ordered_json json;
   json["accepted"] = loops.accepted;
-  // Which candidates were refused is not kept in a map, but beside it.
+  // A map does not store which candidates were rejected; its side file does.
   json["rejected"] = loops.rejected.value_or(0);
   json["rejected_is_known"] = loops.rejected.has_value();
   json["judged"] = loops.judged;

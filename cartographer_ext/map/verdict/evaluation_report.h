@@ -32,7 +32,7 @@ struct Evaluation {
 };
 
 struct Verdict {
-  // "sound", "doubtful", "broken", or "unknown" where nothing tells.
+  // "sound", "doubtful", "broken", or "unknown" without any evidence.
   std::string word;
   // Each a sentence without full stop.
   std::vector<std::string> reasons;

@@ -237,7 +237,7 @@ LoopStatistics ComputeLoopStatistics(const MapGraph& graph,
   const auto truth =
       [&](const GraphConstraint& constraint) -> absl::optional<TrueRelation> {
     // The inserted node nearest to where the loop puts its node: the shorter
-    // the way between them, the less local drift enters.
+    // the path between them, the less local drift enters.
     const Pose2 submap_local =
         graph.submaps.at(constraint.submap_id).local_pose;
     const Eigen::Vector2d claimed =

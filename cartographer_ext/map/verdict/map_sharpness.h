@@ -12,7 +12,7 @@
 //   deviation across it, which is the root of the smaller eigenvalue of S.
 //
 // Both depend on the place (bushes are thicker than walls). The same thickness
-// from returns of one visit only tells what the place and the laser do; what
+// from returns of one visit only reflects the place and the laser; what
 // the map adds on top is the doubling of walls by visits that do not agree.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_MAP_SHARPNESS_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_MAP_SHARPNESS_H_

@@ -68,7 +68,7 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result) {
     absl::StrAppendFormat(
         &sentence, "%slocal SLAM %s %.1f s after the start (stamp %.1f), at %s",
         sentence.empty() ? "" : "; ",
-        sentence.empty() ? "may have lost its way" : "probably lost its way",
+        sentence.empty() ? "may have lost track" : "probably lost track",
         io::ToSeconds(step.time - start), io::ToSeconds(step.time),
         Place(graph.nodes.at(step.node_id).global_pose.translation()));
   }

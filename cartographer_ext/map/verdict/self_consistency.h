@@ -4,7 +4,7 @@
 // Is a map right, without any truth? A map that is wrong somewhere nearly
 // always contradicts itself: scans of one visit lie across walls of another,
 // walls are doubled, loops do not agree, local SLAM turned where the wheels did
-// not. None of it is proof, and a map can be wrong in ways that leave no trace
+// not. None of it is proof, and a map can be wrong without leaving a trace
 // (a corridor of the wrong length that was driven once); "sound" means that
 // nothing speaks against the map.
 //
