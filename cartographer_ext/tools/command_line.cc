@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <numeric>
+#include <system_error>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -21,6 +23,11 @@
 namespace cartographer_ext {
 namespace tools {
 namespace {
+
+// Every folder with our Lua files has it.
+constexpr char kOursBasename[] = "cartographer_ext.lua";
+// Folders above the program in which these are looked for.
+constexpr int kMaxParents = 4;
 
 std::string* MutableProgramName() {
   static std::string* const name = new std::string("cartographer_ext");
@@ -78,6 +85,12 @@ void PrintWrapped(const std::string& text, const std::string& indent) {
     absl::StrAppend(&line, word);
   }
   std::cout << line << "\n";
+}
+
+[[noreturn]] void PrintVersionAndExit() {
+  std::cout << ProgramName() << " " << CARTOGRAPHER_EXT_VERSION << "\n";
+  std::cout.flush();
+  std::exit(kExitSuccess);
 }
 
 [[noreturn]] void PrintHelpAndExit(const std::string& description) {
@@ -163,6 +176,7 @@ void CommandLine::Parse(const int argc, char** const argv) {
     if (name == "help" || name == "h" || name == "helpshort") {
       PrintHelpAndExit(description_);
     }
+    if (name == "version") PrintVersionAndExit();
     if (equals != std::string::npos && IsKnown(name)) {
       SetFlag(name, argument.substr(equals + 1));
     } else if (IsBool(name)) {
@@ -190,6 +204,32 @@ std::string BaseName(const std::string& path) {
 }
 
 const std::string& ProgramName() { return *MutableProgramName(); }
+
+std::vector<std::string> ConfigurationDirectories(const std::string& flag) {
+  if (!flag.empty()) return absl::StrSplit(flag, ',', absl::SkipEmpty());
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return {ConfigurationDirectoryOf(program.string())};
+}
+
+std::string ConfigurationDirectoryOf(const std::string& program) {
+  const auto is_ours = [](const std::filesystem::path& folder) {
+    std::error_code error;
+    return std::filesystem::exists(folder / kOursBasename, error);
+  };
+  std::filesystem::path parent = std::filesystem::path(program).parent_path();
+  for (int i = 0; i < kMaxParents && parent.has_relative_path(); ++i) {
+    parent = parent.parent_path();
+    for (const char* name :
+         {"configuration_files", "share/cartographer/configuration_files"}) {
+      if (is_ours(parent / name)) return (parent / name).string();
+    }
+  }
+  if (is_ours(CARTOGRAPHER_EXT_CONFIGURATION_FILES)) {
+    return CARTOGRAPHER_EXT_CONFIGURATION_FILES;
+  }
+  return "configuration_files";
+}
 
 int UsageError(const std::string& message) {
   std::cerr << ProgramName() << ": " << message << "\n"

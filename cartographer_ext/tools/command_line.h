@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the commands share: how flags are read, errors are reported and results are
-// written. Exit codes: 0 success, 1 bad input, 2 wrong usage.
+// What the commands share: how flags are read, errors are reported and results
+// are written. Exit codes: 0 success, 1 bad input, 2 wrong usage.
 //
 //   DEFINE_string(input_filename, "", "what to read");
 //   int main(int argc, char** argv) {
@@ -32,7 +32,8 @@ constexpr int kExitUsage = 2;
 // Sets the gflags of a command. `-flag value`, `-flag=value` with one or two
 // dashes, `-flag` and `-noflag` for booleans. Unknown flags, bad values and
 // other arguments end the program with exit code 2 and a hint; -help prints the
-// description and the command's own flags and ends it with 0. Starts the log,
+// description and the command's own flags and ends it with 0, -version the
+// version. Starts the log,
 // which shows errors only unless -minloglevel is given. With `-json -` nothing
 // but the JSON of WriteJson reaches standard output.
 class CommandLine {
@@ -56,6 +57,15 @@ int UsageError(const std::string& message);
 
 // kExitSuccess, or prints the message and returns kExitBadInput.
 int ExitCode(const absl::Status& status);
+
+// The folders of a flag, comma separated. For an empty one the folder with our
+// Lua files that belongs to this program, wherever it is called from: that
+// above it (a build inside the sources, an installation), else that of the
+// sources it was built from, else configuration_files.
+std::vector<std::string> ConfigurationDirectories(const std::string& flag);
+
+// The same for a program with this path.
+std::string ConfigurationDirectoryOf(const std::string& program);
 
 // Finds out at the start, rather than after an hour's work, that an output
 // cannot be written. Empty names and "-" are fine.

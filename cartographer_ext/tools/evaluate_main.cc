@@ -61,9 +61,8 @@ DEFINE_string(rerun_configuration_directory, "",
               "Folders with Lua files, comma separated. Given, the pose graph "
               "of the map is run again, with stock's options and with ours.");
 DEFINE_string(rerun_configuration_basename, "",
-              "Lua file whose pose graph options are used. Stock is the same "
-              "file without blocks of ours; without a file, stock.lua is "
-              "assumed.");
+              "Lua file whose pose graph options are used; default.lua when "
+              "none is named. Stock is the same file without blocks of ours.");
 DEFINE_string(rerun_stock_configuration_basename, "",
               "Lua file for stock, where that is another one.");
 DEFINE_bool(rerun_follow_recording, true,
@@ -102,10 +101,11 @@ constexpr char kDescription[] =
       -reference_trajectory_filename=truth.tum -json=-
   cartographer_ext_evaluate -pbstream_filename=map.pbstream
       -rerun_configuration_directory=configuration_files
-      -rerun_configuration_basename=default.lua -report_filename=map.html
+      -report_filename=map.html
 
-Without truth the map is held against itself: scans against what other visits
-mapped, loops against each other, local SLAM against odometry. The relations metric is that of Cartographer's compute_relations_metrics; relations
+Without ground truth the map is checked for consistency: scans against what
+other visits mapped, loops against each other, local SLAM against odometry. The
+relations metric is that of Cartographer's compute_relations_metrics; relations
 more than a minute apart close loops and are listed on their own, because a
 folded map looks fine on the others.)";
 
@@ -233,10 +233,17 @@ absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data,
   runs.evaluation = EvaluationOptions(inputs.graph);
   runs.rerun.num_background_threads = FLAGS_num_background_threads;
   runs.rerun.follow_recording = FLAGS_rerun_follow_recording;
+  std::vector<std::string> directories =
+      absl::StrSplit(FLAGS_rerun_configuration_directory, ',');
+  std::string basename = FLAGS_rerun_configuration_basename;
+  if (basename.empty()) {
+    basename = "default.lua";
+    // The given folders may hold files of the user only.
+    directories.push_back(tools::ConfigurationDirectories("").front());
+  }
   const auto configuration = evaluation::LoadRerunConfiguration(
-      absl::StrSplit(FLAGS_rerun_configuration_directory, ','),
-      FLAGS_rerun_configuration_basename,
-      FLAGS_rerun_stock_configuration_basename, inputs.graph);
+      directories, basename, FLAGS_rerun_stock_configuration_basename,
+      inputs.graph);
   if (!configuration.ok()) return configuration.status();
   Progress progress("running again", 0);
   runs.rerun.on_progress = [&progress](const int64_t nodes,

@@ -35,8 +35,9 @@ DEFINE_string(input_filename, "",
 DEFINE_string(pbstream_filename, "",
               "Instead of a recording: a finished map with the decision "
               "records of its making beside it (<stem>.loops.pb).");
-DEFINE_string(configuration_directory, "configuration_files",
-              "Where Lua files are searched, comma separated.");
+DEFINE_string(configuration_directory, "",
+              "Where Lua files are searched, comma separated. Empty: the files "
+              "that came with this command.");
 DEFINE_string(configuration_basename, "default.lua",
               "Configuration with our loop closure.");
 DEFINE_string(stock_configuration_basename, "stock.lua",
@@ -107,7 +108,7 @@ LoopStatistics JudgeLoops(const evaluation::MapGraph& graph,
 
 absl::StatusOr<evaluation::SlamRun> RunWith(const std::string& basename) {
   const std::vector<std::string> directories =
-      absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+      tools::ConfigurationDirectories(FLAGS_configuration_directory);
   const auto configuration =
       evaluation::LoadSlamConfiguration(directories, basename);
   if (!configuration.ok()) return configuration.status();

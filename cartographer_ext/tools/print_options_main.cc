@@ -16,9 +16,10 @@
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 
-DEFINE_string(configuration_directory, "configuration_files",
+DEFINE_string(configuration_directory, "",
               "Folders of the configuration file and of what it includes, "
-              "separated by commas.");
+              "separated by commas. Empty: the files that came with this "
+              "command.");
 DEFINE_string(configuration_basename, "",
               "Configuration file; none: every option with its default.");
 DEFINE_string(format, "text", "text, markdown or lua.");
@@ -40,7 +41,7 @@ int Run() {
   const bool has_configuration = !FLAGS_configuration_basename.empty();
   if (has_configuration) {
     const std::vector<std::string> directories =
-        absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+        tools::ConfigurationDirectories(FLAGS_configuration_directory);
     absl::StatusOr<evaluation::SlamConfiguration> loaded =
         evaluation::LoadSlamConfiguration(directories,
                                           FLAGS_configuration_basename);

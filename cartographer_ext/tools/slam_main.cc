@@ -44,10 +44,10 @@
 DEFINE_string(input_filename, "",
               "Recording: CARMEN log (.clf .log, also .gz .xz .bz2), ROS 1 bag "
               "(.bag) or world file (.world).");
-DEFINE_string(configuration_directory, "configuration_files",
+DEFINE_string(configuration_directory, "",
               "Where Lua files are searched, comma separated; the first that "
-              "has a file wins.");
-DEFINE_string(configuration_basename, "stock.lua",
+              "has a file wins. Empty: the files that came with this command.");
+DEFINE_string(configuration_basename, "default.lua",
               "Lua file that returns map_builder and trajectory_builder.");
 DEFINE_string(pbstream_filename, "", "Output: the map with everything in it.");
 DEFINE_string(map_filestem, "",
@@ -115,8 +115,8 @@ constexpr char kDescription[] =
       -map_filestem=run -picture_filename=run.png -trajectory_filename=run.tum
 
 The configuration is Cartographer's Lua (-configuration_directory,
--configuration_basename); stock.lua holds Cartographer's own values. Judge the
-result with cartographer_ext_evaluate.
+-configuration_basename): default.lua by default, stock.lua has Cartographer's
+own values and no block of ours. Judge the result with cartographer_ext_evaluate.
 
 Localise in a map that is finished (the pose of every scan as it was known then,
 judged by cartographer_ext_evaluate_localization):
@@ -352,7 +352,7 @@ absl::Status Run() {
   if (!writable.ok()) return writable;
 
   const std::vector<std::string> directories =
-      absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+      tools::ConfigurationDirectories(FLAGS_configuration_directory);
   auto configuration = evaluation::LoadSlamConfiguration(
       directories, FLAGS_configuration_basename);
   if (!configuration.ok()) return configuration.status();

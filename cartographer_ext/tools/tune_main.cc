@@ -33,9 +33,9 @@
 DEFINE_string(search_filename, "",
               "Lua file that says which keys to search and where; see "
               "docs/tuning.md.");
-DEFINE_string(configuration_directory, "configuration_files",
+DEFINE_string(configuration_directory, "",
               "Where Lua files are searched, comma separated; the first that "
-              "has a file wins.");
+              "has a file wins. Empty: the files that came with this command.");
 DEFINE_string(configuration_basename, "",
               "Configuration to start from. Empty: as the search file says, "
               "else stock.lua.");
@@ -210,7 +210,7 @@ absl::Status Run(const tuning::MpiSession& session) {
   auto setup = ReadSetup();
   if (!setup.ok()) return setup.status();
   auto configuration = tuning::BaseConfiguration::Load(
-      absl::StrSplit(FLAGS_configuration_directory, ','),
+      tools::ConfigurationDirectories(FLAGS_configuration_directory),
       setup->spec.configuration);
   if (!configuration.ok()) return configuration.status();
   const absl::Status checked =

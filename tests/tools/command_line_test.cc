@@ -3,6 +3,7 @@
 #include "cartographer_ext/tools/command_line.h"
 
 #include <cmath>
+#include <filesystem>
 #include <vector>
 
 #include "gflags/gflags.h"
@@ -67,6 +68,31 @@ TEST(CommandLineTest, RefusesWhatItDoesNotKnow) {
   ParseAndFail({"-"}, "what is \"-\"");
   ParseAndFail({"-test_number", "many"}, "-test_number cannot be \"many\"");
   ParseAndFail({"-test_number"}, "-test_number needs a value");
+}
+
+TEST(CommandLineTest, PrintsItsVersion) {
+  EXPECT_EXIT(Parse({"--version"}), testing::ExitedWithCode(0), "");
+}
+
+TEST(CommandLineTest, FindsTheConfigurationFromTheProgram) {
+  EXPECT_THAT(ConfigurationDirectories("a,b"), testing::ElementsAre("a", "b"));
+  const test::TemporaryFolder folder;
+  const auto make = [&](const std::string& files) {
+    std::filesystem::create_directories(folder / files);
+    test::WriteFile(folder / files + "/cartographer_ext.lua", "");
+    return folder / files;
+  };
+  const std::string installed =
+      make("prefix/share/cartographer/configuration_files");
+  EXPECT_EQ(ConfigurationDirectoryOf(folder / "prefix/bin/command"), installed);
+  const std::string sources = make("sources/configuration_files");
+  EXPECT_EQ(ConfigurationDirectoryOf(folder / "sources/build/x/bin/command"),
+            sources);
+  // Elsewhere those of the sources it was built from.
+  EXPECT_THAT(ConfigurationDirectoryOf("/nowhere/command"),
+              testing::EndsWith("configuration_files"));
+  std::filesystem::remove_all(folder / "prefix");
+  std::filesystem::remove_all(folder / "sources");
 }
 
 TEST(CommandLineTest, StatusBecomesExitCode) {

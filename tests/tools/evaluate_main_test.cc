@@ -100,7 +100,6 @@ TEST_F(EvaluateMainTest, RunsAgainAndReports) {
   const CommandResult result = RunCommand(
       "evaluate", {"-pbstream_filename", File("room.pbstream"),
                    "-rerun_configuration_directory", "configuration_files",
-                   "-rerun_configuration_basename", "default.lua",
                    "-report_filename", File("room.html"), "-json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   const auto json = ParseJson(result.out);

@@ -133,10 +133,10 @@ inline void WriteRoomLog(const std::string& filename, int num_scans) {
 // A map of that log and the trajectory at every scan.
 inline void WriteRoomMap(const TemporaryFolder& folder, int num_scans) {
   WriteRoomLog(folder / "room.clf", num_scans);
-  const CommandResult result =
-      RunCommand("slam", {"-input_filename", folder / "room.clf",
-                          "-pbstream_filename", folder / "room.pbstream",
-                          "-trajectory_filename", folder / "room.tum"});
+  const CommandResult result = RunCommand(
+      "slam", {"-input_filename", folder / "room.clf", "-pbstream_filename",
+               folder / "room.pbstream", "-configuration_basename", "stock.lua",
+               "-trajectory_filename", folder / "room.tum"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
 }
 

@@ -18,12 +18,13 @@ TEST(SlamMainTest, WritesMapTrajectoriesAndNumbers) {
   const TemporaryFolder folder;
   WriteRoomLog(folder / "room.clf", 250);
   const CommandResult result = RunCommand(
-      "slam", {"--input_filename=" + folder / "room.clf", "-pbstream_filename",
-               folder / "map.pbstream", "-map_filestem", folder / "map",
-               "-picture_filename", folder / "map.png", "-trajectory_filename",
-               folder / "global.tum", "-local_trajectory_filename",
-               folder / "local.tum", "-decisions_filename",
-               folder / "decisions.csv", "-json", folder / "slam.json"});
+      "slam",
+      {"--input_filename=" + folder / "room.clf", "-pbstream_filename",
+       folder / "map.pbstream", "-map_filestem", folder / "map",
+       "-picture_filename", folder / "map.png", "-trajectory_filename",
+       folder / "global.tum", "-local_trajectory_filename",
+       folder / "local.tum", "-decisions_filename", folder / "decisions.csv",
+       "-configuration_basename", "stock.lua", "-json", folder / "slam.json"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.out, HasSubstr("250 scans"));
   EXPECT_THAT(result.error, IsEmpty());
@@ -50,10 +51,22 @@ TEST(SlamMainTest, WritesMapTrajectoriesAndNumbers) {
   EXPECT_GE(std::count(trajectory.begin(), trajectory.end(), '\n'), 249);
 }
 
+TEST(SlamMainTest, OursByDefaultFromAnyFolder) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 60);
+  const CommandResult result =
+      RunCommand("slam", {"-input_filename", folder / "room.clf",
+                          "-pbstream_filename", folder / "map.pbstream"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  // The records of our local SLAM.
+  EXPECT_THAT(folder.Names(), testing::Contains("map.nodes.csv"));
+}
+
 TEST(SlamMainTest, LocalizesInAMap) {
   const TemporaryFolder folder;
   WriteRoomLog(folder / "room.clf", 300);
   ASSERT_EQ(RunCommand("slam", {"-input_filename", folder / "room.clf",
+                                "-configuration_basename", "stock.lua",
                                 "-pbstream_filename", folder / "map.pbstream"})
                 .exit_code,
             0);
