@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/experiments/robustness_report.h"
+
+#include <algorithm>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace experiments {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+SweepRun Run(const std::string& kernel, const double cpu_seconds,
+             const double ate) {
+  SweepRun run;
+  run.dataset = "intel";
+  run.kernel = kernel;
+  run.type = "R";
+  run.count = 1000;
+  run.cpu_seconds = cpu_seconds;
+  run.ate = ate;
+  run.recall = 1.;
+  run.precision = 1.;
+  run.converged = true;
+  run.success = ate < 0.01;
+  return run;
+}
+
+TEST(RobustnessReportTest, CellsAreMediansOverSeeds) {
+  const auto cells = Summarize({Run("acs", 1., 0.002), Run("sc", 9., 0.5),
+                                Run("acs", 3., 0.03), Run("acs", 2., 0.001)});
+  ASSERT_EQ(cells.size(), 2u);
+  EXPECT_EQ(cells[0].kernel, "acs");
+  EXPECT_EQ(cells[0].runs, 3);
+  EXPECT_EQ(cells[0].cpu_seconds, 2.);
+  EXPECT_EQ(cells[0].ate, 0.002);
+  EXPECT_EQ(cells[0].ate_largest, 0.03);
+  EXPECT_NEAR(cells[0].success_rate, 2. / 3., 1e-12);
+  EXPECT_EQ(cells[1].kernel, "sc");
+  EXPECT_EQ(cells[1].success_rate, 0.);
+}
+
+TEST(RobustnessReportTest, TableHasOneLinePerCell) {
+  const std::string table =
+      SweepTable(Summarize({Run("acs", 1., 0.002), Run("sc", 9., 0.5)}));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+  EXPECT_THAT(table, HasSubstr("0.0020"));
+  EXPECT_THAT(table, HasSubstr("100%"));
+}
+
+TEST(RobustnessReportTest, ComparesWithThePaper) {
+  PrintedRow row;
+  row.dataset = "intel";
+  row.type = "R";
+  row.count = 1000;
+  row.baseline = 4.;
+  row.method = 2.;
+  PrintedRow other = row;
+  other.type = "LG";
+  std::vector<SweepRun> runs = {Run("acs", 1., 0.), Run("sc", 9., 0.)};
+  std::string table = PrintedComparison(Summarize(runs), {row, other}, "acs");
+  // Nothing was run for the other row.
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2);
+  EXPECT_THAT(table, HasSubstr("9x"));
+  EXPECT_THAT(table, HasSubstr("2x"));
+  EXPECT_THAT(table, Not(HasSubstr(">")));
+  // A run that was stopped gives a lower bound only.
+  runs[1].converged = false;
+  table = PrintedComparison(Summarize(runs), {row}, "acs");
+  EXPECT_THAT(table, HasSubstr(">9"));
+}
+
+TEST(RobustnessReportTest, JsonHasRunsAndCells) {
+  const auto json = SweepJson({Run("acs", 1., 0.002), Run("acs", 3., 0.004)});
+  EXPECT_EQ(json["runs"].size(), 2u);
+  EXPECT_EQ(json["cells"].size(), 1u);
+}
+
+}  // namespace
+}  // namespace experiments
+}  // namespace cartographer_ext
