@@ -17,7 +17,7 @@
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
 
-DEFINE_string(pbstream_filename, "", "Map to look into.");
+DEFINE_string(pbstream_filename, "", "Map to inspect.");
 DEFINE_string(other_pbstream_filename, "",
               "Second map, to be compared with the first.");
 DEFINE_int32(max_problems, 100, "At most so many problems are listed.");
@@ -29,7 +29,7 @@ namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Tells what a .pbstream holds and whether it is whole; compares two of them.
+    R"(Lists the contents of a .pbstream and checks them; compares two of them.
 
   cartographer_ext_dump -pbstream_filename=map.pbstream
   cartographer_ext_dump -pbstream_filename=a.pbstream

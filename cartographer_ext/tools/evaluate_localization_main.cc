@@ -26,20 +26,22 @@ DEFINE_string(trajectory_filename, "",
               "-online_trajectory_filename of cartographer_ext_slam.");
 DEFINE_string(reference_trajectory_filename, "", "True trajectory (TUM).");
 DEFINE_string(map_trajectory_filename, "",
-              "Trajectory of the run that made the map (TUM), to lay the map "
-              "over the truth. Without it both are in one frame.");
+              "Trajectory of the run that made the map (TUM), to align the map "
+              "with the ground truth. Without it both are in one frame.");
 DEFINE_string(map_reference_trajectory_filename, "",
               "The true trajectory of that run (TUM).");
 DEFINE_double(translation_tolerance, 0.3,
-              "Metres within which the robot knows its place.");
+              "Metres within which a pose counts as right.");
 DEFINE_double(rotation_tolerance, 5., "Degrees, likewise.");
-DEFINE_double(hold_seconds, 10.,
-              "It has to know its place for so long to count as localised.");
-DEFINE_double(jump_distance, 0.5,
-              "Metres by which the reported pose moves against the truth from "
-              "one scan to the next to count as a jump.");
+DEFINE_double(
+    hold_seconds, 10.,
+    "Seconds of right poses after which the robot counts as localised.");
+DEFINE_double(
+    jump_distance, 0.5,
+    "Metres by which the reported pose moves against ground truth from "
+    "one scan to the next to count as a jump.");
 DEFINE_double(carried_distance, 1.,
-              "Metres between two scans beyond which the robot was carried.");
+              "Metres between two scans beyond which the robot was kidnapped.");
 DEFINE_double(stamp_tolerance, 0.001,
               "Seconds within which stamps are the same scan.");
 DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
@@ -48,8 +50,8 @@ namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Judges localisation in a finished map: time until the robot knew where it was,
-jumps of the reported pose, wrong places.
+    R"(Evaluates localisation in a finished map: time until localised, jumps of the
+reported pose, wrong places.
 
   cartographer_ext_slam -input_filename=later.clf -load_state_filename=map.pbstream
       -configuration_basename=localization.lua -online_trajectory_filename=later.tum
@@ -57,8 +59,8 @@ jumps of the reported pose, wrong places.
       -reference_trajectory_filename=truth.tum
       -map_trajectory_filename=map.tum -map_reference_trajectory_filename=map_truth.tum
 
-A robot that was carried away (its true pose moves by more than -carried_distance
-between two scans) begins a new stretch, in which it has to find its place again.)";
+A kidnapped robot (its true pose moves by more than -carried_distance between two
+scans) starts a new segment, in which it has to localise again.)";
 
 absl::StatusOr<evaluation::Trajectory> Read(const std::string& filename) {
   auto poses = io::ReadTumTrajectory(filename);

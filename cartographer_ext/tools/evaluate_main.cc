@@ -46,14 +46,14 @@ DEFINE_string(relations_filename, "",
               "Reference relations: t1 t2 x y z roll pitch yaw a line.");
 DEFINE_string(reference_trajectory_filename, "", "Reference trajectory (TUM).");
 DEFINE_int32(trajectory_id, -1,
-             "Which trajectory of the map is compared with the truth; -1 is "
+             "Which trajectory of the map is compared with ground truth; -1 is "
              "the first that has nodes.");
 DEFINE_double(stamp_tolerance, 0.001,
               "Seconds within which stamps are the same scan.");
 DEFINE_double(rpe_distance, 1.,
               "Length in metres of the stretches of the relative error.");
 DEFINE_double(loop_tolerance, 0.5,
-              "Metres that a loop may be off the truth to count as right.");
+              "Largest error in metres of a loop that counts as right.");
 DEFINE_bool(self_consistency, true,
             "Hold the scans, loops and odometry of the map against each other; "
             "takes some seconds.");

@@ -50,7 +50,7 @@ DEFINE_string(map_filestem, "",
               "and nav2 read it.");
 DEFINE_double(resolution, 0.05, "Metres a cell of that map.");
 DEFINE_string(nodes_filename, "",
-              "Marks in the picture what local SLAM was not sure of: the "
+              "Marks degenerate nodes and odometry faults in the picture: the "
               ".nodes.pb that cartographer_ext_slam has written. Empty: the "
               "one beside the map, if there is one.");
 DEFINE_string(picture_filename, "",
@@ -62,7 +62,7 @@ namespace {
 constexpr size_t kMaxTableBytes = size_t{100} << 20;
 
 constexpr char kDescription[] =
-    R"(Gets trajectory, graph, constraints and map out of a .pbstream, without ROS.
+    R"(Exports trajectory, graph, constraints and map of a .pbstream, without ROS.
 
   cartographer_ext_export -pbstream_filename=map.pbstream
       -trajectory_filename=map.tum -g2o_filename=map.g2o

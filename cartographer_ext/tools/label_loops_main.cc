@@ -48,7 +48,7 @@ DEFINE_string(
     reference_trajectory_filename, "",
     "Truth: trajectory (TUM), for example a carefully optimised one.");
 DEFINE_double(loop_tolerance, 0.5,
-              "Metres that a loop may be off the truth to count as true.");
+              "Largest error in metres of a loop that counts as true.");
 DEFINE_double(stamp_tolerance, 0.001,
               "Seconds within which stamps are the same scan.");
 DEFINE_int32(num_background_threads, 0,

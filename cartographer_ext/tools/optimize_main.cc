@@ -58,7 +58,7 @@ DEFINE_int32(wrong_loops, 0,
 DEFINE_uint64(wrong_loops_seed, 1, "Chooses them.");
 DEFINE_double(loop_sigma, 0.1,
               "pbstream: standard deviation in metres that the loops' weights "
-              "stand for.");
+              "represent.");
 DEFINE_string(truth_filename, "",
               "True poses: g2o, or lines x y theta; compared by id, or along "
               "the path where ids do not agree.");

@@ -58,7 +58,7 @@ DEFINE_double(max_seconds, 1e9,
               "Limit of the processor time of one solution by sc or gnc_tls.");
 DEFINE_string(journal_filename, "",
               "Every finished run is added here at once; a sweep started again "
-              "with the same journal leaves out what it holds.");
+              "with the same journal skips what it holds.");
 DEFINE_string(picture_filename, "", "PNG: ATE over the number of outliers.");
 DEFINE_string(json, "", "Writes all runs as JSON; - is standard output.");
 

@@ -30,7 +30,7 @@ DEFINE_uint64(seed, 0,
               "Chooses noise, biases, obstacle phases and random faults. The "
               "same world and seed always give the same files.");
 DEFINE_string(output_filestem, "",
-              "Writes <stem>.clf (log), .tum (true pose of every scan), "
+              "Writes <stem>.clf (log), .tum (ground truth at every scan), "
               ".relations (true relative poses), .loops.csv, .places.csv, "
               ".distances.csv, .faults.csv and .truth.pgm/.yaml.");
 DEFINE_bool(carmen, true, "Write the CARMEN log <stem>.clf.");
@@ -52,13 +52,13 @@ namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Simulates a robot with a laser, wheel odometry and an IMU, and knows the truth.
+    R"(Simulates a robot with a laser, wheel odometry and an IMU, with ground truth.
 
 Look at a world before using it:
   cartographer_ext_simulate
       -world_filename=configuration_files/worlds/ri_corridor.world
       -picture_filename=/tmp/ri.png
-Make a log with its truth, then map and judge it:
+Make a log with ground truth, then map and evaluate it:
   cartographer_ext_simulate
       -world_filename=configuration_files/worlds/ri_corridor.world
       -seed=3 -output_filestem=/tmp/ri
@@ -66,7 +66,7 @@ Make a log with its truth, then map and judge it:
   cartographer_ext_evaluate -pbstream_filename=/tmp/ri.pbstream
       -relations_filename=/tmp/ri.relations
       -reference_trajectory_filename=/tmp/ri.tum
-Give the odometry something to fail at:
+Add odometry faults:
   ... -odometry_faults=stale:3,jump:2,slip:2,offset:0.12
 
 The format of worlds and of the files written: docs/world_format.md.)";
