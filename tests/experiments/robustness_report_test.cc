@@ -14,8 +14,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-SweepRun Run(const std::string& kernel, const double cpu_seconds,
-             const double ate) {
+SweepRun MakeRun(const std::string& kernel, const double cpu_seconds,
+                 const double ate) {
   SweepRun run;
   run.dataset = "intel";
   run.kernel = kernel;
@@ -31,8 +31,9 @@ SweepRun Run(const std::string& kernel, const double cpu_seconds,
 }
 
 TEST(RobustnessReportTest, CellsAreMediansOverSeeds) {
-  const auto cells = Summarize({Run("acs", 1., 0.002), Run("sc", 9., 0.5),
-                                Run("acs", 3., 0.03), Run("acs", 2., 0.001)});
+  const auto cells =
+      Summarize({MakeRun("acs", 1., 0.002), MakeRun("sc", 9., 0.5),
+                 MakeRun("acs", 3., 0.03), MakeRun("acs", 2., 0.001)});
   ASSERT_EQ(cells.size(), 2u);
   EXPECT_EQ(cells[0].kernel, "acs");
   EXPECT_EQ(cells[0].runs, 3);
@@ -45,8 +46,8 @@ TEST(RobustnessReportTest, CellsAreMediansOverSeeds) {
 }
 
 TEST(RobustnessReportTest, TableHasOneLinePerCell) {
-  const std::string table =
-      SweepTable(Summarize({Run("acs", 1., 0.002), Run("sc", 9., 0.5)}));
+  const std::string table = SweepTable(
+      Summarize({MakeRun("acs", 1., 0.002), MakeRun("sc", 9., 0.5)}));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
   EXPECT_THAT(table, HasSubstr("0.0020"));
   EXPECT_THAT(table, HasSubstr("100%"));
@@ -61,7 +62,7 @@ TEST(RobustnessReportTest, ComparesWithThePaper) {
   row.method = 2.;
   PrintedRow other = row;
   other.type = "LG";
-  std::vector<SweepRun> runs = {Run("acs", 1., 0.), Run("sc", 9., 0.)};
+  std::vector<SweepRun> runs = {MakeRun("acs", 1., 0.), MakeRun("sc", 9., 0.)};
   std::string table = PrintedComparison(Summarize(runs), {row, other}, "acs");
   // Nothing was run for the other row.
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2);
@@ -75,7 +76,8 @@ TEST(RobustnessReportTest, ComparesWithThePaper) {
 }
 
 TEST(RobustnessReportTest, JsonHasRunsAndCells) {
-  const auto json = SweepJson({Run("acs", 1., 0.002), Run("acs", 3., 0.004)});
+  const auto json =
+      SweepJson({MakeRun("acs", 1., 0.002), MakeRun("acs", 3., 0.004)});
   EXPECT_EQ(json["runs"].size(), 2u);
   EXPECT_EQ(json["cells"].size(), 1u);
 }
