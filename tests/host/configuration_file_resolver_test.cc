@@ -36,7 +36,7 @@ using ConfigurationFileResolverDeathTest = ConfigurationFileResolverTest;
 TEST_F(ConfigurationFileResolverDeathTest, NamesMissingFileAndDirectories) {
   ConfigurationFileResolver resolver({"/nonexistent", directory_});
   EXPECT_DEATH(resolver.GetFullPathOrDie("absent.lua"),
-               "File 'absent.lua' was not found in: /nonexistent");
+               "has a file 'absent.lua': /nonexistent");
   EXPECT_DEATH(resolver.GetFileContentOrDie(""), "empty");
 }
 

@@ -32,28 +32,6 @@ TEST(SearchParametersTest, NearPointsCountAsThreeCells) {
               0.999 * std::acos(1. - 1. / 18.), 1e-6);
 }
 
-TEST(SearchParametersTest, ShrinksToWhereThePointsCanBe) {
-  SearchParameters parameters(10, 0, 0.1, 1.);
-  // One scan at (2, 3) to (4, 3) in a grid of 6 by 8 cells.
-  parameters.ShrinkToFit({{Eigen::Array2i(2, 3), Eigen::Array2i(4, 3)}},
-                         CellLimits(6, 8));
-  const SearchParameters::LinearBounds& bounds = parameters.linear_bounds[0];
-  EXPECT_EQ(bounds.min_x, -4);
-  EXPECT_EQ(bounds.max_x, 3);
-  EXPECT_EQ(bounds.min_y, -3);
-  EXPECT_EQ(bounds.max_y, 4);
-}
-
-TEST(SearchParametersTest, TheInitialPositionStaysIn) {
-  SearchParameters parameters(2, 0, 0.1, 1.);
-  parameters.ShrinkToFit({{Eigen::Array2i(-50, 90)}}, CellLimits(6, 8));
-  const SearchParameters::LinearBounds& bounds = parameters.linear_bounds[0];
-  EXPECT_EQ(bounds.min_x, 0);
-  EXPECT_EQ(bounds.max_x, 2);
-  EXPECT_EQ(bounds.min_y, -2);
-  EXPECT_EQ(bounds.max_y, 0);
-}
-
 TEST(CandidateTest, OffsetsRunAgainstTheWorldAxes) {
   const SearchParameters parameters(5, 5, 0.03, 0.05);
   const Candidate2D candidate(3, 4, -5, parameters);

@@ -143,10 +143,10 @@ using OrderedMultiQueueDeathTest = OrderedMultiQueueTest;
 TEST_F(OrderedMultiQueueDeathTest, Misuse) {
   AddQueue(0, "a");
   EXPECT_DEATH(AddQueue(0, "a"), "exists");
-  EXPECT_DEATH(queue_.MarkQueueAsFinished({0, "b"}), "no queue");
+  EXPECT_DEATH(queue_.MarkQueueAsFinished({0, "b"}), "there is no queue");
   Add(0, "a", 5);
   Add(0, "a", 9);
-  EXPECT_DEATH(Add(0, "a", 7), "Non-sorted data");
+  EXPECT_DEATH(Add(0, "a", 7), "not in order of time");
   EXPECT_DEATH(
       {
         OrderedMultiQueue unfinished;

@@ -25,18 +25,18 @@ std::string ConfigurationFileResolver::GetFullPathOrDie(
   for (const std::string& directory : configuration_files_directories_) {
     const std::string path = directory + "/" + basename;
     if (std::ifstream(path).good()) {
-      VLOG(1) << "Found '" << path << "' for '" << basename << "'.";
+      VLOG(1) << basename << " is " << path;
       return path;
     }
   }
-  LOG(FATAL) << "File '" << basename << "' was not found in: "
-             << absl::StrJoin(configuration_files_directories_, ", ");
+  LOG(FATAL) << "none of the configuration directories has a file '" << basename
+             << "': " << absl::StrJoin(configuration_files_directories_, ", ");
   return "";
 }
 
 std::string ConfigurationFileResolver::GetFileContentOrDie(
     const std::string& basename) {
-  CHECK(!basename.empty()) << "File basename cannot be empty.";
+  CHECK(!basename.empty()) << "the name of the configuration file is empty";
   const std::string path = GetFullPathOrDie(basename);
   std::ifstream file(path);
   const std::string content((std::istreambuf_iterator<char>(file)),

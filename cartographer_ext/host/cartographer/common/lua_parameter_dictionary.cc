@@ -73,7 +73,7 @@ class LuaParameterDictionary::State {
   }
 
   static int Choose(lua_State* const lua) {
-    CHECK_EQ(lua_gettop(lua), 3) << "choose() takes (condition, a, b).";
+    CHECK_EQ(lua_gettop(lua), 3) << "choose() needs a condition and two values";
     CHECK(lua_isboolean(lua, 1)) << "condition of choose() is not a boolean";
     lua_pushvalue(lua, lua_toboolean(lua, 1) ? 2 : 3);
     return 1;
@@ -92,8 +92,8 @@ class LuaParameterDictionary::State {
     const std::string path = state->file_resolver_->GetFullPathOrDie(basename);
     auto& included = state->included_files_;
     CHECK(std::find(included.begin(), included.end(), path) == included.end())
-        << "Tried to include '" << path
-        << "' twice. Included so far: " << absl::StrJoin(included, ", ");
+        << "'" << path << "' is included again, after "
+        << absl::StrJoin(included, ", ");
     included.push_back(path);
     const std::string code =
         state->file_resolver_->GetFileContentOrDie(basename);
@@ -143,8 +143,10 @@ LuaParameterDictionary::LuaParameterDictionary(std::shared_ptr<State> state,
 LuaParameterDictionary::~LuaParameterDictionary() {
   if (reference_counted_) {
     for (const std::string& key : GetKeys()) {
-      CHECK_EQ(read_counts_[key], 1)
-          << "Key '" << KeyPath(key) << "' was used the wrong number of times.";
+      const int count = read_counts_[key];
+      CHECK_GT(count, 0) << "Key '" << KeyPath(key) << "' is not an option";
+      CHECK_EQ(count, 1) << "Key '" << KeyPath(key) << "' was read " << count
+                         << " times";
     }
   }
   luaL_unref(state_->lua(), LUA_REGISTRYINDEX, registry_reference_);

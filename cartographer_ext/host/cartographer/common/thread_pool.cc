@@ -18,61 +18,53 @@ void ThreadPoolInterface::SetThreadPool(Task* const task) {
   task->SetThreadPool(this);
 }
 
+namespace {
+
+// So that real-time work in the same process comes first. On Linux this is
+// about the calling thread alone.
+void LowerPriorityOfThisThread() {
+#ifdef __linux__
+  constexpr int kIncrement = 10;
+  // A result of -1 is an error only with errno: the new value may be -1.
+  errno = 0;
+  const int new_value = nice(kIncrement);
+  PCHECK(new_value != -1 || errno == 0);
+#endif
+}
+
+}  // namespace
+
 ThreadPool::ThreadPool(const int num_threads) {
-  CHECK_GT(num_threads, 0) << "ThreadPool requires a positive num_threads!";
-  threads_.reserve(num_threads);
-  for (int i = 0; i != num_threads; ++i) {
-    threads_.emplace_back([this]() { DoWork(); });
+  CHECK_GT(num_threads, 0) << "a thread pool without threads";
+  while (static_cast<int>(threads_.size()) < num_threads) {
+    threads_.emplace_back(&ThreadPool::Work, this);
   }
 }
 
 ThreadPool::~ThreadPool() {
-  {
-    absl::MutexLock lock(&mutex_);
-    running_ = false;
+  tasks_.Close();
+  for (std::thread& thread : threads_) {
+    thread.join();
   }
-  for (std::thread& thread : threads_) thread.join();
 }
 
 std::weak_ptr<Task> ThreadPool::Schedule(std::unique_ptr<Task> task) {
-  const std::shared_ptr<Task> shared(std::move(task));
-  {
-    absl::MutexLock lock(&mutex_);
-    CHECK(waiting_.emplace(shared.get(), shared).second);
-  }
+  const std::shared_ptr<Task> scheduled = std::move(task);
+  tasks_.Add(scheduled);
   // Calls back at once when there is nothing to wait for.
-  SetThreadPool(shared.get());
-  return shared;
+  SetThreadPool(scheduled.get());
+  return scheduled;
 }
 
 void ThreadPool::NotifyDependenciesCompleted(Task* const task) {
-  absl::MutexLock lock(&mutex_);
-  const auto found = waiting_.find(task);
-  CHECK(found != waiting_.end());
-  ready_.push_back(std::move(found->second));
-  waiting_.erase(found);
+  tasks_.MarkReady(task);
 }
 
-void ThreadPool::DoWork() {
-#ifdef __linux__
-  // On Linux this concerns the calling thread alone. -1 is a legal answer to
-  // programs that were started at -11.
-  errno = 0;
-  PCHECK(nice(10) != -1 || errno == 0);
-#endif
-  const auto has_news = [this]() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
-    return !ready_.empty() || !running_;
-  };
-  for (;;) {
-    std::shared_ptr<Task> task;
-    {
-      absl::MutexLock lock(&mutex_);
-      mutex_.Await(absl::Condition(&has_news));
-      if (ready_.empty()) return;
-      task = std::move(ready_.front());
-      ready_.pop_front();
-    }
+void ThreadPool::Work() {
+  LowerPriorityOfThisThread();
+  while (const std::shared_ptr<Task> task = tasks_.Take()) {
     Execute(task.get());
+    tasks_.MarkDone();
   }
 }
 

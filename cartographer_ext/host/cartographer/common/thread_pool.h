@@ -3,15 +3,11 @@
 #ifndef CARTOGRAPHER_COMMON_THREAD_POOL_H_
 #define CARTOGRAPHER_COMMON_THREAD_POOL_H_
 
-#include <deque>
-#include <functional>
 #include <memory>
 #include <thread>
 #include <vector>
 
-#include "absl/base/thread_annotations.h"
-#include "absl/container/flat_hash_map.h"
-#include "absl/synchronization/mutex.h"
+#include "cartographer/common/internal/task_queue.h"
 #include "cartographer/common/task.h"
 
 namespace cartographer {
@@ -46,20 +42,14 @@ class ThreadPool : public ThreadPoolInterface {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  std::weak_ptr<Task> Schedule(std::unique_ptr<Task> task)
-      ABSL_LOCKS_EXCLUDED(mutex_) override;
+  std::weak_ptr<Task> Schedule(std::unique_ptr<Task> task) override;
 
  private:
-  void DoWork() ABSL_LOCKS_EXCLUDED(mutex_);
-  void NotifyDependenciesCompleted(Task* task)
-      ABSL_LOCKS_EXCLUDED(mutex_) override;
+  void Work();
+  void NotifyDependenciesCompleted(Task* task) override;
 
-  absl::Mutex mutex_;
-  bool running_ ABSL_GUARDED_BY(mutex_) = true;
+  TaskQueue tasks_;
   std::vector<std::thread> threads_;
-  std::deque<std::shared_ptr<Task>> ready_ ABSL_GUARDED_BY(mutex_);
-  absl::flat_hash_map<Task*, std::shared_ptr<Task>> waiting_
-      ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace common

@@ -11,11 +11,9 @@
 #include "absl/types/optional.h"
 #include "cartographer/io/internal/mapping_state_serialization.h"
 #include "cartographer/io/proto_stream.h"
-#include "cartographer/mapping/internal/2d/local_trajectory_builder_2d.h"
 #include "cartographer/mapping/internal/2d/pose_graph_2d.h"
 #include "cartographer/mapping/internal/collated_trajectory_builder.h"
 #include "cartographer/mapping/internal/global_trajectory_builder.h"
-#include "cartographer/mapping/internal/motion_filter.h"
 #include "cartographer/mapping/internal/stored_state.h"
 #include "cartographer/sensor/internal/collator.h"
 #include "cartographer/sensor/internal/trajectory_collator.h"
@@ -54,15 +52,24 @@ absl::optional<int> NumSubmapsToKeep(
   return absl::nullopt;
 }
 
-std::vector<std::string> RangeSensorIds(
+// What is stored of the options of a trajectory.
+proto::TrajectoryBuilderOptionsWithSensorIds WithSensorIds(
+    const proto::TrajectoryBuilderOptions& options,
     const std::set<MapBuilder::SensorId>& sensor_ids) {
-  std::vector<std::string> result;
+  proto::TrajectoryBuilderOptionsWithSensorIds result;
+  *result.mutable_trajectory_builder_options() = options;
   for (const MapBuilder::SensorId& sensor_id : sensor_ids) {
-    if (sensor_id.type == MapBuilder::SensorId::SensorType::RANGE) {
-      result.push_back(sensor_id.id);
-    }
+    *result.add_sensor_id() = ToProto(sensor_id);
   }
   return result;
+}
+
+std::unique_ptr<sensor::CollatorInterface> MakeCollator(
+    const bool by_trajectory) {
+  if (by_trajectory) {
+    return absl::make_unique<sensor::TrajectoryCollator>();
+  }
+  return absl::make_unique<sensor::Collator>();
 }
 
 // Hands one record to the pose graph.
@@ -138,69 +145,57 @@ class RecordLoader {
 }  // namespace
 
 MapBuilder::MapBuilder(const proto::MapBuilderOptions& options)
-    : options_(options), thread_pool_(options.num_background_threads()) {
-  CHECK(options.use_trajectory_builder_2d() &&
-        !options.use_trajectory_builder_3d())
+    : options_(options),
+      thread_pool_(options.num_background_threads()),
+      sensor_collator_(MakeCollator(options.collate_by_trajectory())) {
+  CHECK(options_.use_trajectory_builder_2d() &&
+        !options_.use_trajectory_builder_3d())
       << "this host maps in 2D only";
+  const proto::PoseGraphOptions& graph = options_.pose_graph_options();
   pose_graph_ = absl::make_unique<PoseGraph2D>(
-      options_.pose_graph_options(),
+      graph,
       absl::make_unique<optimization::OptimizationProblem2D>(
-          options_.pose_graph_options().optimization_problem_options()),
+          graph.optimization_problem_options()),
       &thread_pool_);
-  if (options.collate_by_trajectory()) {
-    sensor_collator_ = absl::make_unique<sensor::TrajectoryCollator>();
-  } else {
-    sensor_collator_ = absl::make_unique<sensor::Collator>();
-  }
+}
+
+MapBuilder::~MapBuilder() {}
+
+mapping::PoseGraphInterface* MapBuilder::pose_graph() {
+  return pose_graph_.get();
 }
 
 int MapBuilder::AddTrajectoryBuilder(
     const std::set<SensorId>& expected_sensor_ids,
     const proto::TrajectoryBuilderOptions& trajectory_options,
     LocalSlamResultCallback local_slam_result_callback) {
-  proto::TrajectoryBuilderOptionsWithSensorIds options_with_sensor_ids;
-  for (const SensorId& sensor_id : expected_sensor_ids) {
-    *options_with_sensor_ids.add_sensor_id() = ToProto(sensor_id);
-  }
-  *options_with_sensor_ids.mutable_trajectory_builder_options() =
-      trajectory_options;
-  const int trajectory_id =
-      AddTrajectoryForDeserialization(options_with_sensor_ids);
+  const int id = AddTrajectoryForDeserialization(
+      WithSensorIds(trajectory_options, expected_sensor_ids));
+  auto builder = CreateGlobalTrajectoryBuilder2D(
+      trajectory_options, expected_sensor_ids, id, pose_graph_.get(),
+      local_slam_result_callback);
+  trajectory_builders_.at(id) = absl::make_unique<CollatedTrajectoryBuilder>(
+      trajectory_options, sensor_collator_.get(), id, expected_sensor_ids,
+      std::move(builder));
+  AddToPoseGraph(id, trajectory_options);
+  return id;
+}
 
-  std::unique_ptr<LocalTrajectoryBuilder2D> local_trajectory_builder;
-  if (trajectory_options.has_trajectory_builder_2d_options()) {
-    local_trajectory_builder = absl::make_unique<LocalTrajectoryBuilder2D>(
-        trajectory_options.trajectory_builder_2d_options(),
-        RangeSensorIds(expected_sensor_ids));
-  }
-  absl::optional<MotionFilter> odometry_motion_filter;
-  if (trajectory_options.has_pose_graph_odometry_motion_filter()) {
-    odometry_motion_filter.emplace(
-        trajectory_options.pose_graph_odometry_motion_filter());
-  }
-  trajectory_builders_[trajectory_id] =
-      absl::make_unique<CollatedTrajectoryBuilder>(
-          trajectory_options, sensor_collator_.get(), trajectory_id,
-          expected_sensor_ids,
-          CreateGlobalTrajectoryBuilder2D(
-              std::move(local_trajectory_builder), trajectory_id,
-              static_cast<PoseGraph2D*>(pose_graph_.get()),
-              local_slam_result_callback, odometry_motion_filter));
-
-  const absl::optional<int> num_submaps_to_keep =
-      NumSubmapsToKeep(trajectory_options);
-  if (num_submaps_to_keep.has_value()) {
-    pose_graph_->AddTrimmer(absl::make_unique<PureLocalizationTrimmer>(
-        trajectory_id, *num_submaps_to_keep));
-  }
-  if (trajectory_options.has_initial_trajectory_pose()) {
-    const auto& initial_pose = trajectory_options.initial_trajectory_pose();
+void MapBuilder::AddToPoseGraph(
+    const int trajectory_id, const proto::TrajectoryBuilderOptions& options) {
+  if (options.has_initial_trajectory_pose()) {
+    const proto::InitialTrajectoryPose& start =
+        options.initial_trajectory_pose();
     pose_graph_->SetInitialTrajectoryPose(
-        trajectory_id, initial_pose.to_trajectory_id(),
-        transform::ToRigid3(initial_pose.relative_pose()),
-        common::FromUniversal(initial_pose.timestamp()));
+        trajectory_id, start.to_trajectory_id(),
+        transform::ToRigid3(start.relative_pose()),
+        common::FromUniversal(start.timestamp()));
   }
-  return trajectory_id;
+  const absl::optional<int> num_submaps = NumSubmapsToKeep(options);
+  if (num_submaps.has_value()) {
+    pose_graph_->AddTrimmer(absl::make_unique<PureLocalizationTrimmer>(
+        trajectory_id, *num_submaps));
+  }
 }
 
 int MapBuilder::AddTrajectoryForDeserialization(
@@ -236,7 +231,7 @@ std::string MapBuilder::SubmapToProto(
 
 void MapBuilder::SerializeState(const bool include_unfinished_submaps,
                                 io::ProtoStreamWriterInterface* const writer) {
-  static_cast<PoseGraph2D*>(pose_graph_.get())->WaitForAllComputations();
+  pose_graph_->WaitForAllComputations();
   io::WritePbStream(*pose_graph_, all_trajectory_builder_options_, writer,
                     include_unfinished_submaps);
 }
@@ -292,7 +287,7 @@ std::map<int, int> MapBuilder::LoadState(
     pose_graph_->AddSerializedConstraints(constraints);
     return new_ids;
   }
-  // Nothing moves, so constraints only tell what submaps were built from.
+  // Nothing moves, so that constraints only say which nodes built a submap.
   for (const PoseGraph::Constraint& constraint : constraints) {
     if (constraint.tag == PoseGraph::Constraint::INTRA_SUBMAP) {
       pose_graph_->AddNodeToSubmap(constraint.node_id, constraint.submap_id);

@@ -21,11 +21,13 @@
 namespace cartographer {
 namespace mapping {
 
+class PoseGraph2D;
+
 class MapBuilder : public MapBuilderInterface {
  public:
   // The options must choose 2D.
   explicit MapBuilder(const proto::MapBuilderOptions& options);
-  ~MapBuilder() override {}
+  ~MapBuilder() override;
   MapBuilder(const MapBuilder&) = delete;
   MapBuilder& operator=(const MapBuilder&) = delete;
 
@@ -48,9 +50,7 @@ class MapBuilder : public MapBuilderInterface {
   std::map<int, int> LoadStateFromFile(const std::string& filename,
                                        const bool load_frozen_state) override;
 
-  mapping::PoseGraphInterface* pose_graph() override {
-    return pose_graph_.get();
-  }
+  mapping::PoseGraphInterface* pose_graph() override;
   int num_trajectory_builders() const override {
     return trajectory_builders_.size();
   }
@@ -64,10 +64,14 @@ class MapBuilder : public MapBuilderInterface {
   }
 
  private:
+  // The trimmer and the initial pose that the options of a trajectory ask for.
+  void AddToPoseGraph(int trajectory_id,
+                      const proto::TrajectoryBuilderOptions& options);
+
   const proto::MapBuilderOptions options_;
   common::ThreadPool thread_pool_;
   // Ends its work in its destructor, so it must go before the threads.
-  std::unique_ptr<PoseGraph> pose_graph_;
+  std::unique_ptr<PoseGraph2D> pose_graph_;
   std::unique_ptr<sensor::CollatorInterface> sensor_collator_;
   // Both are indexed by trajectory id.
   std::vector<std::unique_ptr<mapping::TrajectoryBuilderInterface>>

@@ -22,6 +22,27 @@ void DropOlderThan(const common::Time time, const size_t keep,
   }
 }
 
+// Whether a reading of this time continues what is known.
+template <typename Reading>
+bool IsLate(const common::Time time, const common::Time newest_pose_time,
+            const std::deque<Reading>& readings) {
+  return time < std::max(newest_pose_time, readings.empty()
+                                               ? common::Time::min()
+                                               : readings.back().time);
+}
+
+void AddReading(const sensor::ImuData& reading, ImuTracker* const tracker) {
+  tracker->Advance(reading.time);
+  tracker->AddImuLinearAccelerationObservation(reading.linear_acceleration);
+  tracker->AddImuAngularVelocityObservation(reading.angular_velocity);
+}
+
+// The mean rotation rate of a body that turned by `rotation`.
+Eigen::Vector3d AngularVelocity(const Eigen::Quaterniond& rotation,
+                                const double seconds) {
+  return transform::RotationQuaternionToAngleAxisVector(rotation) / seconds;
+}
+
 }  // namespace
 
 PoseExtrapolator::PoseExtrapolator(const common::Duration pose_queue_duration,
@@ -37,8 +58,7 @@ std::unique_ptr<PoseExtrapolator> PoseExtrapolator::InitializeWithImu(
   extrapolator->AddImuData(imu_data);
   auto tracker =
       absl::make_unique<ImuTracker>(imu_gravity_time_constant, imu_data.time);
-  tracker->AddImuLinearAccelerationObservation(imu_data.linear_acceleration);
-  tracker->AddImuAngularVelocityObservation(imu_data.angular_velocity);
+  AddReading(imu_data, tracker.get());
   const auto upright = transform::Rigid3d::Rotation(tracker->orientation());
   extrapolator->pose_tracker_ = std::move(tracker);
   extrapolator->AddPose(imu_data.time, upright);
@@ -73,10 +93,7 @@ void PoseExtrapolator::AddPose(const common::Time time,
 }
 
 void PoseExtrapolator::AddImuData(const sensor::ImuData& imu_data) {
-  const bool late =
-      imu_data.time < GetLastPoseTime() ||
-      (!imu_data_.empty() && imu_data.time < imu_data_.back().time);
-  if (late) {
+  if (IsLate(imu_data.time, GetLastPoseTime(), imu_data_)) {
     LOG_EVERY_N(WARNING, 100) << "dropped a late IMU reading";
     return;
   }
@@ -86,35 +103,18 @@ void PoseExtrapolator::AddImuData(const sensor::ImuData& imu_data) {
 
 void PoseExtrapolator::AddOdometryData(
     const sensor::OdometryData& odometry_data) {
-  const bool late = odometry_data.time < GetLastPoseTime() ||
-                    (!odometry_data_.empty() &&
-                     odometry_data.time <= odometry_data_.back().time);
-  if (late) {
+  const bool repeated = !odometry_data_.empty() &&
+                        odometry_data_.back().time == odometry_data.time;
+  if (repeated ||
+      IsLate(odometry_data.time, GetLastPoseTime(), odometry_data_)) {
     LOG_EVERY_N(WARNING, 100) << "dropped a late odometry reading";
     return;
   }
   odometry_data_.push_back(odometry_data);
   DropSupersededReadings();
-  if (odometry_data_.size() < 2) {
-    return;
+  if (odometry_data_.size() > 1) {
+    UpdateVelocityFromOdometry();
   }
-  // Seen from the newest reading, back to the oldest: time runs backwards, and
-  // so does the motion.
-  const sensor::OdometryData& oldest = odometry_data_.front();
-  const sensor::OdometryData& newest = odometry_data_.back();
-  const double seconds = common::ToSeconds(oldest.time - newest.time);
-  const transform::Rigid3d motion = newest.pose.inverse() * oldest.pose;
-  velocity_from_odometry_.angular =
-      transform::RotationQuaternionToAngleAxisVector(motion.rotation()) /
-      seconds;
-  if (!HasPose()) {
-    return;
-  }
-  const Eigen::Vector3d linear_in_tracking = motion.translation() / seconds;
-  const Eigen::Quaterniond local_from_tracking =
-      timed_poses_.back().pose.rotation() *
-      TurnUntil(newest.time, odometry_tracker_.get());
-  velocity_from_odometry_.linear = local_from_tracking * linear_in_tracking;
 }
 
 transform::Rigid3d PoseExtrapolator::ExtrapolatePose(const common::Time time) {
@@ -163,24 +163,44 @@ const PoseExtrapolator::Velocity& PoseExtrapolator::BestVelocity() const {
 }
 
 void PoseExtrapolator::UpdateVelocityFromPoses() {
-  if (timed_poses_.size() < 2) {
-    return;
-  }
   const TimedPose& oldest = timed_poses_.front();
   const TimedPose& newest = timed_poses_.back();
-  const double seconds = common::ToSeconds(newest.time - oldest.time);
-  if (seconds <= 0. || seconds < common::ToSeconds(pose_queue_duration_)) {
-    // The first scan comes at the time of the first pose, which is no fault.
-    LOG_IF_EVERY_N(WARNING, seconds > 0., 100)
-        << "poses span only " << seconds << " s, too short for a velocity";
+  const common::Duration span = newest.time - oldest.time;
+  // The first scan comes at the time of the first pose, which is no fault.
+  if (span == common::Duration::zero()) {
     return;
   }
-  velocity_from_poses_.linear =
-      (newest.pose.translation() - oldest.pose.translation()) / seconds;
-  velocity_from_poses_.angular =
-      transform::RotationQuaternionToAngleAxisVector(
-          oldest.pose.rotation().inverse() * newest.pose.rotation()) /
-      seconds;
+  if (span < pose_queue_duration_) {
+    LOG_EVERY_N(WARNING, 100) << "poses span only " << common::ToSeconds(span)
+                              << " s, too short for a velocity";
+    return;
+  }
+  const double seconds = common::ToSeconds(span);
+  const Eigen::Vector3d distance =
+      newest.pose.translation() - oldest.pose.translation();
+  velocity_from_poses_ = Velocity{
+      distance / seconds,
+      AngularVelocity(oldest.pose.rotation().inverse() * newest.pose.rotation(),
+                      seconds)};
+}
+
+void PoseExtrapolator::UpdateVelocityFromOdometry() {
+  const sensor::OdometryData& newest = odometry_data_.back();
+  const sensor::OdometryData& oldest = odometry_data_.front();
+  const double seconds = common::ToSeconds(newest.time - oldest.time);
+  // Where the robot has come from, seen from where it is now: this gives the
+  // velocity in the newest tracking frame, backwards.
+  const transform::Rigid3d origin = newest.pose.inverse() * oldest.pose;
+  velocity_from_odometry_.angular =
+      -AngularVelocity(origin.rotation(), seconds);
+  if (HasPose()) {
+    // The tracker must know the new rotation rate before it predicts.
+    const Eigen::Quaterniond turn =
+        TurnUntil(newest.time, odometry_tracker_.get());
+    velocity_from_odometry_.linear =
+        (timed_poses_.back().pose.rotation() * turn) *
+        Eigen::Vector3d(-origin.translation() / seconds);
+  }
 }
 
 void PoseExtrapolator::DropSupersededReadings() {
@@ -195,26 +215,33 @@ void PoseExtrapolator::DropSupersededReadings() {
 void PoseExtrapolator::AdvanceTracker(const common::Time time,
                                       ImuTracker* const tracker) const {
   CHECK_GE(time, tracker->time());
-  if (imu_data_.empty() || time < imu_data_.front().time) {
-    tracker->Advance(time);
-    tracker->AddImuLinearAccelerationObservation(Eigen::Vector3d::UnitZ());
-    tracker->AddImuAngularVelocityObservation(BestVelocity().angular);
+  const bool imu_is_missing =
+      imu_data_.empty() || time < imu_data_.front().time;
+  if (imu_is_missing) {
+    AddReading(
+        sensor::ImuData{time, Eigen::Vector3d::UnitZ(), BestVelocity().angular},
+        tracker);
     return;
   }
+  FollowImu(time, tracker);
+}
+
+void PoseExtrapolator::FollowImu(const common::Time time,
+                                 ImuTracker* const tracker) const {
+  const auto first_at = [this](const common::Time wanted) {
+    return std::partition_point(imu_data_.begin(), imu_data_.end(),
+                                [wanted](const sensor::ImuData& reading) {
+                                  return reading.time < wanted;
+                                });
+  };
+  const auto unread = first_at(tracker->time());
   if (tracker->time() < imu_data_.front().time) {
     tracker->Advance(imu_data_.front().time);
   }
-  for (const sensor::ImuData& reading : imu_data_) {
-    if (reading.time >= time) {
-      break;
-    }
-    if (reading.time < tracker->time()) {
-      continue;
-    }
-    tracker->Advance(reading.time);
-    tracker->AddImuLinearAccelerationObservation(reading.linear_acceleration);
-    tracker->AddImuAngularVelocityObservation(reading.angular_velocity);
-  }
+  std::for_each(unread, first_at(time),
+                [tracker](const sensor::ImuData& reading) {
+                  AddReading(reading, tracker);
+                });
   tracker->Advance(time);
 }
 

@@ -67,10 +67,14 @@ class PoseExtrapolator : public PoseExtrapolatorInterface {
   bool HasPose() const { return !timed_poses_.empty(); }
   const Velocity& BestVelocity() const;
   void UpdateVelocityFromPoses();
+  // Needs two readings.
+  void UpdateVelocityFromOdometry();
   void DropSupersededReadings();
-  // Brings a tracker to `time`, feeding it the IMU readings on the way or, if
-  // there are none, an upright robot turning at the estimated velocity.
+  // Brings a tracker to `time` by the IMU readings up to then or, where there
+  // are none, as of an upright robot that turns at the estimated velocity.
   void AdvanceTracker(common::Time time, ImuTracker* tracker) const;
+  // The first reading must not be after `time`.
+  void FollowImu(common::Time time, ImuTracker* tracker) const;
   // The turn since the newest pose.
   Eigen::Quaterniond TurnUntil(common::Time time, ImuTracker* tracker) const;
 
@@ -83,7 +87,7 @@ class PoseExtrapolator : public PoseExtrapolatorInterface {
   Velocity velocity_from_poses_;
   Velocity velocity_from_odometry_;
 
-  // The first stands at the newest pose, its copies run ahead of it.
+  // The first is at the time of the newest pose, its copies run ahead of it.
   std::unique_ptr<ImuTracker> pose_tracker_;
   std::unique_ptr<ImuTracker> odometry_tracker_;
   std::unique_ptr<ImuTracker> extrapolation_tracker_;

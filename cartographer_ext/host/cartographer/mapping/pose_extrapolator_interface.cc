@@ -3,6 +3,7 @@
 #include "cartographer/mapping/pose_extrapolator_interface.h"
 
 #include "cartographer/common/internal/ceres_solver_options.h"
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/pose_extrapolator.h"
 #include "glog/logging.h"
 
@@ -10,38 +11,16 @@ namespace cartographer {
 namespace mapping {
 
 proto::PoseExtrapolatorOptions CreatePoseExtrapolatorOptions(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::PoseExtrapolatorOptions options;
-  options.set_use_imu_based(parameter_dictionary->GetBool("use_imu_based"));
-
-  const auto constant_velocity =
-      parameter_dictionary->GetDictionary("constant_velocity");
-  auto* const velocity_options = options.mutable_constant_velocity();
-  velocity_options->set_imu_gravity_time_constant(
-      constant_velocity->GetDouble("imu_gravity_time_constant"));
-  velocity_options->set_pose_queue_duration(
-      constant_velocity->GetDouble("pose_queue_duration"));
-
-  const auto imu_based = parameter_dictionary->GetDictionary("imu_based");
-  auto* const imu_options = options.mutable_imu_based();
-  imu_options->set_pose_queue_duration(
-      imu_based->GetDouble("pose_queue_duration"));
-  imu_options->set_gravity_constant(imu_based->GetDouble("gravity_constant"));
-  imu_options->set_pose_translation_weight(
-      imu_based->GetDouble("pose_translation_weight"));
-  imu_options->set_pose_rotation_weight(
-      imu_based->GetDouble("pose_rotation_weight"));
-  imu_options->set_imu_acceleration_weight(
-      imu_based->GetDouble("imu_acceleration_weight"));
-  imu_options->set_imu_rotation_weight(
-      imu_based->GetDouble("imu_rotation_weight"));
-  imu_options->set_odometry_translation_weight(
-      imu_based->GetDouble("odometry_translation_weight"));
-  imu_options->set_odometry_rotation_weight(
-      imu_based->GetDouble("odometry_rotation_weight"));
-  *imu_options->mutable_solver_options() =
-      common::CreateCeresSolverOptionsProto(
-          imu_based->GetDictionary("solver_options").get());
+    common::LuaParameterDictionary* const table) {
+  using Options = proto::PoseExtrapolatorOptions;
+  auto options = common::ReadOptions<Options>(table);
+  common::ReadFields(table->GetDictionary("constant_velocity").get(),
+                     options.mutable_constant_velocity());
+  const auto imu_based = table->GetDictionary("imu_based");
+  common::ReadFields(imu_based.get(), options.mutable_imu_based());
+  *options.mutable_imu_based()->mutable_solver_options() =
+      common::ReadTable(imu_based.get(), "solver_options",
+                        &common::CreateCeresSolverOptionsProto);
   return options;
 }
 

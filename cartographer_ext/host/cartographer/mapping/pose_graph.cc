@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/mapping/pose_graph.h"
 
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/internal/constraints/constraint_builder.h"
 #include "cartographer/mapping/internal/optimization/optimization_problem_options.h"
 #include "cartographer/transform/transform.h"
@@ -10,21 +11,6 @@
 namespace cartographer {
 namespace mapping {
 namespace {
-
-void MaybeReadOverlappingSubmapsTrimmer(
-    common::LuaParameterDictionary* const parameter_dictionary,
-    proto::PoseGraphOptions* const options) {
-  const std::string key = "overlapping_submaps_trimmer_2d";
-  if (!parameter_dictionary->HasKey(key)) {
-    return;
-  }
-  const auto dictionary = parameter_dictionary->GetDictionary(key);
-  auto* const trimmer = options->mutable_overlapping_submaps_trimmer_2d();
-  trimmer->set_fresh_submaps_count(dictionary->GetInt("fresh_submaps_count"));
-  trimmer->set_min_covered_area(dictionary->GetDouble("min_covered_area"));
-  trimmer->set_min_added_submaps_count(
-      dictionary->GetInt("min_added_submaps_count"));
-}
 
 // The trajectories of a PoseGraph message by id, in ascending order.
 class TrajectoryProtos {
@@ -47,31 +33,20 @@ class TrajectoryProtos {
 }  // namespace
 
 proto::PoseGraphOptions CreatePoseGraphOptions(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::PoseGraphOptions options;
-  options.set_optimize_every_n_nodes(
-      parameter_dictionary->GetInt("optimize_every_n_nodes"));
-  options.set_matcher_translation_weight(
-      parameter_dictionary->GetDouble("matcher_translation_weight"));
-  options.set_matcher_rotation_weight(
-      parameter_dictionary->GetDouble("matcher_rotation_weight"));
-  options.set_global_sampling_ratio(
-      parameter_dictionary->GetDouble("global_sampling_ratio"));
-  options.set_global_constraint_search_after_n_seconds(
-      parameter_dictionary->GetDouble(
-          "global_constraint_search_after_n_seconds"));
-  options.set_log_residual_histograms(
-      parameter_dictionary->GetBool("log_residual_histograms"));
-  options.set_max_num_final_iterations(
-      parameter_dictionary->GetNonNegativeInt("max_num_final_iterations"));
+    common::LuaParameterDictionary* const table) {
+  auto options = common::ReadOptions<proto::PoseGraphOptions>(table);
   CHECK_GT(options.max_num_final_iterations(), 0);
   *options.mutable_constraint_builder_options() =
-      constraints::CreateConstraintBuilderOptions(
-          parameter_dictionary->GetDictionary("constraint_builder").get());
+      common::ReadTable(table, "constraint_builder",
+                        &constraints::CreateConstraintBuilderOptions);
   *options.mutable_optimization_problem_options() =
-      optimization::CreateOptimizationProblemOptions(
-          parameter_dictionary->GetDictionary("optimization_problem").get());
-  MaybeReadOverlappingSubmapsTrimmer(parameter_dictionary, &options);
+      common::ReadTable(table, "optimization_problem",
+                        &optimization::CreateOptimizationProblemOptions);
+  using Trimmer = proto::PoseGraphOptions::OverlappingSubmapsTrimmerOptions2D;
+  common::ReadOptionalTable<Trimmer>(
+      table, "overlapping_submaps_trimmer_2d", [&options]() {
+        return options.mutable_overlapping_submaps_trimmer_2d();
+      });
   return options;
 }
 

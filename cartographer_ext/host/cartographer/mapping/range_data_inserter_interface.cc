@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/2d/probability_grid_range_data_inserter_2d.h"
 #include "cartographer/mapping/internal/2d/tsdf_range_data_inserter_2d.h"
 #include "glog/logging.h"
@@ -12,26 +13,13 @@ namespace cartographer {
 namespace mapping {
 
 proto::RangeDataInserterOptions CreateRangeDataInserterOptions(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::RangeDataInserterOptions options;
-  const std::string type_name =
-      parameter_dictionary->GetString("range_data_inserter_type");
-  proto::RangeDataInserterOptions::RangeDataInserterType type;
-  CHECK(proto::RangeDataInserterOptions::RangeDataInserterType_Parse(type_name,
-                                                                     &type))
-      << "range_data_inserter_type: there is no inserter '" << type_name
-      << "'; use PROBABILITY_GRID_INSERTER_2D.";
-  options.set_range_data_inserter_type(type);
-
-  const auto probability_grid_dictionary = parameter_dictionary->GetDictionary(
-      "probability_grid_range_data_inserter");
+    common::LuaParameterDictionary* const table) {
+  auto options = common::ReadOptions<proto::RangeDataInserterOptions>(table);
   *options.mutable_probability_grid_range_data_inserter_options_2d() =
-      CreateProbabilityGridRangeDataInserterOptions2D(
-          probability_grid_dictionary.get());
-  const auto tsdf_dictionary =
-      parameter_dictionary->GetDictionary("tsdf_range_data_inserter");
-  *options.mutable_tsdf_range_data_inserter_options_2d() =
-      CreateTSDFRangeDataInserterOptions2D(tsdf_dictionary.get());
+      common::ReadTable(table, "probability_grid_range_data_inserter",
+                        &CreateProbabilityGridRangeDataInserterOptions2D);
+  *options.mutable_tsdf_range_data_inserter_options_2d() = common::ReadTable(
+      table, "tsdf_range_data_inserter", &CreateTSDFRangeDataInserterOptions2D);
   return options;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/mapping/trajectory_builder_interface.h"
 
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/internal/2d/local_trajectory_builder_options_2d.h"
 #include "cartographer/mapping/internal/3d/options_3d.h"
 #include "cartographer/mapping/internal/local_slam_result_data.h"
@@ -14,98 +15,56 @@ namespace {
 using SensorId = TrajectoryBuilderInterface::SensorId;
 using SensorType = SensorId::SensorType;
 
-void MaybeReadPureLocalizationTrimmer(
-    common::LuaParameterDictionary* const parameter_dictionary,
-    proto::TrajectoryBuilderOptions* const options) {
-  const std::string key = "pure_localization_trimmer";
-  if (!parameter_dictionary->HasKey(key)) {
-    return;
-  }
-  const auto dictionary = parameter_dictionary->GetDictionary(key);
-  options->mutable_pure_localization_trimmer()->set_max_submaps_to_keep(
-      dictionary->GetInt("max_submaps_to_keep"));
-}
-
-void MaybeReadPoseGraphOdometryMotionFilter(
-    common::LuaParameterDictionary* const parameter_dictionary,
-    proto::TrajectoryBuilderOptions* const options) {
-  const std::string key = "pose_graph_odometry_motion_filter";
-  if (!parameter_dictionary->HasKey(key)) {
-    return;
-  }
-  const auto dictionary = parameter_dictionary->GetDictionary(key);
-  auto* const filter = options->mutable_pose_graph_odometry_motion_filter();
-  filter->set_max_time_seconds(dictionary->GetDouble("max_time_seconds"));
-  filter->set_max_distance_meters(dictionary->GetDouble("max_distance_meters"));
-  filter->set_max_angle_radians(dictionary->GetDouble("max_angle_radians"));
-}
-
 }  // namespace
 
 proto::TrajectoryBuilderOptions CreateTrajectoryBuilderOptions(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::TrajectoryBuilderOptions options;
-  *options.mutable_trajectory_builder_2d_options() =
-      CreateLocalTrajectoryBuilderOptions2D(
-          parameter_dictionary->GetDictionary("trajectory_builder_2d").get());
-  if (parameter_dictionary->HasKey("trajectory_builder_3d")) {
-    *options.mutable_trajectory_builder_3d_options() =
-        CreateLocalTrajectoryBuilderOptions3D(
-            parameter_dictionary->GetDictionary("trajectory_builder_3d").get());
+    common::LuaParameterDictionary* const table) {
+  auto options = common::ReadOptions<proto::TrajectoryBuilderOptions>(table);
+  *options.mutable_trajectory_builder_2d_options() = common::ReadTable(
+      table, "trajectory_builder_2d", &CreateLocalTrajectoryBuilderOptions2D);
+  if (table->HasKey("trajectory_builder_3d")) {
+    *options.mutable_trajectory_builder_3d_options() = common::ReadTable(
+        table, "trajectory_builder_3d", &CreateLocalTrajectoryBuilderOptions3D);
   }
-  options.set_collate_fixed_frame(
-      parameter_dictionary->GetBool("collate_fixed_frame"));
-  options.set_collate_landmarks(
-      parameter_dictionary->GetBool("collate_landmarks"));
-  MaybeReadPureLocalizationTrimmer(parameter_dictionary, &options);
-  MaybeReadPoseGraphOdometryMotionFilter(parameter_dictionary, &options);
+  using Trimmer =
+      proto::TrajectoryBuilderOptions::PureLocalizationTrimmerOptions;
+  common::ReadOptionalTable<Trimmer>(
+      table, "pure_localization_trimmer",
+      [&options]() { return options.mutable_pure_localization_trimmer(); });
+  common::ReadOptionalTable<proto::MotionFilterOptions>(
+      table, "pose_graph_odometry_motion_filter", [&options]() {
+        return options.mutable_pose_graph_odometry_motion_filter();
+      });
   return options;
 }
 
+// The types have the same numbers here and in files.
+static_assert(static_cast<int>(SensorType::RANGE) == proto::SensorId::RANGE &&
+                  static_cast<int>(SensorType::IMU) == proto::SensorId::IMU &&
+                  static_cast<int>(SensorType::ODOMETRY) ==
+                      proto::SensorId::ODOMETRY &&
+                  static_cast<int>(SensorType::FIXED_FRAME_POSE) ==
+                      proto::SensorId::FIXED_FRAME_POSE &&
+                  static_cast<int>(SensorType::LANDMARK) ==
+                      proto::SensorId::LANDMARK &&
+                  static_cast<int>(SensorType::LOCAL_SLAM_RESULT) ==
+                      proto::SensorId::LOCAL_SLAM_RESULT,
+              "sensor types differ from those in files");
+
 proto::SensorId ToProto(const SensorId& sensor_id) {
   proto::SensorId result;
-  switch (sensor_id.type) {
-    case SensorType::RANGE:
-      result.set_type(proto::SensorId::RANGE);
-      break;
-    case SensorType::IMU:
-      result.set_type(proto::SensorId::IMU);
-      break;
-    case SensorType::ODOMETRY:
-      result.set_type(proto::SensorId::ODOMETRY);
-      break;
-    case SensorType::FIXED_FRAME_POSE:
-      result.set_type(proto::SensorId::FIXED_FRAME_POSE);
-      break;
-    case SensorType::LANDMARK:
-      result.set_type(proto::SensorId::LANDMARK);
-      break;
-    case SensorType::LOCAL_SLAM_RESULT:
-      result.set_type(proto::SensorId::LOCAL_SLAM_RESULT);
-      break;
-  }
   result.set_id(sensor_id.id);
+  result.set_type(static_cast<proto::SensorId::SensorType>(sensor_id.type));
   return result;
 }
 
 SensorId FromProto(const proto::SensorId& sensor_id_proto) {
-  const auto type = [&sensor_id_proto]() {
-    switch (sensor_id_proto.type()) {
-      case proto::SensorId::IMU:
-        return SensorType::IMU;
-      case proto::SensorId::ODOMETRY:
-        return SensorType::ODOMETRY;
-      case proto::SensorId::FIXED_FRAME_POSE:
-        return SensorType::FIXED_FRAME_POSE;
-      case proto::SensorId::LANDMARK:
-        return SensorType::LANDMARK;
-      case proto::SensorId::LOCAL_SLAM_RESULT:
-        return SensorType::LOCAL_SLAM_RESULT;
-      default:
-        return SensorType::RANGE;
-    }
-  }();
-  return SensorId{type, sensor_id_proto.id()};
+  // Files of a later version may have types that are not known here.
+  const bool is_known =
+      proto::SensorId::SensorType_IsValid(sensor_id_proto.type());
+  return SensorId{is_known ? static_cast<SensorType>(sensor_id_proto.type())
+                           : SensorType::RANGE,
+                  sensor_id_proto.id()};
 }
 
 }  // namespace mapping

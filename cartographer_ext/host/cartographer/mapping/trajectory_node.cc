@@ -15,23 +15,24 @@ using sensor::CompressedPointCloud;
 
 proto::TrajectoryNodeData ToProto(const TrajectoryNode::Data& constant_data) {
   proto::TrajectoryNodeData node;
-  node.set_timestamp(common::ToUniversal(constant_data.time));
-  *node.mutable_gravity_alignment() =
-      transform::ToProto(constant_data.gravity_alignment);
-  *node.mutable_local_pose() = transform::ToProto(constant_data.local_pose);
   // Clouds without points are written too: readers expect the fields.
-  *node.mutable_filtered_gravity_aligned_point_cloud() =
-      CompressedPointCloud(constant_data.filtered_gravity_aligned_point_cloud)
-          .ToProto();
-  *node.mutable_high_resolution_point_cloud() =
-      CompressedPointCloud(constant_data.high_resolution_point_cloud).ToProto();
+  const auto compress = [](const sensor::PointCloud& cloud) {
+    return CompressedPointCloud(cloud).ToProto();
+  };
   *node.mutable_low_resolution_point_cloud() =
-      CompressedPointCloud(constant_data.low_resolution_point_cloud).ToProto();
+      compress(constant_data.low_resolution_point_cloud);
+  *node.mutable_high_resolution_point_cloud() =
+      compress(constant_data.high_resolution_point_cloud);
+  *node.mutable_filtered_gravity_aligned_point_cloud() =
+      compress(constant_data.filtered_gravity_aligned_point_cloud);
   const Eigen::VectorXf& histogram =
       constant_data.rotational_scan_matcher_histogram;
-  for (Eigen::Index i = 0; i < histogram.size(); ++i) {
-    node.add_rotational_scan_matcher_histogram(histogram[i]);
-  }
+  node.mutable_rotational_scan_matcher_histogram()->Add(
+      histogram.data(), histogram.data() + histogram.size());
+  *node.mutable_local_pose() = transform::ToProto(constant_data.local_pose);
+  *node.mutable_gravity_alignment() =
+      transform::ToProto(constant_data.gravity_alignment);
+  node.set_timestamp(common::ToUniversal(constant_data.time));
   return node;
 }
 

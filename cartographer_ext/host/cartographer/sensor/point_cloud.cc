@@ -2,10 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/sensor/point_cloud.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace cartographer {
 namespace sensor {
+namespace {
+
+template <typename Point>
+std::vector<Point> Transformed(const std::vector<Point>& points,
+                               const transform::Rigid3f& transform) {
+  std::vector<Point> result;
+  result.reserve(points.size());
+  std::transform(
+      points.begin(), points.end(), std::back_inserter(result),
+      [&transform](const Point& point) { return transform * point; });
+  return result;
+}
+
+}  // namespace
 
 PointCloud::PointCloud() {}
 
@@ -27,29 +43,23 @@ void PointCloud::push_back(PointType value) {
 
 PointCloud TransformPointCloud(const PointCloud& point_cloud,
                                const transform::Rigid3f& transform) {
-  std::vector<RangefinderPoint> points;
-  points.reserve(point_cloud.size());
-  for (const RangefinderPoint& point : point_cloud) {
-    points.push_back(transform * point);
-  }
-  return PointCloud(std::move(points), point_cloud.intensities());
+  return PointCloud(Transformed(point_cloud.points(), transform),
+                    point_cloud.intensities());
 }
 
 TimedPointCloud TransformTimedPointCloud(const TimedPointCloud& point_cloud,
                                          const transform::Rigid3f& transform) {
-  TimedPointCloud result;
-  result.reserve(point_cloud.size());
-  for (const TimedRangefinderPoint& point : point_cloud) {
-    result.push_back(transform * point);
-  }
-  return result;
+  return Transformed(point_cloud, transform);
 }
 
 PointCloud CropPointCloud(const PointCloud& point_cloud, const float min_z,
                           const float max_z) {
-  return point_cloud.copy_if([min_z, max_z](const RangefinderPoint& point) {
-    return min_z <= point.position.z() && point.position.z() <= max_z;
-  });
+  // A height that is not a number is outside.
+  const auto is_inside = [=](const RangefinderPoint& point) {
+    const float z = point.position.z();
+    return z >= min_z && z <= max_z;
+  };
+  return point_cloud.copy_if(is_inside);
 }
 
 }  // namespace sensor

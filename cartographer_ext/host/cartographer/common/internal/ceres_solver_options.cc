@@ -2,19 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/common/internal/ceres_solver_options.h"
 
+#include "cartographer/common/internal/read_options.h"
 #include "glog/logging.h"
 
 namespace cartographer {
 namespace common {
 
 proto::CeresSolverOptions CreateCeresSolverOptionsProto(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::CeresSolverOptions proto;
-  proto.set_use_nonmonotonic_steps(
-      parameter_dictionary->GetBool("use_nonmonotonic_steps"));
-  proto.set_max_num_iterations(
-      parameter_dictionary->GetNonNegativeInt("max_num_iterations"));
-  proto.set_num_threads(parameter_dictionary->GetNonNegativeInt("num_threads"));
+    common::LuaParameterDictionary* const table) {
+  const auto proto = ReadOptions<proto::CeresSolverOptions>(table);
   CHECK_GT(proto.max_num_iterations(), 0);
   CHECK_GT(proto.num_threads(), 0);
   return proto;

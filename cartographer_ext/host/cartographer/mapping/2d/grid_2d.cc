@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/transform/transform.h"
 
 namespace cartographer {
@@ -30,16 +31,8 @@ Eigen::AlignedBox2i BoxFromProto(const proto::Grid2D& proto) {
 }  // namespace
 
 proto::GridOptions2D CreateGridOptions2D(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::GridOptions2D options;
-  const std::string type_name = parameter_dictionary->GetString("grid_type");
-  proto::GridOptions2D::GridType type;
-  CHECK(proto::GridOptions2D::GridType_Parse(type_name, &type))
-      << "grid_type: there is no grid '" << type_name
-      << "'; use PROBABILITY_GRID.";
-  options.set_grid_type(type);
-  options.set_resolution(parameter_dictionary->GetDouble("resolution"));
-  return options;
+    common::LuaParameterDictionary* const table) {
+  return common::ReadOptions<proto::GridOptions2D>(table);
 }
 
 Grid2D::Grid2D(const MapLimits& limits, const float min_correspondence_cost,

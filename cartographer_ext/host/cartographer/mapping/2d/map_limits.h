@@ -37,15 +37,15 @@ class MapLimits {
   // The cell that contains `point`; outside the grid the index is negative or
   // too large.
   Eigen::Array2i GetCellIndex(const Eigen::Vector2f& point) const {
-    return {common::RoundToInt((max_.y() - point.y()) / resolution_ - 0.5),
-            common::RoundToInt((max_.x() - point.x()) / resolution_ - 0.5)};
+    const Eigen::Vector2d from_corner = max_ - point.cast<double>();
+    const Eigen::Vector2d cells =
+        from_corner / resolution_ - Eigen::Vector2d::Constant(0.5);
+    return {common::RoundToInt(cells.y()), common::RoundToInt(cells.x())};
   }
 
   Eigen::Vector2f GetCellCenter(const Eigen::Array2i& cell_index) const {
-    const Eigen::Vector2d center(
-        max_.x() - resolution_ * (cell_index.y() + 0.5),
-        max_.y() - resolution_ * (cell_index.x() + 0.5));
-    return center.cast<float>();
+    const Eigen::Vector2d cells = cell_index.reverse().cast<double>() + 0.5;
+    return (max_ - resolution_ * cells).cast<float>();
   }
 
   bool Contains(const Eigen::Array2i& cell_index) const {

@@ -23,11 +23,11 @@ ProbabilityGrid::ProbabilityGrid(const proto::Grid2D& proto,
 
 void ProbabilityGrid::SetProbability(const Eigen::Array2i& cell_index,
                                      const float probability) {
-  uint16& cell =
-      (*mutable_correspondence_cost_cells())[ToFlatIndex(cell_index)];
-  CHECK_EQ(cell, kUnknownCorrespondenceValue);
-  cell =
-      CorrespondenceCostToValue(ProbabilityToCorrespondenceCost(probability));
+  const int index = ToFlatIndex(cell_index);
+  std::vector<uint16>& cells = *mutable_correspondence_cost_cells();
+  CHECK_EQ(cells[index], kUnknownCorrespondenceValue) << "the cell is known";
+  const float cost = ProbabilityToCorrespondenceCost(probability);
+  cells[index] = CorrespondenceCostToValue(cost);
   mutable_known_cells_box()->extend(cell_index.matrix());
 }
 

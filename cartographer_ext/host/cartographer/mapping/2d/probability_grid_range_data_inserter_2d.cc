@@ -4,6 +4,7 @@
 
 #include "Eigen/Core"
 #include "Eigen/Geometry"
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/internal/2d/ray_to_pixel_mask.h"
 #include "cartographer/mapping/probability_values.h"
 #include "glog/logging.h"
@@ -47,15 +48,10 @@ std::vector<Eigen::Array2i> FineIndices(const MapLimits& fine_limits,
 
 proto::ProbabilityGridRangeDataInserterOptions2D
 CreateProbabilityGridRangeDataInserterOptions2D(
-    common::LuaParameterDictionary* const parameter_dictionary) {
+    common::LuaParameterDictionary* const table) {
   proto::ProbabilityGridRangeDataInserterOptions2D options;
-  options.set_hit_probability(
-      parameter_dictionary->GetDouble("hit_probability"));
-  options.set_miss_probability(
-      parameter_dictionary->GetDouble("miss_probability"));
-  options.set_insert_free_space(
-      !parameter_dictionary->HasKey("insert_free_space") ||
-      parameter_dictionary->GetBool("insert_free_space"));
+  options.set_insert_free_space(true);
+  common::ReadFields(table, &options, {"insert_free_space"});
   CHECK_GT(options.hit_probability(), 0.5);
   CHECK_LT(options.miss_probability(), 0.5);
   return options;

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/mapping/2d/submap_2d.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/memory/memory.h"
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/2d/probability_grid.h"
 #include "cartographer/mapping/2d/probability_grid_range_data_inserter_2d.h"
 #include "cartographer/mapping/internal/2d/tsdf_2d.h"
@@ -54,26 +56,20 @@ void CheckCanBeBuilt(const proto::SubmapsOptions2D& options) {
 }  // namespace
 
 proto::SubmapsOptions2D CreateSubmapsOptions2D(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::SubmapsOptions2D options;
-  options.set_num_range_data(
-      parameter_dictionary->GetNonNegativeInt("num_range_data"));
-  const auto grid_dictionary =
-      parameter_dictionary->GetDictionary("grid_options_2d");
+    common::LuaParameterDictionary* const table) {
+  auto options = common::ReadOptions<proto::SubmapsOptions2D>(table);
   *options.mutable_grid_options_2d() =
-      CreateGridOptions2D(grid_dictionary.get());
-  const auto inserter_dictionary =
-      parameter_dictionary->GetDictionary("range_data_inserter");
-  *options.mutable_range_data_inserter_options() =
-      CreateRangeDataInserterOptions(inserter_dictionary.get());
+      common::ReadTable(table, "grid_options_2d", &CreateGridOptions2D);
+  *options.mutable_range_data_inserter_options() = common::ReadTable(
+      table, "range_data_inserter", &CreateRangeDataInserterOptions);
   CheckCanBeBuilt(options);
   return options;
 }
 
 Submap2D::Submap2D(const Eigen::Vector2f& origin, std::unique_ptr<Grid2D> grid,
                    ValueConversionTables* const conversion_tables)
-    : Submap(transform::Rigid3d::Translation(
-          Eigen::Vector3d(origin.x(), origin.y(), 0.))),
+    : Submap(transform::Embed3D(
+          transform::Rigid2d::Translation(origin.cast<double>()))),
       grid_(std::move(grid)),
       conversion_tables_(conversion_tables) {}
 
@@ -81,32 +77,30 @@ Submap2D::Submap2D(const proto::Submap2D& proto,
                    ValueConversionTables* const conversion_tables)
     : Submap(transform::ToRigid3(proto.local_pose())),
       conversion_tables_(conversion_tables) {
-  if (proto.has_grid()) grid_ = GridFromProto(proto.grid(), conversion_tables_);
-  set_num_range_data(proto.num_range_data());
-  set_insertion_finished(proto.finished());
+  ReadState(proto);
 }
 
 proto::Submap Submap2D::ToProto(const bool include_grid_data) const {
+  CHECK(grid_ != nullptr || !include_grid_data);
   proto::Submap result;
-  proto::Submap2D* const submap = result.mutable_submap_2d();
-  *submap->mutable_local_pose() = transform::ToProto(local_pose());
-  submap->set_num_range_data(num_range_data());
-  submap->set_finished(insertion_finished());
-  if (include_grid_data) {
-    CHECK(grid_ != nullptr);
-    *submap->mutable_grid() = grid_->ToProto();
-  }
+  proto::Submap2D& proto = *result.mutable_submap_2d();
+  if (include_grid_data) *proto.mutable_grid() = grid_->ToProto();
+  proto.set_finished(insertion_finished());
+  proto.set_num_range_data(num_range_data());
+  *proto.mutable_local_pose() = transform::ToProto(local_pose());
   return result;
 }
 
 void Submap2D::UpdateFromProto(const proto::Submap& proto) {
   CHECK(proto.has_submap_2d());
-  const proto::Submap2D& submap = proto.submap_2d();
-  set_num_range_data(submap.num_range_data());
-  set_insertion_finished(submap.finished());
-  if (submap.has_grid()) {
-    grid_ = GridFromProto(submap.grid(), conversion_tables_);
-  }
+  ReadState(proto.submap_2d());
+}
+
+// All but the pose, which does not change.
+void Submap2D::ReadState(const proto::Submap2D& proto) {
+  if (proto.has_grid()) grid_ = GridFromProto(proto.grid(), conversion_tables_);
+  set_insertion_finished(proto.finished());
+  set_num_range_data(proto.num_range_data());
 }
 
 void Submap2D::ToResponseProto(
@@ -148,33 +142,48 @@ std::vector<std::shared_ptr<const Submap2D>> ActiveSubmaps2D::submaps() const {
 
 std::vector<std::shared_ptr<const Submap2D>> ActiveSubmaps2D::InsertRangeData(
     const sensor::RangeData& range_data) {
-  const int num_range_data = options_.num_range_data();
-  if (submaps_.empty() || submaps_.back()->num_range_data() == num_range_data) {
-    AddSubmap(range_data.origin.head<2>());
-  }
-  for (const std::shared_ptr<Submap2D>& submap : submaps_) {
+  MakeRoom(range_data.origin.head<2>());
+  for (auto& submap : submaps_) {
     submap->InsertRangeData(range_data, range_data_inserter_.get());
   }
-  if (submaps_.front()->num_range_data() == 2 * num_range_data) {
-    submaps_.front()->Finish();
+  Submap2D* const older = submaps_.front().get();
+  const int capacity = 2 * options_.num_range_data();
+  if (older->num_range_data() == capacity) {
+    older->Finish();
   }
   return submaps();
 }
 
-void ActiveSubmaps2D::AddSubmap(const Eigen::Vector2f& origin) {
-  if (submaps_.size() == 2) {
-    CHECK(submaps_.front()->insertion_finished());
-    submaps_.erase(submaps_.begin());
+// The successor is due at the moment the older submap is full, so one that is
+// finished never meets another insertion.
+void ActiveSubmaps2D::MakeRoom(const Eigen::Vector2f& origin) {
+  const bool successor_is_due =
+      submaps_.empty() ||
+      submaps_.back()->num_range_data() == options_.num_range_data();
+  if (!successor_is_due) {
+    return;
   }
+  const auto first_unfinished =
+      std::find_if(submaps_.begin(), submaps_.end(),
+                   [](const std::shared_ptr<Submap2D>& submap) {
+                     return !submap->insertion_finished();
+                   });
+  submaps_.erase(submaps_.begin(), first_unfinished);
+  CHECK_LT(submaps_.size(), 2);
+  submaps_.push_back(std::make_shared<Submap2D>(origin, EmptyGrid(origin),
+                                                &conversion_tables_));
+}
+
+std::unique_ptr<Grid2D> ActiveSubmaps2D::EmptyGrid(
+    const Eigen::Vector2f& center) {
   // As a float: files must hold the same resolution as the real thing's.
   const float resolution = options_.grid_options_2d().resolution();
   const double half_size = 0.5 * kInitialCellsPerAxis * resolution;
-  const MapLimits limits(
-      resolution, origin.cast<double>() + Eigen::Vector2d::Constant(half_size),
-      CellLimits(kInitialCellsPerAxis, kInitialCellsPerAxis));
-  submaps_.push_back(std::make_shared<Submap2D>(
-      origin, absl::make_unique<ProbabilityGrid>(limits, &conversion_tables_),
-      &conversion_tables_));
+  const Eigen::Vector2d max = center.cast<double>().array() + half_size;
+  return absl::make_unique<ProbabilityGrid>(
+      MapLimits(resolution, max,
+                CellLimits(kInitialCellsPerAxis, kInitialCellsPerAxis)),
+      &conversion_tables_);
 }
 
 }  // namespace mapping

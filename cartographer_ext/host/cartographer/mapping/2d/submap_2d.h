@@ -52,6 +52,8 @@ class Submap2D : public Submap {
   void Finish();
 
  private:
+  void ReadState(const proto::Submap2D& proto);
+
   std::unique_ptr<Grid2D> grid_;
   ValueConversionTables* conversion_tables_;
 };
@@ -74,7 +76,10 @@ class ActiveSubmaps2D {
   std::vector<std::shared_ptr<const Submap2D>> submaps() const;
 
  private:
-  void AddSubmap(const Eigen::Vector2f& origin);
+  // Starts a submap at `origin` when the newest is half full, in place of the
+  // one that was finished then.
+  void MakeRoom(const Eigen::Vector2f& origin);
+  std::unique_ptr<Grid2D> EmptyGrid(const Eigen::Vector2f& center);
 
   const proto::SubmapsOptions2D options_;
   const std::unique_ptr<RangeDataInserterInterface> range_data_inserter_;

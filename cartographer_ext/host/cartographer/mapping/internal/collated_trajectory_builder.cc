@@ -10,86 +10,83 @@
 namespace cartographer {
 namespace mapping {
 
+namespace {
+
+using SensorType = CollatedTrajectoryBuilder::SensorId::SensorType;
+
+std::set<SensorType> BypassingTypes(
+    const proto::TrajectoryBuilderOptions& options) {
+  std::set<SensorType> types;
+  if (!options.collate_fixed_frame())
+    types.insert(SensorType::FIXED_FRAME_POSE);
+  if (!options.collate_landmarks()) types.insert(SensorType::LANDMARK);
+  return types;
+}
+
+}  // namespace
+
 CollatedTrajectoryBuilder::CollatedTrajectoryBuilder(
     const proto::TrajectoryBuilderOptions& trajectory_options,
     sensor::CollatorInterface* const sensor_collator, const int trajectory_id,
     const std::set<SensorId>& expected_sensor_ids,
     std::unique_ptr<TrajectoryBuilderInterface> wrapped_trajectory_builder)
-    : sensor_collator_(sensor_collator),
-      collate_landmarks_(trajectory_options.collate_landmarks()),
-      collate_fixed_frame_(trajectory_options.collate_fixed_frame()),
+    : bypassing_types_(BypassingTypes(trajectory_options)),
       trajectory_id_(trajectory_id),
-      wrapped_trajectory_builder_(std::move(wrapped_trajectory_builder)) {
-  absl::flat_hash_set<std::string> collated_ids;
+      collator_(sensor_collator),
+      wrapped_(std::move(wrapped_trajectory_builder)) {
+  absl::flat_hash_set<std::string> ids;
   for (const SensorId& sensor_id : expected_sensor_ids) {
-    if (IsCollated(sensor_id.type)) {
-      collated_ids.insert(sensor_id.id);
-    }
+    if (bypassing_types_.count(sensor_id.type) == 0) ids.insert(sensor_id.id);
   }
-  TrajectoryBuilderInterface* const wrapped = wrapped_trajectory_builder_.get();
-  sensor_collator_->AddTrajectory(
-      trajectory_id, collated_ids,
-      [wrapped](const std::string& /*sensor_id*/,
-                std::unique_ptr<sensor::Data> data) {
-        data->AddToTrajectoryBuilder(wrapped);
-      });
+  const auto pass_on = [builder = wrapped_.get()](
+                           const std::string& /*sensor_id*/,
+                           std::unique_ptr<sensor::Data> data) {
+    data->AddToTrajectoryBuilder(builder);
+  };
+  collator_->AddTrajectory(trajectory_id_, ids, pass_on);
+}
+
+template <typename Reading>
+void CollatedTrajectoryBuilder::Route(const SensorType type,
+                                      const std::string& sensor_id,
+                                      const Reading& reading) {
+  if (bypassing_types_.count(type) > 0) {
+    wrapped_->AddSensorData(sensor_id, reading);
+  } else {
+    collator_->AddSensorData(trajectory_id_,
+                             sensor::MakeDispatchable(sensor_id, reading));
+  }
 }
 
 void CollatedTrajectoryBuilder::AddSensorData(
-    const std::string& sensor_id,
-    const sensor::TimedPointCloudData& timed_point_cloud_data) {
-  Collate(sensor::MakeDispatchable(sensor_id, timed_point_cloud_data));
+    const std::string& sensor_id, const sensor::TimedPointCloudData& scan) {
+  Route(SensorType::RANGE, sensor_id, scan);
 }
 
 void CollatedTrajectoryBuilder::AddSensorData(const std::string& sensor_id,
                                               const sensor::ImuData& imu_data) {
-  Collate(sensor::MakeDispatchable(sensor_id, imu_data));
+  Route(SensorType::IMU, sensor_id, imu_data);
 }
 
 void CollatedTrajectoryBuilder::AddSensorData(
     const std::string& sensor_id, const sensor::OdometryData& odometry_data) {
-  Collate(sensor::MakeDispatchable(sensor_id, odometry_data));
+  Route(SensorType::ODOMETRY, sensor_id, odometry_data);
 }
 
 void CollatedTrajectoryBuilder::AddSensorData(
     const std::string& sensor_id,
     const sensor::FixedFramePoseData& fixed_frame_pose_data) {
-  if (collate_fixed_frame_) {
-    Collate(sensor::MakeDispatchable(sensor_id, fixed_frame_pose_data));
-  } else {
-    wrapped_trajectory_builder_->AddSensorData(sensor_id,
-                                               fixed_frame_pose_data);
-  }
+  Route(SensorType::FIXED_FRAME_POSE, sensor_id, fixed_frame_pose_data);
 }
 
 void CollatedTrajectoryBuilder::AddSensorData(
     const std::string& sensor_id, const sensor::LandmarkData& landmark_data) {
-  if (collate_landmarks_) {
-    Collate(sensor::MakeDispatchable(sensor_id, landmark_data));
-  } else {
-    wrapped_trajectory_builder_->AddSensorData(sensor_id, landmark_data);
-  }
+  Route(SensorType::LANDMARK, sensor_id, landmark_data);
 }
 
 void CollatedTrajectoryBuilder::AddLocalSlamResultData(
-    std::unique_ptr<mapping::LocalSlamResultData> local_slam_result_data) {
-  Collate(std::move(local_slam_result_data));
-}
-
-bool CollatedTrajectoryBuilder::IsCollated(
-    const SensorId::SensorType type) const {
-  switch (type) {
-    case SensorId::SensorType::LANDMARK:
-      return collate_landmarks_;
-    case SensorId::SensorType::FIXED_FRAME_POSE:
-      return collate_fixed_frame_;
-    default:
-      return true;
-  }
-}
-
-void CollatedTrajectoryBuilder::Collate(std::unique_ptr<sensor::Data> data) {
-  sensor_collator_->AddSensorData(trajectory_id_, std::move(data));
+    std::unique_ptr<LocalSlamResultData> local_slam_result_data) {
+  collator_->AddSensorData(trajectory_id_, std::move(local_slam_result_data));
 }
 
 }  // namespace mapping

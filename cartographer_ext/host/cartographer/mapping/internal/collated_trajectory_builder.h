@@ -34,9 +34,8 @@ class CollatedTrajectoryBuilder : public TrajectoryBuilderInterface {
   CollatedTrajectoryBuilder& operator=(const CollatedTrajectoryBuilder&) =
       delete;
 
-  void AddSensorData(
-      const std::string& sensor_id,
-      const sensor::TimedPointCloudData& timed_point_cloud_data) override;
+  void AddSensorData(const std::string& sensor_id,
+                     const sensor::TimedPointCloudData& scan) override;
   void AddSensorData(const std::string& sensor_id,
                      const sensor::ImuData& imu_data) override;
   void AddSensorData(const std::string& sensor_id,
@@ -50,14 +49,15 @@ class CollatedTrajectoryBuilder : public TrajectoryBuilderInterface {
                                   local_slam_result_data) override;
 
  private:
-  bool IsCollated(SensorId::SensorType type) const;
-  void Collate(std::unique_ptr<sensor::Data> data);
+  template <typename Reading>
+  void Route(SensorId::SensorType type, const std::string& sensor_id,
+             const Reading& reading);
 
-  sensor::CollatorInterface* const sensor_collator_;
-  const bool collate_landmarks_;
-  const bool collate_fixed_frame_;
+  // Not ordered by time with the others.
+  const std::set<SensorId::SensorType> bypassing_types_;
   const int trajectory_id_;
-  std::unique_ptr<TrajectoryBuilderInterface> wrapped_trajectory_builder_;
+  sensor::CollatorInterface* const collator_;
+  const std::unique_ptr<TrajectoryBuilderInterface> wrapped_;
 };
 
 }  // namespace mapping

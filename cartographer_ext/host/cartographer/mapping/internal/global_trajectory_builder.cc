@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/mapping/internal/global_trajectory_builder.h"
 
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/memory/memory.h"
+#include "absl/types/optional.h"
+#include "cartographer/mapping/internal/2d/local_trajectory_builder_2d.h"
+#include "cartographer/mapping/internal/motion_filter.h"
 #include "cartographer/metrics/counter.h"
 #include "glog/logging.h"
 
@@ -19,15 +24,27 @@ auto* insertion_results_metric = metrics::Counter::Null();
 class GlobalTrajectoryBuilder2D : public TrajectoryBuilderInterface {
  public:
   GlobalTrajectoryBuilder2D(
-      std::unique_ptr<LocalTrajectoryBuilder2D> local_trajectory_builder,
       const int trajectory_id, PoseGraph2D* const pose_graph,
-      const LocalSlamResultCallback& local_slam_result_callback,
-      const absl::optional<MotionFilter>& odometry_motion_filter)
+      const LocalSlamResultCallback& local_slam_result_callback)
       : trajectory_id_(trajectory_id),
-        pose_graph_(pose_graph),
-        local_slam_(std::move(local_trajectory_builder)),
         local_slam_result_callback_(local_slam_result_callback),
-        odometry_motion_filter_(odometry_motion_filter) {}
+        pose_graph_(pose_graph) {}
+
+  void StartLocalSlam(const proto::LocalTrajectoryBuilderOptions2D& options,
+                      const std::set<SensorId>& sensor_ids) {
+    std::vector<std::string> range_sensor_ids;
+    for (const SensorId& sensor_id : sensor_ids) {
+      const bool is_range_sensor =
+          sensor_id.type == SensorId::SensorType::RANGE;
+      if (is_range_sensor) range_sensor_ids.push_back(sensor_id.id);
+    }
+    local_slam_ =
+        absl::make_unique<LocalTrajectoryBuilder2D>(options, range_sensor_ids);
+  }
+
+  void FilterOdometry(const proto::MotionFilterOptions& options) {
+    odometry_motion_filter_.emplace(options);
+  }
 
   void AddSensorData(
       const std::string& sensor_id,
@@ -114,32 +131,44 @@ class GlobalTrajectoryBuilder2D : public TrajectoryBuilderInterface {
   }
 
   const int trajectory_id_;
-  PoseGraph2D* const pose_graph_;
-  const std::unique_ptr<LocalTrajectoryBuilder2D> local_slam_;
   const LocalSlamResultCallback local_slam_result_callback_;
+  PoseGraph2D* const pose_graph_;
+  // Null where local SLAM runs elsewhere.
+  std::unique_ptr<LocalTrajectoryBuilder2D> local_slam_;
   absl::optional<MotionFilter> odometry_motion_filter_;
 };
 
 }  // namespace
 
 std::unique_ptr<TrajectoryBuilderInterface> CreateGlobalTrajectoryBuilder2D(
-    std::unique_ptr<LocalTrajectoryBuilder2D> local_trajectory_builder,
-    const int trajectory_id, mapping::PoseGraph2D* const pose_graph,
+    const proto::TrajectoryBuilderOptions& options,
+    const std::set<TrajectoryBuilderInterface::SensorId>& sensor_ids,
+    const int trajectory_id, PoseGraph2D* const pose_graph,
     const TrajectoryBuilderInterface::LocalSlamResultCallback&
-        local_slam_result_callback,
-    const absl::optional<MotionFilter>& pose_graph_odometry_motion_filter) {
-  return absl::make_unique<GlobalTrajectoryBuilder2D>(
-      std::move(local_trajectory_builder), trajectory_id, pose_graph,
-      local_slam_result_callback, pose_graph_odometry_motion_filter);
+        local_slam_result_callback) {
+  auto builder = absl::make_unique<GlobalTrajectoryBuilder2D>(
+      trajectory_id, pose_graph, local_slam_result_callback);
+  if (options.has_trajectory_builder_2d_options()) {
+    builder->StartLocalSlam(options.trajectory_builder_2d_options(),
+                            sensor_ids);
+  }
+  if (options.has_pose_graph_odometry_motion_filter()) {
+    builder->FilterOdometry(options.pose_graph_odometry_motion_filter());
+  }
+  return builder;
 }
 
 void GlobalTrajectoryBuilderRegisterMetrics(
     metrics::FamilyFactory* const family_factory) {
-  auto* const results = family_factory->NewCounterFamily(
-      "mapping_global_trajectory_builder_local_slam_results",
-      "Results of local SLAM");
-  matching_results_metric = results->Add({{"type", "MatchingResult"}});
-  insertion_results_metric = results->Add({{"type", "InsertionResult"}});
+  metrics::Family<metrics::Counter>& results =
+      *family_factory->NewCounterFamily(
+          "mapping_global_trajectory_builder_local_slam_results",
+          "Results of local SLAM");
+  for (const auto& name_metric :
+       {std::make_pair("MatchingResult", &matching_results_metric),
+        std::make_pair("InsertionResult", &insertion_results_metric)}) {
+    *name_metric.second = results.Add({{"type", name_metric.first}});
+  }
 }
 
 }  // namespace mapping

@@ -2,21 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/mapping/internal/motion_filter.h"
 
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/transform/transform.h"
 
 namespace cartographer {
 namespace mapping {
 
 proto::MotionFilterOptions CreateMotionFilterOptions(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::MotionFilterOptions options;
-  options.set_max_time_seconds(
-      parameter_dictionary->GetDouble("max_time_seconds"));
-  options.set_max_distance_meters(
-      parameter_dictionary->GetDouble("max_distance_meters"));
-  options.set_max_angle_radians(
-      parameter_dictionary->GetDouble("max_angle_radians"));
-  return options;
+    common::LuaParameterDictionary* const table) {
+  return common::ReadOptions<proto::MotionFilterOptions>(table);
 }
 
 MotionFilter::MotionFilter(const proto::MotionFilterOptions& options)

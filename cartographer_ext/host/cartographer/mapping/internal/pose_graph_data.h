@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a pose graph remembers.
+// The data of a pose graph.
 #ifndef CARTOGRAPHER_MAPPING_INTERNAL_POSE_GRAPH_DATA_H_
 #define CARTOGRAPHER_MAPPING_INTERNAL_POSE_GRAPH_DATA_H_
 
@@ -13,6 +13,7 @@
 
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer/mapping/internal/trajectory_connectivity_state.h"
+#include "cartographer/mapping/internal/trajectory_states.h"
 #include "cartographer/mapping/pose_graph.h"
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/submaps.h"
@@ -20,22 +21,8 @@
 namespace cartographer {
 namespace mapping {
 
-// Submaps that still grow are not searched for loop closures.
+// Unfinished submaps are not searched for loop closures.
 enum class SubmapState { kNoConstraintSearch, kFinished };
-
-struct InternalTrajectoryState {
-  // A deletion is first asked for, then reached by the work queue, and carried
-  // out with the next optimisation.
-  enum class DeletionState {
-    NORMAL,
-    SCHEDULED_FOR_DELETION,
-    WAIT_FOR_DELETION
-  };
-
-  PoseGraphInterface::TrajectoryState state =
-      PoseGraphInterface::TrajectoryState::ACTIVE;
-  DeletionState deletion_state = DeletionState::NORMAL;
-};
 
 struct InternalSubmapData {
   std::shared_ptr<const Submap> submap;
@@ -54,7 +41,7 @@ struct PoseGraphData {
   // As of the last optimisation.
   MapById<SubmapId, optimization::SubmapSpec2D> global_submap_poses_2d;
 
-  std::map<int, InternalTrajectoryState> trajectories_state;
+  TrajectoryStates trajectory_states;
   std::map<int, PoseGraph::InitialTrajectoryPose> initial_trajectory_poses;
   std::map<int, PoseGraphInterface::TrajectoryData> trajectory_data;
   TrajectoryConnectivityState trajectory_connectivity_state;

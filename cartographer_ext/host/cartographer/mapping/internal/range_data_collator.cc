@@ -3,6 +3,9 @@
 #include "cartographer/mapping/internal/range_data_collator.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "glog/logging.h"
 
@@ -13,83 +16,114 @@ using sensor::TimedPointCloudData;
 using sensor::TimedPointCloudOriginData;
 using sensor::TimedRangefinderPoint;
 
+namespace {
+
+using Measurement = TimedPointCloudOriginData::RangeMeasurement;
+
+// Points [begin, end) of a scan.
+struct Slice {
+  size_t begin;
+  size_t end;
+};
+
+// The points from `begin` to `end`, both included. The points of a scan are in
+// order of time.
+Slice PointsBetween(const TimedPointCloudData& scan, const common::Time begin,
+                    const common::Time end) {
+  const auto first = scan.ranges.begin();
+  const auto time_of = [&scan](const TimedRangefinderPoint& point) {
+    return scan.time + common::FromSeconds(point.time);
+  };
+  const auto in_time = std::find_if(first, scan.ranges.end(),
+                                    [&](const TimedRangefinderPoint& point) {
+                                      return time_of(point) >= begin;
+                                    });
+  const auto too_new = std::find_if(
+      in_time, scan.ranges.end(),
+      [&](const TimedRangefinderPoint& point) { return time_of(point) > end; });
+  return Slice{static_cast<size_t>(in_time - first),
+               static_cast<size_t>(too_new - first)};
+}
+
+// Appends points of a scan, their times relative to the time of the sweep.
+void Append(const TimedPointCloudData& scan, const Slice& slice,
+            TimedPointCloudOriginData* const sweep) {
+  if (slice.begin == slice.end) {
+    return;
+  }
+  const float shift = common::ToSeconds(scan.time - sweep->time);
+  Measurement measurement;
+  measurement.origin_index = sweep->origins.size();
+  sweep->origins.push_back(scan.origin);
+  sweep->ranges.reserve(sweep->ranges.size() + slice.end - slice.begin);
+  for (size_t i = slice.begin; i < slice.end; ++i) {
+    measurement.point_time = scan.ranges[i];
+    measurement.point_time.time += shift;
+    measurement.intensity = scan.intensities[i];
+    sweep->ranges.push_back(measurement);
+  }
+}
+
+bool ComesBefore(const Measurement& a, const Measurement& b) {
+  return a.point_time.time < b.point_time.time;
+}
+
+template <typename T>
+void DropFirst(const size_t count, std::vector<T>* const values) {
+  values->erase(values->begin(), values->begin() + count);
+}
+
+}  // namespace
+
 TimedPointCloudOriginData RangeDataCollator::AddRangeData(
     const std::string& sensor_id, TimedPointCloudData timed_point_cloud_data) {
-  CHECK_NE(expected_sensor_ids_.count(sensor_id), 0)
+  CHECK_EQ(expected_sensor_ids_.count(sensor_id), 1)
       << "'" << sensor_id << "' is not a range sensor of this trajectory";
   timed_point_cloud_data.intensities.resize(
       timed_point_cloud_data.ranges.size(), 0.f);
-
-  const auto waiting = pending_.find(sensor_id);
-  if (waiting != pending_.end()) {
-    const common::Time first_scan = waiting->second.time;
-    TimedPointCloudOriginData sweep = TakeSweepUntil(first_scan);
-    pending_.emplace(sensor_id, std::move(timed_point_cloud_data));
-    return sweep;
+  TimedPointCloudOriginData sweep;
+  const auto overtaken = pending_.find(sensor_id);
+  const bool others_are_silent = overtaken != pending_.end();
+  if (others_are_silent) {
+    sweep = TakeSweepUntil(common::Time(overtaken->second.time));
   }
   pending_.emplace(sensor_id, std::move(timed_point_cloud_data));
-  if (pending_.size() < expected_sensor_ids_.size()) {
-    return {};
+  const bool all_have_delivered =
+      pending_.size() == expected_sensor_ids_.size();
+  if (!others_are_silent && all_have_delivered) {
+    sweep = TakeSweepUntil(OldestPendingTime());
   }
-  common::Time reached_by_all = common::Time::max();
-  for (const auto& id_data : pending_) {
-    reached_by_all = std::min(reached_by_all, id_data.second.time);
-  }
-  return TakeSweepUntil(reached_by_all);
+  return sweep;
+}
+
+common::Time RangeDataCollator::OldestPendingTime() const {
+  const auto oldest = std::min_element(pending_.begin(), pending_.end(),
+                                       [](const auto& a, const auto& b) {
+                                         return a.second.time < b.second.time;
+                                       });
+  return oldest->second.time;
 }
 
 TimedPointCloudOriginData RangeDataCollator::TakeSweepUntil(
     const common::Time end) {
-  const common::Time begin = sweep_end_;
-  sweep_end_ = end;
-  TimedPointCloudOriginData sweep{end, {}, {}};
+  TimedPointCloudOriginData sweep;
+  sweep.time = end;
   size_t num_late_points = 0;
-  for (auto it = pending_.begin(); it != pending_.end();) {
-    TimedPointCloudData& scan = it->second;
-    const auto time_of = [&scan](const TimedRangefinderPoint& point) {
-      return scan.time + common::FromSeconds(point.time);
-    };
-    const size_t size = scan.ranges.size();
-    size_t first = 0;
-    while (first < size && time_of(scan.ranges[first]) < begin) {
-      ++first;
-    }
-    size_t last = first;
-    while (last < size && time_of(scan.ranges[last]) <= end) {
-      ++last;
-    }
-    num_late_points += first;
-
-    if (first < last) {
-      const size_t origin_index = sweep.origins.size();
-      sweep.origins.push_back(scan.origin);
-      const float shift = common::ToSeconds(scan.time - end);
-      sweep.ranges.reserve(sweep.ranges.size() + (last - first));
-      for (size_t i = first; i < last; ++i) {
-        TimedRangefinderPoint point = scan.ranges[i];
-        point.time += shift;
-        sweep.ranges.push_back(TimedPointCloudOriginData::RangeMeasurement{
-            point, scan.intensities[i], origin_index});
-      }
-    }
-    if (last == size) {
-      it = pending_.erase(it);
-      continue;
-    }
-    scan.ranges.erase(scan.ranges.begin(), scan.ranges.begin() + last);
-    scan.intensities.erase(scan.intensities.begin(),
-                           scan.intensities.begin() + last);
-    ++it;
+  for (auto entry = pending_.begin(); entry != pending_.end();) {
+    TimedPointCloudData& scan = entry->second;
+    const Slice slice = PointsBetween(scan, sweep_end_, end);
+    Append(scan, slice, &sweep);
+    DropFirst(slice.end, &scan.ranges);
+    DropFirst(slice.end, &scan.intensities);
+    num_late_points += slice.begin;
+    entry = scan.ranges.empty() ? pending_.erase(entry) : std::next(entry);
   }
+  sweep_end_ = end;
   LOG_IF_EVERY_N(WARNING, num_late_points > 0, 100)
       << num_late_points << " points came after their sweep and are dropped";
   // Not a stable sort: the order of points of one time decides which of them a
-  // voxel filter keeps, and is to be the one that Cartographer has.
-  std::sort(sweep.ranges.begin(), sweep.ranges.end(),
-            [](const TimedPointCloudOriginData::RangeMeasurement& a,
-               const TimedPointCloudOriginData::RangeMeasurement& b) {
-              return a.point_time.time < b.point_time.time;
-            });
+  // voxel filter keeps, and must be that of Cartographer.
+  std::sort(sweep.ranges.begin(), sweep.ranges.end(), ComesBefore);
   return sweep;
 }
 

@@ -33,6 +33,8 @@ class RangeDataCollator {
       sensor::TimedPointCloudData timed_point_cloud_data);
 
  private:
+  // There must be a scan.
+  common::Time OldestPendingTime() const;
   // Takes all points after the last sweep and not after `end`.
   sensor::TimedPointCloudOriginData TakeSweepUntil(common::Time end);
 

@@ -6,49 +6,69 @@
 
 namespace cartographer {
 namespace mapping {
-namespace {
-
-std::pair<int, int> Sorted(const int a, const int b) {
-  return std::make_pair(std::min(a, b), std::max(a, b));
-}
-
-}  // namespace
 
 void TrajectoryConnectivityState::Add(const int trajectory_id) {
-  components_.Add(trajectory_id);
+  GroupOf(trajectory_id);
+}
+
+const TrajectoryConnectivityState::Group& TrajectoryConnectivityState::GroupOf(
+    const int trajectory_id) {
+  Group& group = groups_[trajectory_id];
+  if (group == nullptr) {
+    group = std::make_shared<std::set<int>>();
+    group->insert(trajectory_id);
+  }
+  return group;
 }
 
 void TrajectoryConnectivityState::Connect(const int trajectory_id_a,
                                           const int trajectory_id_b,
                                           const common::Time time) {
-  if (TransitivelyConnected(trajectory_id_a, trajectory_id_b)) {
+  const Group joined = GroupOf(trajectory_id_a);
+  const Group absorbed = GroupOf(trajectory_id_b);
+  if (joined == absorbed) {
     common::Time& last =
-        last_connection_times_[Sorted(trajectory_id_a, trajectory_id_b)];
+        last_connection_times_[std::minmax({trajectory_id_a, trajectory_id_b})];
     last = std::max(last, time);
-  } else {
-    for (const int a : components_.GetComponent(trajectory_id_a)) {
-      for (const int b : components_.GetComponent(trajectory_id_b)) {
-        last_connection_times_[Sorted(a, b)] = time;
-      }
+    return;
+  }
+  for (const int b : *absorbed) {
+    for (const int a : *joined) {
+      last_connection_times_[std::minmax({a, b})] = time;
     }
   }
-  components_.Connect(trajectory_id_a, trajectory_id_b);
+  for (const int b : *absorbed) {
+    groups_[b] = joined;
+    joined->insert(b);
+  }
 }
 
 bool TrajectoryConnectivityState::TransitivelyConnected(
     const int trajectory_id_a, const int trajectory_id_b) const {
-  return components_.TransitivelyConnected(trajectory_id_a, trajectory_id_b);
+  if (trajectory_id_a == trajectory_id_b) {
+    return true;
+  }
+  const auto group_a = groups_.find(trajectory_id_a);
+  return group_a != groups_.end() && group_a->second->count(trajectory_id_b);
 }
 
 std::vector<std::vector<int>> TrajectoryConnectivityState::Components() const {
-  return components_.Components();
+  std::vector<std::vector<int>> result;
+  for (const auto& id_group : groups_) {
+    const std::set<int>& members = *id_group.second;
+    if (id_group.first == *members.begin()) {
+      result.emplace_back(members.begin(), members.end());
+    }
+  }
+  return result;
 }
 
 common::Time TrajectoryConnectivityState::LastConnectionTime(
     const int trajectory_id_a, const int trajectory_id_b) const {
-  const auto it =
-      last_connection_times_.find(Sorted(trajectory_id_a, trajectory_id_b));
-  return it == last_connection_times_.end() ? common::Time() : it->second;
+  const auto last = last_connection_times_.find(
+      std::minmax({trajectory_id_a, trajectory_id_b}));
+  return last == last_connection_times_.end() ? common::FromUniversal(0)
+                                              : last->second;
 }
 
 }  // namespace mapping

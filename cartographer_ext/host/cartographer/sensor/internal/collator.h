@@ -5,9 +5,7 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
 #include "absl/types/optional.h"
 #include "cartographer/sensor/collator_interface.h"
@@ -33,7 +31,6 @@ class Collator : public CollatorInterface {
 
  private:
   OrderedMultiQueue queue_;
-  absl::flat_hash_map<int, std::vector<QueueKey>> queue_keys_;
 };
 
 }  // namespace sensor

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "glog/logging.h"
 
@@ -31,36 +30,45 @@ OrderedMultiQueue::~OrderedMultiQueue() {
 }
 
 void OrderedMultiQueue::AddQueue(const QueueKey& queue_key, Callback callback) {
-  CHECK_EQ(queues_.count(queue_key), 0) << "queue " << queue_key << " exists";
-  queues_[queue_key].callback = std::move(callback);
+  Queue queue;
+  queue.callback = std::move(callback);
+  CHECK(queues_.emplace(queue_key, std::move(queue)).second)
+      << "queue " << queue_key << " exists";
 }
 
 void OrderedMultiQueue::MarkQueueAsFinished(const QueueKey& queue_key) {
-  const auto found = queues_.find(queue_key);
-  CHECK(found != queues_.end()) << "no queue " << queue_key;
-  CHECK(!found->second.finished) << "queue " << queue_key << " is finished";
-  found->second.finished = true;
-  Dispatch();
+  const auto entry = queues_.find(queue_key);
+  CHECK(entry != queues_.end() && !entry->second.finished)
+      << "there is no queue " << queue_key << " to finish";
+  entry->second.finished = true;
+  DispatchAll();
 }
 
 void OrderedMultiQueue::Add(const QueueKey& queue_key,
                             std::unique_ptr<Data> data) {
-  const auto found = queues_.find(queue_key);
-  if (found == queues_.end()) {
-    LOG_EVERY_N(WARNING, 1000)
-        << "dropped a reading of the unknown queue " << queue_key;
+  const auto entry = queues_.find(queue_key);
+  if (entry != queues_.end()) {
+    entry->second.readings.push_back(std::move(data));
+    DispatchAll();
     return;
   }
-  found->second.readings.push_back(std::move(data));
-  Dispatch();
+  LOG_EVERY_N(WARNING, 1000)
+      << "dropped a reading of the unknown queue " << queue_key;
+}
+
+void OrderedMultiQueue::FinishTrajectory(const int trajectory_id) {
+  for (auto it = FirstOf(trajectory_id);
+       it != queues_.end() && it->first.trajectory_id == trajectory_id; ++it) {
+    it->second.finished = true;
+  }
+  DispatchAll();
 }
 
 void OrderedMultiQueue::Flush() {
-  std::vector<QueueKey> unfinished;
-  for (const auto& entry : queues_) {
-    if (!entry.second.finished) unfinished.push_back(entry.first);
+  for (auto& entry : queues_) {
+    entry.second.finished = true;
   }
-  for (const QueueKey& key : unfinished) MarkQueueAsFinished(key);
+  DispatchAll();
 }
 
 QueueKey OrderedMultiQueue::GetBlocker() const {
@@ -68,79 +76,96 @@ QueueKey OrderedMultiQueue::GetBlocker() const {
   return blocker_;
 }
 
-void OrderedMultiQueue::Dispatch() {
-  for (;;) {
-    // The queue with the oldest reading; all must have one or be finished.
-    auto oldest = queues_.end();
-    for (auto it = queues_.begin(); it != queues_.end();) {
-      Queue& queue = it->second;
-      if (queue.readings.empty()) {
-        if (queue.finished) {
-          it = queues_.erase(it);
-          continue;
-        }
-        blocker_ = it->first;
-        LOG_IF_EVERY_N(
-            WARNING,
-            oldest != queues_.end() &&
-                oldest->second.readings.size() > kSuspiciousQueueSize,
-            1000)
-            << "queue " << blocker_ << " holds up the others";
-        return;
-      }
-      if (oldest == queues_.end() ||
-          queue.readings.front()->GetTime() <
-              oldest->second.readings.front()->GetTime()) {
-        oldest = it;
-      }
-      ++it;
-    }
-    if (oldest == queues_.end()) return;
+OrderedMultiQueue::Queues::iterator OrderedMultiQueue::FirstOf(
+    const int trajectory_id) {
+  return queues_.lower_bound(QueueKey{trajectory_id, std::string()});
+}
 
-    Queue& queue = oldest->second;
-    const common::Time start = CommonStartTime(oldest->first.trajectory_id);
-    if (queue.readings.front()->GetTime() >= start) {
-      DispatchFront(&queue);
-    } else if (queue.readings.size() >= 2) {
-      // Pass on only the last reading before the start.
-      if (queue.readings[1]->GetTime() > start) {
-        DispatchFront(&queue);
-      } else {
-        queue.readings.pop_front();
-      }
-    } else if (queue.finished) {
-      DispatchFront(&queue);
-    } else {
-      blocker_ = oldest->first;
-      return;
-    }
+void OrderedMultiQueue::DispatchAll() {
+  bool progress = true;
+  while (progress) {
+    const auto oldest = OldestReading();
+    progress = oldest != queues_.end() && Process(oldest);
   }
 }
 
-void OrderedMultiQueue::DispatchFront(Queue* const queue) {
-  std::unique_ptr<Data> data = std::move(queue->readings.front());
-  queue->readings.pop_front();
-  CHECK_LE(last_dispatched_time_, data->GetTime())
-      << "Non-sorted data added to queue of sensor '" << data->GetSensorId()
-      << "'";
-  last_dispatched_time_ = data->GetTime();
-  queue->callback(std::move(data));
+OrderedMultiQueue::Queues::iterator OrderedMultiQueue::OldestReading() {
+  size_t longest = 0;
+  auto silent = queues_.end();
+  for (auto it = queues_.begin(); it != queues_.end();) {
+    const Queue& queue = it->second;
+    longest = std::max(longest, queue.readings.size());
+    const bool empty = queue.readings.empty();
+    if (empty && !queue.finished && silent == queues_.end()) {
+      silent = it;
+    }
+    it = empty && queue.finished ? queues_.erase(it) : std::next(it);
+  }
+  if (silent != queues_.end()) {
+    blocker_ = silent->first;
+    LOG_IF_EVERY_N(WARNING, longest > kSuspiciousQueueSize, 1000)
+        << "all sensors wait for " << blocker_;
+    return queues_.end();
+  }
+  // The first of equal times, which has the smallest key.
+  return std::min_element(
+      queues_.begin(), queues_.end(),
+      [](const Queues::value_type& a, const Queues::value_type& b) {
+        return a.second.FrontTime() < b.second.FrontTime();
+      });
 }
 
-common::Time OrderedMultiQueue::CommonStartTime(const int trajectory_id) {
-  const auto inserted =
-      common_start_times_.emplace(trajectory_id, common::Time::min());
-  common::Time& start = inserted.first->second;
-  if (inserted.second) {
-    // Called when every queue has a reading, so this is the latest beginning.
-    for (const auto& entry : queues_) {
-      if (entry.first.trajectory_id != trajectory_id) continue;
-      start = std::max(start, entry.second.readings.front()->GetTime());
-    }
-    VLOG(1) << "All sensors of trajectory " << trajectory_id
-            << " have begun at " << start << ".";
+bool OrderedMultiQueue::Process(const Queues::iterator entry) {
+  Queue& queue = entry->second;
+  const common::Time start = StartTime(entry->first.trajectory_id);
+  const bool before_start = queue.FrontTime() < start;
+  const bool has_successor = queue.readings.size() > 1;
+  if (before_start && !has_successor && !queue.finished) {
+    // The next reading decides whether this is the last one before the start.
+    blocker_ = entry->first;
+    return false;
   }
-  return start;
+  std::unique_ptr<Data> reading = std::move(queue.readings.front());
+  queue.readings.pop_front();
+  const bool superseded =
+      before_start && has_successor && queue.FrontTime() <= start;
+  if (!superseded) {
+    CHECK_LE(last_dispatched_time_, reading->GetTime())
+        << "the readings of sensor '" << reading->GetSensorId()
+        << "' are not in order of time";
+    last_dispatched_time_ = reading->GetTime();
+    queue.callback(std::move(reading));
+  }
+  return true;
+}
+
+common::Time OrderedMultiQueue::StartTime(const int trajectory_id) {
+  const auto known = start_times_.find(trajectory_id);
+  if (known != start_times_.end()) {
+    return known->second;
+  }
+  // Called while every queue has a reading. The sensor that begins last is the
+  // one to start with.
+  common::Time start = common::Time::min();
+  for (auto it = FirstOf(trajectory_id);
+       it != queues_.end() && it->first.trajectory_id == trajectory_id; ++it) {
+    start = std::max(start, it->second.FrontTime());
+  }
+  VLOG(1) << "trajectory " << trajectory_id << " starts at " << start;
+  return start_times_[trajectory_id] = start;
+}
+
+void AddQueues(const int trajectory_id,
+               const absl::flat_hash_set<std::string>& sensor_ids,
+               const std::function<void(const std::string& sensor_id,
+                                        std::unique_ptr<Data>)>& callback,
+               OrderedMultiQueue* const queue) {
+  for (const std::string& sensor_id : sensor_ids) {
+    queue->AddQueue(QueueKey{trajectory_id, sensor_id},
+                    [sensor_id, callback](std::unique_ptr<Data> reading) {
+                      callback(sensor_id, std::move(reading));
+                    });
+  }
 }
 
 }  // namespace sensor

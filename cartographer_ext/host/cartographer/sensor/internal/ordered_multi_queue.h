@@ -10,6 +10,7 @@
 #include <string>
 #include <tuple>
 
+#include "absl/container/flat_hash_set.h"
 #include "cartographer/common/time.h"
 #include "cartographer/sensor/data.h"
 
@@ -47,27 +48,47 @@ class OrderedMultiQueue {
   // Readings of an unknown queue are dropped with a warning. Times of a queue
   // must not go back.
   void Add(const QueueKey& queue_key, std::unique_ptr<Data> data);
+  // Finishes those queues of a trajectory that are left, all at once.
+  void FinishTrajectory(int trajectory_id);
   // Finishes all queues.
   void Flush();
-  // The queue that was empty when we could last not go on; not before Add.
+  // The queue that dispatching last had to wait for; only after Add.
   QueueKey GetBlocker() const;
 
  private:
   struct Queue {
+    // There must be a reading.
+    common::Time FrontTime() const { return readings.front()->GetTime(); }
+
     std::deque<std::unique_ptr<Data>> readings;
     Callback callback;
     bool finished = false;
   };
+  using Queues = std::map<QueueKey, Queue>;
 
-  void Dispatch();
-  void DispatchFront(Queue* queue);
-  common::Time CommonStartTime(int trajectory_id);
+  // The queues of a trajectory are neighbours; this is the first.
+  Queues::iterator FirstOf(int trajectory_id);
+  void DispatchAll();
+  // Drops finished queues without readings. Then the queue with the oldest
+  // reading, or the end while another queue has to be waited for.
+  Queues::iterator OldestReading();
+  // Dispatches or drops the first reading of a queue, unless that must wait.
+  bool Process(Queues::iterator entry);
+  // When all sensors of a trajectory have begun.
+  common::Time StartTime(int trajectory_id);
 
+  Queues queues_;
+  std::map<int, common::Time> start_times_;
   common::Time last_dispatched_time_ = common::Time::min();
-  std::map<int, common::Time> common_start_times_;
-  std::map<QueueKey, Queue> queues_;
   QueueKey blocker_;
 };
+
+// One queue for each sensor of a trajectory, with a common callback.
+void AddQueues(int trajectory_id,
+               const absl::flat_hash_set<std::string>& sensor_ids,
+               const std::function<void(const std::string& sensor_id,
+                                        std::unique_ptr<Data>)>& callback,
+               OrderedMultiQueue* queue);
 
 }  // namespace sensor
 }  // namespace cartographer

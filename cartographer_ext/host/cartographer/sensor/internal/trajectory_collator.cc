@@ -20,22 +20,12 @@ void TrajectoryCollator::AddTrajectory(
     const Callback& callback) {
   CHECK_EQ(trajectories_.count(trajectory_id), 0)
       << "trajectory " << trajectory_id << " exists";
-  Trajectory& trajectory = trajectories_[trajectory_id];
-  for (const std::string& sensor_id : expected_sensor_ids) {
-    const QueueKey key{trajectory_id, sensor_id};
-    trajectory.queue.AddQueue(
-        key, [callback, sensor_id](std::unique_ptr<Data> data) {
-          callback(sensor_id, std::move(data));
-        });
-    trajectory.keys.push_back(key);
-  }
+  AddQueues(trajectory_id, expected_sensor_ids, callback,
+            &trajectories_[trajectory_id].queue);
 }
 
 void TrajectoryCollator::FinishTrajectory(const int trajectory_id) {
-  Trajectory& trajectory = trajectories_.at(trajectory_id);
-  for (const QueueKey& key : trajectory.keys) {
-    trajectory.queue.MarkQueueAsFinished(key);
-  }
+  trajectories_.at(trajectory_id).queue.FinishTrajectory(trajectory_id);
 }
 
 void TrajectoryCollator::AddSensorData(const int trajectory_id,

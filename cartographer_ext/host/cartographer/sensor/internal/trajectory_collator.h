@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "absl/container/flat_hash_set.h"
 #include "absl/types/optional.h"
@@ -39,7 +38,6 @@ class TrajectoryCollator : public CollatorInterface {
  private:
   struct Trajectory {
     OrderedMultiQueue queue;
-    std::vector<QueueKey> keys;
     std::map<std::string, metrics::Counter*> counters;
   };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/common/math.h"
 
 namespace cartographer {
@@ -121,12 +122,10 @@ std::vector<TimedPointCloudOriginData::RangeMeasurement> VoxelFilter(
 }
 
 proto::AdaptiveVoxelFilterOptions CreateAdaptiveVoxelFilterOptions(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::AdaptiveVoxelFilterOptions options;
-  options.set_max_length(parameter_dictionary->GetDouble("max_length"));
-  options.set_min_num_points(
-      parameter_dictionary->GetNonNegativeInt("min_num_points"));
-  options.set_max_range(parameter_dictionary->GetDouble("max_range"));
+    common::LuaParameterDictionary* const table) {
+  const auto options =
+      common::ReadOptions<proto::AdaptiveVoxelFilterOptions>(table);
+  CHECK_GE(options.min_num_points(), 0.f) << "min_num_points";
   return options;
 }
 

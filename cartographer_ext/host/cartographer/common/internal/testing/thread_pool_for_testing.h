@@ -3,13 +3,10 @@
 #ifndef CARTOGRAPHER_COMMON_INTERNAL_TESTING_THREAD_POOL_FOR_TESTING_H_
 #define CARTOGRAPHER_COMMON_INTERNAL_TESTING_THREAD_POOL_FOR_TESTING_H_
 
-#include <deque>
-#include <map>
 #include <memory>
 #include <thread>
 
-#include "absl/base/thread_annotations.h"
-#include "absl/synchronization/mutex.h"
+#include "cartographer/common/internal/task_queue.h"
 #include "cartographer/common/thread_pool.h"
 
 namespace cartographer {
@@ -23,22 +20,15 @@ class ThreadPoolForTesting : public ThreadPoolInterface {
   ThreadPoolForTesting();
   ~ThreadPoolForTesting() override;
 
-  std::weak_ptr<Task> Schedule(std::unique_ptr<Task> task)
-      ABSL_LOCKS_EXCLUDED(mutex_) override;
+  std::weak_ptr<Task> Schedule(std::unique_ptr<Task> task) override;
 
   // Returns when no task is ready or running.
-  void WaitUntilIdle() ABSL_LOCKS_EXCLUDED(mutex_);
+  void WaitUntilIdle() { tasks_.WaitUntilIdle(); }
 
  private:
-  void DoWork() ABSL_LOCKS_EXCLUDED(mutex_);
-  void NotifyDependenciesCompleted(Task* task)
-      ABSL_LOCKS_EXCLUDED(mutex_) override;
+  void NotifyDependenciesCompleted(Task* task) override;
 
-  absl::Mutex mutex_;
-  bool running_ ABSL_GUARDED_BY(mutex_) = true;
-  bool executing_ ABSL_GUARDED_BY(mutex_) = false;
-  std::deque<std::shared_ptr<Task>> ready_ ABSL_GUARDED_BY(mutex_);
-  std::map<Task*, std::shared_ptr<Task>> waiting_ ABSL_GUARDED_BY(mutex_);
+  TaskQueue tasks_;
   std::thread thread_;
 };
 

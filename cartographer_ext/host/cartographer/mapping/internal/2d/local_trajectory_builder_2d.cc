@@ -30,13 +30,14 @@ LocalTrajectoryBuilder2D::LocalTrajectoryBuilder2D(
     const proto::LocalTrajectoryBuilderOptions2D& options,
     const std::vector<std::string>& expected_range_sensor_ids)
     : options_(options),
-      active_submaps_(options.submaps_options()),
-      motion_filter_(options.motion_filter_options()),
+      range_data_collator_(expected_range_sensor_ids),
+      accumulator_(options),
       real_time_correlative_scan_matcher_(
           options.real_time_correlative_scan_matcher_options()),
       ceres_scan_matcher_(options.ceres_scan_matcher_options()),
-      range_data_collator_(expected_range_sensor_ids) {
-  CHECK(!options.pose_extrapolator_options().use_imu_based())
+      motion_filter_(options.motion_filter_options()),
+      active_submaps_(options.submaps_options()) {
+  CHECK(!options_.pose_extrapolator_options().use_imu_based())
       << "pose_extrapolator.use_imu_based is not available in 2D";
 }
 
@@ -96,16 +97,24 @@ LocalTrajectoryBuilder2D::AddRangeData(
   }
 
   const std::vector<transform::Rigid3f> poses = ExtrapolatePoses(sweep);
-  Accumulate(sweep, poses);
-  if (++num_accumulated_ < options_.num_accumulated_range_data()) {
+  accumulator_.Add(sweep, poses);
+  if (!accumulator_.IsComplete()) {
     return nullptr;
   }
-  num_accumulated_ = 0;
-  const auto gravity_alignment = transform::Rigid3d::Rotation(
-      extrapolator_->EstimateGravityOrientation(sweep.time));
-  return MatchAndInsert(sweep.time,
-                        TakeAccumulated(poses.back(), gravity_alignment),
-                        gravity_alignment);
+  Scan scan;
+  scan.time = sweep.time;
+  scan.gravity_alignment =
+      extrapolator_->EstimateGravityOrientation(sweep.time);
+  scan.range_data = accumulator_.Take(
+      poses.back(),
+      transform::Rigid3d::Rotation(scan.gravity_alignment).cast<float>());
+  if (scan.range_data.returns.empty()) {
+    LOG_EVERY_N(WARNING, 100) << "a scan without returns is dropped";
+    return nullptr;
+  }
+  scan.cloud = sensor::AdaptiveVoxelFilter(
+      scan.range_data.returns, options_.adaptive_voxel_filter_options());
+  return scan.cloud.empty() ? nullptr : MatchAndInsert(scan);
 }
 
 std::vector<transform::Rigid3f> LocalTrajectoryBuilder2D::ExtrapolatePoses(
@@ -130,80 +139,25 @@ std::vector<transform::Rigid3f> LocalTrajectoryBuilder2D::ExtrapolatePoses(
   return poses;
 }
 
-void LocalTrajectoryBuilder2D::Accumulate(
-    const sensor::TimedPointCloudOriginData& sweep,
-    const std::vector<transform::Rigid3f>& poses) {
-  if (num_accumulated_ == 0) {
-    accumulated_range_data_ = sensor::RangeData{{}, {}, {}};
-  }
-  for (size_t i = 0; i < sweep.ranges.size(); ++i) {
-    const auto& range = sweep.ranges[i];
-    const Eigen::Vector3f origin =
-        poses[i] * sweep.origins.at(range.origin_index);
-    sensor::RangefinderPoint hit =
-        poses[i] * sensor::ToRangefinderPoint(range.point_time);
-    const Eigen::Vector3f ray = hit.position - origin;
-    const float length = ray.norm();
-    // Written so that ranges which are not a number fall out.
-    if (!(length >= options_.min_range())) {
-      continue;
-    }
-    if (length <= options_.max_range()) {
-      accumulated_range_data_.returns.push_back(hit);
-      continue;
-    }
-    // Out of reach: only the beginning of the ray is surely free.
-    hit.position = origin + options_.missing_data_ray_length() / length * ray;
-    accumulated_range_data_.misses.push_back(hit);
-  }
-}
-
-sensor::RangeData LocalTrajectoryBuilder2D::TakeAccumulated(
-    const transform::Rigid3f& newest_pose,
-    const transform::Rigid3d& gravity_alignment) {
-  accumulated_range_data_.origin = newest_pose.translation();
-  const transform::Rigid3f gravity_aligned_from_local =
-      gravity_alignment.cast<float>() * newest_pose.inverse();
-  const sensor::RangeData cropped = sensor::CropRangeData(
-      sensor::TransformRangeData(accumulated_range_data_,
-                                 gravity_aligned_from_local),
-      options_.min_z(), options_.max_z());
-  return sensor::RangeData{
-      cropped.origin,
-      sensor::VoxelFilter(cropped.returns, options_.voxel_filter_size()),
-      sensor::VoxelFilter(cropped.misses, options_.voxel_filter_size())};
-}
-
 std::unique_ptr<LocalTrajectoryBuilder2D::MatchingResult>
-LocalTrajectoryBuilder2D::MatchAndInsert(
-    const common::Time time,
-    const sensor::RangeData& gravity_aligned_range_data,
-    const transform::Rigid3d& gravity_alignment) {
-  if (gravity_aligned_range_data.returns.empty()) {
-    LOG_EVERY_N(WARNING, 100) << "a scan without returns is dropped";
-    return nullptr;
-  }
-  const transform::Rigid2d prediction = transform::Project2D(
-      extrapolator_->ExtrapolatePose(time) * gravity_alignment.inverse());
-  const sensor::PointCloud cloud =
-      sensor::AdaptiveVoxelFilter(gravity_aligned_range_data.returns,
-                                  options_.adaptive_voxel_filter_options());
-  if (cloud.empty()) {
-    return nullptr;
-  }
-  const transform::Rigid2d matched = Match(prediction, cloud);
-  const transform::Rigid3d local_pose =
-      transform::Embed3D(matched) * gravity_alignment;
-  extrapolator_->AddPose(time, local_pose);
+LocalTrajectoryBuilder2D::MatchAndInsert(const Scan& scan) {
+  const auto tilt = transform::Rigid3d::Rotation(scan.gravity_alignment);
+  const transform::Rigid3d predicted =
+      extrapolator_->ExtrapolatePose(scan.time) * tilt.inverse();
+  const transform::Rigid2d matched =
+      Match(transform::Project2D(predicted), scan.cloud);
 
-  sensor::RangeData range_data_in_local = sensor::TransformRangeData(
-      gravity_aligned_range_data, transform::Embed3D(matched.cast<float>()));
-  auto insertion_result = MaybeInsert(time, range_data_in_local, cloud,
-                                      local_pose, gravity_alignment.rotation());
-  ReportSpeed(time);
-  return absl::make_unique<MatchingResult>(
-      MatchingResult{time, local_pose, std::move(range_data_in_local),
-                     std::move(insertion_result)});
+  auto result = absl::make_unique<MatchingResult>();
+  result->time = scan.time;
+  result->local_pose = transform::Embed3D(matched) * tilt;
+  result->range_data_in_local = sensor::TransformRangeData(
+      scan.range_data, transform::Embed3D(matched.cast<float>()));
+  extrapolator_->AddPose(result->time, result->local_pose);
+  if (!motion_filter_.IsSimilar(result->time, result->local_pose)) {
+    result->insertion_result = Insert(scan, *result);
+  }
+  ReportSpeed(scan.time);
+  return result;
 }
 
 transform::Rigid2d LocalTrajectoryBuilder2D::Match(
@@ -232,23 +186,16 @@ transform::Rigid2d LocalTrajectoryBuilder2D::Match(
 }
 
 std::unique_ptr<LocalTrajectoryBuilder2D::InsertionResult>
-LocalTrajectoryBuilder2D::MaybeInsert(
-    const common::Time time, const sensor::RangeData& range_data_in_local,
-    const sensor::PointCloud& cloud, const transform::Rigid3d& local_pose,
-    const Eigen::Quaterniond& gravity_alignment) {
-  if (motion_filter_.IsSimilar(time, local_pose)) {
-    return nullptr;
-  }
-  auto result = absl::make_unique<InsertionResult>();
-  result->insertion_submaps =
-      active_submaps_.InsertRangeData(range_data_in_local);
-  auto data = std::make_shared<TrajectoryNode::Data>();
-  data->time = time;
-  data->gravity_alignment = gravity_alignment;
-  data->filtered_gravity_aligned_point_cloud = cloud;
-  data->local_pose = local_pose;
-  result->constant_data = std::move(data);
-  return result;
+LocalTrajectoryBuilder2D::Insert(const Scan& scan,
+                                 const MatchingResult& matched) {
+  TrajectoryNode::Data node;
+  node.time = scan.time;
+  node.gravity_alignment = scan.gravity_alignment;
+  node.filtered_gravity_aligned_point_cloud = scan.cloud;
+  node.local_pose = matched.local_pose;
+  return absl::make_unique<InsertionResult>(InsertionResult{
+      std::make_shared<const TrajectoryNode::Data>(std::move(node)),
+      active_submaps_.InsertRangeData(matched.range_data_in_local)});
 }
 
 void LocalTrajectoryBuilder2D::ReportSpeed(const common::Time time) {

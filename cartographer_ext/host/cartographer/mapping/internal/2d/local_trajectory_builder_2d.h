@@ -15,6 +15,7 @@
 #include "absl/types/optional.h"
 #include "cartographer/common/time.h"
 #include "cartographer/mapping/2d/submap_2d.h"
+#include "cartographer/mapping/internal/2d/range_accumulator.h"
 #include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/internal/2d/scan_matching/real_time_correlative_scan_matcher_2d.h"
 #include "cartographer/mapping/internal/motion_filter.h"
@@ -56,7 +57,7 @@ class LocalTrajectoryBuilder2D {
   LocalTrajectoryBuilder2D& operator=(const LocalTrajectoryBuilder2D&) = delete;
 
   // Null as long as nothing was matched: scans are still being accumulated or
-  // waited for, the IMU has not spoken yet, or no point was left.
+  // waited for, the IMU has not delivered yet, or no point was left.
   std::unique_ptr<MatchingResult> AddRangeData(
       const std::string& sensor_id,
       const sensor::TimedPointCloudData& range_data);
@@ -67,42 +68,38 @@ class LocalTrajectoryBuilder2D {
   static void RegisterMetrics(metrics::FamilyFactory* family_factory);
 
  private:
+  // What one scan match works on.
+  struct Scan {
+    common::Time time;
+    Eigen::Quaterniond gravity_alignment;  // (gravity aligned <- tracking)
+    sensor::RangeData range_data;          // gravity aligned
+    sensor::PointCloud cloud;              // returns, thinned for matching
+  };
+
   void InitializeExtrapolator(common::Time time);
 
   // (local <- tracking) at the time of every point.
   std::vector<transform::Rigid3f> ExtrapolatePoses(
       const sensor::TimedPointCloudOriginData& sweep);
-  void Accumulate(const sensor::TimedPointCloudOriginData& sweep,
-                  const std::vector<transform::Rigid3f>& poses);
-  // Into the gravity-aligned frame of the newest pose, cropped and thinned.
-  sensor::RangeData TakeAccumulated(
-      const transform::Rigid3f& newest_pose,
-      const transform::Rigid3d& gravity_alignment);
-
-  std::unique_ptr<MatchingResult> MatchAndInsert(
-      common::Time time, const sensor::RangeData& gravity_aligned_range_data,
-      const transform::Rigid3d& gravity_alignment);
+  std::unique_ptr<MatchingResult> MatchAndInsert(const Scan& scan);
   // (local <- gravity aligned)
   transform::Rigid2d Match(const transform::Rigid2d& prediction,
                            const sensor::PointCloud& cloud);
-  std::unique_ptr<InsertionResult> MaybeInsert(
-      common::Time time, const sensor::RangeData& range_data_in_local,
-      const sensor::PointCloud& cloud, const transform::Rigid3d& local_pose,
-      const Eigen::Quaterniond& gravity_alignment);
+  std::unique_ptr<InsertionResult> Insert(const Scan& scan,
+                                          const MatchingResult& matched);
   void ReportSpeed(common::Time time);
 
+  // In the order in which a scan passes them.
   const proto::LocalTrajectoryBuilderOptions2D options_;
-  ActiveSubmaps2D active_submaps_;
-  MotionFilter motion_filter_;
-  scan_matching::RealTimeCorrelativeScanMatcher2D
-      real_time_correlative_scan_matcher_;
-  scan_matching::CeresScanMatcher2D ceres_scan_matcher_;
   RangeDataCollator range_data_collator_;
   // Null until the first scan, or with an IMU until its first reading.
   std::unique_ptr<PoseExtrapolator> extrapolator_;
-
-  int num_accumulated_ = 0;
-  sensor::RangeData accumulated_range_data_;  // in the local frame
+  RangeAccumulator accumulator_;
+  scan_matching::RealTimeCorrelativeScanMatcher2D
+      real_time_correlative_scan_matcher_;
+  scan_matching::CeresScanMatcher2D ceres_scan_matcher_;
+  MotionFilter motion_filter_;
+  ActiveSubmaps2D active_submaps_;
 
   // For metrics only.
   struct Clocks {

@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/mapping/internal/2d/normal_estimation_2d.h"
 
+#include "cartographer/common/internal/read_options.h"
 #include "glog/logging.h"
 
 namespace cartographer {
 namespace mapping {
 
 proto::NormalEstimationOptions2D CreateNormalEstimationOptions2D(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::NormalEstimationOptions2D options;
-  options.set_num_normal_samples(
-      parameter_dictionary->GetInt("num_normal_samples"));
-  options.set_sample_radius(parameter_dictionary->GetDouble("sample_radius"));
+    common::LuaParameterDictionary* const table) {
+  const auto options =
+      common::ReadOptions<proto::NormalEstimationOptions2D>(table);
   CHECK_GT(options.num_normal_samples(), 0);
   CHECK_GT(options.sample_radius(), 0.f);
   return options;

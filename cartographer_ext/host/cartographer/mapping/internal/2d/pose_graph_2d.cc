@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/memory/memory.h"
+#include "cartographer/mapping/internal/2d/node_spec.h"
 #include "cartographer/mapping/internal/2d/overlapping_submaps_trimmer_2d.h"
 #include "cartographer/mapping/internal/2d/pose_graph_2d_metrics.h"
 #include "cartographer/mapping/internal/2d/pose_graph_2d_trimming_handle.h"
@@ -20,11 +21,12 @@ namespace {
 // The graph whose optimisation callback runs on this thread.
 thread_local const PoseGraph2D* calling_back_for = nullptr;
 
-// (local <- gravity aligned) of a node.
-transform::Rigid2d LocalPose2D(const TrajectoryNode::Data& node) {
-  return transform::Project2D(
-      node.local_pose *
-      transform::Rigid3d::Rotation(node.gravity_alignment.inverse()));
+std::unique_ptr<PoseGraphTrimmer> MakeTrimmer(
+    const proto::PoseGraphOptions::OverlappingSubmapsTrimmerOptions2D&
+        options) {
+  return absl::make_unique<OverlappingSubmapsTrimmer2D>(
+      options.fresh_submaps_count(), options.min_covered_area(),
+      options.min_added_submaps_count());
 }
 
 }  // namespace
@@ -41,18 +43,14 @@ PoseGraph2D::PoseGraph2D(
     : options_(options),
       optimization_problem_(std::move(optimization_problem)),
       constraint_builder_(options_.constraint_builder_options(), thread_pool),
-      work_queue_(thread_pool, [this](const WorkItem::Result reason) {
-        constraint_builder_.WhenDone(
-            [this,
-             reason](const constraints::ConstraintBuilder2D::Result& result) {
-              HandleConstraints(reason, result);
-            });
+      work_queue_(thread_pool, [this](const WorkItem::Result barrier) {
+        using Constraints = constraints::ConstraintBuilder2D::Result;
+        constraint_builder_.WhenDone([this, barrier](const Constraints& found) {
+          HandleConstraints(barrier, found);
+        });
       }) {
-  if (options.has_overlapping_submaps_trimmer_2d()) {
-    const auto& trimmer = options.overlapping_submaps_trimmer_2d();
-    AddTrimmer(absl::make_unique<OverlappingSubmapsTrimmer2D>(
-        trimmer.fresh_submaps_count(), trimmer.min_covered_area(),
-        trimmer.min_added_submaps_count()));
+  if (options_.has_overlapping_submaps_trimmer_2d()) {
+    AddTrimmer(MakeTrimmer(options_.overlapping_submaps_trimmer_2d()));
   }
 }
 
@@ -75,7 +73,7 @@ NodeId PoseGraph2D::AddNode(
     ++data_.num_trajectory_nodes;
     submap_ids = AppendInsertionSubmaps(trajectory_id, insertion_submaps);
   }
-  // Has to be asked now, while local SLAM stands still.
+  // Read now, while local SLAM waits for this call.
   const bool newly_finished_submap =
       insertion_submaps.front()->insertion_finished();
   AddWorkItem([=]() {
@@ -93,20 +91,20 @@ void PoseGraph2D::AddWorkItem(
   metrics.work_queue_delay->Set(work_queue_.DelaySeconds());
 }
 
-void PoseGraph2D::AddTrajectoryIfNeeded(const int trajectory_id) {
-  CHECK(CanModify(trajectory_id))
-      << "trajectory " << trajectory_id << " has come to its end";
-  data_.trajectories_state[trajectory_id];
-  data_.trajectory_connectivity_state.Add(trajectory_id);
+void PoseGraph2D::AddChange(const std::function<void()>& change,
+                            const WorkItem::Result result) {
+  AddWorkItem([this, change, result]() {
+    absl::MutexLock lock(&mutex_);
+    change();
+    return result;
+  });
 }
 
-bool PoseGraph2D::CanModify(const int trajectory_id) const {
-  const auto it = data_.trajectories_state.find(trajectory_id);
-  return it == data_.trajectories_state.end() ||
-         (it->second.state != TrajectoryState::FINISHED &&
-          it->second.state != TrajectoryState::DELETED &&
-          it->second.deletion_state !=
-              InternalTrajectoryState::DeletionState::WAIT_FOR_DELETION);
+void PoseGraph2D::AddTrajectoryIfNeeded(const int trajectory_id) {
+  CHECK(data_.trajectory_states.AcceptsData(trajectory_id))
+      << "trajectory " << trajectory_id << " is complete";
+  data_.trajectory_states.Add(trajectory_id);
+  data_.trajectory_connectivity_state.Add(trajectory_id);
 }
 
 std::vector<SubmapId> PoseGraph2D::AppendInsertionSubmaps(
@@ -223,21 +221,17 @@ void PoseGraph2D::PlaceNode(const NodeId& node_id,
                             const SubmapId& matched_submap_id,
                             const Submap2D& matched_submap) {
   TrajectoryNode& node = data_.trajectory_nodes.at(node_id);
-  const transform::Rigid2d local_pose_2d = LocalPose2D(*node.constant_data);
-  const transform::Rigid2d global_pose_2d =
+  const transform::Rigid2d global_from_local =
       optimization_problem_->submap_data().at(matched_submap_id).global_pose *
-      constraints::ComputeSubmapPose(matched_submap).inverse() * local_pose_2d;
-  const Eigen::Quaterniond& gravity_alignment =
-      node.constant_data->gravity_alignment;
+      constraints::ComputeSubmapPose(matched_submap).inverse();
+  const transform::Rigid2d global_pose =
+      global_from_local * LocalPose2D(*node.constant_data);
   optimization_problem_->AddTrajectoryNode(
-      node_id.trajectory_id,
-      optimization::NodeSpec2D{node.time(), local_pose_2d, global_pose_2d,
-                               gravity_alignment});
-  node.global_pose = transform::Embed3D(global_pose_2d) *
-                     transform::Rigid3d::Rotation(gravity_alignment);
-  if (data_.trajectory_data.count(node_id.trajectory_id) == 0) {
-    data_.trajectory_data = optimization_problem_->trajectory_data();
-  }
+      node_id.trajectory_id, MakeNodeSpec(*node.constant_data, global_pose));
+  node.global_pose =
+      transform::Embed3D(global_pose) *
+      transform::Rigid3d::Rotation(node.constant_data->gravity_alignment);
+  CopyTrajectoryDataOfNew(node_id.trajectory_id);
 }
 
 void PoseGraph2D::AddIntraSubmapConstraint(const NodeId& node_id,
@@ -259,47 +253,55 @@ void PoseGraph2D::AddIntraSubmapConstraint(const NodeId& node_id,
 
 void PoseGraph2D::SearchConstraint(const NodeId& node_id,
                                    const SubmapId& submap_id) {
-  const TrajectoryNode::Data* node;
-  const Submap2D* submap;
-  bool is_local;
+  std::shared_ptr<const Submap> submap;
+  std::shared_ptr<const TrajectoryNode::Data> node;
+  bool is_local = false;
   {
     absl::MutexLock lock(&mutex_);
-    submap = static_cast<const Submap2D*>(
-        data_.submap_data.at(submap_id).submap.get());
-    // A trajectory may end before its newest submaps are complete.
-    if (!submap->insertion_finished()) {
-      return;
-    }
-    node = data_.trajectory_nodes.at(node_id).constant_data.get();
-    // The guess is good within a trajectory, and for a while after two of them
-    // were last connected.
-    is_local = node_id.trajectory_id == submap_id.trajectory_id ||
-               GetLatestNodeTime(node_id, submap_id) <
-                   data_.trajectory_connectivity_state.LastConnectionTime(
-                       node_id.trajectory_id, submap_id.trajectory_id) +
-                       common::FromSeconds(
-                           options_.global_constraint_search_after_n_seconds());
+    submap = data_.submap_data.at(submap_id).submap;
+    node = data_.trajectory_nodes.at(node_id).constant_data;
+    is_local = CanTrustRelativePose(node_id, submap_id);
   }
-  if (is_local) {
-    const transform::Rigid2d submap_from_node =
-        optimization_problem_->submap_data()
-            .at(submap_id)
-            .global_pose.inverse() *
-        optimization_problem_->node_data().at(node_id).global_pose_2d;
-    constraint_builder_.MaybeAddConstraint(submap_id, submap, node_id, node,
-                                           submap_from_node);
+  // A trajectory may end before its newest submaps are complete.
+  if (!submap->insertion_finished()) {
     return;
   }
-  common::FixedRatioSampler& sampler =
-      global_localization_samplers_
-          .emplace(std::piecewise_construct,
-                   std::forward_as_tuple(node_id.trajectory_id),
-                   std::forward_as_tuple(options_.global_sampling_ratio()))
-          .first->second;
-  if (sampler.Pulse()) {
-    constraint_builder_.MaybeAddGlobalConstraint(submap_id, submap, node_id,
-                                                 node);
+  const auto* const submap_2d = static_cast<const Submap2D*>(submap.get());
+  if (is_local) {
+    const transform::Rigid2d global_from_submap =
+        optimization_problem_->submap_data().at(submap_id).global_pose;
+    const transform::Rigid2d global_from_node =
+        optimization_problem_->node_data().at(node_id).global_pose_2d;
+    constraint_builder_.MaybeAddConstraint(
+        submap_id, submap_2d, node_id, node.get(),
+        global_from_submap.inverse() * global_from_node);
+  } else if (IsSampledForGlobalSearch(node_id.trajectory_id)) {
+    constraint_builder_.MaybeAddGlobalConstraint(submap_id, submap_2d, node_id,
+                                                 node.get());
   }
+}
+
+bool PoseGraph2D::CanTrustRelativePose(const NodeId& node_id,
+                                       const SubmapId& submap_id) const {
+  if (node_id.trajectory_id == submap_id.trajectory_id) {
+    return true;
+  }
+  const common::Time connected =
+      data_.trajectory_connectivity_state.LastConnectionTime(
+          node_id.trajectory_id, submap_id.trajectory_id);
+  return GetLatestNodeTime(node_id, submap_id) <
+         connected + common::FromSeconds(
+                         options_.global_constraint_search_after_n_seconds());
+}
+
+bool PoseGraph2D::IsSampledForGlobalSearch(const int trajectory_id) {
+  auto sampler = global_localization_samplers_.find(trajectory_id);
+  if (sampler == global_localization_samplers_.end()) {
+    sampler = global_localization_samplers_
+                  .emplace(trajectory_id, options_.global_sampling_ratio())
+                  .first;
+  }
+  return sampler->second.Pulse();
 }
 
 void PoseGraph2D::HandleConstraints(
@@ -316,9 +318,7 @@ void PoseGraph2D::HandleConstraints(
     RunOptimization();
     CallBackAfterOptimization();
     absl::MutexLock lock(&mutex_);
-    TrimmingHandle handle(this);
-    DeleteTrajectoriesIfNeeded(&handle);
-    RunTrimmers(&handle);
+    Trim();
     num_nodes_since_last_optimization_ = 0;
     CountConstraints();
   }
@@ -329,8 +329,8 @@ void PoseGraph2D::RunOptimization() {
   if (optimization_problem_->submap_data().empty()) {
     return;
   }
-  // Constraints and landmarks change in items only, so they may be read here
-  // while others read them, too.
+  // Constraints and landmarks change in items only, so that they may be read
+  // here without the lock.
   optimization_problem_->Solve(data_.constraints, GetTrajectoryStates(),
                                data_.landmark_nodes);
   absl::MutexLock lock(&mutex_);
@@ -386,31 +386,23 @@ void PoseGraph2D::CallBackAfterOptimization() {
   calling_back_for = nullptr;
 }
 
-void PoseGraph2D::DeleteTrajectoriesIfNeeded(TrimmingHandle* const handle) {
-  for (auto& id_state : data_.trajectories_state) {
-    if (id_state.second.deletion_state !=
-        InternalTrajectoryState::DeletionState::WAIT_FOR_DELETION) {
-      continue;
-    }
-    for (const SubmapId& submap_id : handle->GetSubmapIds(id_state.first)) {
-      handle->TrimSubmap(submap_id);
-    }
-    id_state.second.state = TrajectoryState::DELETED;
-    id_state.second.deletion_state =
-        InternalTrajectoryState::DeletionState::NORMAL;
+void PoseGraph2D::Trim() {
+  TrimmingHandle handle(this);
+  for (const int trajectory_id : data_.trajectory_states.ConfirmedDeletions()) {
+    const std::vector<SubmapId> submap_ids = handle.GetSubmapIds(trajectory_id);
+    std::for_each(submap_ids.begin(), submap_ids.end(),
+                  [&handle](const SubmapId& id) { handle.TrimSubmap(id); });
+    data_.trajectory_states.Set(trajectory_id, TrajectoryState::DELETED);
   }
-}
-
-void PoseGraph2D::RunTrimmers(TrimmingHandle* const handle) {
-  for (const auto& trimmer : trimmers_) {
-    trimmer->Trim(handle);
+  for (std::unique_ptr<PoseGraphTrimmer>& trimmer : trimmers_) {
+    trimmer->Trim(&handle);
+    if (trimmer->IsFinished()) {
+      trimmer.reset();
+    }
   }
-  trimmers_.erase(
-      std::remove_if(trimmers_.begin(), trimmers_.end(),
-                     [](const std::unique_ptr<PoseGraphTrimmer>& trimmer) {
-                       return trimmer->IsFinished();
-                     }),
-      trimmers_.end());
+  const auto end_of_unfinished =
+      std::remove(trimmers_.begin(), trimmers_.end(), nullptr);
+  trimmers_.erase(end_of_unfinished, trimmers_.end());
 }
 
 void PoseGraph2D::CountConstraints() const {

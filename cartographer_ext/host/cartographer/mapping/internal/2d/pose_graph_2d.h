@@ -5,10 +5,10 @@
 //
 // Everything that changes the graph is an item of one work queue. Items run one
 // after the other; an optimisation is a barrier between two of them. Whatever
-// an item reads was therefore left behind by the items before it, so that the
+// an item reads was therefore written by the items before it, so that the
 // resulting map depends on the order of the calls alone, and not on when, or by
-// how many threads, the work is done. Until its item has run, a new node shows
-// a provisional pose.
+// how many threads, the work is done. Until its item has run, a new node has a
+// provisional pose.
 //
 // Locks: items change what getters read under mutex_. The optimisation problem
 // (save for its sensor data) and the constraint builder are used by items only;
@@ -133,15 +133,19 @@ class PoseGraph2D : public PoseGraph {
   class TrimmingHandle;
 
   void AddWorkItem(const std::function<WorkItem::Result()>& work_item);
-  // An item that changes what belongs to a trajectory, unless the trajectory
-  // has come to its end.
-  void AddChangeOf(int trajectory_id, const std::function<void()>& change);
+  // An item that changes the graph under the lock.
+  void AddChange(
+      const std::function<void()>& change,
+      WorkItem::Result result = WorkItem::Result::kDoNotRunOptimization)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // The same for what belongs to a trajectory; dropped where that is complete.
+  void AddChangeOf(int trajectory_id, const std::function<void()>& change)
+      ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Calls while nodes and submaps are added.
   void AddTrajectoryIfNeeded(int trajectory_id)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  bool CanModify(int trajectory_id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // The names of the insertion submaps.
+  // The ids of the insertion submaps.
   std::vector<SubmapId> AppendInsertionSubmaps(
       int trajectory_id,
       const std::vector<std::shared_ptr<const Submap2D>>& insertion_submaps)
@@ -165,8 +169,25 @@ class PoseGraph2D : public PoseGraph {
                                 const SubmapId& submap_id,
                                 const Submap2D& submap)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Offers a pair to the constraint builder: for a search around the present
+  // relative pose where that can be trusted, else, for a sample of the pairs,
+  // for a search of the whole submap.
   void SearchConstraint(const NodeId& node_id, const SubmapId& submap_id)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  // Relative poses are good within a trajectory, and for a while after two
+  // trajectories were last connected.
+  bool CanTrustRelativePose(const NodeId& node_id,
+                            const SubmapId& submap_id) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool IsSampledForGlobalSearch(int trajectory_id);
+
+  // Parts of the items that take in a stored state.
+  void AddSerializedConstraint(Constraint constraint)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void CountNewSubmap(int trajectory_id) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void CopyTrajectoryDataOfNew(int trajectory_id)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   // Barriers of the work queue.
   void HandleConstraints(WorkItem::Result reason,
@@ -177,10 +198,8 @@ class PoseGraph2D : public PoseGraph {
       ABSL_LOCKS_EXCLUDED(mutex_) ABSL_NO_THREAD_SAFETY_ANALYSIS;
   void PublishOptimizedPoses() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void CallBackAfterOptimization() ABSL_LOCKS_EXCLUDED(mutex_);
-  void DeleteTrajectoriesIfNeeded(TrimmingHandle* handle)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void RunTrimmers(TrimmingHandle* handle)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Deletes what is due and runs the trimmers.
+  void Trim() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void CountConstraints() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   common::Time GetLatestNodeTime(const NodeId& node_id,
@@ -189,8 +208,12 @@ class PoseGraph2D : public PoseGraph {
   void UpdateTrajectoryConnectivity(const Constraint& constraint)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool IsInState(int trajectory_id, TrajectoryState state) const
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  Eigen::Quaterniond GravityAlignment(const NodeId& node_id) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // As the last optimisation has it, or what a trajectory begins with.
+  std::vector<SubmapId> SubmapIds(int trajectory_id) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // By the last optimisation, or what a trajectory begins with.
   transform::Rigid3d LocalToGlobal(int trajectory_id) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // (global <- local) of a trajectory without submaps, by the items so far.

@@ -57,18 +57,18 @@ PoseGraph2D::TrimmingHandle::GetConstraints() const {
 
 bool PoseGraph2D::TrimmingHandle::IsFinished(const int trajectory_id) const {
   parent_->mutex_.AssertHeld();
-  return parent_->IsInState(trajectory_id, TrajectoryState::FINISHED);
+  return data_.trajectory_states.Is(trajectory_id, TrajectoryState::FINISHED);
 }
 
 void PoseGraph2D::TrimmingHandle::SetTrajectoryState(
     const int trajectory_id, const PoseGraphInterface::TrajectoryState state) {
-  data_.trajectories_state[trajectory_id].state = state;
+  data_.trajectory_states.Set(trajectory_id, state);
 }
 
 void PoseGraph2D::TrimmingHandle::TrimSubmap(const SubmapId& submap_id) {
   parent_->mutex_.AssertHeld();
   CHECK(data_.submap_data.at(submap_id).state == SubmapState::kFinished)
-      << "submap " << submap_id << " still grows";
+      << "submap " << submap_id << " is unfinished";
   const std::set<NodeId> node_ids = NodesOnlyIn(submap_id);
   RemoveConstraints(submap_id, node_ids);
   parent_->constraint_builder_.DeleteScanMatcher(submap_id);
@@ -85,8 +85,8 @@ void PoseGraph2D::TrimmingHandle::TrimSubmap(const SubmapId& submap_id) {
 
   PoseGraph2DMetrics& metrics = GetPoseGraph2DMetrics();
   metrics.deleted_submaps->Increment();
-  const bool is_frozen =
-      parent_->IsInState(submap_id.trajectory_id, TrajectoryState::FROZEN);
+  const bool is_frozen = data_.trajectory_states.Is(submap_id.trajectory_id,
+                                                    TrajectoryState::FROZEN);
   (is_frozen ? metrics.frozen_submaps : metrics.active_submaps)->Decrement();
 }
 
@@ -108,7 +108,7 @@ std::set<NodeId> PoseGraph2D::TrimmingHandle::NodesOnlyIn(
 
 void PoseGraph2D::TrimmingHandle::RemoveConstraints(
     const SubmapId& submap_id, const std::set<NodeId>& node_ids) {
-  std::set<SubmapId> bereft;
+  std::set<SubmapId> lost_nodes;
   std::set<SubmapId> with_loop_closures;
   std::vector<Constraint> kept;
   kept.reserve(data_.constraints.size());
@@ -117,7 +117,7 @@ void PoseGraph2D::TrimmingHandle::RemoveConstraints(
       continue;
     }
     if (node_ids.count(constraint.node_id) > 0) {
-      bereft.insert(constraint.submap_id);
+      lost_nodes.insert(constraint.submap_id);
       continue;
     }
     if (constraint.tag == Constraint::INTER_SUBMAP) {
@@ -126,7 +126,7 @@ void PoseGraph2D::TrimmingHandle::RemoveConstraints(
     kept.push_back(constraint);
   }
   data_.constraints = std::move(kept);
-  for (const SubmapId& id : bereft) {
+  for (const SubmapId& id : lost_nodes) {
     if (with_loop_closures.count(id) == 0) {
       parent_->constraint_builder_.DeleteScanMatcher(id);
     }

@@ -3,8 +3,10 @@
 #include "cartographer/mapping/internal/3d/options_3d.h"
 
 #include <string>
+#include <vector>
 
 #include "cartographer/common/internal/ceres_solver_options.h"
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/internal/motion_filter.h"
 #include "cartographer/mapping/internal/scan_matching/real_time_correlative_scan_matcher.h"
 #include "cartographer/mapping/pose_extrapolator_interface.h"
@@ -16,48 +18,41 @@ namespace mapping {
 using common::LuaParameterDictionary;
 
 namespace scan_matching {
+namespace {
+
+// The keys prefix0, prefix1, ... as far as the table has them.
+std::vector<std::string> Numbered(const std::string& prefix,
+                                  const LuaParameterDictionary& table) {
+  std::vector<std::string> keys;
+  std::string next = prefix + "0";
+  while (table.HasKey(next)) {
+    keys.push_back(next);
+    next = prefix + std::to_string(keys.size());
+  }
+  return keys;
+}
+
+}  // namespace
 
 proto::FastCorrelativeScanMatcherOptions3D
-CreateFastCorrelativeScanMatcherOptions3D(
-    LuaParameterDictionary* const parameter_dictionary) {
-  LuaParameterDictionary& lua = *parameter_dictionary;
-  proto::FastCorrelativeScanMatcherOptions3D options;
-  options.set_linear_xy_search_window(lua.GetDouble("linear_xy_search_window"));
-  options.set_linear_z_search_window(lua.GetDouble("linear_z_search_window"));
-  options.set_angular_search_window(lua.GetDouble("angular_search_window"));
-  options.set_branch_and_bound_depth(lua.GetInt("branch_and_bound_depth"));
-  options.set_full_resolution_depth(lua.GetInt("full_resolution_depth"));
-  options.set_min_rotational_score(lua.GetDouble("min_rotational_score"));
-  options.set_min_low_resolution_score(
-      lua.GetDouble("min_low_resolution_score"));
-  return options;
+CreateFastCorrelativeScanMatcherOptions3D(LuaParameterDictionary* const table) {
+  return common::ReadOptions<proto::FastCorrelativeScanMatcherOptions3D>(table);
 }
 
 proto::CeresScanMatcherOptions3D CreateCeresScanMatcherOptions3D(
-    LuaParameterDictionary* const parameter_dictionary) {
-  LuaParameterDictionary& lua = *parameter_dictionary;
-  proto::CeresScanMatcherOptions3D options;
+    LuaParameterDictionary* const table) {
+  auto options = common::ReadOptions<proto::CeresScanMatcherOptions3D>(table);
   // One weight, and optionally one table, per resolution: ..._0, ..._1, ...
-  std::string key;
-  for (int i = 0;
-       lua.HasKey(key = "occupied_space_weight_" + std::to_string(i)); ++i) {
-    options.add_occupied_space_weight(lua.GetDouble(key));
+  for (const std::string& key : Numbered("occupied_space_weight_", *table)) {
+    options.add_occupied_space_weight(table->GetDouble(key));
   }
-  for (int i = 0;
-       lua.HasKey(key = "intensity_cost_function_options_" + std::to_string(i));
-       ++i) {
-    const auto table = lua.GetDictionary(key);
-    auto* const intensity = options.add_intensity_cost_function_options();
-    intensity->set_weight(table->GetDouble("weight"));
-    intensity->set_huber_scale(table->GetDouble("huber_scale"));
-    intensity->set_intensity_threshold(table->GetDouble("intensity_threshold"));
+  for (const std::string& key :
+       Numbered("intensity_cost_function_options_", *table)) {
+    common::ReadFields(table->GetDictionary(key).get(),
+                       options.add_intensity_cost_function_options());
   }
-  options.set_translation_weight(lua.GetDouble("translation_weight"));
-  options.set_rotation_weight(lua.GetDouble("rotation_weight"));
-  options.set_only_optimize_yaw(lua.GetBool("only_optimize_yaw"));
-  *options.mutable_ceres_solver_options() =
-      common::CreateCeresSolverOptionsProto(
-          lua.GetDictionary("ceres_solver_options").get());
+  *options.mutable_ceres_solver_options() = common::ReadTable(
+      table, "ceres_solver_options", &common::CreateCeresSolverOptionsProto);
   return options;
 }
 
@@ -65,58 +60,41 @@ proto::CeresScanMatcherOptions3D CreateCeresScanMatcherOptions3D(
 
 namespace {
 
-proto::SubmapsOptions3D ReadSubmapsOptions(LuaParameterDictionary* const lua) {
-  proto::SubmapsOptions3D options;
-  options.set_high_resolution(lua->GetDouble("high_resolution"));
-  options.set_high_resolution_max_range(
-      lua->GetDouble("high_resolution_max_range"));
-  options.set_low_resolution(lua->GetDouble("low_resolution"));
-  options.set_num_range_data(lua->GetNonNegativeInt("num_range_data"));
-  const auto table = lua->GetDictionary("range_data_inserter");
-  auto* const inserter = options.mutable_range_data_inserter_options();
-  inserter->set_hit_probability(table->GetDouble("hit_probability"));
-  inserter->set_miss_probability(table->GetDouble("miss_probability"));
-  inserter->set_num_free_space_voxels(table->GetInt("num_free_space_voxels"));
-  inserter->set_intensity_threshold(table->GetDouble("intensity_threshold"));
+proto::SubmapsOptions3D ReadSubmapsOptions(
+    LuaParameterDictionary* const table) {
+  auto options = common::ReadOptions<proto::SubmapsOptions3D>(table);
+  CHECK_GE(options.num_range_data(), 0);
+  *options.mutable_range_data_inserter_options() = common::ReadTable(
+      table, "range_data_inserter",
+      &common::ReadOptions<proto::RangeDataInserterOptions3D>);
   return options;
 }
 
 }  // namespace
 
 proto::LocalTrajectoryBuilderOptions3D CreateLocalTrajectoryBuilderOptions3D(
-    LuaParameterDictionary* const parameter_dictionary) {
-  LuaParameterDictionary& lua = *parameter_dictionary;
-  proto::LocalTrajectoryBuilderOptions3D options;
-  options.set_min_range(lua.GetDouble("min_range"));
-  options.set_max_range(lua.GetDouble("max_range"));
-  options.set_num_accumulated_range_data(
-      lua.GetInt("num_accumulated_range_data"));
-  options.set_voxel_filter_size(lua.GetDouble("voxel_filter_size"));
-  options.set_imu_gravity_time_constant(
-      lua.GetDouble("imu_gravity_time_constant"));
-  options.set_rotational_histogram_size(
-      lua.GetInt("rotational_histogram_size"));
-  options.set_use_intensities(lua.GetBool("use_intensities"));
-  options.set_use_online_correlative_scan_matching(
-      lua.GetBool("use_online_correlative_scan_matching"));
+    LuaParameterDictionary* const table) {
+  auto options =
+      common::ReadOptions<proto::LocalTrajectoryBuilderOptions3D>(table);
   *options.mutable_high_resolution_adaptive_voxel_filter_options() =
-      sensor::CreateAdaptiveVoxelFilterOptions(
-          lua.GetDictionary("high_resolution_adaptive_voxel_filter").get());
+      common::ReadTable(table, "high_resolution_adaptive_voxel_filter",
+                        &sensor::CreateAdaptiveVoxelFilterOptions);
   *options.mutable_low_resolution_adaptive_voxel_filter_options() =
-      sensor::CreateAdaptiveVoxelFilterOptions(
-          lua.GetDictionary("low_resolution_adaptive_voxel_filter").get());
+      common::ReadTable(table, "low_resolution_adaptive_voxel_filter",
+                        &sensor::CreateAdaptiveVoxelFilterOptions);
   *options.mutable_real_time_correlative_scan_matcher_options() =
-      scan_matching::CreateRealTimeCorrelativeScanMatcherOptions(
-          lua.GetDictionary("real_time_correlative_scan_matcher").get());
+      common::ReadTable(
+          table, "real_time_correlative_scan_matcher",
+          &scan_matching::CreateRealTimeCorrelativeScanMatcherOptions);
   *options.mutable_ceres_scan_matcher_options() =
-      scan_matching::CreateCeresScanMatcherOptions3D(
-          lua.GetDictionary("ceres_scan_matcher").get());
+      common::ReadTable(table, "ceres_scan_matcher",
+                        &scan_matching::CreateCeresScanMatcherOptions3D);
   *options.mutable_motion_filter_options() =
-      CreateMotionFilterOptions(lua.GetDictionary("motion_filter").get());
-  *options.mutable_pose_extrapolator_options() = CreatePoseExtrapolatorOptions(
-      lua.GetDictionary("pose_extrapolator").get());
+      common::ReadTable(table, "motion_filter", &CreateMotionFilterOptions);
+  *options.mutable_pose_extrapolator_options() = common::ReadTable(
+      table, "pose_extrapolator", &CreatePoseExtrapolatorOptions);
   *options.mutable_submaps_options() =
-      ReadSubmapsOptions(lua.GetDictionary("submaps").get());
+      common::ReadTable(table, "submaps", &ReadSubmapsOptions);
   return options;
 }
 

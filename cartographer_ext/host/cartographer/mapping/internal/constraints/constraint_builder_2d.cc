@@ -3,6 +3,7 @@
 #include "cartographer/mapping/internal/constraints/constraint_builder_2d.h"
 
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "absl/memory/memory.h"
@@ -66,7 +67,7 @@ ConstraintBuilder2D::ConstraintBuilder2D(
 ConstraintBuilder2D::~ConstraintBuilder2D() {
   absl::MutexLock lock(&mutex_);
   CHECK(callback_ == nullptr) << "a callback is due";
-  CHECK(slots_.empty()) << "WhenDone was not called";
+  CHECK(slots_.empty()) << "constraints were never collected";
   CHECK_EQ(num_started_nodes_, num_finished_nodes_);
 }
 
@@ -226,20 +227,21 @@ absl::optional<ConstraintBuilder2D::Constraint> ConstraintBuilder2D::Search(
 void ConstraintBuilder2D::LogMatch(
     const Pair& pair, const float score,
     const transform::Rigid2d& pose_estimate) const {
-  std::string where = "matches";
+  std::ostringstream line;
+  line << "match of node " << pair.node_id << " ("
+       << pair.node->filtered_gravity_aligned_point_cloud.size()
+       << " points) with submap " << pair.submap_id
+       << absl::StrFormat(", score %.3f", score);
   if (pair.initial_relative_pose.has_value()) {
-    const transform::Rigid2d difference =
+    const transform::Rigid2d correction =
         (ComputeSubmapPose(*pair.submap) * *pair.initial_relative_pose)
             .inverse() *
         pose_estimate;
-    where = absl::StrFormat("differs by translation %.2f rotation %.3f",
-                            difference.translation().norm(),
-                            std::abs(difference.normalized_angle()));
+    line << absl::StrFormat(", corrected by %.2f m and %.3f rad",
+                            correction.translation().norm(),
+                            std::abs(correction.normalized_angle()));
   }
-  LOG(INFO) << "Node " << pair.node_id << " with "
-            << pair.node->filtered_gravity_aligned_point_cloud.size()
-            << " points on submap " << pair.submap_id << " " << where
-            << absl::StrFormat(" with score %.1f%%.", 100. * score);
+  LOG(INFO) << line.str();
 }
 
 void ConstraintBuilder2D::CallBack() {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "cartographer/common/internal/ceres_solver_options.h"
-#include "cartographer/mapping/internal/optimization/cost_functions/cost_helpers.h"
 #include "cartographer/mapping/internal/optimization/cost_functions/landmark_cost_function_2d.h"
+#include "cartographer/mapping/internal/optimization/cost_functions/pose_error.h"
 #include "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d.h"
 #include "cartographer/transform/transform.h"
 #include "ceres/ceres.h"
@@ -265,57 +265,69 @@ class OptimizationProblem2D::Solver {
                               start->data(), end->data());
   }
 
-  // An observation counts where it lies between two nodes, or at the first.
+  using NodeIterator = MapById<NodeId, NodeSpec2D>::ConstIterator;
+
+  // The second of the two nodes around an observation, which may be at the time
+  // of either; the end of the trajectory where it is not between two nodes.
+  NodeIterator NodeAfter(
+      const LandmarkNode::LandmarkObservation& observation) const {
+    const MapById<NodeId, NodeSpec2D>& nodes = data_.node_data_;
+    const auto first = nodes.BeginOfTrajectory(observation.trajectory_id);
+    const auto end = nodes.EndOfTrajectory(observation.trajectory_id);
+    if (first == end || observation.time < first->data.time) {
+      return end;
+    }
+    const auto at_or_after =
+        nodes.lower_bound(observation.trajectory_id, observation.time);
+    return at_or_after == first ? std::next(first) : at_or_after;
+  }
+
   void AddLandmarkObservation(
       const std::string& id, const LandmarkNode& landmark,
       const LandmarkNode::LandmarkObservation& observation) {
-    const MapById<NodeId, NodeSpec2D>& nodes = data_.node_data_;
-    const int trajectory_id = observation.trajectory_id;
-    if (nodes.SizeOfTrajectoryOrZero(trajectory_id) < 2) {
+    const NodeIterator after = NodeAfter(observation);
+    if (after == data_.node_data_.EndOfTrajectory(observation.trajectory_id)) {
       return;
     }
-    const auto begin = nodes.BeginOfTrajectory(trajectory_id);
-    auto next = nodes.lower_bound(trajectory_id, observation.time);
-    if (observation.time < (*begin).data.time ||
-        next == nodes.EndOfTrajectory(trajectory_id)) {
-      return;
+    const NodeIterator before = std::prev(after);
+    const ObservationSite site(before->data, after->data, observation.time);
+    Values2D* const values_before = &nodes_.at(before->id);
+    Values2D* const values_after = &nodes_.at(after->id);
+    auto found = landmarks_.find(id);
+    if (found == landmarks_.end()) {
+      found = AddLandmark(
+          id, landmark,
+          SeenAt(site.TrackingPose(values_before->data(), values_after->data()),
+                 observation));
     }
-    if (next == begin) {
-      ++next;
+    problem_.AddResidualBlock(CreateLandmarkCostFunction2D(observation, site),
+                              new ceres::HuberLoss(options_.huber_scale()),
+                              values_before->data(), values_after->data(),
+                              found->second.rotation.data(),
+                              found->second.translation.data());
+  }
+
+  static transform::Rigid3d SeenAt(
+      const SpatialPose<double>& tracking,
+      const LandmarkNode::LandmarkObservation& observation) {
+    return transform::Rigid3d(tracking.translation, tracking.rotation) *
+           observation.landmark_to_tracking_transform;
+  }
+
+  // Starts at the pose given for the landmark, else where it was `first_seen`.
+  std::map<std::string, LandmarkValues>::iterator AddLandmark(
+      const std::string& id, const LandmarkNode& landmark,
+      const transform::Rigid3d& first_seen) {
+    const auto added = landmarks_.emplace(
+        id, ToValues(landmark.global_landmark_pose.value_or(first_seen)));
+    LandmarkValues& values = added.first->second;
+    problem_.AddParameterBlock(values.rotation.data(), 4, new UnitQuaternion);
+    problem_.AddParameterBlock(values.translation.data(), 3);
+    if (landmark.frozen) {
+      problem_.SetParameterBlockConstant(values.rotation.data());
+      problem_.SetParameterBlockConstant(values.translation.data());
     }
-    const auto after = *next;
-    const auto before = *std::prev(next);
-    Values2D* const values_before = &nodes_.at(before.id);
-    Values2D* const values_after = &nodes_.at(after.id);
-    if (landmarks_.count(id) == 0) {
-      LandmarkValues& values = landmarks_[id];
-      if (landmark.global_landmark_pose.has_value()) {
-        values = ToValues(*landmark.global_landmark_pose);
-      } else {
-        const double fraction =
-            common::ToSeconds(observation.time - before.data.time) /
-            common::ToSeconds(after.data.time - before.data.time);
-        const auto tracking = InterpolateNodes2D(
-            values_before->data(), before.data.gravity_alignment,
-            values_after->data(), after.data.gravity_alignment, fraction);
-        values = ToValues(transform::Rigid3d::FromArrays(
-                              std::get<0>(tracking), std::get<1>(tracking)) *
-                          observation.landmark_to_tracking_transform);
-      }
-      problem_.AddParameterBlock(values.translation.data(), 3);
-      problem_.AddParameterBlock(values.rotation.data(), 4, new UnitQuaternion);
-      if (landmark.frozen) {
-        problem_.SetParameterBlockConstant(values.translation.data());
-        problem_.SetParameterBlockConstant(values.rotation.data());
-      }
-    }
-    LandmarkValues& values = landmarks_.at(id);
-    problem_.AddResidualBlock(
-        LandmarkCostFunction2D::CreateAutoDiffCostFunction(
-            observation, before.data, after.data),
-        new ceres::HuberLoss(options_.huber_scale()), values_before->data(),
-        values_after->data(), values.rotation.data(),
-        values.translation.data());
+    return added.first;
   }
 
   OptimizationProblem2D& data_;
@@ -376,12 +388,17 @@ void OptimizationProblem2D::InsertTrajectoryNode(const NodeId& node_id,
 }
 
 void OptimizationProblem2D::TrimTrajectoryNode(const NodeId& node_id) {
-  odometry_data_.Trim(node_data_, node_id);
-  fixed_frame_pose_data_.Trim(node_data_, node_id);
-  node_data_.Trim(node_id);
-  if (node_data_.SizeOfTrajectoryOrZero(node_id.trajectory_id) == 0) {
+  const bool trajectory_ends =
+      node_data_.SizeOfTrajectoryOrZero(node_id.trajectory_id) == 1;
+  const auto trim_readings = [this, &node_id](auto* const readings) {
+    readings->Trim(node_data_, node_id);
+  };
+  trim_readings(&fixed_frame_pose_data_);
+  trim_readings(&odometry_data_);
+  if (trajectory_ends) {
     trajectory_data_.erase(node_id.trajectory_id);
   }
+  node_data_.Trim(node_id);
 }
 
 void OptimizationProblem2D::AddSubmap(
@@ -409,7 +426,7 @@ void OptimizationProblem2D::Solve(
     const std::map<int, TrajectoryState>& trajectories_state,
     const std::map<std::string, LandmarkNode>& landmark_nodes) {
   if (node_data_.empty()) {
-    // Nothing to solve, and Ceres has no opinion on empty problems.
+    // Ceres does not call an empty problem solved.
     return;
   }
   Solver solver(this, trajectories_state);
@@ -432,7 +449,7 @@ absl::optional<transform::Rigid3d> OptimizationProblem2D::OdometryBetween(
   if (!odometry_second.has_value()) {
     return absl::nullopt;
   }
-  // Odometry tells of the tracking frame, nodes are gravity aligned.
+  // Odometry measures the tracking frame, nodes are gravity aligned.
   return transform::Rigid3d::Rotation(first.gravity_alignment) *
          odometry_first->inverse() * *odometry_second *
          transform::Rigid3d::Rotation(second.gravity_alignment.inverse());

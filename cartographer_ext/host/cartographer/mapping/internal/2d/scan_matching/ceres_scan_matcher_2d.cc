@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cartographer/common/internal/ceres_solver_options.h"
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/internal/2d/scan_matching/occupied_space_cost_function_2d.h"
 #include "cartographer/mapping/internal/2d/scan_matching/rotation_delta_cost_functor_2d.h"
 #include "cartographer/mapping/internal/2d/scan_matching/translation_delta_cost_functor_2d.h"
@@ -33,18 +34,10 @@ ceres::CostFunction* CreateGridCostFunction(
 }  // namespace
 
 proto::CeresScanMatcherOptions2D CreateCeresScanMatcherOptions2D(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::CeresScanMatcherOptions2D options;
-  options.set_occupied_space_weight(
-      parameter_dictionary->GetDouble("occupied_space_weight"));
-  options.set_translation_weight(
-      parameter_dictionary->GetDouble("translation_weight"));
-  options.set_rotation_weight(
-      parameter_dictionary->GetDouble("rotation_weight"));
-  const auto solver_dictionary =
-      parameter_dictionary->GetDictionary("ceres_solver_options");
-  *options.mutable_ceres_solver_options() =
-      common::CreateCeresSolverOptionsProto(solver_dictionary.get());
+    common::LuaParameterDictionary* const table) {
+  auto options = common::ReadOptions<proto::CeresScanMatcherOptions2D>(table);
+  *options.mutable_ceres_solver_options() = common::ReadTable(
+      table, "ceres_solver_options", &common::CreateCeresSolverOptionsProto);
   return options;
 }
 

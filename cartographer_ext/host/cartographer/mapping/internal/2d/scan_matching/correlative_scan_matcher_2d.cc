@@ -7,32 +7,47 @@
 
 #include "cartographer/common/math.h"
 #include "cartographer/transform/rigid_transform.h"
-#include "glog/logging.h"
 
 namespace cartographer {
 namespace mapping {
 namespace scan_matching {
 
+namespace {
+
+// The turn that moves the farthest point by a little less than one cell:
+//   0.999 acos(1 - resolution^2 / (2 range^2)).
+double AngularStep(const sensor::PointCloud& point_cloud,
+                   const double resolution) {
+  // Single precision, as the points are.
+  std::vector<float> ranges = {static_cast<float>(3.f * resolution)};
+  for (const sensor::RangefinderPoint& point : point_cloud) {
+    ranges.push_back(point.position.head<2>().norm());
+  }
+  const float range = *std::max_element(ranges.begin(), ranges.end());
+  return 0.999 *
+         std::acos(1. - common::Pow2(resolution) / (2. * common::Pow2(range)));
+}
+
+int StepsToCover(const double window, const double step) {
+  return static_cast<int>(std::ceil(window / step));
+}
+
+}  // namespace
+
 SearchParameters::SearchParameters(const double linear_search_window,
                                    const double angular_search_window,
                                    const sensor::PointCloud& point_cloud,
                                    const double resolution)
-    : resolution(resolution) {
-  // Single precision, as the points are.
-  float range = 3.f * resolution;
-  for (const sensor::RangefinderPoint& point : point_cloud) {
-    range = std::max(range, point.position.head<2>().norm());
-  }
-  angular_perturbation_step_size =
-      0.999 *
-      std::acos(1. - common::Pow2(resolution) / (2. * common::Pow2(range)));
-  num_angular_perturbations = static_cast<int>(
-      std::ceil(angular_search_window / angular_perturbation_step_size));
-  num_scans = 2 * num_angular_perturbations + 1;
-  const int cells =
-      static_cast<int>(std::ceil(linear_search_window / resolution));
-  linear_bounds.assign(num_scans, LinearBounds{-cells, cells, -cells, cells});
-}
+    : SearchParameters(linear_search_window, angular_search_window,
+                       AngularStep(point_cloud, resolution), resolution) {}
+
+SearchParameters::SearchParameters(const double linear_search_window,
+                                   const double angular_search_window,
+                                   const double angular_step,
+                                   const double resolution)
+    : SearchParameters(StepsToCover(linear_search_window, resolution),
+                       StepsToCover(angular_search_window, angular_step),
+                       angular_step, resolution) {}
 
 SearchParameters::SearchParameters(const int num_linear_perturbations,
                                    const int num_angular_perturbations,
@@ -41,31 +56,22 @@ SearchParameters::SearchParameters(const int num_linear_perturbations,
     : num_angular_perturbations(num_angular_perturbations),
       angular_perturbation_step_size(angular_perturbation_step_size),
       resolution(resolution),
-      num_scans(2 * num_angular_perturbations + 1),
-      linear_bounds(
-          num_scans,
-          LinearBounds{-num_linear_perturbations, num_linear_perturbations,
-                       -num_linear_perturbations, num_linear_perturbations}) {}
+      num_scans(2 * num_angular_perturbations + 1) {
+  const int reach = num_linear_perturbations;
+  linear_bounds.assign(num_scans, LinearBounds{-reach, reach, -reach, reach});
+}
 
-void SearchParameters::ShrinkToFit(const std::vector<DiscreteScan2D>& scans,
-                                   const CellLimits& cell_limits) {
-  CHECK_EQ(scans.size(), num_scans);
-  const Eigen::Array2i last_cell(cell_limits.num_x_cells - 1,
-                                 cell_limits.num_y_cells - 1);
-  for (int i = 0; i != num_scans; ++i) {
-    // Moving the scan's far end to the near border of the grid, and back.
-    Eigen::Array2i lowest = Eigen::Array2i::Zero();
-    Eigen::Array2i highest = Eigen::Array2i::Zero();
-    for (const Eigen::Array2i& cell : scans[i]) {
-      lowest = lowest.min(-cell);
-      highest = highest.max(last_cell - cell);
-    }
-    LinearBounds& bounds = linear_bounds[i];
-    bounds.min_x = std::max(bounds.min_x, lowest.x());
-    bounds.min_y = std::max(bounds.min_y, lowest.y());
-    bounds.max_x = std::min(bounds.max_x, highest.x());
-    bounds.max_y = std::min(bounds.max_y, highest.y());
-  }
+Candidate2D::Candidate2D(const int scan_index, const int x_index_offset,
+                         const int y_index_offset,
+                         const SearchParameters& search_parameters)
+    : scan_index(scan_index),
+      x_index_offset(x_index_offset),
+      y_index_offset(y_index_offset) {
+  const double cell = search_parameters.resolution;
+  const int steps = scan_index - search_parameters.num_angular_perturbations;
+  x = -y_index_offset * cell;
+  y = -x_index_offset * cell;
+  orientation = steps * search_parameters.angular_perturbation_step_size;
 }
 
 std::vector<sensor::PointCloud> GenerateRotatedScans(

@@ -39,16 +39,15 @@ struct SearchParameters {
   SearchParameters(int num_linear_perturbations, int num_angular_perturbations,
                    double angular_perturbation_step_size, double resolution);
 
-  // Leaves out offsets that put the whole scan outside the grid; the initial
-  // position stays in.
-  void ShrinkToFit(const std::vector<DiscreteScan2D>& scans,
-                   const CellLimits& cell_limits);
-
   int num_angular_perturbations;
   double angular_perturbation_step_size;
   double resolution;
   int num_scans;                            // 2 * num_angular_perturbations + 1
   std::vector<LinearBounds> linear_bounds;  // one per scan
+
+ private:
+  SearchParameters(double linear_search_window, double angular_search_window,
+                   double angular_step, double resolution);
 };
 
 // The cloud turned by every angle of the search, from negative to positive.
@@ -62,23 +61,15 @@ std::vector<DiscreteScan2D> DiscretizeScans(
 
 // One pose of the search space.
 struct Candidate2D {
-  Candidate2D(int init_scan_index, int init_x_index_offset,
-              int init_y_index_offset,
-              const SearchParameters& search_parameters)
-      : scan_index(init_scan_index),
-        x_index_offset(init_x_index_offset),
-        y_index_offset(init_y_index_offset),
-        x(-init_y_index_offset * search_parameters.resolution),
-        y(-init_x_index_offset * search_parameters.resolution),
-        orientation(
-            (init_scan_index - search_parameters.num_angular_perturbations) *
-            search_parameters.angular_perturbation_step_size) {}
+  Candidate2D(int scan_index, int x_index_offset, int y_index_offset,
+              const SearchParameters& search_parameters);
 
   int scan_index;
   int x_index_offset;
   int y_index_offset;
 
-  // The same, relative to the initial pose, in metres and radians.
+  // The same, relative to the initial pose, in metres and radians. Cell indices
+  // count against the axes of the map, and x and y change places.
   double x;
   double y;
   double orientation;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/memory/memory.h"
+#include "cartographer/common/internal/read_options.h"
 #include "cartographer/mapping/internal/2d/scan_matching/rotated_cell_indices.h"
 #include "glog/logging.h"
 
@@ -34,15 +35,8 @@ inline void AddEight(const uint8* __restrict const values,
 
 proto::FastCorrelativeScanMatcherOptions2D
 CreateFastCorrelativeScanMatcherOptions2D(
-    common::LuaParameterDictionary* const parameter_dictionary) {
-  proto::FastCorrelativeScanMatcherOptions2D options;
-  options.set_linear_search_window(
-      parameter_dictionary->GetDouble("linear_search_window"));
-  options.set_angular_search_window(
-      parameter_dictionary->GetDouble("angular_search_window"));
-  options.set_branch_and_bound_depth(
-      parameter_dictionary->GetInt("branch_and_bound_depth"));
-  return options;
+    common::LuaParameterDictionary* const table) {
+  return common::ReadOptions<proto::FastCorrelativeScanMatcherOptions2D>(table);
 }
 
 PrecomputationGrid2D::PrecomputationGrid2D(const Grid2D& grid,
@@ -219,7 +213,8 @@ class FastCorrelativeScanMatcher2D::Search {
         min_y = std::min(min_y, y[k]);
         max_y = std::max(max_y, y[k]);
       }
-      // As SearchParameters::ShrinkToFit has it.
+      // Offsets that put the whole scan outside the grid are not searched, save
+      // for the initial position.
       SearchParameters::LinearBounds bounds = parameters.linear_bounds[i];
       bounds.min_x = std::max(bounds.min_x, std::min(0, -max_x));
       bounds.min_y = std::max(bounds.min_y, std::min(0, -max_y));
