@@ -62,7 +62,7 @@ TEST(DiscretizeScansTest, MovesThenFindsCells) {
   EXPECT_TRUE((scans[0][1] == Eigen::Array2i(3, 3)).all());
 }
 
-// The fast way must find exactly the cells of the two steps above.
+// The fast method must find exactly the cells of the two steps above.
 TEST(RotatedCellIndicesTest, SameCellsBitForBit) {
   const sensor::PointCloud cloud = test::Room();
   const MapLimits limits(0.05, Eigen::Vector2d(3.3, 2.7), CellLimits(60, 70));

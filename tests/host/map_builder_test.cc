@@ -359,7 +359,7 @@ TEST_F(MapBuilderTest, ImuIsNeededWhereItIsConfigured) {
         poses.push_back(pose);
       });
   auto* const trajectory = builder_->GetTrajectoryBuilder(id);
-  // The robot stands on a slope of atan(1 / 10).
+  // The robot is on a slope of atan(1 / 10).
   const Eigen::Vector3d up(0.98, 0., 9.8);
   trajectory->AddSensorData(kLaser.id,
                             test::Scan(test::Drive(0.), test::At(0.)));

@@ -52,7 +52,7 @@ TEST_F(MotionFilterTest, Angle) {
   EXPECT_FALSE(IsSimilar(0., 0., 0.));
   EXPECT_TRUE(IsSimilar(0., 0., -1.9));
   EXPECT_FALSE(IsSimilar(0., 0., 2.1));
-  // The short way round.
+  // Along the shorter arc.
   EXPECT_TRUE(IsSimilar(0., 0., 2.1 + 6.2));
 }
 

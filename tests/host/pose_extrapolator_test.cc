@@ -52,7 +52,7 @@ TEST(ImuTrackerTest, FirstAccelerationCountsFullyLaterOnesByTime) {
             1e-9);
   tracker.Advance(At(10));
   tracker.AddImuLinearAccelerationObservation(Eigen::Vector3d(0., 0., 2.));
-  // 1 - 1/e of the way towards the new direction: (1/e, 0, 2).
+  // 1 - 1/e of the turn towards the new direction: (1/e, 0, 2).
   EXPECT_LT((tracker.orientation() *
                  Eigen::Vector3d(std::exp(-1.), 0., 2.).normalized() -
              Eigen::Vector3d::UnitZ())

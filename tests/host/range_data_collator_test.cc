@@ -14,7 +14,7 @@ common::Time At(const double seconds) {
   return common::FromUniversal(100) + common::FromSeconds(seconds);
 }
 
-// Points at the given times before the stamp; x tells them apart.
+// Points at the given times before the stamp; x identifies them.
 sensor::TimedPointCloudData Scan(const double seconds,
                                  const std::vector<float>& times,
                                  const float first_x = 0.f) {

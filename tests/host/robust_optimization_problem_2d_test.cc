@@ -192,7 +192,7 @@ TEST_F(RobustOptimizationProblem2DTest, WrongLoopsAreAsIfTheyWereNotThere) {
 TEST_F(RobustOptimizationProblem2DTest, JudgementsChangeWithTheEvidence) {
   OptimizationProblem2D problem = MakeProblem(kBlock);
   Fill(&problem);
-  // At first one right loop against three that share another opinion.
+  // At first one right loop against three that agree with each other.
   std::vector<Constraint> loops = {RightLoop(1, 52)};
   for (const int node : {50, 52, 54}) {
     loops.push_back(MakeConstraint(1, node,
@@ -256,7 +256,7 @@ TEST_F(RobustOptimizationProblem2DTest, FrozenMapsKeepTheirPlace) {
     EXPECT_EQ(node.data.global_pose_2d.translation(),
               local_[node.id.node_index].translation());
   }
-  // What does not fit a map that cannot move is left out.
+  // What does not fit a map that cannot move is disabled.
   EXPECT_GE(LastSwitchedLoops().off.size(), 2u);
 }
 

@@ -25,7 +25,7 @@ class ProtoStreamReaderInterface {
   ProtoStreamReaderInterface& operator=(const ProtoStreamReaderInterface&) =
       delete;
 
-  // False at the end and on broken data; eof() tells which.
+  // False at the end and on broken data; eof() says which.
   virtual bool ReadProto(google::protobuf::Message* proto) = 0;
   virtual bool eof() const = 0;
 };

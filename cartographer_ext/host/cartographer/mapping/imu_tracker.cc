@@ -21,7 +21,7 @@ void ImuTracker::Advance(const common::Time time) {
   const Eigen::Quaterniond turn =
       transform::AngleAxisVectorToRotationQuaternion(angle_axis);
   orientation_ = (orientation_ * turn).normalized();
-  // The body turns, so gravity turns the other way in it.
+  // In the frame of the body, gravity turns backwards.
   gravity_vector_ = turn.conjugate() * gravity_vector_;
   time_ = time;
 }
@@ -32,7 +32,7 @@ void ImuTracker::AddImuLinearAccelerationObservation(
       imu_linear_acceleration.isZero(0.)) {
     return;
   }
-  // The first observation counts fully, later ones by the time they stand for.
+  // The first observation counts fully, later ones by the time they cover.
   double weight = 1.;
   if (last_linear_acceleration_time_ != common::Time::min()) {
     const double elapsed_seconds =

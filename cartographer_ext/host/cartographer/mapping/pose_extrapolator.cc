@@ -166,7 +166,7 @@ void PoseExtrapolator::UpdateVelocityFromPoses() {
   const TimedPose& oldest = timed_poses_.front();
   const TimedPose& newest = timed_poses_.back();
   const common::Duration span = newest.time - oldest.time;
-  // The first scan comes at the time of the first pose, which is no fault.
+  // The first scan comes at the time of the first pose, as expected.
   if (span == common::Duration::zero()) {
     return;
   }

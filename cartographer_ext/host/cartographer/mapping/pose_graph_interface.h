@@ -113,8 +113,8 @@ class PoseGraphInterface {
   virtual std::map<int, TrajectoryData> GetTrajectoryData() const = 0;
   virtual std::vector<Constraint> constraints() const = 0;
 
-  // Constraints, trajectories and landmarks. Submaps still growing, and what
-  // refers to them, are left out unless asked for.
+  // Constraints, trajectories and landmarks. Unfinished submaps, and their
+  // constraints, are included on request only.
   virtual proto::PoseGraph ToProto(bool include_unfinished_submaps) const = 0;
 
   virtual void SetGlobalSlamOptimizationCallback(

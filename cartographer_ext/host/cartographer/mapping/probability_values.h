@@ -98,7 +98,7 @@ uint16 CorrespondenceCostValueToProbabilityValue(
 
 // Tables of 32768 entries: entry v is the value, update marker set, of a cell
 // that held v after multiplying its odds by `odds`. An unknown cell takes the
-// probability that `odds` stands for.
+// probability of `odds`.
 std::vector<uint16> ComputeLookupTableToApplyOdds(float odds);
 std::vector<uint16> ComputeLookupTableToApplyCorrespondenceCostOdds(float odds);
 

@@ -16,7 +16,7 @@ class TrajectoryBuilderInterface;
 namespace cartographer {
 namespace sensor {
 
-// A reading of any kind on its way to a trajectory builder.
+// A reading of any sensor, before it reaches a trajectory builder.
 class Data {
  public:
   explicit Data(const std::string& sensor_id) : sensor_id_(sensor_id) {}

@@ -12,8 +12,8 @@
 namespace cartographer {
 namespace sensor {
 
-// Rays from `origin`: `returns` end at an obstacle, `misses` are free all the
-// way.
+// Rays from `origin`: `returns` end at an obstacle, `misses` are free from
+// end to end.
 struct RangeData {
   Eigen::Vector3f origin;
   PointCloud returns;

@@ -20,8 +20,8 @@ static constexpr int kMappingStateSerializationFormatVersion = 2;
 // Differs in 3D only, and is read, too.
 static constexpr int kFormatVersionWithoutSubmapHistograms = 1;
 
-// `builder_options` is indexed by trajectory id. Submaps that still grow, and
-// constraints with them, are left out unless asked for.
+// `builder_options` is indexed by trajectory id. Unfinished submaps, and
+// their constraints, are written on request only.
 void WritePbStream(
     const mapping::PoseGraph& pose_graph,
     const std::vector<mapping::proto::TrajectoryBuilderOptionsWithSensorIds>&

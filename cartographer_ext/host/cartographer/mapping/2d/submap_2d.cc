@@ -176,7 +176,7 @@ void ActiveSubmaps2D::MakeRoom(const Eigen::Vector2f& origin) {
 
 std::unique_ptr<Grid2D> ActiveSubmaps2D::EmptyGrid(
     const Eigen::Vector2f& center) {
-  // As a float: files must hold the same resolution as the real thing's.
+  // A float, so that files hold the same resolution as Cartographer's.
   const float resolution = options_.grid_options_2d().resolution();
   const double half_size = 0.5 * kInitialCellsPerAxis * resolution;
   const Eigen::Vector2d max = center.cast<double>().array() + half_size;

@@ -18,7 +18,7 @@ WorkQueue::WorkQueue(common::ThreadPoolInterface* const thread_pool,
 
 WorkQueue::~WorkQueue() {
   absl::MutexLock lock(&mutex_);
-  CHECK(!active_) << "work is under way";
+  CHECK(!active_) << "work is in progress";
 }
 
 void WorkQueue::Add(const std::function<WorkItem::Result()>& task) {

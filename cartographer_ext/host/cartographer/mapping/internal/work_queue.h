@@ -4,7 +4,7 @@
 // Work that is done one item after the other, in the order of arrival, on a
 // thread pool.
 //
-// Every item may end with a barrier: the queue then stands still and calls the
+// Every item may end with a barrier: the queue then pauses and calls the
 // barrier handler, which arranges, usually at some later time and on some other
 // thread, for Resume(). Nothing blocks a thread of the pool meanwhile. The
 // outcome of a series of items thus depends on their order only, however many
@@ -41,7 +41,7 @@ class WorkQueue {
   // not kDoNotRunOptimization; it must cause exactly one Resume().
   WorkQueue(common::ThreadPoolInterface* thread_pool,
             std::function<void(WorkItem::Result)> barrier_handler);
-  // Nothing may be under way: see WaitUntilIdle.
+  // Nothing may be running: see WaitUntilIdle.
   ~WorkQueue();
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;

@@ -26,7 +26,7 @@ const Grid2D& GridOf(const PoseGraphInterface::SubmapData& data) {
 }
 
 // The time of the newest node that each submap was built from; submaps whose
-// nodes are gone are left out.
+// nodes were all trimmed are skipped.
 std::map<SubmapId, common::Time> TimesOfNewestNodes(
     const Trimmable& pose_graph, const SubmapDataById& submaps) {
   std::map<SubmapId, NodeId> newest_nodes;

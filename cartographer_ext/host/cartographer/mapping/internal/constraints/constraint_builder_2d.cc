@@ -126,7 +126,7 @@ int ConstraintBuilder2D::GetNumFinishedNodes() {
 void ConstraintBuilder2D::DeleteScanMatcher(const SubmapId& submap_id) {
   absl::MutexLock lock(&mutex_);
   LOG_IF(WARNING, callback_ != nullptr)
-      << "submap " << submap_id << " is forgotten while pairs are under way";
+      << "submap " << submap_id << " is dropped while it is being searched";
   const auto it = submaps_.find(submap_id);
   if (it == submaps_.end()) {
     return;

@@ -86,7 +86,7 @@ class ConstraintBuilder2D {
   // Over the whole life of the builder.
   int GetNumFinishedNodes() ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // Forgets what belongs to a submap. None of its pairs may be under way.
+  // Drops the data of a submap. None of its pairs may be in progress.
   void DeleteScanMatcher(const SubmapId& submap_id) ABSL_LOCKS_EXCLUDED(mutex_);
 
   static void RegisterMetrics(metrics::FamilyFactory* family_factory);

@@ -5,7 +5,7 @@
 // branch and bound over ever coarser grids [Olson 2009; Hess et al. 2016,
 // section V]. The coarser grids are made once per grid, hence "fast": each cell
 // of level k holds the maximum of a square of 2^k x 2^k cells, so that a score
-// on level k bounds the scores of all 4^k poses it stands for.
+// on level k bounds the scores of all 4^k poses it covers.
 #ifndef CARTOGRAPHER_MAPPING_INTERNAL_2D_SCAN_MATCHING_FAST_CORRELATIVE_SCAN_MATCHER_2D_H_
 #define CARTOGRAPHER_MAPPING_INTERNAL_2D_SCAN_MATCHING_FAST_CORRELATIVE_SCAN_MATCHER_2D_H_
 

@@ -55,7 +55,7 @@ class InterpolatedTSDF2D {
     T x;
     T y;
 
-    // Bit 0 steps up in world y, bit 1 in world x; indices run the other way.
+    // Bit 0 steps up in world y, bit 1 in world x; indices run backwards.
     Eigen::Array2i Corner(const int i) const {
       return lowest - Eigen::Array2i(i & 1, i >> 1);
     }

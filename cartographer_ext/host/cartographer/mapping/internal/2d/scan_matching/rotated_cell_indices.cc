@@ -30,8 +30,8 @@ struct Frame {
   double resolution;
 };
 
-// The operations of Eigen's quaternion-vector product in its order, with those
-// left out that cannot change the result; then a cell index.
+// The operations of Eigen's quaternion-vector product in its order, without those
+// that cannot change the result; then a cell index.
 inline void Index(const float x, const float y, const float w, const float z,
                   const Frame& frame, int* const x_index, int* const y_index) {
   float u = -(z * y);
