@@ -323,7 +323,7 @@ class Run {
     namespace scan_matching = mapping::scan_matching;
     const scan_matching::RealTimeCorrelativeScanMatcher2D real_time(
         local_options_.real_time_correlative_scan_matcher_options());
-    const auto& builder_options = GraphOptions().constraint_builder_options();
+    const auto builder_options = GraphOptions().constraint_builder_options();
     const scan_matching::FastCorrelativeScanMatcher2D fast(
         grid, builder_options.fast_correlative_scan_matcher_options());
     const scan_matching::CeresScanMatcher2D local_ceres(
