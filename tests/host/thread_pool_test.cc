@@ -169,7 +169,7 @@ TEST(ThreadPoolForTestingTest, WaitUntilIdle) {
 }
 
 TEST(ThreadPoolDeathTest, NeedsThreads) {
-  EXPECT_DEATH(ThreadPool(0), "positive num_threads");
+  EXPECT_DEATH(ThreadPool(0), "without threads");
 }
 
 }  // namespace
