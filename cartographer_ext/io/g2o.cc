@@ -39,6 +39,16 @@ class G2oParser {
   std::vector<Fix> fixes_;
 };
 
+// Landmarks and sensor offsets, which a graph of poses does without.
+bool IsSkipped(const absl::string_view tag) {
+  for (const char* const name :
+       {"VERTEX_XY", "EDGE_SE2_XY", "EDGE_SE2_POINT_XY", "EDGE_BEARING_SE2_XY",
+        "PARAMS_SE2OFFSET", "LANDMARK2"}) {
+    if (tag == name) return true;
+  }
+  return false;
+}
+
 absl::Status Malformed(absl::string_view what) {
   return absl::InvalidArgumentError(what);
 }
@@ -133,6 +143,9 @@ absl::Status G2oParser::Parse(absl::string_view text, int64_t line_number) {
     status = ParseEdge(&tokens, line_number);
   } else if (tag == "FIX") {
     status = ParseFix(&tokens, line_number);
+  } else if (IsSkipped(tag)) {
+    ++graph.skipped[std::string(tag)];
+    return absl::OkStatus();
   } else {
     return Malformed(
         absl::StrCat("unknown element \"", tag.substr(0, 40),
@@ -209,9 +222,16 @@ absl::StatusOr<G2oGraph> ReadG2o(const std::string& filename) {
       return At(filename, (*reader)->line_number(), status.message());
     }
   }
-  if (parser.graph.vertices.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(filename, ": no VERTEX_SE2 found"));
+  G2oGraph& graph = parser.graph;
+  if (graph.vertices.empty()) {
+    if (graph.edges.empty()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(filename, ": neither VERTEX_SE2 nor EDGE_SE2 found"));
+    }
+    graph.lacks_vertices = true;
+    for (const G2oEdge& edge : graph.edges) {
+      graph.vertices[edge.from] = graph.vertices[edge.to] = Pose2();
+    }
   }
   const absl::Status status = parser.CheckReferences();
   if (!status.ok()) {

@@ -11,6 +11,11 @@
 // upper triangle row by row. Also read: VERTEX2 and EDGE2 of iSAM, which have
 // the same fields. Comment lines start with '#'. Files compressed by gzip, xz
 // or bzip2 are read transparently.
+//
+// Two liberties of public data sets are taken as well: a file without any
+// vertex (its vertices are the ends of the edges), and planar landmarks
+// (VERTEX_XY, EDGE_SE2_XY, EDGE_BEARING_SE2_XY, PARAMS_SE2OFFSET), which are
+// counted and skipped.
 #ifndef CARTOGRAPHER_EXT_IO_G2O_H_
 #define CARTOGRAPHER_EXT_IO_G2O_H_
 
@@ -41,13 +46,16 @@ struct G2oGraph {
   std::map<int64_t, Pose2> vertices;  // (world <- vertex) by id
   std::vector<G2oEdge> edges;         // in the order of the file
   std::set<int64_t> fixed;            // ids held still
+  // The file had no vertex: the poses of `vertices` are all zero.
+  bool lacks_vertices = false;
+  std::map<std::string, int64_t> skipped;  // lines by element
 };
 
 // Reads a graph. Errors name file and line: malformed or unknown lines, numbers
 // that are not finite, duplicate ids, edges or FIX of missing vertices, edges
 // from a vertex to itself, information that is not positive definite. Several
 // edges between the same vertices are fine. Elements of other dimensions
-// (VERTEX_SE3:QUAT, VERTEX_XY, ...) are errors that name them.
+// (VERTEX_SE3:QUAT, ...) are errors that name them.
 absl::StatusOr<G2oGraph> ReadG2o(const std::string& filename);
 
 // Writes vertices by id, then FIX, then edges in their order, with all digits

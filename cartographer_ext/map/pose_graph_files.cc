@@ -3,12 +3,14 @@
 #include "cartographer_ext/map/pose_graph_files.h"
 
 #include <algorithm>
+#include <iostream>
 #include <map>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/io/picture.h"
 #include "cartographer_ext/optimization/graph_metrics.h"
+#include "cartographer_ext/optimization/starts.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -51,12 +53,17 @@ absl::StatusOr<PoseGraph> ToPoseGraph(const io::G2oGraph& g2o) {
   optimization::MarkLoops(&graph);
   const absl::Status status = optimization::ValidatePoseGraph(graph);
   if (!status.ok()) return status;
+  if (g2o.lacks_vertices) graph.poses = optimization::ChainOdometry(graph);
   return graph;
 }
 
 absl::StatusOr<PoseGraph> ReadPoseGraph(const std::string& filename) {
   const auto g2o = io::ReadG2o(filename);
   if (!g2o.ok()) return g2o.status();
+  for (const auto& element : g2o->skipped) {
+    std::cerr << filename << ": skipped " << element.second << " lines of "
+              << element.first << ": landmarks are not used\n";
+  }
   auto graph = ToPoseGraph(*g2o);
   if (!graph.ok()) {
     return absl::Status(graph.status().code(),

@@ -3,15 +3,12 @@
 #include "cartographer_ext/optimization/optimize.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/thread_time.h"
-#include "cartographer_ext/optimization/joined_trajectories.h"
-#include "cartographer_ext/optimization/polish_near.h"
+#include "cartographer_ext/optimization/auto_search.h"
 #include "cartographer_ext/optimization/robust_solver.h"
 #include "cartographer_ext/optimization/switchable_constraints.h"
 
@@ -19,17 +16,8 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-constexpr int kPolishRounds = 30;
 // Standard deviation (metres, radians) that holds fixed poses to each other.
 constexpr double kFixedSigma = 1e-5;
-// A map that has lost fewer loops than this is not folded.
-constexpr int kUnfolded = 20;
-// So many loops cost little whatever they fill.
-constexpr size_t kFewLoops = 500;
-// The fill of more is bounded by memory alone.
-constexpr size_t kManyLoops = 5000;
-// Relative difference of truncated costs of one and the same optimum.
-constexpr double kSame = 1e-6;
 
 void AddSummary(const SolverSummary& summary, OptimizeResult* const result) {
   result->iterations += summary.iterations;
@@ -89,137 +77,25 @@ absl::Status RunReplay(const PoseGraph& graph, const OptimizeOptions& options,
   return absl::OkStatus();
 }
 
-struct Member {
-  std::string name;
-  std::vector<Pose2> poses;
-  double truncated_cost = 0.;
-};
-
-bool HasFewLoops(const PoseGraph& graph) {
-  size_t loops = 0;
-  for (const PoseGraphEdge& edge : graph.edges) loops += edge.is_loop;
-  return loops <= kFewLoops ||
-         (loops <= kManyLoops && 2 * loops <= graph.poses.size());
-}
-
-bool RejectsSome(const std::vector<WhitenedEdge>& edges,
-                 const std::vector<Pose2>& poses) {
-  for (const WhitenedEdge& edge : edges) {
-    if (edge.is_loop &&
-        Chi2(edge, poses[edge.from], poses[edge.to]) >= kChi2Gate) {
-      return true;
-    }
-  }
-  return false;
-}
-
-void RunAuto(const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
-             const OptimizeOptions& options, OptimizeResult* const result) {
-  std::vector<Member> members;
-  RobustSolver solver(edges);
-  const auto add = [&](const std::string& name, std::vector<Pose2> poses) {
-    Member member;
-    member.name = name;
-    member.poses = std::move(poses);
-    AddSummary(PolishTruncated(kChi2Gate, kPolishRounds, &solver, &member.poses,
-                               nullptr),
-               result);
-    member.truncated_cost = TruncatedCost(edges, member.poses);
-    members.push_back(std::move(member));
-  };
-  double lowest_of_kernels = std::numeric_limits<double>::infinity();
-  const auto add_kernel = [&](const std::string& name, const KernelType type,
-                              const std::vector<Pose2>& start) {
-    SolverOptions solver_options;
-    solver_options.kernel = DefaultKernel(type);
-    solver_options.max_iterations = options.max_iterations;
-    std::vector<Pose2> poses = start;
-    AddSummary(solver.Solve(solver_options, &poses), result);
-    lowest_of_kernels =
-        std::min(lowest_of_kernels, TruncatedCost(edges, poses));
-    add(name, std::move(poses));
-  };
-  ReplayResult replay;
-  const bool replayed = Replay(graph, options.smoother, &replay).ok();
-  if (replayed) add("r_isam", replay.poses);
-  if (!replayed && JoinTrajectories(graph, options.smoother, &replay.poses)) {
-    add("joined", replay.poses);
-  }
-  add_kernel("dcs", KernelType::kDcs, graph.poses);
-  add_kernel("gm", KernelType::kGemanMcClure, graph.poses);
-  add_kernel("acs", KernelType::kAcs, graph.poses);
-  // One started from nothing and the other from the file. Where they meet, more
-  // starts would end there, too.
-  const bool settled = replayed && std::abs(members[0].truncated_cost -
-                                            members[1].truncated_cost) <=
-                                       kSame * members[0].truncated_cost;
-  if (!settled) {
-    if (replayed) add_kernel("r_isam, dcs", KernelType::kDcs, replay.poses);
-    // The failures of a softer and of a harder epoch kernel differ.
-    SmootherOptions softer = options.smoother;
-    softer.epoch_kernel.parameter *= 4.;
-    if (Replay(graph, softer, &replay).ok()) add("r_isam, soft", replay.poses);
-  }
-  const auto lower = [](const Member& a, const Member& b) {
-    return a.truncated_cost < b.truncated_cost;
-  };
-  // Long drifts between few loops are the ground of graduated non-convexity;
-  // with many loops its first, nearly convex rounds fill the factor.
-  if (!settled && HasFewLoops(graph) &&
-      RejectsSome(
-          edges,
-          std::min_element(members.begin(), members.end(), lower)->poses)) {
-    std::vector<Pose2> poses = graph.poses;
-    AddSummary(SolveGnc(GncOptions(), &solver, &poses, nullptr), result);
-    add("gnc_tls", std::move(poses));
-  }
-  const auto best = std::min_element(members.begin(), members.end(), lower);
-  result->member_truncated_chi2 = best->truncated_cost;
-  // Where the adapted gate is narrower it also judges better between those that
-  // are not folded.
-  const double gate =
-      options.adaptive_gate ? AdaptiveGate(edges, best->poses) : kChi2Gate;
-  const double limit = best->truncated_cost + kUnfolded * kChi2Gate;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Member& member : members) {
-    if (member.truncated_cost > limit) continue;
-    std::vector<Pose2> poses = member.poses;
-    std::vector<double> weights;
-    AddSummary(PolishTruncated(gate, kPolishRounds, &solver, &poses, &weights),
-               result);
-    const double cost = TruncatedCost(edges, poses, gate);
-    if (cost >= lowest) continue;
-    lowest = cost;
-    result->poses = std::move(poses);
-    result->weights = std::move(weights);
-    result->member = member.name;
-  }
-  if (options.adaptive_gate) {
-    AddSummary(
-        PolishAdapted(kPolishRounds, &solver, &result->poses, &result->weights),
-        result);
-    // Half way to what a kernel alone reaches, to stay below others, too.
-    const double enough =
-        best->truncated_cost +
-        0.5 * std::max(0., lowest_of_kernels - best->truncated_cost);
-    if (options.lowest_cost && TruncatedCost(edges, result->poses) > enough) {
-      const std::vector<Pose2> adapted = result->poses;
-      result->poses = best->poses;
-      result->member = best->name;
-      for (size_t i = 0; i != edges.size(); ++i) {
-        result->weights[i] =
-            !edges[i].is_loop || Chi2(edges[i], best->poses[edges[i].from],
-                                      best->poses[edges[i].to]) < kChi2Gate;
-      }
-      AddSummary(
-          PolishNear(edges, adapted, enough, &result->poses, &result->weights),
-          result);
-    }
-  }
-  result->accepted.assign(edges.size(), true);
-  for (size_t i = 0; i != edges.size(); ++i) {
-    result->accepted[i] = result->weights[i] > 0.5;
-  }
+void RunAuto(const PoseGraph& graph, const OptimizeOptions& options,
+             OptimizeResult* const result) {
+  AutoOptions auto_options;
+  auto_options.portfolio.max_iterations = options.max_iterations;
+  auto_options.portfolio.smoother = options.smoother;
+  auto_options.estimate_noise = options.estimate_noise;
+  auto_options.adaptive_gate = options.adaptive_gate;
+  auto_options.lowest_cost = options.lowest_cost;
+  AutoResult found = SearchAutomatically(graph, auto_options);
+  result->poses = std::move(found.poses);
+  result->weights = std::move(found.weights);
+  result->accepted = std::move(found.accepted);
+  result->iterations = found.iterations;
+  result->converged = found.converged;
+  result->member = found.member;
+  result->member_truncated_chi2 = found.member_cost;
+  result->noise = found.noise;
+  result->applied_odometry_scale = found.applied_odometry_scale;
+  result->applied_loop_scale = found.applied_loop_scale;
 }
 
 void Summarize(const std::vector<WhitenedEdge>& edges,
@@ -293,7 +169,10 @@ absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
   OptimizeResult result;
   result.poses = graph.poses;
   if (options.method == "auto") {
-    RunAuto(held, edges, options, &result);
+    RunAuto(held, options, &result);
+    edges = Whiten(WithNoiseScale(held, result.applied_odometry_scale,
+                                  result.applied_loop_scale)
+                       .edges);
   } else if (options.method == "r_isam") {
     const absl::Status status = RunReplay(held, options, &result);
     if (!status.ok()) return status;

@@ -4,19 +4,7 @@
 // One entrance to all back ends of this folder: a graph and the name of a
 // method in, poses and a verdict on each loop out.
 //
-// `auto` guards against the local minima which every single kernel has:
-//   1. an incremental replay of the graph (R-iSAM), which starts from nothing,
-//      or, of several trajectories, a replay of each (joined_trajectories.h),
-//      and DCS, GM and ACS from the graph's own poses;
-//   2. unless the replay and DCS end at the same cost: DCS from the replay, a
-//      second replay with a wider kernel, and with few loops GNC;
-//   3. each result polished by deciding and solving in turn (re-admission);
-//   4. those near the lowest truncated cost stay. Each true loop lost costs the
-//      gate, so a folded map loses this comparison by a wide margin;
-//   5. these are polished with the gate adapted to the scale of the accepted
-//      loops, and the one with the lowest cost truncated there is taken;
-//   6. where that costs more than half of what separates the lowest of (4) from
-//      the best single kernel, the lowest is taken, brought near to (5).
+// What `auto` does is told in auto_search.h.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OPTIMIZE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OPTIMIZE_H_
 
@@ -26,6 +14,7 @@
 #include "absl/status/statusor.h"
 #include "cartographer_ext/optimization/incremental_smoother.h"
 #include "cartographer_ext/optimization/kernels.h"
+#include "cartographer_ext/optimization/noise_scale.h"
 #include "cartographer_ext/optimization/pose_graph.h"
 
 namespace cartographer_ext {
@@ -40,6 +29,9 @@ struct OptimizeOptions {
   int max_iterations = 200;
   double max_seconds = 1e9;  // sc, gnc_tls: processor time
   bool prune = true;
+  // auto: estimate the scale of the noise, and use it where the information
+  // matrices claim too much.
+  bool estimate_noise = true;
   // auto: end with the gate narrowed to the scale of the accepted loops
   // (AdaptiveGate). For graphs whose information matrices are only a guess,
   // such as those of Cartographer, it would cost right loops.
@@ -70,6 +62,11 @@ struct OptimizeResult {
   std::string member;
   double member_truncated_chi2 = 0.;
   std::vector<double> step_seconds;  // r_isam
+  // auto: the scale of the noise with regard to the given information matrices,
+  // and the scale that the result is measured with (all chi2 above).
+  NoiseScale noise;
+  double applied_odometry_scale = 1.;
+  double applied_loop_scale = 1.;
 };
 
 // Names accepted as OptimizeOptions::method.

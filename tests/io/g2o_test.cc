@@ -113,7 +113,7 @@ TEST(G2oTest, ErrorsNameTheLine) {
   EXPECT_THAT(ErrorOf("VERTEX_SE2 a 0 0 0\n"), HasSubstr(":1: the id"));
   EXPECT_THAT(ErrorOf("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n"),
               HasSubstr(":1: unknown element \"VERTEX_SE3:QUAT\""));
-  EXPECT_THAT(ErrorOf(""), HasSubstr("no VERTEX_SE2 found"));
+  EXPECT_THAT(ErrorOf(""), HasSubstr("neither VERTEX_SE2 nor EDGE_SE2 found"));
   EXPECT_THAT(ErrorOf(vertices + "FIX\n"), HasSubstr(":3: FIX needs"));
 }
 
