@@ -23,9 +23,13 @@ constexpr int kUnfolded = 20;
 constexpr size_t kMaxInnovations = 300;
 // Variance factors from which the noise is estimated.
 constexpr double kFirstVariances[] = {4., 25.};
-constexpr int kMaxNoiseRounds = 4;
+constexpr int kMaxNoiseRounds = 8;
+// Larger graphs are taken at their word.
+constexpr size_t kMaxEdgesForNoise = 100000;
 // Factors below this are not worth another metric.
-constexpr double kMinScale = 1.3;
+constexpr double kMinScale = 1.15;
+// Share of the loops.
+constexpr double kNearlyAll = 0.98;
 // 99.9 % quantile of chi2 with three degrees of freedom.
 constexpr double kWideGate = 16.26623619623813;
 
@@ -127,19 +131,27 @@ NoiseHypothesis EstimateMetric(const PoseGraph& graph, const double variance,
         Decisions(edges, result.poses, kChi2Gate);
     result.accepted = CountLoops(edges, weights);
     const NoiseScale noise = EstimateNoiseScale(result.poses, weights, &solver);
-    const double change = std::max(std::abs(std::log(noise.odometry.factor)),
-                                   std::abs(std::log(noise.loops.factor)));
-    if (change < 0.1 || round + 1 == kMaxNoiseRounds) {
+    // Never below one: a search with a narrower gate than the given one would
+    // lose what the given one keeps.
+    const Metric next{
+        std::max(1., result.metric.odometry * noise.odometry.factor),
+        std::max(1., result.metric.loops * noise.loops.factor)};
+    const double change =
+        std::max(std::abs(std::log(next.odometry / result.metric.odometry)),
+                 std::abs(std::log(next.loops / result.metric.loops)));
+    if (change < 0.05 || round + 1 == kMaxNoiseRounds) {
+      // Matrices that are wrong in shape and not only in scale do not make a
+      // chi2; where nearly all loops agree there is nothing to mistake.
+      const int loops =
+          CountLoops(edges, std::vector<double>(edges.size(), 1.));
       result.valid =
           change < 0.3 &&
-          IsLikeChi2(LeaveOneOutInnovations(result.poses, weights,
-                                            kMaxInnovations, &solver));
+          (result.accepted >= kNearlyAll * loops ||
+           IsLikeChi2(LeaveOneOutInnovations(result.poses, weights,
+                                             kMaxInnovations, &solver)));
       break;
     }
-    result.metric.odometry =
-        std::max(1., result.metric.odometry * noise.odometry.factor);
-    result.metric.loops =
-        std::max(1., result.metric.loops * noise.loops.factor);
+    result.metric = next;
   }
   return result;
 }
@@ -147,7 +159,7 @@ NoiseHypothesis EstimateMetric(const PoseGraph& graph, const double variance,
 // In steps, so that two searches of the same graph measure alike.
 double Rounded(const double scale) {
   if (scale < kMinScale) return 1.;
-  return std::exp2(std::round(2. * std::log2(scale)) / 2.);
+  return std::exp2(std::round(4. * std::log2(scale)) / 4.);
 }
 
 // The noise that explains the graph better than its matrices do; false where
@@ -253,7 +265,7 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
   portfolio->Run();
   PoseGraph scaled;
   NoiseHypothesis larger;
-  if (options.estimate_noise &&
+  if (options.estimate_noise && graph.edges.size() < kMaxEdgesForNoise &&
       FindLargerNoise(graph, portfolio.get(), &larger)) {
     result.applied_odometry_scale = larger.metric.odometry;
     result.applied_loop_scale = larger.metric.loops;
@@ -286,6 +298,13 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
     scale->high *= applied;
   }
   AcceptNearLoops(portfolio.get(), &result);
+  std::vector<Alternative> alternatives = portfolio->alternatives();
+  for (const Portfolio::Member& member : portfolio->members()) {
+    alternatives.push_back({member.cost, member.poses});
+  }
+  result.undecidable =
+      FindRivalSets(portfolio->edges(), portfolio->best().poses,
+                    portfolio->best().cost, alternatives, RivalOptions());
   return result;
 }
 

@@ -26,6 +26,7 @@
 #include "cartographer_ext/optimization/noise_scale.h"
 #include "cartographer_ext/optimization/pose_graph.h"
 #include "cartographer_ext/optimization/portfolio.h"
+#include "cartographer_ext/optimization/rival_sets.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -51,6 +52,7 @@ struct AutoResult {
   double applied_loop_scale = 1.;
   // Estimate with regard to the given information matrices.
   NoiseScale noise;
+  std::vector<RivalSets> undecidable;
 };
 
 AutoResult SearchAutomatically(const PoseGraph& graph,

@@ -126,7 +126,8 @@ int FlipLoops(const FlipOptions& options, RobustSolver* const solver,
 
 int ForceGroups(const LoopSupport& support, const ForceOptions& options,
                 std::vector<WhitenedEdge>* const edges,
-                RobustSolver* const solver, std::vector<Pose2>* const poses) {
+                RobustSolver* const solver, std::vector<Pose2>* const poses,
+                std::vector<Alternative>* const alternatives) {
   CHECK_EQ(&solver->edges(), edges);
   double cost = TruncatedCost(*edges, *poses, options.gate);
   int kept = 0, trials = 0;
@@ -163,9 +164,14 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
     solver->Solve(robust, &moved);
     PolishTruncated(options.gate, kPolishRounds, solver, &moved, nullptr);
     const double moved_cost = TruncatedCost(*edges, moved, options.gate);
-    if (moved_cost < cost * (1. - kProgress)) {
+    const bool better = moved_cost < cost * (1. - kProgress);
+    if (better) std::swap(moved, *poses);
+    if (alternatives != nullptr &&
+        std::abs(moved_cost - cost) < options.gate) {
+      alternatives->push_back({std::max(cost, moved_cost), moved});
+    }
+    if (better) {
       cost = moved_cost;
-      *poses = std::move(moved);
       ++kept;
       // What failed before may succeed now.
       std::fill(tried.begin(), tried.end(), false);

@@ -43,10 +43,19 @@ struct ForceOptions {
   int min_members = 1;  // of a group
 };
 
-// `edges` are those of `solver`. Returns the number of moves kept.
+// A solution that was found and not kept.
+struct Alternative {
+  double cost = 0.;  // truncated
+  std::vector<Pose2> poses;
+};
+
+// `edges` are those of `solver`. Returns the number of moves kept. Solutions
+// that cost at most one gate more than the best are added to `alternatives`,
+// if not null.
 int ForceGroups(const LoopSupport& support, const ForceOptions& options,
                 std::vector<WhitenedEdge>* edges, RobustSolver* solver,
-                std::vector<Pose2>* poses);
+                std::vector<Pose2>* poses,
+                std::vector<Alternative>* alternatives);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

@@ -94,6 +94,7 @@ void RunAuto(const PoseGraph& graph, const OptimizeOptions& options,
   result->member = found.member;
   result->member_truncated_chi2 = found.member_cost;
   result->noise = found.noise;
+  result->undecidable = std::move(found.undecidable);
   result->applied_odometry_scale = found.applied_odometry_scale;
   result->applied_loop_scale = found.applied_loop_scale;
 }
@@ -115,6 +116,24 @@ void Summarize(const std::vector<WhitenedEdge>& edges,
     }
   }
   result->truncated_chi2 = TruncatedCost(edges, result->poses);
+}
+
+// Replaces `edges`, those of the graph, by what the noise that `auto` uses makes
+// of them.
+void MeasureWithEstimatedNoise(const PoseGraph& graph,
+                               const OptimizeOptions& options,
+                               std::vector<WhitenedEdge>* const edges,
+                               OptimizeResult* const result) {
+  OptimizeResult automatic;
+  RunAuto(graph, options, &automatic);
+  result->noise = automatic.noise;
+  result->applied_odometry_scale = automatic.applied_odometry_scale;
+  result->applied_loop_scale = automatic.applied_loop_scale;
+  const size_t size = edges->size();
+  *edges = Whiten(WithNoiseScale(graph, result->applied_odometry_scale,
+                                 result->applied_loop_scale)
+                      .edges);
+  edges->resize(size);
 }
 
 // The graph with edges that hold its fixed poses in place.
@@ -188,7 +207,12 @@ absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
   if (!result.weights.empty()) result.weights.resize(edges.size());
   if (!result.accepted.empty()) result.accepted.resize(edges.size());
   result.cpu_seconds = ThreadCpuSeconds() - start;
+  if (options.measure_with_estimated_noise && options.method != "auto") {
+    MeasureWithEstimatedNoise(held, options, &edges, &result);
+  }
   Summarize(edges, &result);
+  result.truncated_chi2_as_given =
+      TruncatedCost(Whiten(graph.edges), result.poses);
   return result;
 }
 

@@ -16,6 +16,7 @@
 #include "cartographer_ext/optimization/kernels.h"
 #include "cartographer_ext/optimization/noise_scale.h"
 #include "cartographer_ext/optimization/pose_graph.h"
+#include "cartographer_ext/optimization/rival_sets.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -32,6 +33,11 @@ struct OptimizeOptions {
   // auto: estimate the scale of the noise, and use it where the information
   // matrices claim too much.
   bool estimate_noise = true;
+  // Other methods solve with the matrices as they are; this measures their
+  // result (chi2, accepted) with the noise that `auto` would use, so that the
+  // results of all methods can be compared. Takes the time of `auto`, which is
+  // not counted.
+  bool measure_with_estimated_noise = false;
   // auto: end with the gate narrowed to the scale of the accepted loops
   // (AdaptiveGate). For graphs whose information matrices are only a guess,
   // such as those of Cartographer, it would cost right loops.
@@ -57,6 +63,8 @@ struct OptimizeResult {
   double odometry_chi2 = 0.;
   double accepted_loops_chi2 = 0.;
   double truncated_chi2 = 0.;  // TruncatedCost at the poses
+  // The same with the information matrices as they were given.
+  double truncated_chi2_as_given = 0.;
   // auto: the member chosen, and the lowest truncated cost of all before the
   // last polish.
   std::string member;
@@ -67,6 +75,7 @@ struct OptimizeResult {
   NoiseScale noise;
   double applied_odometry_scale = 1.;
   double applied_loop_scale = 1.;
+  std::vector<RivalSets> undecidable;  // auto
 };
 
 // Names accepted as OptimizeOptions::method.

@@ -27,11 +27,13 @@ constexpr double kNearlySame = 3.;
 // within the gate where the search ends.
 constexpr size_t kMaxInnovations = 200;
 constexpr int kMaxPossible = 2;
+// Loops that agree with one that is relied on without regard to the rest.
+constexpr size_t kSupported = 2;
 // A graph of fewer poses times loops is searched from all starts in any case.
 constexpr double kSmallGraph = 2.5e5;
 // Multiplications of one factorisation that are worth it while the search is
 // open, and those that cost nothing worth mentioning.
-constexpr double kAffordableWork = 3e8;
+constexpr double kAffordableWork = 6e7;
 constexpr double kLittleWork = 3e6;
 // Beyond so many poses times loops, the search by groups is too dear.
 constexpr double kMaxGrowthWork = 4e6;
@@ -227,7 +229,10 @@ void Portfolio::Run() {
   const bool settled = IsSettled();
   const double size = static_cast<double>(graph_.poses.size()) * num_loops_;
   if (settled && size > kSmallGraph) return;
-  RunStarts();
+  // Where many loops contradict a map that the robust kernels agree on, the
+  // solvers that keep them all are far off.
+  RunStarts(FullWork() <= kAffordableWork &&
+            (!settled || CountRejected() <= 0.25 * num_loops_));
   if (!settled && size <= kMaxGrowthWork) RunGroups();
   Improve();
 }
@@ -239,32 +244,46 @@ void Portfolio::Improve() {
   }
 }
 
-void Portfolio::RunStarts() {
+void Portfolio::RunStarts(const bool with_full_kernels) {
   const bool affordable = FullWork() <= kAffordableWork;
-  if (affordable && members_.size() <= 4) {
+  if (with_full_kernels && members_.size() <= 4) {
     AddKernel("", KernelType::kHuber, graph_.poses);
     AddKernel("", KernelType::kNone, graph_.poses);
   }
   AddReplays();
   const std::vector<Pose2> chained = ChainOdometry(graph_);
   const bool same = SamePoses(chained, graph_.poses);
-  if (!same) AddKernels("odometry, ", chained, affordable);
+  if (!same) AddKernels("odometry, ", chained, with_full_kernels);
   if (!affordable) return;
   AddGnc("", graph_.poses);
   if (!same) AddGnc("odometry, ", chained);
   std::vector<Pose2> chordal = chained;
   if (RobustChordalPoses(edges_, &chordal)) {
-    AddKernels("chordal, ", chordal, true);
+    AddKernels("chordal, ", chordal, with_full_kernels);
   }
 }
 
 void Portfolio::RunGroups() {
   AddGrowth(ChainOdometry(graph_));
-  std::vector<double> weights = Chi2OfEdges(edges_, best().poses);
-  for (double& weight : weights) weight = weight < kChi2Gate ? 1. : 0.;
-  AddKernel("tree, ", KernelType::kGemanMcClure, SpanningTree(graph_, weights));
+  std::vector<double> in_force = Chi2OfEdges(edges_, best().poses);
+  std::vector<double> supported(edges_.size(), 1.);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    in_force[i] = !edges_[i].is_loop || in_force[i] < kChi2Gate ? 1. : 0.;
+    if (edges_[i].is_loop) {
+      supported[i] = support().agreeing[i].size() >= kSupported ? 1. : 0.;
+    }
+  }
+  AddKernel("tree, ", KernelType::kGemanMcClure,
+            SpanningTree(graph_, in_force));
+  for (const std::vector<double>* const weights : {&in_force, &supported}) {
+    std::vector<Pose2> poses = best().poses;
+    if (ChordalPoses(edges_, *weights, &poses)) {
+      AddKernel("relaxed, ", KernelType::kDcs, poses);
+    }
+  }
   std::vector<Pose2> poses = best().poses;
-  if (ForceGroups(support(), ForceOptions(), &edges_, &solver_, &poses) > 0) {
+  if (ForceGroups(support(), ForceOptions(), &edges_, &solver_, &poses,
+                  &alternatives_) > 0) {
     Add(absl::StrCat(best().name, ", groups"), std::move(poses));
   }
 }

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "absl/types/optional.h"
+#include "cartographer_ext/optimization/decision_moves.h"
 #include "cartographer_ext/optimization/incremental_smoother.h"
 #include "cartographer_ext/optimization/loop_support.h"
 #include "cartographer_ext/optimization/pose_graph.h"
@@ -59,6 +60,10 @@ class Portfolio {
 
   const std::vector<Member>& members() const { return members_; }
   const Member& best() const { return members_[best_]; }
+  // What groups that were forced in and given up led to.
+  const std::vector<Alternative>& alternatives() const {
+    return alternatives_;
+  }
   // The lowest truncated cost of a solver before any polish.
   double lowest_of_solvers() const { return lowest_of_solvers_; }
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
@@ -70,7 +75,7 @@ class Portfolio {
  private:
   void RunQuick();
   bool IsSettled();
-  void RunStarts();
+  void RunStarts(bool with_full_kernels);
   void RunGroups();
   void Count(const SolverSummary& summary);
   void AddKernel(const std::string& start_name, KernelType type,
@@ -92,6 +97,7 @@ class Portfolio {
   std::vector<Member> members_;
   size_t best_ = 0;
   double lowest_of_solvers_;
+  std::vector<Alternative> alternatives_;
   absl::optional<double> full_work_;
   absl::optional<LoopSupport> support_;
   int iterations_ = 0;

@@ -42,6 +42,11 @@ DEFINE_bool(adaptive_gate, true,
 DEFINE_bool(lowest_cost, true,
             "auto: end with the lowest truncated cost of all, as near to what "
             "the adapted gate says as that permits.");
+DEFINE_bool(estimate_noise, true,
+            "Estimate the scale of the noise of odometry and of loops; where "
+            "the information matrices claim too much, decide and report chi2 "
+            "with it (key noise_scale: factors of the standard deviations). "
+            "Never for a pbstream.");
 DEFINE_bool(dead_reckoning, false,
             "Start from chained odometry instead of the file's poses.");
 DEFINE_string(output_filename, "",
@@ -171,6 +176,46 @@ absl::Status WriteOutput(const Input& input,
   return io::WritePbstream(output, FLAGS_output_filename);
 }
 
+nlohmann::ordered_json NoiseReport(
+    const optimization::OptimizeResult& result) {
+  nlohmann::ordered_json json;
+  json["odometry"] = result.noise.odometry.factor;
+  json["loops"] = result.noise.loops.factor;
+  const auto interval = [](const optimization::ScaleEstimate& scale) {
+    return nlohmann::ordered_json{
+        {"low", scale.low},
+        {"high", scale.high},
+        {"degrees_of_freedom", scale.degrees_of_freedom}};
+  };
+  json["odometry_interval"] = interval(result.noise.odometry);
+  json["loops_interval"] = interval(result.noise.loops);
+  json["applied"] = {{"odometry", result.applied_odometry_scale},
+                     {"loops", result.applied_loop_scale}};
+  return json;
+}
+
+// Sets of loops that explain the graph as well as those in force.
+nlohmann::ordered_json RivalReport(const optimization::PoseGraph& graph,
+                                   const optimization::OptimizeResult& result) {
+  const auto ends = [&](const std::vector<int>& edges) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const int i : edges) {
+      json.push_back({{"edge", i},
+                      {"from", graph.ids[graph.edges[i].from]},
+                      {"to", graph.ids[graph.edges[i].to]}});
+    }
+    return json;
+  };
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const optimization::RivalSets& rival : result.undecidable) {
+    json.push_back({{"cost_difference", rival.cost_difference},
+                    {"largest_shift", rival.largest_shift},
+                    {"only_in_force", ends(rival.only_in_force)},
+                    {"only_in_rival", ends(rival.only_in_rival)}});
+  }
+  return json;
+}
+
 nlohmann::ordered_json Report(const optimization::PoseGraph& graph,
                               const optimization::OptimizeResult& result) {
   int loops = 0, accepted = 0;
@@ -188,11 +233,14 @@ nlohmann::ordered_json Report(const optimization::PoseGraph& graph,
       {"total", loops}, {"accepted", accepted}, {"rejected", loops - accepted}};
   json["chi2"] = {{"odometry", result.odometry_chi2},
                   {"accepted_loops", result.accepted_loops_chi2},
-                  {"truncated", result.truncated_chi2}};
+                  {"truncated", result.truncated_chi2},
+                  {"truncated_as_given", result.truncated_chi2_as_given}};
   if (!result.member.empty()) {
     json["member"] = result.member;
     json["chi2"]["truncated_of_member"] = result.member_truncated_chi2;
+    json["undecidable"] = RivalReport(graph, result);
   }
+  json["noise_scale"] = NoiseReport(result);
   const std::vector<double>& steps = result.step_seconds;
   if (!steps.empty()) {
     json["step_milliseconds"] = {
@@ -223,6 +271,9 @@ absl::Status Run() {
   options.adaptive_gate = FLAGS_adaptive_gate && !input->pbstream.has_value();
   options.smoother.adaptive_gate = options.adaptive_gate;
   options.lowest_cost = FLAGS_lowest_cost;
+  options.estimate_noise =
+      FLAGS_estimate_noise && !input->pbstream.has_value();
+  options.measure_with_estimated_noise = options.estimate_noise;
   if (FLAGS_dead_reckoning) {
     input->graph.poses = optimization::DeadReckoning(input->graph);
   }
@@ -256,6 +307,11 @@ absl::Status Run() {
   }
   if (!status.ok()) return status;
   if (FLAGS_json != "-") {
+    if (!result->undecidable.empty()) {
+      std::cout << absl::StrFormat(
+          "undecidable: %d other sets of loops explain the graph as well\n",
+          result->undecidable.size());
+    }
     std::cout << absl::StrFormat(
         "%s: %d poses, %d of %d loops in force, truncated chi2 %.1f, %d "
         "iterations, %.3f s\n",

@@ -46,6 +46,21 @@ TEST(G2oTest, ReadsASquare) {
   EXPECT_EQ(edge.information, information);
 }
 
+TEST(G2oTest, ReadsEdgesWithoutVerticesAndSkipsLandmarks) {
+  test::TemporaryFile file(".g2o");
+  test::WriteBytes(file.path(),
+                   "EDGE_SE2 4 5 1 0 0 1 0 0 1 0 1\n"
+                   "EDGE_SE2 7 5 1 0 0 1 0 0 1 0 1\n"
+                   "VERTEX_XY 100 3 4\nEDGE_SE2_XY 4 100 1 2 1 0 1\n");
+  const auto graph = ReadG2o(file.path());
+  ASSERT_TRUE(graph.ok()) << graph.status();
+  EXPECT_TRUE(graph->lacks_vertices);
+  EXPECT_EQ(graph->vertices.size(), 3u);
+  EXPECT_EQ(graph->vertices.count(7), 1u);
+  EXPECT_EQ(graph->skipped.at("VERTEX_XY"), 1);
+  EXPECT_EQ(graph->skipped.at("EDGE_SE2_XY"), 1);
+}
+
 TEST(G2oTest, RoundTripIsExact) {
   Random random(3);
   G2oGraph graph;

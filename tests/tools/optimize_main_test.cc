@@ -101,6 +101,29 @@ TEST(OptimizeMainTest, SwitchesOffTheWrongLoops) {
   }
 }
 
+TEST(OptimizeMainTest, ChainsOdometryWhereThereAreNoVertices) {
+  const test::TemporaryFolder folder;
+  io::G2oGraph graph = Square();
+  graph.vertices.clear();
+  ASSERT_TRUE(io::WriteG2o(graph, folder / "in.g2o").ok());
+  const CommandResult result =
+      RunCommand("optimize", {"-input_filename", folder / "in.g2o",
+                              "-output_filename", folder / "out.g2o", "-json",
+                              "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const nlohmann::json json = test::ParseJson(result.out);
+  EXPECT_EQ(json["poses"], 60);
+  EXPECT_GE(json["loops"]["accepted"], 38);
+  for (const char* key : {"odometry", "loops"}) {
+    EXPECT_GT(json["noise_scale"][key], 0.5) << key;
+    EXPECT_LT(json["noise_scale"][key], 2.) << key;
+  }
+  EXPECT_TRUE(json["undecidable"].is_array());
+  const auto output = io::ReadG2o(folder / "out.g2o");
+  ASSERT_TRUE(output.ok());
+  EXPECT_NEAR(output->vertices.at(40).x, 0., 0.5);
+}
+
 TEST(OptimizeMainTest, FindsAndUndoesLoopsOfAMap) {
   const test::TemporaryFolder folder;
   test::SquareMap map;
