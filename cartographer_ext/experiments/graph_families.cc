@@ -26,10 +26,10 @@ struct Noise {
 
 // What the loops of a graph are like.
 struct LoopPlan {
-  double radius = 1.;         // metres between the true poses of their ends
-  double probability = 1.;    // that a pose which has a partner gets a loop
-  int min_gap = 10;           // poses between the ends
-  int max_loops = 1 << 30;    // more are thinned at random
+  double radius = 1.;       // metres between the true poses of their ends
+  double probability = 1.;  // that a pose which has a partner gets a loop
+  int min_gap = 10;         // poses between the ends
+  int max_loops = 1 << 30;  // more are thinned at random
   int max_loops_per_pose = 1;
 };
 
@@ -123,8 +123,7 @@ class StreetWalker {
   }
 
   void Go(const int direction) {
-    const double turn =
-        NormalizeAngle((direction - direction_) * kPi / 2.);
+    const double turn = NormalizeAngle((direction - direction_) * kPi / 2.);
     if (direction != direction_) {
       path_->Add(path_->poses.back() * Pose2(0., 0., turn), floor_, robot_);
     }
@@ -263,8 +262,7 @@ class Builder {
       cells[cell].push_back(k);
       if (near.empty() || random_->Uniform() >= plan.probability) continue;
       std::sort(near.begin(), near.end());
-      const int count =
-          std::min<int>(near.size(), plan.max_loops_per_pose);
+      const int count = std::min<int>(near.size(), plan.max_loops_per_pose);
       for (int i = 0; i != count; ++i) {
         result.push_back({near[i].second, static_cast<int>(k)});
       }
@@ -281,8 +279,8 @@ FamilyGraph MakeRing(Random* const random, const int max_loops) {
   const int rings = random->UniformInt(1, 4);
   const double step = random->Uniform(2., 6.);
   const double radius = random->Uniform(30., 60.) * step / std::sqrt(rings);
-  Builder builder(
-      Rings(rings, radius, step, random->Uniform(1.2, 2.5), random), random);
+  Builder builder(Rings(rings, radius, step, random->Uniform(1.2, 2.5), random),
+                  random);
   builder.AddOdometry({0.02 * step, LogUniform(random, 0.01, 0.1)});
   LoopPlan plan;
   plan.radius = 0.6 * step;
@@ -330,9 +328,9 @@ FamilyGraph MakeGrid(Random* const random, const int max_loops) {
 }
 
 FamilyGraph MakeStar(Random* const random, const int max_loops) {
-  Builder builder(Star(random->UniformInt(4, 9), random->Uniform(20., 50.), 1.,
-                       random),
-                  random);
+  Builder builder(
+      Star(random->UniformInt(4, 9), random->Uniform(20., 50.), 1., random),
+      random);
   builder.AddOdometry(
       {random->Uniform(0.02, 0.06), LogUniform(random, 0.005, 0.03)});
   LoopPlan plan;
@@ -454,9 +452,9 @@ absl::StatusOr<FamilyGraph> GenerateFamilyGraph(const std::string& family,
   const std::vector<std::string>& names = FamilyNames();
   const auto name = std::find(names.begin(), names.end(), family);
   if (name == names.end()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("unknown family '", family, "', expected one of ",
-                     absl::StrJoin(names, " ")));
+    return absl::InvalidArgumentError(absl::StrCat("unknown family '", family,
+                                                   "', expected one of ",
+                                                   absl::StrJoin(names, " ")));
   }
   Random random(1000003 * (name - names.begin() + 1) + seed);
   if (family == "ring") return MakeRing(&random, 1 << 30);

@@ -144,11 +144,10 @@ NoiseHypothesis EstimateMetric(const PoseGraph& graph, const double variance,
       // chi2; where nearly all loops agree there is nothing to mistake.
       const int loops =
           CountLoops(edges, std::vector<double>(edges.size(), 1.));
-      result.valid =
-          change < 0.3 &&
-          (result.accepted >= kNearlyAll * loops ||
-           IsLikeChi2(LeaveOneOutInnovations(result.poses, weights,
-                                             kMaxInnovations, &solver)));
+      result.valid = change < 0.3 &&
+                     (result.accepted >= kNearlyAll * loops ||
+                      IsLikeChi2(LeaveOneOutInnovations(
+                          result.poses, weights, kMaxInnovations, &solver)));
       break;
     }
     result.metric = next;

@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "cartographer_ext/optimization/noise_scale.h"
-#include "cartographer_ext/optimization/pose_graph.h"
 #include "cartographer_ext/optimization/portfolio.h"
+#include "cartographer_ext/optimization/pose_graph.h"
 #include "cartographer_ext/optimization/rival_sets.h"
 
 namespace cartographer_ext {

@@ -77,8 +77,7 @@ std::vector<Flip> PromisingFlips(const FlipOptions& options,
     const Eigen::LLT<Eigen::Matrix3d> root(covariance);
     if (root.info() != Eigen::Success) continue;
     const double cost = residual.dot(root.solve(residual));
-    const double gain =
-        in_force ? cost - options.gate : options.gate - cost;
+    const double gain = in_force ? cost - options.gate : options.gate - cost;
     if (gain > 0.) result.push_back({entry.second, gain});
   }
   std::sort(result.begin(), result.end(), [](const Flip& a, const Flip& b) {
@@ -166,8 +165,7 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
     const double moved_cost = TruncatedCost(*edges, moved, options.gate);
     const bool better = moved_cost < cost * (1. - kProgress);
     if (better) std::swap(moved, *poses);
-    if (alternatives != nullptr &&
-        std::abs(moved_cost - cost) < options.gate) {
+    if (alternatives != nullptr && std::abs(moved_cost - cost) < options.gate) {
       alternatives->push_back({std::max(cost, moved_cost), moved});
     }
     if (better) {

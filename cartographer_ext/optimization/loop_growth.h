@@ -53,8 +53,9 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
                                      const std::vector<Pose2>& poses,
                                      RobustSolver* solver);
 
-// Replaces `poses` by a solution with the loops that grew in; `weights`, one per
-// edge, tells which. `solver` is that of `edges`. Odometry must reach all poses.
+// Replaces `poses` by a solution with the loops that grew in; `weights`, one
+// per edge, tells which. `solver` is that of `edges`. Odometry must reach all
+// poses.
 bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,
                RobustSolver* solver, std::vector<Pose2>* poses,
                std::vector<double>* weights);

@@ -38,9 +38,8 @@ class Supporter {
 
   LoopSupport Run() {
     result_.agreeing.resize(graph_.edges.size());
-    std::stable_sort(loops_.begin(), loops_.end(), [&](int i, int j) {
-      return Early(i) < Early(j);
-    });
+    std::stable_sort(loops_.begin(), loops_.end(),
+                     [&](int i, int j) { return Early(i) < Early(j); });
     for (size_t k = 0; k != loops_.size(); ++k) {
       int tested = 0;
       for (size_t l = k + 1; l != loops_.size(); ++l) {

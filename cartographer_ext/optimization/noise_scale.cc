@@ -48,9 +48,8 @@ std::vector<Prediction> Predict(const std::vector<Pose2>& poses,
     linear.a = edge.from - 1;
     linear.b = edge.to - 1;
     Prediction prediction;
-    prediction.residual =
-        Linearize(edge, poses[edge.from], poses[edge.to], &linear.jacobian_a,
-                  &linear.jacobian_b);
+    prediction.residual = Linearize(edge, poses[edge.from], poses[edge.to],
+                                    &linear.jacobian_a, &linear.jacobian_b);
     prediction.covariance = factor.PredictedCovariance(linear);
     result.push_back(prediction);
   }
@@ -113,8 +112,7 @@ std::vector<double> LeaveOneOutInnovations(const std::vector<Pose2>& poses,
                                            const size_t limit,
                                            RobustSolver* const solver) {
   std::vector<double> result;
-  for (const Prediction& prediction :
-       Predict(poses, weights, limit, solver)) {
+  for (const Prediction& prediction : Predict(poses, weights, limit, solver)) {
     const Eigen::Matrix3d rest =
         Eigen::Matrix3d::Identity() - prediction.covariance;
     const Eigen::LLT<Eigen::Matrix3d> root(rest);

@@ -14,8 +14,8 @@
 // degrees of freedom holds it at one where the data are silent.
 //
 // Whether loops in force follow their noise model shows in their leave-one-out
-// innovations d2 = r' (I - J H^-1 J')^-1 r, which are chi2 with three degrees of
-// freedom whatever the redundancy.
+// innovations d2 = r' (I - J H^-1 J')^-1 r, which are chi2 with three degrees
+// of freedom whatever the redundancy.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_NOISE_SCALE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_NOISE_SCALE_H_
 

@@ -118,8 +118,8 @@ void Summarize(const std::vector<WhitenedEdge>& edges,
   result->truncated_chi2 = TruncatedCost(edges, result->poses);
 }
 
-// Replaces `edges`, those of the graph, by what the noise that `auto` uses makes
-// of them.
+// Replaces `edges`, those of the graph, by what the noise that `auto` uses
+// makes of them.
 void MeasureWithEstimatedNoise(const PoseGraph& graph,
                                const OptimizeOptions& options,
                                std::vector<WhitenedEdge>* const edges,

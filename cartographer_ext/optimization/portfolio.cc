@@ -187,9 +187,8 @@ bool Portfolio::IsSettled() {
   if (rejected.empty()) return true;
   // A map without loops explains nothing.
   if (rejected.size() == num_loops_) return false;
-  const std::vector<Innovation> innovations =
-      PredictLoops(Thinned(rejected, kMaxInnovations), weights, poses,
-                   &solver_);
+  const std::vector<Innovation> innovations = PredictLoops(
+      Thinned(rejected, kMaxInnovations), weights, poses, &solver_);
   if (innovations.empty()) return false;
   int possible = 0;
   for (const Innovation& innovation : innovations) {

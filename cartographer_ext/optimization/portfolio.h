@@ -8,9 +8,9 @@
 //
 //   Quick   dcs, gm and acs from the given poses, none and huber where few
 //           loops are wrong. Where these agree up to decisions near the gate,
-//           no single decision can be improved and the rejected loops contradict
-//           the map beyond its uncertainty, the search of a large graph ends
-//           here: other starts end in the same optimum.
+//           no single decision can be improved and the rejected loops
+//           contradict the map beyond its uncertainty, the search of a large
+//           graph ends here: other starts end in the same optimum.
 //   Starts  chained odometry, chordal relaxation and an incremental replay
 //           (R-iSAM) as starts of the same kernels; graduated non-convexity.
 //   Groups  where the rejected loops are within the uncertainty of the map or
@@ -61,9 +61,7 @@ class Portfolio {
   const std::vector<Member>& members() const { return members_; }
   const Member& best() const { return members_[best_]; }
   // What groups that were forced in and given up led to.
-  const std::vector<Alternative>& alternatives() const {
-    return alternatives_;
-  }
+  const std::vector<Alternative>& alternatives() const { return alternatives_; }
   // The lowest truncated cost of a solver before any polish.
   double lowest_of_solvers() const { return lowest_of_solvers_; }
   const std::vector<WhitenedEdge>& edges() const { return edges_; }

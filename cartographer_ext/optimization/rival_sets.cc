@@ -17,8 +17,8 @@ std::vector<bool> LoopsInForce(const std::vector<WhitenedEdge>& edges,
                                const double gate) {
   std::vector<bool> result(edges.size());
   for (size_t i = 0; i != edges.size(); ++i) {
-    result[i] = edges[i].is_loop && Chi2(edges[i], poses[edges[i].from],
-                                         poses[edges[i].to]) < gate;
+    result[i] = edges[i].is_loop &&
+                Chi2(edges[i], poses[edges[i].from], poses[edges[i].to]) < gate;
   }
   return result;
 }
@@ -41,9 +41,9 @@ std::vector<RivalSets> FindRivalSets(
     const RivalOptions& options) {
   const std::vector<bool> ours = LoopsInForce(edges, poses, options.gate);
   const int num_ours = std::count(ours.begin(), ours.end(), true);
-  const int min_loops =
-      num_ours < 10 * options.min_loops ? options.min_loops - 1
-                                        : options.min_loops;
+  const int min_loops = num_ours < 10 * options.min_loops
+                            ? options.min_loops - 1
+                            : options.min_loops;
   std::vector<RivalSets> result;
   std::set<std::pair<std::vector<int>, std::vector<int>>> seen;
   for (const Alternative& alternative : alternatives) {

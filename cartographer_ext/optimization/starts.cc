@@ -127,8 +127,8 @@ Eigen::Matrix2d Rotation(const double angle) {
 
 // Solves for the angles; `factor` has been analysed.
 bool SolveRotations(const std::vector<WhitenedEdge>& edges,
-                    const std::vector<double>& weights,
-                    BlockLdlt* const factor, std::vector<Pose2>* const poses) {
+                    const std::vector<double>& weights, BlockLdlt* const factor,
+                    std::vector<Pose2>* const poses) {
   const int size = poses->size() - 1;
   const Eigen::Vector2d held(std::cos((*poses)[0].theta),
                              std::sin((*poses)[0].theta));
@@ -158,8 +158,8 @@ bool SolveRotations(const std::vector<WhitenedEdge>& edges,
 }
 
 bool SolvePositions(const std::vector<WhitenedEdge>& edges,
-                    const std::vector<double>& weights,
-                    BlockLdlt* const factor, std::vector<Pose2>* const poses) {
+                    const std::vector<double>& weights, BlockLdlt* const factor,
+                    std::vector<Pose2>* const poses) {
   const int size = poses->size() - 1;
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * size);
   factor->SetZero();
@@ -174,8 +174,7 @@ bool SolvePositions(const std::vector<WhitenedEdge>& edges,
     const Eigen::Matrix2d upper =
         std::sqrt(weights[i]) * Eigen::Matrix2d(root.matrixU());
     PlanarTerm term;
-    term.of_to =
-        upper * Rotation((*poses)[edges[i].from].theta).transpose();
+    term.of_to = upper * Rotation((*poses)[edges[i].from].theta).transpose();
     term.of_from = term.of_to;
     term.target = upper * edges[i].measurement.head<2>();
     AddTerm(term, edges[i], (*poses)[0].translation(), &pair, factor, &rhs);
@@ -248,8 +247,7 @@ std::vector<Pose2> SpanningTree(const PoseGraph& graph,
       const PoseGraphEdge& edge = graph.edges[i];
       if (edge.is_loop && weights[i] <= 0.5) continue;
       const int other = edge.from == pose ? edge.to : edge.from;
-      const double cost = entry.first +
-                          PositionVariance(edge) / unit.position +
+      const double cost = entry.first + PositionVariance(edge) / unit.position +
                           1. / (edge.information(2, 2) * unit.angle);
       if (cost >= costs[other]) continue;
       costs[other] = cost;

@@ -176,8 +176,7 @@ absl::Status WriteOutput(const Input& input,
   return io::WritePbstream(output, FLAGS_output_filename);
 }
 
-nlohmann::ordered_json NoiseReport(
-    const optimization::OptimizeResult& result) {
+nlohmann::ordered_json NoiseReport(const optimization::OptimizeResult& result) {
   nlohmann::ordered_json json;
   json["odometry"] = result.noise.odometry.factor;
   json["loops"] = result.noise.loops.factor;
@@ -271,8 +270,7 @@ absl::Status Run() {
   options.adaptive_gate = FLAGS_adaptive_gate && !input->pbstream.has_value();
   options.smoother.adaptive_gate = options.adaptive_gate;
   options.lowest_cost = FLAGS_lowest_cost;
-  options.estimate_noise =
-      FLAGS_estimate_noise && !input->pbstream.has_value();
+  options.estimate_noise = FLAGS_estimate_noise && !input->pbstream.has_value();
   options.measure_with_estimated_noise = options.estimate_noise;
   if (FLAGS_dead_reckoning) {
     input->graph.poses = optimization::DeadReckoning(input->graph);

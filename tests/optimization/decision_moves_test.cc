@@ -82,10 +82,9 @@ TEST(DecisionMovesTest, RightGroupsPushOutAWrongOne) {
   PolishTruncated(kChi2Gate, 30, &solver, &poses, nullptr);
   const double before = TruncatedCost(edges, poses);
   std::vector<Alternative> alternatives;
-  EXPECT_GT(
-      ForceGroups(FindLoopSupport(world.graph, LoopSupportOptions()),
-                  ForceOptions(), &edges, &solver, &poses, &alternatives),
-      0);
+  EXPECT_GT(ForceGroups(FindLoopSupport(world.graph, LoopSupportOptions()),
+                        ForceOptions(), &edges, &solver, &poses, &alternatives),
+            0);
   EXPECT_LT(TruncatedCost(edges, poses), before);
   int wrong_in_force = 0;
   for (size_t i = clean; i != edges.size(); ++i) {

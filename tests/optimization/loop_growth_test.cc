@@ -22,9 +22,8 @@ TEST(LoopGrowthTest, FindsRightLoopsWhereOdometrySaysLittle) {
     RobustSolver solver(edges);
     std::vector<Pose2> poses = world.graph.poses;
     std::vector<double> weights;
-    ASSERT_TRUE(
-        GrowLoops(FindLoopSupport(world.graph, LoopSupportOptions()),
-                  GrowthOptions(), &solver, &poses, &weights));
+    ASSERT_TRUE(GrowLoops(FindLoopSupport(world.graph, LoopSupportOptions()),
+                          GrowthOptions(), &solver, &poses, &weights));
     int right = 0, right_in_force = 0, wrong_in_force = 0;
     for (size_t i = 0; i != edges.size(); ++i) {
       if (!edges[i].is_loop) {
@@ -56,8 +55,7 @@ TEST(LoopGrowthTest, InnovationsAreHonest) {
       edge.to = i == 11 ? 11 : i + 1;
       edge.is_loop = i == 11;
       edge.measurement = Pose2(i == 11 ? 11. : 1., 0., 0.) *
-                         Pose2(random.Normal(0., 0.02),
-                               random.Normal(0., 0.02),
+                         Pose2(random.Normal(0., 0.02), random.Normal(0., 0.02),
                                random.Normal(0., 0.005));
       edge.information = Eigen::Vector3d(2500., 2500., 40000.).asDiagonal();
       edges.push_back(edge);

@@ -75,10 +75,9 @@ TEST(LoopSupportTest, ChiSquareOfCyclesIsHonest) {
     AddLoop(8, 29, Pose2(1., 0., 0.), &graph);
     for (PoseGraphEdge& edge : graph.edges) {
       edge.information = 1e4 * Eigen::Matrix3d::Identity();
-      edge.measurement =
-          edge.measurement * Pose2(random.Normal(0., 0.01),
-                                   random.Normal(0., 0.01),
-                                   random.Normal(0., 0.01));
+      edge.measurement = edge.measurement * Pose2(random.Normal(0., 0.01),
+                                                  random.Normal(0., 0.01),
+                                                  random.Normal(0., 0.01));
     }
     for (const double chi2 :
          FindLoopSupport(graph, LoopSupportOptions()).cycle_chi2) {

@@ -46,11 +46,10 @@ TEST(NoiseScaleTest, FindsTheFactorsOfBothKinds) {
 TEST(NoiseScaleTest, SaysSoWhereTheDataAreSilent) {
   test::GridWorld world = test::MakeGridWorld(60, 5, 2);
   std::vector<PoseGraphEdge>& list = world.graph.edges;
-  list.erase(std::remove_if(list.begin(), list.end(),
-                            [](const PoseGraphEdge& edge) {
-                              return edge.is_loop;
-                            }),
-             list.end());
+  list.erase(
+      std::remove_if(list.begin(), list.end(),
+                     [](const PoseGraphEdge& edge) { return edge.is_loop; }),
+      list.end());
   const std::vector<WhitenedEdge> edges = Whiten(list);
   RobustSolver solver(edges);
   const NoiseScale scale = EstimateNoiseScale(

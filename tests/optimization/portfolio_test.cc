@@ -34,8 +34,7 @@ TEST(PortfolioTest, IsNeverAboveAnySolver) {
           << method << " " << seed;
     }
     EXPECT_NEAR(portfolio.best().cost,
-                TruncatedCost(portfolio.edges(), portfolio.best().poses),
-                1e-9);
+                TruncatedCost(portfolio.edges(), portfolio.best().poses), 1e-9);
   }
 }
 
@@ -46,9 +45,9 @@ TEST(PortfolioTest, KeepsAllLoopsOfACleanGraphFromAPoorStart) {
   int loops = 0, in_force = 0;
   for (const WhitenedEdge& edge : portfolio.edges()) {
     loops += edge.is_loop;
-    in_force += edge.is_loop &&
-                Chi2(edge, portfolio.best().poses[edge.from],
-                     portfolio.best().poses[edge.to]) < kChi2Gate;
+    in_force +=
+        edge.is_loop && Chi2(edge, portfolio.best().poses[edge.from],
+                             portfolio.best().poses[edge.to]) < kChi2Gate;
   }
   EXPECT_GE(in_force, loops - 1);
 }

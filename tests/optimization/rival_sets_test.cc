@@ -56,11 +56,10 @@ TEST(RivalSetsTest, FindsTheOtherSet) {
   const Rivals rivals = MakeRivals();
   const double cost = TruncatedCost(rivals.edges, rivals.left);
   const double other = TruncatedCost(rivals.edges, rivals.right);
-  const std::vector<RivalSets> found =
-      FindRivalSets(rivals.edges, rivals.left, cost,
-                    {{cost, rivals.left}, {other, rivals.right},
-                     {other, rivals.right}},
-                    RivalOptions());
+  const std::vector<RivalSets> found = FindRivalSets(
+      rivals.edges, rivals.left, cost,
+      {{cost, rivals.left}, {other, rivals.right}, {other, rivals.right}},
+      RivalOptions());
   ASSERT_EQ(found.size(), 1u);
   EXPECT_THAT(found[0].only_in_force, ElementsAre(10, 11));
   EXPECT_THAT(found[0].only_in_rival, ElementsAre(12, 13));

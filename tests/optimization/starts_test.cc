@@ -59,11 +59,11 @@ TEST(StartsTest, ChainAttachesWhatOdometryDoesNotReach) {
 TEST(StartsTest, TreePrefersShortPathsOverLoops) {
   const test::GridWorld world = test::MakeGridWorld(400, 6, 3);
   std::vector<double> weights(world.graph.edges.size(), 1.);
-  const double with_loops = AbsoluteTrajectoryError(
-      SpanningTree(world.graph, weights), world.truth);
+  const double with_loops =
+      AbsoluteTrajectoryError(SpanningTree(world.graph, weights), world.truth);
   weights.assign(weights.size(), 0.);
-  const double without = AbsoluteTrajectoryError(
-      SpanningTree(world.graph, weights), world.truth);
+  const double without =
+      AbsoluteTrajectoryError(SpanningTree(world.graph, weights), world.truth);
   EXPECT_LT(with_loops, 0.5 * without);
   EXPECT_NEAR(without,
               AbsoluteTrajectoryError(ChainOdometry(world.graph), world.truth),

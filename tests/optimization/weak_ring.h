@@ -27,10 +27,10 @@ inline GridWorld MakeWeakRing(const uint64_t seed) {
     edge.from = from;
     edge.to = to;
     edge.is_loop = to != from + 1;
-    edge.measurement = Between(world.truth[from], world.truth[to]) *
-                       Pose2(random.Normal(0., position),
-                             random.Normal(0., position),
-                             random.Normal(0., angle));
+    edge.measurement =
+        Between(world.truth[from], world.truth[to]) *
+        Pose2(random.Normal(0., position), random.Normal(0., position),
+              random.Normal(0., angle));
     edge.information =
         Eigen::Vector3d(1. / (position * position), 1. / (position * position),
                         1. / (angle * angle))

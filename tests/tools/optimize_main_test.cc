@@ -106,10 +106,9 @@ TEST(OptimizeMainTest, ChainsOdometryWhereThereAreNoVertices) {
   io::G2oGraph graph = Square();
   graph.vertices.clear();
   ASSERT_TRUE(io::WriteG2o(graph, folder / "in.g2o").ok());
-  const CommandResult result =
-      RunCommand("optimize", {"-input_filename", folder / "in.g2o",
-                              "-output_filename", folder / "out.g2o", "-json",
-                              "-"});
+  const CommandResult result = RunCommand(
+      "optimize", {"-input_filename", folder / "in.g2o", "-output_filename",
+                   folder / "out.g2o", "-json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   const nlohmann::json json = test::ParseJson(result.out);
   EXPECT_EQ(json["poses"], 60);
