@@ -26,6 +26,7 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/scan_matching/cost_curvature.h"
 #include "cartographer_ext/scan_matching/match_report.h"
 #include "cartographer_ext/scan_matching/occupied_space_cost.h"
 #include "cartographer_ext/scan_matching/pose_solver.h"
@@ -95,14 +96,6 @@ template <typename Cells>
 Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
                 const Pose2& initial, std::vector<Eigen::Vector2d> points,
                 const Cells& cells, MatchReport* report);
-
-// The curvature of the mean cost around the pose of `motion`. `hessian`, about
-// (x, y, theta), is any symmetric matrix with similar axes; `step` in cells.
-template <typename Cells>
-uncertainty::ScanCurvature MeasureCurvature(
-    const OccupiedSpaceCost<Cells>& cost,
-    const uncertainty::ScaledMotion& motion, const Eigen::Matrix3d& hessian,
-    double step);
 
 // The angle nearest to `reference` that is the same direction as `angle`.
 inline double UnwrapAngle(const double angle, const double reference) {
@@ -254,19 +247,6 @@ class ScanMatch {
 };
 
 }  // namespace internal
-
-template <typename Cells>
-uncertainty::ScanCurvature MeasureCurvature(
-    const OccupiedSpaceCost<Cells>& cost,
-    const uncertainty::ScaledMotion& motion, const Eigen::Matrix3d& hessian,
-    const double step) {
-  const double per_point = 0.5 / static_cast<double>(cost.points().size());
-  return uncertainty::MeasureCurvature(
-      [&](const Eigen::Vector3d& scaled) {
-        return per_point * cost.LinearSquares(motion.Moved(scaled));
-      },
-      motion.ToPose().transpose() * hessian * motion.ToPose(), step);
-}
 
 template <typename Cells>
 Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,

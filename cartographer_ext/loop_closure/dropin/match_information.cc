@@ -2,20 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/dropin/match_information.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "cartographer_ext/common/planar_matrix.h"
+#include "cartographer_ext/scan_matching/cost_curvature.h"
 #include "cartographer_ext/scan_matching/dropin/grid_cells.h"
 #include "cartographer_ext/scan_matching/occupied_space_cost.h"
+#include "cartographer_ext/uncertainty/match_information.h"
+#include "cartographer_ext/uncertainty/scan_curvature.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
 using cartographer::mapping::Grid2D;
 using scan_matching::GridCells;
+
+namespace {
+
+// As in local SLAM, cells.
+constexpr double kStep = 2.;
+
+}  // namespace
 
 Eigen::Matrix3d MatchInformation(const Grid2D& grid,
                                  const cartographer::sensor::PointCloud& cloud,
@@ -31,14 +39,17 @@ Eigen::Matrix3d MatchInformation(const Grid2D& grid,
   }
   const GridCells cells(&grid);
   scan_matching::OccupiedSpaceCost<GridCells> cost(&cells, std::move(points));
-  const scan_matching::OccupiedSpaceSums sums = cost.Evaluate(pose);
-  const double variance = sums.squares / static_cast<double>(cloud.size());
-  if (!(variance > 0.) || !sums.hessian.allFinite()) {
-    return Eigen::Matrix3d::Zero();
-  }
+  const uncertainty::ScaledMotion motion(cost.points(), cells.resolution(),
+                                         pose);
+  const Eigen::Matrix3d hessian = cost.Evaluate(pose).hessian;
+  const uncertainty::MatchInformation match =
+      uncertainty::EstimateMatchInformation(
+          uncertainty::MatchInformationOptions(), motion,
+          scan_matching::MeasureCurvature(cost, motion, hessian, kStep),
+          static_cast<int>(cloud.size()));
   // Moving (submap <- cloud) by d moves (grid <- cloud) by the rotated d.
   const Eigen::Matrix3d rotation = PlanarRotation(submap_pose.theta);
-  return rotation.transpose() * sums.hessian * rotation / variance;
+  return rotation.transpose() * match.information * rotation;
 }
 
 }  // namespace loop_closure

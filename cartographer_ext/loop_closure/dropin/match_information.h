@@ -11,12 +11,11 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// How well a scan fixes its pose in a grid: J^T J of the occupied-space
-// residuals (paper G eq. 14 to 17) at `pose` (frame of the grid <- cloud),
-// divided by the mean squared residual, as information about (x, y, theta) of
-// (submap <- cloud); metres, radians. `submap_pose` is (frame of the grid <-
-// submap). Weak along a corridor, strong across it. Zero for a TSDF, an empty
-// cloud, and where the scan does not touch the map.
+// Information about (x, y, theta) of (submap <- cloud), metres and radians, of
+// a scan matched at `pose` (frame of the grid <- cloud), by the estimator of
+// local SLAM (uncertainty/match_information.h): zero along a corridor, large
+// across it. `submap_pose` is (frame of the grid <- submap). Zero for a TSDF,
+// an empty cloud, and where the scan does not touch the map.
 Eigen::Matrix3d MatchInformation(const cartographer::mapping::Grid2D& grid,
                                  const cartographer::sensor::PointCloud& cloud,
                                  const Pose2& pose, const Pose2& submap_pose);

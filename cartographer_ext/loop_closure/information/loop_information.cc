@@ -10,10 +10,6 @@ namespace cartographer_ext {
 namespace loop_closure {
 namespace {
 
-// Neighbouring points of a scan and neighbouring cells of a grid have
-// correlated errors: a match is as informative as one of this many times fewer
-// independent points.
-constexpr double kCorrelatedPoints = 25.;
 // No match is less certain than this, metres and radians: even along a corridor
 // the scan sees doors.
 constexpr double kLeastCertainTranslation = 0.3;
@@ -29,7 +25,7 @@ Eigen::Matrix3d UnobservableCovariance(const SearchMatch& match) {
       1. / (kLeastCertainTranslation * kLeastCertainTranslation),
       1. / (kLeastCertainTranslation * kLeastCertainTranslation),
       1. / (kLeastCertainRotation * kLeastCertainRotation));
-  Eigen::Matrix3d information = match.information / kCorrelatedPoints;
+  Eigen::Matrix3d information = match.information;
   information.diagonal() += least;
   return information.inverse();
 }
