@@ -52,8 +52,11 @@ std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs) {
   std::map<std::string, size_t> index;
   std::vector<std::vector<const SweepRun*>> members;
   for (const SweepRun& run : runs) {
-    const std::string key = absl::StrCat(run.dataset, "|", run.kernel, "|",
-                                         run.type, "|", run.count);
+    // The number of outliers differs between the graphs of a family.
+    const std::string key = absl::StrCat(
+        run.is_family ? "family " : "", run.dataset, "|", run.kernel, "|",
+        run.type, "|",
+        run.is_family ? run.requested_count : absl::StrCat(run.count));
     if (index.emplace(key, cells.size()).second) {
       SweepCell cell;
       cell.dataset = run.dataset;
@@ -84,10 +87,31 @@ std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs) {
       cell.step_max = std::max(cell.step_max, run->step_max);
       successes += run->success;
       cell.unfinished += !run->converged;
+      cell.undecidable += run->undecidable;
     }
     cell.success_rate = static_cast<double>(successes) / cell.runs;
   }
   return cells;
+}
+
+std::vector<SweepLimit> FindLimits(const std::vector<SweepRun>& runs) {
+  std::vector<SweepLimit> limits;
+  for (const SweepRun& run : runs) {
+    auto limit = std::find_if(
+        limits.begin(), limits.end(), [&](const SweepLimit& other) {
+          return other.dataset == run.dataset && other.type == run.type;
+        });
+    if (limit == limits.end()) {
+      limits.push_back({run.dataset, run.type});
+      limit = limits.end() - 1;
+    }
+    limit->largest_share = std::max(limit->largest_share, run.outlier_share);
+    if (run.undecidable && run.outlier_share < limit->undecidable_from) {
+      limit->undecidable_from = run.outlier_share;
+      limit->count = run.count;
+    }
+  }
+  return limits;
 }
 
 std::string SweepTable(const std::vector<SweepCell>& cells) {
@@ -105,6 +129,9 @@ std::string SweepTable(const std::vector<SweepCell>& cells) {
         cell.precision, 100. * cell.success_rate);
     if (cell.ate_truth >= 0.) {
       absl::StrAppendFormat(&table, "  truth %.3f m", cell.ate_truth);
+    }
+    if (cell.undecidable > 0) {
+      absl::StrAppendFormat(&table, "  undecidable %d", cell.undecidable);
     }
     if (cell.step_mean > 0.) {
       absl::StrAppendFormat(&table, "  step %.3f ms, p99 %.2f, max %.0f",
@@ -167,12 +194,26 @@ nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs) {
     out["truncated"] = cell.truncated;
     out["success_rate"] = cell.success_rate;
     out["unfinished"] = cell.unfinished;
+    out["undecidable"] = cell.undecidable;
     json["cells"].push_back(out);
+  }
+  json["limits"] = nlohmann::ordered_json::array();
+  for (const SweepLimit& limit : FindLimits(runs)) {
+    nlohmann::ordered_json out;
+    out["dataset"] = limit.dataset;
+    out["type"] = limit.type;
+    out["largest_share"] = limit.largest_share;
+    out["undecidable_from"] = nullptr;
+    if (limit.undecidable_from <= 1.) {
+      out["undecidable_from"] = limit.undecidable_from;
+    }
+    json["limits"].push_back(out);
   }
   return json;
 }
 
 absl::Status WriteSweepPlot(const std::vector<SweepCell>& cells,
+                            const std::vector<SweepLimit>& limits,
                             const std::string& filename) {
   const io::Color kColors[] = {
       io::palette::kVermilion, io::palette::kBlue,   io::palette::kGreen,
@@ -226,6 +267,15 @@ absl::Status WriteSweepPlot(const std::vector<SweepCell>& cells,
                      absl::StrCat("ATE, ", panels[p], ", ", least, " to ", most,
                                   " outliers"),
                      16., io::palette::kBlack);
+    for (const SweepLimit& limit : limits) {
+      if (limit.dataset + " " + limit.type != panels[p] || limit.count == 0) {
+        continue;
+      }
+      picture.DrawLine(place(limit.count, 1e-4), place(limit.count, 1e2),
+                       {io::palette::kBlack, 1.5, true});
+      picture.DrawText(place(limit.count, 60.), "undecidable", 12.,
+                       io::palette::kBlack);
+    }
     for (size_t k = 0; k != kernels.size(); ++k) {
       std::vector<std::pair<int, double>> values;
       for (const SweepCell& cell : cells) {

@@ -25,11 +25,25 @@ struct SweepCell {
   double rpe = 0., precision = 0., recall = 0., truncated = 0.;
   double step_mean = 0., step_p99 = 0., step_max = 0.;  // ms; max: largest
   double success_rate = 0.;
-  int unfinished = 0;  // runs that a limit of time or iterations ended
+  int unfinished = 0;   // runs that a limit of time or iterations ended
+  int undecidable = 0;  // failed runs in which the data favour a wrong map
+};
+
+// From how many outliers on no estimator can tell. A bound from above: a search
+// that finds more wrong maps which cost less than the right one lowers it.
+struct SweepLimit {
+  std::string dataset, type;
+  // Smallest share of outliers among all loops at which the data of some run
+  // favour a wrong map, and its mean number of outliers; 2 and 0 for none.
+  double undecidable_from = 2.;
+  int count = 0;
+  double largest_share = 0.;  // that was tried
 };
 
 // In order of first appearance.
 std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs);
+
+std::vector<SweepLimit> FindLimits(const std::vector<SweepRun>& runs);
 
 std::string SweepTable(const std::vector<SweepCell>& cells);
 
@@ -40,12 +54,13 @@ std::string PrintedComparison(const std::vector<SweepCell>& cells,
                               const std::vector<PrintedRow>& printed,
                               const std::string& method);
 
-// "runs" (every run) and "cells" (Summarize).
+// "runs" (every run), "cells" (Summarize) and "limits" (FindLimits).
 nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs);
 
 // Median ATE over the number of outliers, one panel per data set and type, one
-// line per kernel, both axes logarithmic.
+// line per kernel, both axes logarithmic, with a vertical line at the limit.
 absl::Status WriteSweepPlot(const std::vector<SweepCell>& cells,
+                            const std::vector<SweepLimit>& limits,
                             const std::string& filename);
 
 }  // namespace experiments

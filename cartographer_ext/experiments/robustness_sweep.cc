@@ -15,6 +15,7 @@
 #include "absl/strings/strip.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/experiments/graph_families.h"
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/graph_metrics.h"
 #include "cartographer_ext/optimization/outlier_generator.h"
@@ -34,6 +35,8 @@ struct Dataset {
   PoseGraph graph;
   std::vector<Pose2> optimum;  // without outliers
   int num_loops = 0;
+  bool is_family = false;
+  double inherent_ate = -1.;
 };
 
 bool Exists(const std::string& path) {
@@ -74,6 +77,32 @@ absl::StatusOr<Dataset> LoadDataset(const SweepOptions& options,
   return result;
 }
 
+absl::StatusOr<Dataset> MakeFamilyDataset(const std::string& family,
+                                          const int seed) {
+  auto generated = GenerateFamilyGraph(family, seed);
+  if (!generated.ok()) return generated.status();
+  Dataset result;
+  result.name = family;
+  result.is_family = true;
+  // From the truth and with the noise as it is, whatever the matrices claim.
+  PoseGraph honest = generated->graph;
+  for (PoseGraphEdge& edge : honest.edges) {
+    edge.information /= edge.is_loop ? generated->loop_confidence
+                                     : generated->odometry_confidence;
+    result.num_loops += edge.is_loop;
+  }
+  result.optimum = generated->truth;
+  optimization::SolverOptions solver;
+  solver.max_iterations = 500;
+  solver.cost_tolerance = 1e-10;
+  optimization::SolveRobust(optimization::Whiten(honest.edges), solver,
+                            &result.optimum);
+  result.inherent_ate =
+      optimization::AbsoluteTrajectoryError(result.optimum, generated->truth);
+  result.graph = std::move(generated->graph);
+  return result;
+}
+
 absl::StatusOr<int> OutlierCount(const std::string& text, const int num_loops) {
   absl::string_view number = text;
   const bool is_percentage = absl::ConsumeSuffix(&number, "%");
@@ -88,8 +117,8 @@ absl::StatusOr<int> OutlierCount(const std::string& text, const int num_loops) {
 }
 
 std::string Key(const SweepRun& run) {
-  return absl::StrCat(run.dataset, "|", run.kernel, "|", run.type, "|",
-                      run.count, "|", run.seed);
+  return absl::StrCat(run.is_family ? "family " : "", run.dataset, "|",
+                      run.kernel, "|", run.type, "|", run.count, "|", run.seed);
 }
 
 absl::StatusOr<std::map<std::string, SweepRun>> ReadJournal(
@@ -117,6 +146,16 @@ absl::StatusOr<std::map<std::string, SweepRun>> ReadJournal(
     absl::StrAppend(&whole_lines, line, "\n");
   }
   return result;
+}
+
+double AteLimit(const SweepOptions& options, const Dataset& dataset,
+                const std::string& type) {
+  if (dataset.is_family) {
+    return options.ate_limit + 0.5 * dataset.inherent_ate;
+  }
+  const auto limit = options.ate_limits.find(dataset.name);
+  if (limit != options.ate_limits.end()) return limit->second;
+  return type[0] == 'L' ? options.ate_limit_local : options.ate_limit;
 }
 
 absl::Status RunOne(const SweepOptions& options, const Dataset& dataset,
@@ -167,10 +206,19 @@ absl::Status RunOne(const SweepOptions& options, const Dataset& dataset,
     run->ate_truth =
         optimization::AbsoluteTrajectoryError(result->poses, *poses);
   }
-  const auto limit = options.ate_limits.find(dataset.name);
-  run->success = run->ate <= (limit != options.ate_limits.end() ? limit->second
-                              : run->type[0] == 'L' ? options.ate_limit_local
-                                                    : options.ate_limit);
+  run->success = run->ate <= AteLimit(options, dataset, run->type);
+  run->inherent_ate = dataset.inherent_ate;
+  // What the right map costs in the metric of the result.
+  const std::vector<optimization::WhitenedEdge> edges = optimization::Whiten(
+      optimization::WithNoiseScale(graph, result->applied_odometry_scale,
+                                   result->applied_loop_scale)
+          .edges);
+  std::vector<Pose2> right = dataset.optimum;
+  optimization::PolishTruncated(edges, optimization::kChi2Gate, 30, &right,
+                                nullptr);
+  run->right_truncated = optimization::TruncatedCost(edges, right);
+  run->undecidable =
+      !run->success && run->truncated < run->right_truncated * (1. - 1e-9);
   return absl::OkStatus();
 }
 
@@ -199,6 +247,12 @@ nlohmann::ordered_json ToJson(const SweepRun& run) {
         {"mean", run.step_mean}, {"p99", run.step_p99}, {"max", run.step_max}};
   }
   json["success"] = run.success;
+  json["right_truncated"] = run.right_truncated;
+  json["undecidable"] = run.undecidable;
+  if (run.is_family) {
+    json["family"] = run.dataset;
+    json["inherent_ate"] = run.inherent_ate;
+  }
   return json;
 }
 
@@ -232,6 +286,11 @@ bool FromJson(const nlohmann::json& json, SweepRun* const run) {
   run->iterations = json["iterations"].get<int>();
   run->converged = json["converged"].get<bool>();
   run->success = json["success"].get<bool>();
+  // Missing from journals of earlier versions.
+  run->right_truncated = json.value("right_truncated", 0.);
+  run->undecidable = json.value("undecidable", false);
+  run->is_family = json.contains("family");
+  run->inherent_ate = json.value("inherent_ate", -1.);
   if (json.contains("step_milliseconds")) {
     const nlohmann::json& steps = json["step_milliseconds"];
     for (const char* key : {"mean", "p99", "max"}) {
@@ -252,7 +311,9 @@ std::string DatasetName(const std::string& dataset) {
   return name;
 }
 
-absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
+namespace {
+
+absl::Status CheckNames(const SweepOptions& options) {
   for (const std::string& kernel : options.kernels) {
     const std::vector<std::string>& names = optimization::MethodNames();
     if (std::find(names.begin(), names.end(), kernel) == names.end()) {
@@ -265,6 +326,18 @@ absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
     const auto known = optimization::OutlierTypeFromName(type);
     if (!known.ok()) return known.status();
   }
+  for (const std::string& family : options.families) {
+    const auto known = GenerateFamilyGraph(family, options.first_seed);
+    if (!known.ok()) return known.status();
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
+  const absl::Status known = CheckNames(options);
+  if (!known.ok()) return known;
   auto journal = ReadJournal(options.journal_filename);
   if (!journal.ok()) return journal.status();
   std::ofstream append;
@@ -276,38 +349,58 @@ absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
     }
   }
   std::vector<SweepRun> runs;
-  const int64_t total = options.datasets.size() * options.types.size() *
-                        options.counts.size() * options.seeds *
-                        options.kernels.size();
+  const int64_t total = (options.datasets.size() + options.families.size()) *
+                        options.types.size() * options.counts.size() *
+                        options.seeds * options.kernels.size();
   Progress progress("robustness", total);
-  for (const std::string& name : options.datasets) {
-    const auto dataset = LoadDataset(options, name);
-    if (!dataset.ok()) return dataset.status();
+  // All kernels of one graph with one set of outliers.
+  const auto run_kernels = [&](const Dataset& dataset, const std::string& type,
+                               const std::string& count_text,
+                               const int seed) -> absl::Status {
+    const auto count = OutlierCount(count_text, dataset.num_loops);
+    if (!count.ok()) return count.status();
+    for (const std::string& kernel : options.kernels) {
+      SweepRun run;
+      run.dataset = dataset.name;
+      run.is_family = dataset.is_family;
+      run.kernel = kernel;
+      run.type = type;
+      run.requested_count = count_text;
+      run.count = type == "none" ? 0 : *count;
+      run.outlier_share = static_cast<double>(run.count) /
+                          std::max(1, run.count + dataset.num_loops);
+      run.seed = seed;
+      const auto done = journal->find(Key(run));
+      if (done != journal->end()) {
+        runs.push_back(done->second);
+        runs.back().outlier_share = run.outlier_share;
+        runs.back().requested_count = count_text;
+      } else {
+        const absl::Status status = RunOne(options, dataset, &run);
+        if (!status.ok()) return status;
+        if (append.is_open()) append << ToJson(run).dump() << std::endl;
+        runs.push_back(run);
+      }
+      progress.Update(runs.size(), Key(run));
+    }
+    return absl::OkStatus();
+  };
+  std::vector<std::string> names = options.datasets;
+  names.insert(names.end(), options.families.begin(), options.families.end());
+  for (size_t n = 0; n != names.size(); ++n) {
+    const bool is_family = n >= options.datasets.size();
+    absl::StatusOr<Dataset> dataset;
+    if (!is_family) dataset = LoadDataset(options, names[n]);
+    if (!is_family && !dataset.ok()) return dataset.status();
     for (const std::string& type : options.types) {
       for (const std::string& count_text : options.counts) {
-        const auto count = OutlierCount(count_text, dataset->num_loops);
-        if (!count.ok()) return count.status();
-        for (int seed = 1; seed <= options.seeds; ++seed) {
-          for (const std::string& kernel : options.kernels) {
-            SweepRun run;
-            run.dataset = dataset->name;
-            run.kernel = kernel;
-            run.type = type;
-            run.requested_count = count_text;
-            run.count = *count;
-            run.seed = seed;
-            const auto done = journal->find(Key(run));
-            if (done != journal->end()) {
-              runs.push_back(done->second);
-              runs.back().requested_count = count_text;
-            } else {
-              const absl::Status status = RunOne(options, *dataset, &run);
-              if (!status.ok()) return status;
-              if (append.is_open()) append << ToJson(run).dump() << std::endl;
-              runs.push_back(run);
-            }
-            progress.Update(runs.size(), Key(run));
-          }
+        for (int k = 0; k != options.seeds; ++k) {
+          const int seed = options.first_seed + k;
+          if (is_family) dataset = MakeFamilyDataset(names[n], seed);
+          if (!dataset.ok()) return dataset.status();
+          const absl::Status status =
+              run_kernels(*dataset, type, count_text, seed);
+          if (!status.ok()) return status;
         }
       }
     }

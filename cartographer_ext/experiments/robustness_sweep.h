@@ -22,10 +22,14 @@ namespace experiments {
 struct SweepOptions {
   std::string data_directory;         // where names of data sets are looked up
   std::vector<std::string> datasets;  // names ("intel") or files
-  std::vector<std::string> kernels;   // optimization::MethodNames()
-  std::vector<std::string> types;     // R L RG LG, or none
-  std::vector<std::string> counts;    // "1000", or "90%" of all loops
-  int seeds = 1;                      // 1 .. seeds
+  // Families of generated graphs (graph_families.h); each seed is another
+  // graph.
+  std::vector<std::string> families;
+  std::vector<std::string> kernels;  // optimization::MethodNames()
+  std::vector<std::string> types;    // R L RG LG, or none
+  std::vector<std::string> counts;   // "1000", or "90%" of all loops
+  int first_seed = 1;
+  int seeds = 1;  // first_seed, first_seed + 1, ...
   int group_size = 10;
   double ate_limit = 0.05;  // metres; success
   double ate_limit_local = 0.4;
@@ -37,8 +41,10 @@ struct SweepOptions {
 
 struct SweepRun {
   std::string dataset, kernel, type;
+  bool is_family = false;       // `dataset` is the name of a family
   std::string requested_count;  // as in SweepOptions::counts
   int count = 0;                // outliers
+  double outlier_share = 0.;    // of all loops
   int seed = 0;
   double cpu_seconds = 0.;
   double ate = 0.;         // metres, to the optimum without outliers
@@ -52,6 +58,14 @@ struct SweepRun {
   // r_isam, milliseconds.
   double step_mean = 0., step_p99 = 0., step_max = 0.;
   bool success = false;
+  // Families: metres, ATE to the truth of the optimum without outliers; a
+  // success may add half of it.
+  double inherent_ate = -1.;
+  // Truncated cost of the right map, measured as `truncated`.
+  double right_truncated = 0.;
+  // A failure at less than the cost of the right map: the data are in favour of
+  // a wrong one, and no estimator by this cost could have told.
+  bool undecidable = false;
 };
 
 nlohmann::ordered_json ToJson(const SweepRun& run);

@@ -131,7 +131,13 @@ absl::Status IncrementalSmoother::AddPose(
     ++result.loops_tested;
     waiting_.pop_front();
   }
-  if (poses_in_epoch_ >= options_.epoch_poses) {
+  // The end of an epoch takes time in proportion to the poses, so that epochs
+  // of a fixed length would take time in proportion to their square.
+  const int epoch_poses =
+      num_poses() <= options_.large_map
+          ? options_.epoch_poses
+          : std::max(options_.epoch_poses, num_poses() / 10);
+  if (poses_in_epoch_ >= epoch_poses) {
     EndEpoch();
     result.epoch = true;
   }

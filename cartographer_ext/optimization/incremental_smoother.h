@@ -52,6 +52,8 @@ enum class SwitchEstimate {
 
 struct SmootherOptions {
   int epoch_poses = 100;
+  // With more poses than this an epoch is as long as a tenth of them.
+  int large_map = 12000;
   // Pointwise is the default: the joint estimate closes larger gaps at once,
   // but lets in whatever the uncertainty allows, and fails when nine loops in
   // ten are wrong.

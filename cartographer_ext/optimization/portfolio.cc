@@ -29,6 +29,8 @@ constexpr size_t kMaxInnovations = 200;
 constexpr int kMaxPossible = 2;
 // Loops that agree with one that is relied on without regard to the rest.
 constexpr size_t kSupported = 2;
+// Poses of a graph on which each solution counts.
+constexpr size_t kLargeGraph = 30000;
 // A graph of fewer poses times loops is searched from all starts in any case.
 constexpr double kSmallGraph = 2.5e5;
 // Multiplications of one factorisation that are worth it while the search is
@@ -66,6 +68,12 @@ Portfolio::Portfolio(const PoseGraph& graph, const PortfolioOptions& options)
       solver_(edges_),
       lowest_of_solvers_(std::numeric_limits<double>::infinity()) {
   for (const WhitenedEdge& edge : edges_) num_loops_ += edge.is_loop;
+}
+
+FlipOptions Portfolio::flip_options() const {
+  FlipOptions options;
+  if (graph_.poses.size() > kLargeGraph) options.max_trials = 2;
+  return options;
 }
 
 void Portfolio::Count(const SolverSummary& summary) {
@@ -172,7 +180,7 @@ bool Portfolio::IsSettled() {
     return false;
   }
   std::vector<Pose2> poses = best().poses;
-  if (FlipLoops(FlipOptions(), &solver_, &poses) > 0) {
+  if (FlipLoops(flip_options(), &solver_, &poses) > 0) {
     Add(absl::StrCat(best().name, ", moved"), poses);
   }
   std::vector<double> weights(edges_.size(), 1.);
@@ -204,6 +212,7 @@ void Portfolio::AddReplays() {
         std::min(lowest_of_solvers_, TruncatedCost(edges_, replay.poses));
     Add("r_isam", replay.poses);
     AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
+    if (graph_.poses.size() > kLargeGraph) return;
     // The failures of a softer and of a harder epoch kernel differ.
     SmootherOptions softer = options_.smoother;
     softer.epoch_kernel.parameter *= 4.;
@@ -238,7 +247,7 @@ void Portfolio::Run() {
 
 void Portfolio::Improve() {
   std::vector<Pose2> poses = best().poses;
-  if (FlipLoops(FlipOptions(), &solver_, &poses) > 0) {
+  if (FlipLoops(flip_options(), &solver_, &poses) > 0) {
     Add(absl::StrCat(best().name, ", moved"), std::move(poses));
   }
 }

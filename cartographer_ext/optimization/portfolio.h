@@ -75,6 +75,7 @@ class Portfolio {
   bool IsSettled();
   void RunStarts(bool with_full_kernels);
   void RunGroups();
+  FlipOptions flip_options() const;
   void Count(const SolverSummary& summary);
   void AddKernel(const std::string& start_name, KernelType type,
                  const std::vector<Pose2>& start);

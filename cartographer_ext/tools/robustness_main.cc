@@ -22,7 +22,16 @@ DEFINE_string(preset, "",
               "quality.");
 DEFINE_string(data_directory, "../shared/data/g2o",
               "Where data sets given by name are, as <name>.g2o[.xz|.gz].");
-DEFINE_string(datasets, "intel", "Names or g2o files, comma separated.");
+DEFINE_string(datasets, "intel",
+              "Names or g2o files, comma separated; none of them where -family "
+              "is given and this is not.");
+DEFINE_string(
+    family, "",
+    "Comma separated families of generated graphs with known truth, "
+    "another graph for each seed: ring road grid star floors robots "
+    "few overconfident underconfident. Success is then an ATE to the "
+    "optimum without outliers of at most -ate_limit plus half of that "
+    "optimum's own error.");
 DEFINE_string(
     kernels, "auto",
     "Comma separated: none huber sc gm dcs acs acs_paper gnc_tls auto "
@@ -32,7 +41,8 @@ DEFINE_string(
     "Comma separated: R (random), L (local), RG, LG (grouped), none.");
 DEFINE_string(outlier_counts, "1000",
               "Comma separated: edges, or with % the share of all loops.");
-DEFINE_int32(seeds, 1, "Seeds 1 to this.");
+DEFINE_int32(seeds, 1, "Number of seeds.");
+DEFINE_int32(first_seed, 1, "The first of them.");
 DEFINE_int32(group_size, 10, "Edges of a group (RG, LG).");
 DEFINE_string(norm, "spectral",
               "|Lambda| of acs_paper: spectral determinant root information.");
@@ -71,6 +81,10 @@ constexpr char kDescription[] =
   cartographer_ext_robustness -datasets=intel,manhattan_g2o -kernels=auto,dcs,sc
       -outlier_types=R,LG -outlier_counts=1000,4000,90% -seeds=5
       -journal_filename=sweep.jsonl -json=sweep.json -picture_filename=sweep.png
+
+Generated graphs with known truth, clean and with outliers:
+  cartographer_ext_robustness -family=ring,road,grid -outlier_types=none,R,RG
+      -outlier_counts=50%,80% -seeds=10 -json=families.json
 
 The tables of the papers, printed values beside ours:
   cartographer_ext_robustness -preset=a_table_2 -journal_filename=a.jsonl
@@ -128,7 +142,13 @@ absl::Status Run() {
   options.kernels = Words(FLAGS_kernels);
   options.types = Words(FLAGS_outlier_types);
   options.counts = Words(FLAGS_outlier_counts);
+  options.families = Words(FLAGS_family);
+  if (!options.families.empty() &&
+      gflags::GetCommandLineFlagInfoOrDie("datasets").is_default) {
+    options.datasets.clear();
+  }
   options.seeds = FLAGS_seeds;
+  options.first_seed = FLAGS_first_seed;
   options.group_size = FLAGS_group_size;
   options.ate_limit = FLAGS_ate_limit;
   options.ate_limit_local = FLAGS_ate_limit_local;
@@ -182,8 +202,8 @@ absl::Status Run() {
     }
   }
   if (!FLAGS_picture_filename.empty()) {
-    const absl::Status status =
-        experiments::WriteSweepPlot(cells, FLAGS_picture_filename);
+    const absl::Status status = experiments::WriteSweepPlot(
+        cells, experiments::FindLimits(*runs), FLAGS_picture_filename);
     if (!status.ok()) return status;
   }
   if (!FLAGS_json.empty()) {
@@ -201,8 +221,9 @@ int main(int argc, char** argv) {
   if (!ApplyPreset()) {
     return tools::UsageError("unknown -preset " + FLAGS_preset);
   }
-  if (FLAGS_seeds < 1 || FLAGS_group_size < 1) {
-    return tools::UsageError("-seeds and -group_size must be at least 1");
+  if (FLAGS_seeds < 1 || FLAGS_group_size < 1 || FLAGS_first_seed < 0) {
+    return tools::UsageError(
+        "-seeds and -group_size must be at least 1, -first_seed at least 0");
   }
   if (Words(FLAGS_datasets).empty() || Words(FLAGS_kernels).empty() ||
       Words(FLAGS_outlier_types).empty() ||
