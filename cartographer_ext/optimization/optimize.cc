@@ -9,7 +9,9 @@
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/optimization/auto_search.h"
+#include "cartographer_ext/optimization/loop_growth.h"
 #include "cartographer_ext/optimization/robust_solver.h"
+#include "cartographer_ext/optimization/starts.h"
 #include "cartographer_ext/optimization/switchable_constraints.h"
 
 namespace cartographer_ext {
@@ -64,11 +66,44 @@ void RunGnc(const std::vector<WhitenedEdge>& edges,
   AddSummary(SolveGnc(edges, gnc, &result->poses, &result->weights), result);
 }
 
+// At the end of the data, where odometry was too weak to accept a loop by
+// itself: a map grown by groups of loops replaces the replay's if it costs
+// less.
+void ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
+  constexpr double kMaxWork = 4e6;  // poses times loops
+  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  double loops = 0., accepted = 0.;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    loops += edges[i].is_loop;
+    accepted += edges[i].is_loop && replay->accepted[i];
+  }
+  if (accepted >= loops || graph.poses.size() * loops > kMaxWork) return;
+  RobustSolver solver(edges);
+  std::vector<Pose2> poses = ChainOdometry(graph);
+  std::vector<double> weights;
+  if (!GrowLoops(FindLoopSupport(graph, LoopSupportOptions()), GrowthOptions(),
+                 &solver, &poses, &weights)) {
+    return;
+  }
+  PolishTruncated(kChi2Gate, 30, &solver, &poses, &weights);
+  // By more than the gate's own doubt.
+  if (TruncatedCost(edges, poses) >
+      TruncatedCost(edges, replay->poses) - 2. * kChi2Gate) {
+    return;
+  }
+  replay->poses = poses;
+  replay->accepted.assign(edges.size(), false);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    replay->accepted[i] = weights[i] > 0.5;
+  }
+}
+
 absl::Status RunReplay(const PoseGraph& graph, const OptimizeOptions& options,
                        OptimizeResult* const result) {
   ReplayResult replay;
   const absl::Status status = Replay(graph, options.smoother, &replay);
   if (!status.ok()) return status;
+  ReadmitGroups(graph, &replay);
   result->poses = replay.poses;
   result->step_seconds = replay.step_seconds;
   result->accepted = replay.accepted;

@@ -183,6 +183,11 @@ bool Portfolio::IsSettled() {
   if (FlipLoops(flip_options(), &solver_, &poses) > 0) {
     Add(absl::StrCat(best().name, ", moved"), poses);
   }
+  return RejectedContradict();
+}
+
+bool Portfolio::RejectedContradict() {
+  const std::vector<Pose2>& poses = best().poses;
   std::vector<double> weights(edges_.size(), 1.);
   std::vector<int> rejected;
   for (size_t i = 0; i != edges_.size(); ++i) {
@@ -232,7 +237,25 @@ void Portfolio::AddGrowth(const std::vector<Pose2>& start) {
   AddKernel("growth, ", KernelType::kDcs, poses);
 }
 
+void Portfolio::AddSupported(const size_t min_support) {
+  std::vector<double> weights(edges_.size(), 1.);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (edges_[i].is_loop) {
+      weights[i] = support().agreeing[i].size() >= min_support ? 1. : 0.;
+    }
+  }
+  std::vector<Pose2> poses = graph_.poses;
+  if (ChordalPoses(edges_, weights, &poses)) {
+    AddKernel("supported, ", KernelType::kDcs, poses);
+  }
+}
+
 void Portfolio::Run() {
+  // On a large graph the loops that agree with their neighbours settle most.
+  if (graph_.poses.size() > kLargeGraph) {
+    AddSupported(1);
+    if (!members_.empty() && RejectedContradict()) return;
+  }
   RunQuick();
   const bool settled = IsSettled();
   const double size = static_cast<double>(graph_.poses.size()) * num_loops_;

@@ -73,6 +73,8 @@ class Portfolio {
  private:
   void RunQuick();
   bool IsSettled();
+  // Whether the rejected loops lie beyond the uncertainty of the best map.
+  bool RejectedContradict();
   void RunStarts(bool with_full_kernels);
   void RunGroups();
   FlipOptions flip_options() const;
@@ -83,6 +85,9 @@ class Portfolio {
                   const std::vector<Pose2>& start, bool with_full_kernels);
   void AddGnc(const std::string& start_name, const std::vector<Pose2>& start);
   void AddReplays();
+  // From a chordal relaxation of odometry and the loops with so many agreeing
+  // neighbours.
+  void AddSupported(size_t min_support);
   void AddGrowth(const std::vector<Pose2>& start);
   // Work of one factorisation with all loops, in multiplications.
   double FullWork();
