@@ -58,6 +58,25 @@ TEST(RobustnessMainTest, SweepIsResumed) {
   EXPECT_EQ(RunCommand("robustness", arguments).exit_code, 0);
 }
 
+TEST(RobustnessMainTest, FamiliesAreGeneratedBySeed) {
+  const CommandResult result = RunCommand(
+      "robustness", {"-family", "star,few", "-first_seed", "5", "-seeds", "2",
+                     "-kernels", "auto", "-outlier_types", "none,L",
+                     "-outlier_counts", "20%", "-json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const nlohmann::json json = test::ParseJson(result.out);
+  ASSERT_EQ(json["runs"].size(), 8u);
+  EXPECT_EQ(json["runs"][0]["dataset"], "star");
+  EXPECT_EQ(json["runs"][0]["family"], "star");
+  EXPECT_EQ(json["runs"][0]["seed"], 5);
+  EXPECT_EQ(json["runs"][1]["seed"], 6);
+  EXPECT_EQ(json["runs"][0]["count"], 0);
+  EXPECT_GE(json["runs"][0]["recall"], 0.9);
+  EXPECT_EQ(json["limits"].size(), 4u);
+  EXPECT_TRUE(json["limits"][0].contains("undecidable_from"));
+  EXPECT_EQ(RunCommand("robustness", {"-family", "moon"}).exit_code, 1);
+}
+
 TEST(RobustnessMainTest, BadInputAndUsage) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(RunCommand("robustness", {"-preset", "nothing"}).exit_code, 2);
