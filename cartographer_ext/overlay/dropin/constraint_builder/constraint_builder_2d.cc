@@ -3,6 +3,7 @@
 #include "cartographer/mapping/internal/constraints/constraint_builder_2d.h"
 
 #include "absl/memory/memory.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/loop_closure/dropin/verified_constraint_builder_2d.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/options/extension_field.h"
@@ -19,6 +20,8 @@ namespace constraints {
 namespace {
 
 using Stock = StockConstraintBuilder2D;
+using ::cartographer_ext::PoseGraphContext;
+using ::cartographer_ext::ScopedPoseGraphContext;
 using ::cartographer_ext::loop_closure::VerifiedConstraintBuilder2D;
 
 CARTOGRAPHER_EXT_EXPECT_SIGNATURE(
@@ -47,7 +50,9 @@ CARTOGRAPHER_EXT_EXPECT_SIGNATURE(ComputeSubmapPose,
 
 ConstraintBuilder2D::ConstraintBuilder2D(
     const proto::ConstraintBuilderOptions& options,
-    common::ThreadPoolInterface* const thread_pool) {
+    common::ThreadPoolInterface* const thread_pool)
+    : context_(PoseGraphContext::CurrentOrNew()) {
+  const ScopedPoseGraphContext scope(context_);
   ::cartographer_ext::proto::LoopClosureOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
     verified_ = absl::make_unique<VerifiedConstraintBuilder2D>(
@@ -93,10 +98,15 @@ void ConstraintBuilder2D::NotifyEndOfNode() {
 
 void ConstraintBuilder2D::WhenDone(
     const std::function<void(const Result&)>& callback) {
+  const std::shared_ptr<PoseGraphContext> context = context_;
+  const auto in_scope = [context, callback](const Result& result) {
+    const ScopedPoseGraphContext scope(context);
+    callback(result);
+  };
   if (stock_ != nullptr) {
-    stock_->WhenDone(callback);
+    stock_->WhenDone(in_scope);
   } else {
-    verified_->WhenDone(callback);
+    verified_->WhenDone(in_scope);
   }
 }
 

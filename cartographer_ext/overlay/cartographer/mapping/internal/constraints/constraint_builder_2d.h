@@ -25,6 +25,7 @@
 #include <vector>
 
 namespace cartographer_ext {
+class PoseGraphContext;
 namespace loop_closure {
 class VerifiedConstraintBuilder2D;
 }  // namespace loop_closure
@@ -34,7 +35,9 @@ namespace cartographer {
 namespace mapping {
 namespace constraints {
 
-// Exactly one of the two builders exists, chosen once by the options.
+// Exactly one of the two builders exists, chosen once by the options. Callbacks
+// run in the scope of the builder's context
+// (cartographer_ext/common/pose_graph_context.h).
 class ConstraintBuilder2D {
  public:
   using Constraint = PoseGraphInterface::Constraint;
@@ -62,6 +65,7 @@ class ConstraintBuilder2D {
   static void RegisterMetrics(metrics::FamilyFactory* family_factory);
 
  private:
+  const std::shared_ptr<::cartographer_ext::PoseGraphContext> context_;
   std::unique_ptr<StockConstraintBuilder2D> stock_;
   std::unique_ptr<::cartographer_ext::loop_closure::VerifiedConstraintBuilder2D>
       verified_;
