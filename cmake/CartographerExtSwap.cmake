@@ -13,7 +13,8 @@
 #   ceres_scan_matcher        CeresScanMatcher2D and its options
 #   optimization_problem      OptimizationProblem2D and its options
 #   local_trajectory_builder  LocalTrajectoryBuilder2D and its options
-#   full_information          the SPA residual, for constraints with a whole information matrix (no block of its own)
+#   full_information          the SPA residual, for loops with a full information matrix (no block of its own; the matrix
+#                             comes from constraint_builder by way of optimization_problem, without which it is refused)
 #
 # Works on the bundled host and on a real tree, in two ways:
 #   superproject   add_subdirectory(<tree>), then this function (CMake 3.16 or newer)
@@ -317,6 +318,9 @@ function(cartographer_ext_swap_into target)
     message(FATAL_ERROR "cartographer_ext: the overlay headers need #include_next (GCC or Clang)")
   endif()
   cartographer_ext_tree_of(${target} "${ARG_SWAPS}" tree)
+  if("full_information" IN_LIST ARG_SWAPS AND NOT "optimization_problem" IN_LIST ARG_SWAPS)
+    message(FATAL_ERROR "cartographer_ext: the swap 'full_information' needs the swap 'optimization_problem'")
+  endif()
   foreach(swap IN LISTS ARG_SWAPS)
     cartographer_ext_apply_swap(${target} ${swap})
   endforeach()

@@ -96,19 +96,6 @@ AdaptiveFeatureOptions ToAdaptiveFeatureOptions(
   return to;
 }
 
-NodeWeightOptions ToNodeWeightOptions(const proto::FrontEndOptions& options) {
-  const proto::FrontEndOptions::NodeWeights& from = options.node_weights();
-  NodeWeightOptions to;
-  to.enabled = from.enabled();
-  to.form = from.form() == proto::FrontEndOptions::NodeWeights::TWO_SCALARS
-                ? NodeWeightForm::kTwoScalars
-                : NodeWeightForm::kFull;
-  to.translation_sigma = from.translation_sigma();
-  to.rotation_sigma = from.rotation_sigma();
-  to.min_ratio = from.min_ratio();
-  return to;
-}
-
 WallFillingOptions ToWallFillingOptions(const proto::FrontEndOptions& options,
                                         const double resolution) {
   WallFillingOptions to;

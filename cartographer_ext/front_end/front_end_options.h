@@ -7,7 +7,6 @@
 
 #include "cartographer_ext/front_end/adaptive_features.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
-#include "cartographer_ext/front_end/node_weights.h"
 #include "cartographer_ext/front_end/wall_filling.h"
 #include "cartographer_ext/front_end_options.pb.h"
 
@@ -18,7 +17,6 @@ MotionPredictorOptions ToMotionPredictorOptions(
     const proto::FrontEndOptions& options);
 AdaptiveFeatureOptions ToAdaptiveFeatureOptions(
     const proto::FrontEndOptions& options);
-NodeWeightOptions ToNodeWeightOptions(const proto::FrontEndOptions& options);
 // `resolution` of the grid, metres. Switched off, no gap is small enough.
 WallFillingOptions ToWallFillingOptions(const proto::FrontEndOptions& options,
                                         double resolution);

@@ -5,17 +5,11 @@
 namespace cartographer_ext {
 namespace front_end {
 
-MatchRecorder* MatchRecorder::Global() {
-  static auto* const recorder = new MatchRecorder;
-  return recorder;
-}
-
 void MatchRecorder::Start(const size_t capacity) {
   absl::MutexLock lock(&mutex_);
   capacity_ = capacity;
   started_ = true;
-  num_builders_ = 0;
-  num_left_out_ = 0;
+  num_dropped_ = 0;
   records_.clear();
 }
 
@@ -42,7 +36,7 @@ void MatchRecorder::Record(const proto::MatchRecord& record) {
   if (records_.size() < capacity_) {
     records_.push_back(record);
   } else {
-    ++num_left_out_;
+    ++num_dropped_;
   }
 }
 
@@ -51,9 +45,9 @@ std::vector<proto::MatchRecord> MatchRecorder::All() const {
   return records_;
 }
 
-int64_t MatchRecorder::num_left_out() const {
+int64_t MatchRecorder::num_dropped() const {
   absl::MutexLock lock(&mutex_);
-  return num_left_out_;
+  return num_dropped_;
 }
 
 }  // namespace front_end

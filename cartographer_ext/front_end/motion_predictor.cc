@@ -212,7 +212,6 @@ void MotionPredictor::PredictFromMap(const double time,
     WeighTurns(imu, &odometry);
   }
   prediction->motion = since_map_.Inverse() * odometry.motion;
-  prediction->since_last_scan = !(map_time_ < last_time_);
   // Into the frame of the last scan.
   const Eigen::Matrix3d rotation = PlanarRotation(since_map_.theta);
   prediction->covariance = rotation.transpose() *

@@ -56,9 +56,6 @@ struct MotionPrediction {
   Pose2 motion;  // (robot at the last scan <- robot now)
   // Of (x, y, theta) of the motion, in the frame of the robot at the last scan.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  // That is of the motion since the last scan, otherwise since the last one
-  // that is in the map.
-  bool since_last_scan = true;
   // Not to be relied on: search.
   bool is_uncertain = false;
   // How far the robot may have gone (metres) and turned (radians) from the

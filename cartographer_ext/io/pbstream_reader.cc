@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
+#include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/io/pbstream_records.h"
 #include "cartographer_ext/io/pbstream_validation.h"
 #include "google/protobuf/message.h"
@@ -119,10 +120,32 @@ class Parser {
             absl::StrCat(name_, ": ", problems.front(), more));
       }
     }
+    SkipWithdrawnLoops();
     return std::move(pbstream_);
   }
 
  private:
+  void SkipWithdrawnLoops() {
+    auto* const constraints = pbstream_.pose_graph.mutable_constraint();
+    const std::vector<size_t> withdrawn = FindWithdrawnLoops(
+        *constraints, DescribeConstraintProto<
+                          cartographer::mapping::proto::PoseGraph::Constraint>);
+    if (withdrawn.empty()) return;
+    pbstream_.num_withdrawn_constraints =
+        static_cast<int64_t>(withdrawn.size());
+    auto next = withdrawn.begin();
+    int kept = 0;
+    for (int i = 0; i != constraints->size(); ++i) {
+      if (next != withdrawn.end() && *next == static_cast<size_t>(i)) {
+        ++next;
+        continue;
+      }
+      if (kept != i) constraints->SwapElements(kept, i);
+      ++kept;
+    }
+    constraints->DeleteSubrange(kept, constraints->size() - kept);
+  }
+
   absl::Status TakeHeader(const std::string& record) {
     // The first record of streams from before 1.0 is another message, in which
     // field 1 is not a number.

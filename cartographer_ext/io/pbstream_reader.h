@@ -19,7 +19,9 @@
 namespace cartographer_ext {
 namespace io {
 
-// The records of a state by kind, each in the order of the file.
+// The records of a state by kind, each in the order of the file. Loops that are
+// withdrawn, and what marks them so (common/withdrawn_loops.h), are skipped:
+// nobody sees them, and a state that is written again is without them.
 struct Pbstream {
   cartographer::mapping::proto::SerializationHeader header;
   cartographer::mapping::proto::PoseGraph pose_graph;
@@ -34,6 +36,8 @@ struct Pbstream {
   std::vector<cartographer::mapping::proto::LandmarkData> landmark_data;
   // Records of kinds we do not know. They are skipped.
   int64_t num_unknown_records = 0;
+  // Constraints skipped as withdrawn, with the marks.
+  int64_t num_withdrawn_constraints = 0;
 };
 
 // What a file may claim of memory. A record may expand to `max_expansion` times

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cartographer/mapping/proto/serialization.pb.h"
+#include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/map/map_painter.h"
 
@@ -35,7 +36,9 @@ MapGraph MakeMapGraph(const PoseGraphInterface& pose_graph) {
     submap.num_range_data = entry.data.submap->num_range_data();
     graph.submaps[{entry.id.trajectory_id, entry.id.submap_index}] = submap;
   }
-  for (const auto& entry : pose_graph.constraints()) {
+  auto constraints = pose_graph.constraints();
+  RemoveWithdrawnLoops(&constraints);
+  for (const auto& entry : constraints) {
     GraphConstraint constraint;
     constraint.submap_id = {entry.submap_id.trajectory_id,
                             entry.submap_id.submap_index};

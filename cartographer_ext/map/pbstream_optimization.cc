@@ -2,17 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/map/pbstream_optimization.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "cartographer/transform/transform.h"
-#include "cartographer_ext/common/full_information.h"
+#include "cartographer_ext/common/loop_id.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/map/pose_graph_export.h"
+#include "cartographer_ext/optimization/slam_pose_graph.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -20,25 +21,14 @@ namespace {
 
 using cartographer::transform::Rigid2d;
 using cartographer::transform::Rigid3d;
-using optimization::PoseGraphEdge;
 
-// Of loops in stock configurations.
-constexpr double kStockLoopWeight = 1.1e4;
-
-double WeightScale(const MapGraph& map, const double loop_sigma) {
-  std::vector<double> weights;
-  for (const GraphConstraint& constraint : map.constraints) {
-    if (constraint.is_loop && constraint.translation_weight > 0.) {
-      weights.push_back(constraint.translation_weight);
-    }
-  }
-  double weight = kStockLoopWeight;
-  if (!weights.empty()) {
-    std::nth_element(weights.begin(), weights.begin() + weights.size() / 2,
-                     weights.end());
-    weight = weights[weights.size() / 2];
-  }
-  return 1. / (weight * loop_sigma);
+LoopId ToLoopId(const GraphConstraint& constraint) {
+  LoopId id;
+  id.submap_trajectory = constraint.submap_id.trajectory_id;
+  id.submap_index = constraint.submap_id.index;
+  id.node_trajectory = constraint.node_id.trajectory_id;
+  id.node_index = constraint.node_id.index;
+  return id;
 }
 
 // before <- after, in the plane, applied to a pose in space.
@@ -58,78 +48,52 @@ absl::StatusOr<MapPoseGraph> MakeMapPoseGraph(
   if (!(options.loop_sigma > 0.)) {
     return absl::InvalidArgumentError("the sigma of loops must be positive");
   }
-  MapPoseGraph result;
-  std::map<GraphId, int> vertex_of_submap, vertex_of_node;
-  const auto add_submap = [&](const GraphId& id) {
-    if (!vertex_of_submap.emplace(id, result.id_of_vertex.size()).second) {
-      return;
-    }
-    result.id_of_vertex.push_back(id);
-    result.vertex_is_submap.push_back(true);
-    result.graph.ids.push_back(SubmapVertexId(id));
-    result.graph.poses.push_back(map.submaps.at(id).global_pose);
-  };
-  // Submaps by the first node inserted in them.
-  std::map<GraphId, std::vector<GraphId>> submaps_of_node;
-  for (const auto& inserted : map.InsertedNodes()) {
-    if (map.submaps.count(inserted.first) != 0 && !inserted.second.empty()) {
-      submaps_of_node[inserted.second.front()].push_back(inserted.first);
-    }
-  }
-  if (!map.submaps.empty()) add_submap(map.submaps.begin()->first);
+  optimization::SlamGraph slam;
+  std::vector<GraphId> nodes, submaps;
   for (const auto& entry : map.nodes) {
-    vertex_of_node[entry.first] = result.id_of_vertex.size();
-    result.id_of_vertex.push_back(entry.first);
-    result.vertex_is_submap.push_back(false);
-    result.graph.ids.push_back(NodeVertexId(entry.first));
-    result.graph.poses.push_back(entry.second.global_pose);
-    for (const GraphId& submap : submaps_of_node[entry.first]) {
-      add_submap(submap);
-    }
+    optimization::SlamNode node;
+    node.id = {entry.first.trajectory_id, entry.first.index};
+    node.local_pose = entry.second.local_pose;
+    node.global_pose = entry.second.global_pose;
+    slam.nodes.push_back(node);
+    nodes.push_back(entry.first);
   }
-  // A submap without nodes hangs in the air unless loops hold it; such a map
-  // fails the check below with the submap's name.
-  for (const auto& entry : map.submaps) add_submap(entry.first);
-
-  const double scale = WeightScale(map, options.loop_sigma);
-  for (size_t i = 0; i != map.constraints.size(); ++i) {
-    const GraphConstraint& constraint = map.constraints[i];
-    const auto submap = vertex_of_submap.find(constraint.submap_id);
-    const auto node = vertex_of_node.find(constraint.node_id);
-    if (submap == vertex_of_submap.end() || node == vertex_of_node.end() ||
-        !(constraint.translation_weight > 0.) ||
-        !(constraint.rotation_weight > 0.)) {
-      continue;
-    }
-    PoseGraphEdge edge;
-    edge.from = submap->second;
-    edge.to = node->second;
-    edge.measurement = constraint.relative_pose;
-    edge.information =
-        InformationOfWeights(scale * constraint.translation_weight,
-                             scale * constraint.rotation_weight);
+  for (const auto& entry : map.submaps) {
+    optimization::SlamSubmap submap;
+    submap.id = {entry.first.trajectory_id, entry.first.index};
+    submap.global_pose = entry.second.global_pose;
+    slam.submaps.push_back(submap);
+    submaps.push_back(entry.first);
+  }
+  for (const GraphConstraint& constraint : map.constraints) {
+    optimization::SlamConstraint edge;
+    edge.id = ToLoopId(constraint);
+    edge.relative_pose = constraint.relative_pose;
+    edge.translation_weight = constraint.translation_weight;
+    edge.rotation_weight = constraint.rotation_weight;
     edge.is_loop = constraint.is_loop;
-    result.graph.edges.push_back(edge);
-    result.constraint_of_edge.push_back(i);
+    slam.constraints.push_back(edge);
   }
-  for (auto next = map.nodes.begin(); next != map.nodes.end();) {
-    const auto first = next++;
-    if (next == map.nodes.end() ||
-        next->first.trajectory_id != first->first.trajectory_id ||
-        next->first.index != first->first.index + 1) {
-      continue;
-    }
-    PoseGraphEdge edge;
-    edge.from = vertex_of_node.at(first->first);
-    edge.to = vertex_of_node.at(next->first);
-    edge.measurement =
-        Between(first->second.local_pose, next->second.local_pose);
-    edge.information =
-        InformationOfWeights(scale * options.local_slam_translation_weight,
-                             scale * options.local_slam_rotation_weight);
-    result.graph.edges.push_back(edge);
-    result.constraint_of_edge.push_back(-1);
+  optimization::SlamPoseGraphOptions graph_options;
+  graph_options.loop_sigma = options.loop_sigma;
+  graph_options.local_slam_translation_weight =
+      options.local_slam_translation_weight;
+  graph_options.local_slam_rotation_weight = options.local_slam_rotation_weight;
+  optimization::SlamPoseGraph made =
+      optimization::MakeSlamPoseGraph(slam, graph_options);
+  MapPoseGraph result;
+  result.graph = std::move(made.graph);
+  result.constraint_of_edge = std::move(made.constraint_of_edge);
+  for (size_t i = 0; i != made.vertices.size(); ++i) {
+    const auto& vertex = made.vertices[i];
+    const GraphId& id = (vertex.is_submap ? submaps : nodes)[vertex.index];
+    result.id_of_vertex.push_back(id);
+    result.vertex_is_submap.push_back(vertex.is_submap);
+    result.graph.ids[i] =
+        vertex.is_submap ? SubmapVertexId(id) : NodeVertexId(id);
   }
+  // A submap without nodes is not connected unless a loop connects it; the
+  // check names it.
   const absl::Status status = optimization::ValidatePoseGraph(result.graph);
   if (!status.ok()) return status;
   return result;

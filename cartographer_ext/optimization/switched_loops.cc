@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/switched_loops.h"
 
-#include <mutex>
 #include <utility>
 
 #include "absl/strings/numbers.h"
@@ -19,37 +18,23 @@ constexpr char kHeading[] =
 constexpr char kByOdometry[] = "odometry";
 constexpr char kByConsensus[] = "consensus";
 
-std::mutex* Mutex() {
-  static std::mutex* const mutex = new std::mutex;
-  return mutex;
-}
-
-SwitchedLoops* Loops() {
-  static SwitchedLoops* const loops = new SwitchedLoops;
-  return loops;
-}
-
 }  // namespace
 
-SwitchedLoops LastSwitchedLoops() {
-  std::lock_guard<std::mutex> lock(*Mutex());
-  return *Loops();
+void SwitchedLoopRecorder::Record(const int64_t loops,
+                                  std::vector<SwitchedLoop> off,
+                                  const double selection_cpu_seconds,
+                                  const double solution_cpu_seconds) {
+  const absl::MutexLock lock(&mutex_);
+  ++loops_.optimizations;
+  loops_.loops = loops;
+  loops_.off = std::move(off);
+  loops_.selection_cpu_seconds += selection_cpu_seconds;
+  loops_.solution_cpu_seconds += solution_cpu_seconds;
 }
 
-void PublishSwitchedLoops(const int64_t loops, std::vector<SwitchedLoop> off,
-                          const double selection_cpu_seconds,
-                          const double solution_cpu_seconds) {
-  std::lock_guard<std::mutex> lock(*Mutex());
-  ++Loops()->optimizations;
-  Loops()->loops = loops;
-  Loops()->off = std::move(off);
-  Loops()->selection_cpu_seconds += selection_cpu_seconds;
-  Loops()->solution_cpu_seconds += solution_cpu_seconds;
-}
-
-void ResetSwitchedLoops() {
-  std::lock_guard<std::mutex> lock(*Mutex());
-  *Loops() = SwitchedLoops();
+SwitchedLoops SwitchedLoopRecorder::Get() const {
+  const absl::MutexLock lock(&mutex_);
+  return loops_;
 }
 
 std::string SwitchedLoopsTable(const SwitchedLoops& loops) {

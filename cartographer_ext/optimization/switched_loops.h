@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where the robust optimisation problem leaves its verdicts for whoever wants
-// to report them: it lives deep inside the pose graph, which hands out nothing.
-// Process-wide, for the optimisation run last; thread-safe.
+// Which loops the robust optimization problem of a pose graph switched off, for
+// reports. The problem records them in the context of the pose graph
+// (common/pose_graph_context.h).
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SWITCHED_LOOPS_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SWITCHED_LOOPS_H_
 
@@ -11,35 +11,41 @@
 #include <string>
 #include <vector>
 
+#include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "absl/synchronization/mutex.h"
+#include "cartographer_ext/common/loop_id.h"
 
 namespace cartographer_ext {
 namespace optimization {
 
-struct SwitchedLoop {
-  int submap_trajectory = 0;
-  int submap_index = 0;
-  int node_trajectory = 0;
-  int node_index = 0;
+struct SwitchedLoop : LoopId {
   double chi2 = 0.;
   bool by_odometry_check = false;
 };
 
 struct SwitchedLoops {
-  int64_t optimizations = 0;      // since the program started
+  int64_t optimizations = 0;      // of the pose graph so far
   int64_t loops = 0;              // in the last one
   std::vector<SwitchedLoop> off;  // in the last one, in order of constraints
   double selection_cpu_seconds = 0.;  // of all
   double solution_cpu_seconds = 0.;   // of all, in the stock problem
 };
 
-SwitchedLoops LastSwitchedLoops();
-void PublishSwitchedLoops(int64_t loops, std::vector<SwitchedLoop> off,
-                          double selection_cpu_seconds,
-                          double solution_cpu_seconds);
-// Forgets everything, before another run in the same program.
-void ResetSwitchedLoops();
+// A part of PoseGraphContext: counts over all optimizations, the loops of the
+// last one. Thread-safe.
+class SwitchedLoopRecorder {
+ public:
+  void Record(int64_t loops, std::vector<SwitchedLoop> off,
+              double selection_cpu_seconds, double solution_cpu_seconds)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  SwitchedLoops Get() const ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  mutable absl::Mutex mutex_;
+  SwitchedLoops loops_ ABSL_GUARDED_BY(mutex_);
+};
 
 // One line per loop switched off, with a heading.
 std::string SwitchedLoopsTable(const SwitchedLoops& loops);

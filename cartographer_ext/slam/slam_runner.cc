@@ -11,8 +11,12 @@
 #include "absl/strings/str_cat.h"
 #include "cartographer/mapping/map_builder.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/common/thread_time.h"
+#include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/front_end/match_recorder.h"
+#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream_writer.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/slam/back_end_metrics.h"
@@ -161,7 +165,9 @@ absl::Status StartFrom(const StartingState& state, SlamRun* const run,
 void CountResults(const PoseGraphInterface& pose_graph, SlamRun* const run) {
   run->nodes = pose_graph.GetTrajectoryNodes().size();
   run->submaps = pose_graph.GetAllSubmapPoses().size();
-  for (const auto& constraint : pose_graph.constraints()) {
+  auto constraints = pose_graph.constraints();
+  RemoveWithdrawnLoops(&constraints);
+  for (const auto& constraint : constraints) {
     if (constraint.tag == PoseGraphInterface::Constraint::INTER_SUBMAP) {
       ++run->inter_constraints;
       if (constraint.submap_id.trajectory_id !=
@@ -203,7 +209,8 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   const bool use_odometry =
       configuration.sensors.use_odometry && info.num_odometry > 0;
 
-  optimization::ResetSwitchedLoops();
+  const auto context = std::make_shared<PoseGraphContext>();
+  const ScopedPoseGraphContext scope(context);
   MetricsCollector* const metrics = MetricsCollector::Global();
   const auto metrics_before = metrics->Values();
   const double searched_before = CountPairs(*metrics, "searched");
@@ -213,7 +220,7 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
       loop_closure::DecisionRecorder::Global();
   recorder->Start(kMaxDecisions);
   front_end::MatchRecorder* const match_recorder =
-      front_end::MatchRecorder::Global();
+      context->Get<front_end::MatchRecorder>();
   match_recorder->Start(kMaxMatches);
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = ProcessCpuSeconds();
@@ -309,13 +316,14 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   pose_graph->RunFinalOptimization();
   run.final_optimization_wall_seconds = SecondsSince(optimization_start);
 
-  run.switched_loops = optimization::LastSwitchedLoops();
+  run.switched_loops =
+      context->Get<optimization::SwitchedLoopRecorder>()->Get();
 
   run.matches = match_recorder->All();
   match_recorder->Stop();
-  if (match_recorder->num_left_out() > 0) {
-    run.warnings.push_back(absl::StrCat(match_recorder->num_left_out(),
-                                        " records of scans left out"));
+  if (match_recorder->num_dropped() > 0) {
+    run.warnings.push_back(absl::StrCat(match_recorder->num_dropped(),
+                                        " records of scans dropped"));
   }
   run.decisions = recorder->All();
   recorder->Stop();
@@ -366,7 +374,17 @@ absl::Status WritePbstream(MapBuilderInterface* const map_builder,
   if (!map_builder->SerializeStateToFile(true, file.temporary_path())) {
     return absl::InternalError(absl::StrCat("cannot write ", filename));
   }
-  return file.Commit();
+  const auto constraints = map_builder->pose_graph()->constraints();
+  if (FindWithdrawnLoops(constraints,
+                         DescribeConstraint<PoseGraphInterface::Constraint>)
+          .empty()) {
+    return file.Commit();
+  }
+  // Programs without our optimization problem would use withdrawn loops. The
+  // reader skips them.
+  const auto state = io::ReadPbstream(file.temporary_path());
+  if (!state.ok()) return state.status();
+  return io::WritePbstream(*state, filename);
 }
 
 }  // namespace evaluation

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cartographer/mapping/map_builder.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/io/pbstream_writer.h"
@@ -64,12 +65,14 @@ class RobustMapTest : public ::testing::Test {
         ::testing::TempDir() + "aces_with_wrong_loops.pbstream";
     EXPECT_TRUE(io::WritePbstream(*pbstream, filename).ok());
 
-    optimization::ResetSwitchedLoops();
+    const auto context = std::make_shared<PoseGraphContext>();
+    const ScopedPoseGraphContext scope(context);
     auto map_builder = cartographer::mapping::CreateMapBuilder(
         configuration->map_builder_options);
     map_builder->LoadStateFromFile(filename, false /* load_frozen_state */);
     map_builder->pose_graph()->RunFinalOptimization();
-    outcome.switched = optimization::LastSwitchedLoops();
+    outcome.switched =
+        context->Get<optimization::SwitchedLoopRecorder>()->Get();
     for (const auto& loop : outcome.switched.off) {
       for (const int index : *indices) {
         const auto& constraint = pbstream->pose_graph.constraint(index);

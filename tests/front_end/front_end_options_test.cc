@@ -79,21 +79,6 @@ TEST(FrontEndOptionsTest, DefaultsOfTheMessageAreThoseOfTheParts) {
   EXPECT_EQ(from_message.imu.standing_time, own.imu.standing_time);
 }
 
-TEST(FrontEndOptionsTest, NodeWeights) {
-  proto::FrontEndOptions message;
-  options::SetDefaults(&message);
-  const NodeWeightOptions own;
-  const NodeWeightOptions from_message = ToNodeWeightOptions(message);
-  EXPECT_EQ(from_message.enabled, own.enabled);
-  EXPECT_EQ(from_message.form, own.form);
-  EXPECT_EQ(from_message.translation_sigma, own.translation_sigma);
-  EXPECT_EQ(from_message.rotation_sigma, own.rotation_sigma);
-  EXPECT_EQ(from_message.min_ratio, own.min_ratio);
-  message.mutable_node_weights()->set_form(
-      proto::FrontEndOptions::NodeWeights::TWO_SCALARS);
-  EXPECT_EQ(ToNodeWeightOptions(message).form, NodeWeightForm::kTwoScalars);
-}
-
 TEST(FrontEndOptionsTest, ValuesArrive) {
   proto::FrontEndOptions message;
   options::SetDefaults(&message);

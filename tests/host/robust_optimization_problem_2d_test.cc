@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/optimization/switched_loops.h"
 #include "gtest/gtest.h"
 #include "tests/host/slam_test_helpers.h"
@@ -21,8 +23,9 @@ namespace {
 
 using Constraint = PoseGraphInterface::Constraint;
 using TrajectoryState = PoseGraphInterface::TrajectoryState;
-using cartographer_ext::optimization::LastSwitchedLoops;
-using cartographer_ext::optimization::ResetSwitchedLoops;
+using cartographer_ext::PoseGraphContext;
+using cartographer_ext::ScopedPoseGraphContext;
+using cartographer_ext::optimization::SwitchedLoopRecorder;
 using cartographer_ext::optimization::SwitchedLoops;
 using transform::Rigid2d;
 
@@ -45,7 +48,6 @@ constexpr int kNodesPerRound = 40;
 class RobustOptimizationProblem2DTest : public ::testing::Test {
  protected:
   RobustOptimizationProblem2DTest() {
-    ResetSwitchedLoops();
     Rigid2d truth, local;
     for (int i = 0; i != kNodes; ++i) {
       truth_.push_back(truth);
@@ -149,6 +151,13 @@ class RobustOptimizationProblem2DTest : public ::testing::Test {
     return result;
   }
 
+  SwitchedLoops LastSwitchedLoops() const {
+    return context_->Get<SwitchedLoopRecorder>()->Get();
+  }
+
+  const std::shared_ptr<PoseGraphContext> context_ =
+      std::make_shared<PoseGraphContext>();
+  const ScopedPoseGraphContext scope_{context_};
   const std::map<int, TrajectoryState> active_{{0, TrajectoryState::ACTIVE}};
   std::vector<Rigid2d> truth_, local_;
   std::vector<Constraint> constraints_;

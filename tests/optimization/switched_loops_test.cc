@@ -11,27 +11,25 @@ namespace optimization {
 namespace {
 
 TEST(SwitchedLoopsTest, KeepsTheLastAndCountsAll) {
-  const int64_t before = LastSwitchedLoops().optimizations;
+  SwitchedLoopRecorder recorder;
   SwitchedLoop loop;
   loop.submap_index = 3;
   loop.node_trajectory = 1;
   loop.node_index = 41;
   loop.chi2 = 25.5;
   loop.by_odometry_check = true;
-  PublishSwitchedLoops(9, {loop}, 0.5, 2.);
-  const SwitchedLoops loops = LastSwitchedLoops();
-  EXPECT_EQ(loops.optimizations, before + 1);
+  recorder.Record(9, {loop}, 0.5, 2.);
+  const SwitchedLoops loops = recorder.Get();
+  EXPECT_EQ(loops.optimizations, 1);
   EXPECT_EQ(loops.loops, 9);
   EXPECT_EQ(SwitchedLoopsTable(loops),
             "submap_trajectory,submap,node_trajectory,node,chi2,reason\n"
             "0,3,1,41,25.5,odometry\n");
-  PublishSwitchedLoops(10, {}, 0.25, 1.);
-  EXPECT_TRUE(LastSwitchedLoops().off.empty());
-  EXPECT_DOUBLE_EQ(LastSwitchedLoops().selection_cpu_seconds, 0.75);
-  EXPECT_DOUBLE_EQ(LastSwitchedLoops().solution_cpu_seconds, 3.);
-  ResetSwitchedLoops();
-  EXPECT_EQ(LastSwitchedLoops().optimizations, 0);
-  EXPECT_EQ(LastSwitchedLoops().selection_cpu_seconds, 0.);
+  recorder.Record(10, {}, 0.25, 1.);
+  EXPECT_TRUE(recorder.Get().off.empty());
+  EXPECT_DOUBLE_EQ(recorder.Get().selection_cpu_seconds, 0.75);
+  EXPECT_DOUBLE_EQ(recorder.Get().solution_cpu_seconds, 3.);
+  EXPECT_EQ(recorder.Get().optimizations, 2);
 }
 
 TEST(SwitchedLoopsTest, ReadsItsOwnTable) {

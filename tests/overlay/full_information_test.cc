@@ -3,8 +3,6 @@
 //
 // The swap `full_information`: residuals of constraints whose whole information
 // matrix is known, and the optimisation that uses them.
-#include "cartographer_ext/common/full_information.h"
-
 #include <array>
 #include <map>
 #include <memory>
@@ -13,6 +11,8 @@
 #include "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d.h"
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/loop_information.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/swaps.h"
 #include "gtest/gtest.h"
 
@@ -44,11 +44,16 @@ Eigen::Vector3d Residual(const CreateCost create, const Constraint::Pose& pose,
   return residual;
 }
 
-class FullInformationSwapTest : public testing::TestWithParam<CreateCost> {
- protected:
-  void SetUp() override { ForgetFullInformation(); }
-  void TearDown() override { ForgetFullInformation(); }
-};
+class FullInformationSwapTest : public testing::TestWithParam<CreateCost> {};
+
+// For the scope of an optimization.
+ScopedSqrtInformation::SqrtOfPose SqrtOf(const Constraint::Pose& pose,
+                                         const Eigen::Matrix3d& information) {
+  const Eigen::Matrix3d upper = information.llt().matrixU();
+  ScopedSqrtInformation::SqrtOfPose result;
+  Eigen::Map<Eigen::Matrix3d>{result[&pose].data()} = upper;
+  return result;
+}
 
 // The error is (1, -2, 0.5) in the frame of the first body, which is turned by
 // a quarter.
@@ -57,8 +62,8 @@ const Eigen::Vector3d kEnd(1. + 3., 1. + 2., M_PI / 2. - 0.5);
 
 TEST_P(FullInformationSwapTest, UnknownConstraintsHaveTheStockResidual) {
   const Constraint::Pose pose = MakePose(Rigid2d({3., -5.}, 0.), 10.);
-  RememberFullInformation(BitsOf(MakePose(Rigid2d({3., -5.}, 0.), 11.)),
-                          Eigen::Matrix3d::Identity());
+  const Constraint::Pose equal = pose;
+  const ScopedSqrtInformation scope(SqrtOf(equal, Eigen::Matrix3d::Identity()));
   const Eigen::Vector3d residual = Residual(GetParam(), pose, kStart, kEnd);
   EXPECT_LT((residual - Eigen::Vector3d(10., -20., 5.)).norm(), 1e-12)
       << residual.transpose();
@@ -68,7 +73,7 @@ TEST_P(FullInformationSwapTest, KnownOnesAreWeightedWithTheMatrix) {
   const Constraint::Pose pose = MakePose(Rigid2d({3., -5.}, 0.), 10.);
   Eigen::Matrix3d information;
   information << 4., 1., 0., 1., 2., 0.5, 0., 0.5, 8.;
-  ASSERT_TRUE(RememberFullInformation(BitsOf(pose), information));
+  const ScopedSqrtInformation scope(SqrtOf(pose, information));
   const Eigen::Vector3d residual = Residual(GetParam(), pose, kStart, kEnd);
   // e^T Omega e with e = (1, -2, 0.5): 4 + 8 + 2 + 2 (-2) + 2 (-0.5).
   EXPECT_NEAR(residual.squaredNorm(), 9., 1e-10);
@@ -78,7 +83,7 @@ TEST_P(FullInformationSwapTest, DerivativesAreRight) {
   const Constraint::Pose pose = MakePose(Rigid2d({0.3, -0.5}, 0.7), 10.);
   Eigen::Matrix3d information;
   information << 4., 1., 0., 1., 2., 0.5, 0., 0.5, 8.;
-  ASSERT_TRUE(RememberFullInformation(BitsOf(pose), information));
+  const ScopedSqrtInformation scope(SqrtOf(pose, information));
   const std::unique_ptr<ceres::CostFunction> cost(GetParam()(pose));
   std::array<Eigen::Vector3d, 2> poses{
       {Eigen::Vector3d(0.1, 0.2, -0.4), Eigen::Vector3d(0.5, -0.1, 0.6)}};
@@ -137,20 +142,23 @@ Eigen::Vector2d Solve(const Constraint::Pose& loop) {
   return problem.node_data().at(node).global_pose_2d.translation();
 }
 
-TEST(FullInformationSolveTest, TheOptimisationFollowsTheMatrix) {
-  ForgetFullInformation();
+TEST(FullInformationSolveTest, TheOptimizationFollowsTheMatrix) {
+  const auto context = std::make_shared<PoseGraphContext>();
+  const ScopedPoseGraphContext scope(context);
   const Constraint::Pose loop = MakePose(Rigid2d::Identity(), 20.);
   // Scalars: 100 / (100 + 400).
   EXPECT_LT((Solve(loop) - Eigen::Vector2d(0.2, 0.)).norm(), 1e-3);
-  // Sure (400) along the diagonal, unsure (4) across it: (Omega + 100) t =
+  // Information 400 along the diagonal, 4 across it: (Omega + 100) t =
   // (100, 0).
   Eigen::Matrix3d information;
   information << 202., 198., 0., 198., 202., 0., 0., 0., 400.;
-  ASSERT_TRUE(RememberFullInformation(BitsOf(loop), information));
+  ASSERT_TRUE(context->Get<LoopInformation>()->Set(LoopId(), information));
   const Eigen::Vector2d expected(100. * 302. / 52000., -100. * 198. / 52000.);
   const Eigen::Vector2d solved = Solve(loop);
   EXPECT_LT((solved - expected).norm(), 1e-3) << solved.transpose();
-  ForgetFullInformation();
+  // That of another pose graph.
+  const ScopedPoseGraphContext other(std::make_shared<PoseGraphContext>());
+  EXPECT_LT((Solve(loop) - Eigen::Vector2d(0.2, 0.)).norm(), 1e-3);
 }
 
 }  // namespace

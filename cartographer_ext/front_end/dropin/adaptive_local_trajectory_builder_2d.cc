@@ -15,7 +15,6 @@
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
 #include "cartographer_ext/front_end/front_end_options.h"
 #include "cartographer_ext/front_end/match_record.h"
-#include "cartographer_ext/front_end/match_recorder.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -67,7 +66,9 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
     const std::vector<std::string>& expected_range_sensor_ids)
     : options_(options),
       extension_(extension),
-      builder_number_(MatchRecorder::Global()->AddBuilder()),
+      context_(PoseGraphContext::Current()),
+      recorder_(context_ == nullptr ? nullptr : context_->Get<MatchRecorder>()),
+      builder_number_(recorder_ == nullptr ? 0 : recorder_->AddBuilder()),
       active_submaps_(options.submaps_options()),
       motion_filter_(options.motion_filter_options()),
       range_data_collator_(expected_range_sensor_ids),
@@ -76,8 +77,7 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
                      extension,
                      options.submaps_options().grid_options_2d().resolution())),
       predictor_(ToMotionPredictorOptions(extension)),
-      matcher_(extension, options.ceres_scan_matcher_options()),
-      node_weights_(ToNodeWeightOptions(extension)) {}
+      matcher_(extension, options.ceres_scan_matcher_options()) {}
 
 AdaptiveLocalTrajectoryBuilder2D::~AdaptiveLocalTrajectoryBuilder2D() {}
 
@@ -221,13 +221,9 @@ AdaptiveLocalTrajectoryBuilder2D::MatchAndInsert(
       time, range_data_in_local,
       cartographer::sensor::TransformPointCloud(scan.filling, pose_3d), cloud,
       local_pose, alignment);
-  if (insertion_result != nullptr) {
-    predictor_.AddToMap();
-    node_weights_.AddNode(*insertion_result->constant_data,
-                          insertion_result->insertion_submaps);
-  }
+  if (insertion_result != nullptr) predictor_.AddToMap();
   record.set_is_node(insertion_result != nullptr);
-  MatchRecorder::Global()->Record(record);
+  if (recorder_ != nullptr) recorder_->Record(record);
   CountMatch(record);
   return absl::make_unique<MatchingResult>(
       MatchingResult{time, local_pose, std::move(range_data_in_local),
@@ -247,8 +243,6 @@ void AdaptiveLocalTrajectoryBuilder2D::MatchScan(
         last_pose, prediction,
         extension_.features().enabled() ? SelectFeatures(cloud) : cloud,
         *submaps.front());
-    node_weights_.AddScan(match.motion_covariance, prediction.since_last_scan,
-                          match.report.scan_information);
   }
   MatchedMotion matched;
   matched.motion = Between(last_pose, match.pose);

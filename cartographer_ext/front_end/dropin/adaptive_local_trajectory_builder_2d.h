@@ -38,9 +38,10 @@
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/front_end/dropin/local_matcher.h"
-#include "cartographer_ext/front_end/dropin/node_weight_recorder.h"
 #include "cartographer_ext/front_end/dropin/scan_assembler.h"
+#include "cartographer_ext/front_end/match_recorder.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
 #include "cartographer_ext/front_end_options.pb.h"
 #include "cartographer_ext/match_record.pb.h"
@@ -106,6 +107,9 @@ class AdaptiveLocalTrajectoryBuilder2D {
 
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
   const proto::FrontEndOptions extension_;
+  // Of the scope of construction; both null without one.
+  const std::shared_ptr<PoseGraphContext> context_;
+  MatchRecorder* const recorder_;
   const int builder_number_;
   cartographer::mapping::ActiveSubmaps2D active_submaps_;
   cartographer::mapping::MotionFilter motion_filter_;
@@ -113,7 +117,6 @@ class AdaptiveLocalTrajectoryBuilder2D {
   ScanAssembler assembler_;
   MotionPredictor predictor_;
   LocalMatcher matcher_;
-  NodeWeightRecorder node_weights_;
   // Null until the first reading.
   std::unique_ptr<cartographer::mapping::ImuTracker> imu_tracker_;
 

@@ -168,7 +168,6 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   mean_score_ +=
       (has_mean_score_ ? kScoreRate : 1.) * (best.score - mean_score_);
   has_mean_score_ = true;
-  best.motion_covariance = predicted.covariance;
   return best;
 }
 

@@ -32,8 +32,6 @@ namespace front_end {
 struct LocalMatch {
   Pose2 pose;  // (local <- robot)
   scan_matching::MatchReport report;
-  // Covariance of the prediction, in the local frame.
-  Eigen::Matrix3d motion_covariance = Eigen::Matrix3d::Zero();
   // Mean probability under the points, 0 to 1.
   double score = 0.;
   bool searched = false;

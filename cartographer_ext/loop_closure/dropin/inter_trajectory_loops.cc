@@ -3,44 +3,85 @@
 #include "cartographer_ext/loop_closure/dropin/inter_trajectory_loops.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <iterator>
 
-#include "Eigen/Core"
+#include "cartographer_ext/common/withdrawn_loops.h"
+#include "cartographer_ext/swaps.h"
+#include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
-namespace {
-
-// Loops remembered of a run in a map; the oldest are forgotten first.
-constexpr size_t kMaxLoops = 20000;
-
-}  // namespace
 
 void InterTrajectoryLoops::Add(const Constraint& loop) {
   const int trajectory_id = loop.node_id.trajectory_id;
   const int map_trajectory_id = loop.submap_id.trajectory_id;
   if (trajectory_id == map_trajectory_id) return;
-  Loops& loops = loops_[std::make_pair(trajectory_id, map_trajectory_id)];
-  loops.emplace_back(loop.node_id.node_index, BitsOf(loop.pose));
-  if (loops.size() > kMaxLoops) loops.pop_front();
+  loops_[std::make_pair(trajectory_id, map_trajectory_id)].push_back(loop);
 }
 
-void InterTrajectoryLoops::Withdraw(const int trajectory_id,
-                                    const int map_trajectory_id,
-                                    const int last_node) {
-  Loops& loops = loops_[std::make_pair(trajectory_id, map_trajectory_id)];
+void InterTrajectoryLoops::Withdraw(
+    const int trajectory_id, const int map_trajectory_id, const int last_node,
+    PoseGraphContext* const context,
+    std::vector<Constraint>* const constraints) {
+  const int last_trimmed = trimmed_nodes_[trajectory_id].possibly;
+  auto& loops = loops_[std::make_pair(trajectory_id, map_trajectory_id)];
   const auto withdrawn = std::stable_partition(
-      loops.begin(), loops.end(), [last_node](const Loops::value_type& loop) {
-        return loop.first > last_node;
+      loops.begin(), loops.end(), [last_node](const Constraint& loop) {
+        return loop.node_id.node_index > last_node;
       });
-  for (auto it = withdrawn; it != loops.end(); ++it) {
-    RememberFullInformation(it->second, Eigen::Matrix3d::Zero());
+  const auto num_withdrawn = loops.end() - withdrawn;
+  for (auto loop = withdrawn; loop != loops.end(); ++loop) {
+    if (loop->node_id.node_index <= last_trimmed) {
+      // A constraint of a trimmed node would be fatal in the pose graph.
+      context->Get<WithdrawnLoops>()->Add(
+          MakeLoopId(loop->submap_id, loop->node_id));
+      continue;
+    }
+    loop->pose.translation_weight = 0.;
+    loop->pose.rotation_weight = 0.;
+    constraints->push_back(*loop);
   }
   loops.erase(withdrawn, loops.end());
+#ifndef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
+  LOG_IF(WARNING, num_withdrawn > 0)
+      << num_withdrawn << " withdrawn loop constraints of trajectory "
+      << trajectory_id << " with the map of trajectory " << map_trajectory_id
+      << " still act: Cartographer is built without the swap "
+         "optimization_problem, which skips them. Build it, or remove them "
+         "from the saved state with cartographer_ext_optimize.";
+#else
+  LOG_IF(INFO, num_withdrawn > 0)
+      << num_withdrawn << " loop constraints of trajectory " << trajectory_id
+      << " with the map of trajectory " << map_trajectory_id
+      << " are withdrawn";
+#endif
+}
+
+void InterTrajectoryLoops::DeleteSubmap(
+    const cartographer::mapping::SubmapId& submap_id, const int newest_node,
+    PoseGraphContext* const context) {
+  context->Get<WithdrawnLoops>()->EraseSubmap(submap_id.trajectory_id,
+                                              submap_id.submap_index);
+  TrimmedNodes& trimmed = trimmed_nodes_[submap_id.trajectory_id];
+  const int gone = trimmed.certainly;
+  trimmed.certainly = trimmed.probably;
+  trimmed.probably = trimmed.possibly;
+  trimmed.possibly = std::max(trimmed.possibly, newest_node);
+  for (auto& of_map : loops_) {
+    auto& loops = of_map.second;
+    loops.erase(std::remove_if(loops.begin(), loops.end(),
+                               [&](const Constraint& loop) {
+                                 return loop.submap_id == submap_id ||
+                                        (loop.node_id.trajectory_id ==
+                                             submap_id.trajectory_id &&
+                                         loop.node_id.node_index <= gone);
+                               }),
+                loops.end());
+  }
 }
 
 void InterTrajectoryLoops::DeleteTrajectory(const int trajectory_id) {
+  trimmed_nodes_.erase(trajectory_id);
   for (auto it = loops_.begin(); it != loops_.end();) {
     const bool is_of_it =
         it->first.first == trajectory_id || it->first.second == trajectory_id;

@@ -1,20 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The accepted loops of runs with the maps of other trajectories, for the day
-// that a run turns out to have been lost: the loops from before locate it
-// wrongly and are withdrawn.
+// The accepted loops of runs with the maps of other trajectories. Those from
+// before a run was lost are withdrawn once it is located again
+// (common/withdrawn_loops.h).
 //
-// Not thread-safe.
+// As many loops are kept as the pose graph holds: it deletes them with their
+// submaps and nodes. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_INTER_TRAJECTORY_LOOPS_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_INTER_TRAJECTORY_LOOPS_H_
 
-#include <deque>
 #include <map>
 #include <utility>
+#include <vector>
 
+#include "cartographer/mapping/id.h"
 #include "cartographer/mapping/pose_graph_interface.h"
-#include "cartographer_ext/common/full_information.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -25,16 +27,31 @@ class InterTrajectoryLoops {
 
   // An accepted loop. Those within one trajectory are ignored.
   void Add(const Constraint& loop);
-  // The loops of nodes of a run up to an index in a map get no information, so
-  // that the optimization goes without them.
-  void Withdraw(int trajectory_id, int map_trajectory_id, int last_node);
+  // Withdraws the loops of a run with a map, of nodes up to an index: their
+  // marks go to `constraints`, or to the context where a node may have been
+  // trimmed.
+  void Withdraw(int trajectory_id, int map_trajectory_id, int last_node,
+                PoseGraphContext* context,
+                std::vector<Constraint>* constraints);
+  // The pose graph deletes the loops of a submap, and nodes of its trajectory
+  // up to `newest_node`, with the submap.
+  void DeleteSubmap(const cartographer::mapping::SubmapId& submap_id,
+                    int newest_node, PoseGraphContext* context);
   void DeleteTrajectory(int trajectory_id);
 
  private:
-  // Node index and constraint.
-  using Loops = std::deque<std::pair<int, ConstraintBits>>;
+  // Nodes up to these may have been trimmed after the last deletion of a
+  // submap, the one before, and before that. A node belongs to two submaps, so
+  // the last are gone.
+  struct TrimmedNodes {
+    int possibly = -1;
+    int probably = -1;
+    int certainly = -1;
+  };
 
-  std::map<std::pair<int, int>, Loops> loops_;  // by run and map
+  // By run and map.
+  std::map<std::pair<int, int>, std::vector<Constraint>> loops_;
+  std::map<int, TrimmedNodes> trimmed_nodes_;
 };
 
 }  // namespace loop_closure

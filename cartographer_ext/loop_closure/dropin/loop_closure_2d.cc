@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/dropin/loop_closure_2d.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "absl/memory/memory.h"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/transform.h"
-#include "cartographer_ext/common/full_information.h"
+#include "cartographer_ext/common/loop_information.h"
 #include "cartographer_ext/loop_closure/decision_record.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
@@ -47,6 +48,7 @@ LoopClosure2D::LoopClosure2D(
     : options_(options),
       extension_(extension),
       thread_pool_(thread_pool),
+      context_(PoseGraphContext::CurrentOrNew()),
       searcher_(options),
       pipeline_(extension, StockWeights(options)),
       planner_(options, extension, &pipeline_.paths()),
@@ -211,7 +213,7 @@ LoopClosure2D::Outcome LoopClosure2D::Verify() {
     outcome.decisions.push_back(Record(candidate));
     metrics.CountDecision(outcome.decisions.back());
     if (!candidate.is_accepted()) continue;
-    outcome.constraints.push_back(Close(candidate));
+    Close(candidate, &outcome.constraints);
   }
   metrics.undecided->Set(pipeline_.num_undecided());
   return outcome;
@@ -240,7 +242,8 @@ void LoopClosure2D::ProcessQuery(const PlaceQuery& query) {
   }
 }
 
-LoopClosure2D::Constraint LoopClosure2D::Close(const LoopCandidate& accepted) {
+void LoopClosure2D::Close(const LoopCandidate& accepted,
+                          std::vector<Constraint>* const constraints) {
   const Constraint constraint{
       SubmapId(accepted.submap.trajectory_id, accepted.submap.submap_index),
       NodeId(accepted.node.trajectory_id, accepted.node.node_index),
@@ -249,7 +252,9 @@ LoopClosure2D::Constraint LoopClosure2D::Close(const LoopCandidate& accepted) {
           accepted.weights->translation, accepted.weights->rotation},
       Constraint::INTER_SUBMAP};
   if (!accepted.full_information.isZero(0.)) {
-    RememberFullInformation(BitsOf(constraint.pose), accepted.full_information);
+    context_->Get<LoopInformation>()->Set(
+        MakeLoopId(constraint.submap_id, constraint.node_id),
+        accepted.full_information);
   }
   absl::optional<uncertainty::LoopEdge> loop;
   const absl::optional<Pose2> anchor_pose =
@@ -269,10 +274,11 @@ LoopClosure2D::Constraint LoopClosure2D::Close(const LoopCandidate& accepted) {
     const int map_id = accepted.submap.trajectory_id;
     inter_trajectory_loops_.Withdraw(
         trajectory_id, map_id,
-        planner_.localization()->LastNodeBeforeLost(trajectory_id, map_id));
+        planner_.localization()->LastNodeBeforeLost(trajectory_id, map_id),
+        context_.get(), constraints);
   }
   inter_trajectory_loops_.Add(constraint);
-  return constraint;
+  constraints->push_back(constraint);
 }
 
 std::vector<LoopDecision> LoopClosure2D::Flush() {
@@ -288,6 +294,10 @@ void LoopClosure2D::DeleteSubmap(const SubmapId& submap_id) {
   const uncertainty::SubmapId id = ToKey(submap_id);
   const bool is_known = submaps_.Find(id) != nullptr;
   const int newest_node = submaps_.Erase(id);
+  inter_trajectory_loops_.DeleteSubmap(
+      submap_id,
+      std::min(newest_node, submaps_.NewestNodeIndex(id.trajectory_id)),
+      context_.get());
   pipeline_.DeleteSubmap(id);
   pipeline_.DeleteNodes(id.trajectory_id, newest_node);
   relocalizer_.DeleteNodes(id.trajectory_id, newest_node);

@@ -34,6 +34,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "absl/types/optional.h"
@@ -45,6 +46,7 @@
 #include "cartographer/mapping/proto/pose_graph/constraint_builder_options.pb.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
 #include "cartographer_ext/loop_closure/dropin/inter_trajectory_loops.h"
 #include "cartographer_ext/loop_closure/dropin/pair_planner.h"
@@ -114,8 +116,10 @@ class LoopClosure2D {
   void ScheduleQuery(const std::vector<SearchJob*>& jobs,
                      cartographer::common::Task* end_of_node);
   void ProcessQuery(const PlaceQuery& query);
-  // An accepted candidate as a constraint.
-  Constraint Close(const LoopCandidate& accepted);
+  // Adds the constraint of an accepted candidate, and the marks of the loops
+  // that are withdrawn on its account (common/withdrawn_loops.h).
+  void Close(const LoopCandidate& accepted,
+             std::vector<Constraint>* constraints);
   // Frees trajectories that the pose graph has deleted, as it seems.
   void FreeDormantTrajectories();
   proto::LoopDecision Record(const LoopCandidate& candidate) const;
@@ -124,6 +128,7 @@ class LoopClosure2D {
       options_;
   const proto::LoopClosureOptions extension_;
   cartographer::common::ThreadPoolInterface* const thread_pool_;
+  const std::shared_ptr<PoseGraphContext> context_;
   const PairSearcher searcher_;
   LoopPipeline pipeline_;
   PairPlanner planner_;

@@ -74,6 +74,11 @@ bool SubmapStore::HasSubmapsOf(const int trajectory_id) const {
   return it != submaps_.end() && it->first.trajectory_id == trajectory_id;
 }
 
+int SubmapStore::NewestNodeIndex(const int trajectory_id) const {
+  const auto it = newest_nodes_.find(trajectory_id);
+  return it == newest_nodes_.end() ? -1 : it->second.node_index;
+}
+
 int SubmapStore::Erase(const SubmapId& id) {
   const auto it = submaps_.find(id);
   if (it == submaps_.end()) return SubmapEntry::kUnknownNode;

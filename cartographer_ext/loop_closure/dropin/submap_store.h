@@ -80,6 +80,8 @@ class SubmapStore {
   // Null where the submap is not known.
   std::shared_ptr<SubmapEntry> Find(const uncertainty::SubmapId& id) const;
   bool HasSubmapsOf(int trajectory_id) const;
+  // -1 without a node of the trajectory.
+  int NewestNodeIndex(int trajectory_id) const;
   // Returns the newest node that may belong to the submap.
   int Erase(const uncertainty::SubmapId& id);
   void DeleteTrajectory(int trajectory_id) {

@@ -1,20 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// OptimizationProblem2D for options with our block: before each optimisation it
-// chooses the loop constraints that may act (SelectLoops); the stock problem
-// does all else, so that with right loops only the result is the stock one's.
+// OptimizationProblem2D for options with our block: before each optimization it
+// selects the loop constraints to optimize with (SelectLoops); the stock
+// problem does everything else, so that without wrong loops the result is the
+// stock one. What was switched off is recorded in the current PoseGraphContext.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_ROBUST_OPTIMIZATION_PROBLEM_2D_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_ROBUST_OPTIMIZATION_PROBLEM_2D_H_
 
 #include <map>
 #include <set>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
+#include "cartographer_ext/common/loop_id.h"
 #include "cartographer_ext/optimization/loop_selection.h"
+#include "cartographer_ext/optimization/slam_pose_graph.h"
 #include "cartographer_ext/optimization/switched_loops.h"
 #include "cartographer_ext/robust_optimization_options.pb.h"
 
@@ -72,7 +74,7 @@ class RobustOptimizationProblem2D
     stock_.TrimSubmap(submap_id);
   }
   void SetMaxNumIterations(cartographer::int32 max_num_iterations) override {
-    // The host does this before and after its final optimisation.
+    // PoseGraph2D does this before and after its final optimization.
     if (max_num_iterations > stock_iterations_) nodes_when_thorough_ = 0;
     stock_iterations_ = max_num_iterations;
     stock_.SetMaxNumIterations(max_num_iterations);
@@ -124,19 +126,11 @@ class RobustOptimizationProblem2D
   }
 
  private:
-  // Submap and node of a loop.
-  using LoopKey = std::tuple<int, int, int, int>;
-  static LoopKey KeyOf(const Constraint& constraint);
-
-  struct Problem {
-    PoseGraph graph;
-    std::vector<int> neighbours;
-    std::vector<int> constraint_of_edge;  // -1: no constraint
-  };
-  Problem MakeProblem(const std::vector<Constraint>& constraints,
-                      const std::map<int, PoseGraphInterface::TrajectoryState>&
-                          trajectories_state) const;
-  // The constraints that may act; the others go to `off`.
+  SlamPoseGraph MakeProblem(
+      const std::vector<Constraint>& constraints,
+      const std::map<int, PoseGraphInterface::TrajectoryState>&
+          trajectories_state) const;
+  // The constraints to optimize with; the loops switched off go to `off`.
   std::vector<Constraint> Select(
       const std::vector<Constraint>& constraints,
       const std::map<int, PoseGraphInterface::TrajectoryState>&
@@ -150,7 +144,7 @@ class RobustOptimizationProblem2D
   int stock_iterations_;
   // Nodes at the last thorough selection.
   int nodes_when_thorough_ = 0;
-  std::set<LoopKey> left_out_;
+  std::set<LoopId> switched_off_;
 };
 
 }  // namespace optimization

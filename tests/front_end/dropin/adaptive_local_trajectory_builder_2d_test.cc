@@ -16,6 +16,7 @@
 #include "cartographer/common/lua_parameter_dictionary.h"
 #include "cartographer/mapping/internal/2d/local_trajectory_builder_options_2d.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/front_end/match_recorder.h"
 #include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
@@ -81,7 +82,9 @@ struct RunOptions {
 };
 
 RunResult RunDrive(const RunOptions& options) {
-  MatchRecorder::Global()->Start(100000);
+  const auto context = std::make_shared<PoseGraphContext>();
+  context->Get<MatchRecorder>()->Start(100000);
+  const ScopedPoseGraphContext scope(context);
   AdaptiveLocalTrajectoryBuilder2D builder(options.stock, options.own,
                                            {"scan"});
   Random random(5);
@@ -120,8 +123,7 @@ RunResult RunDrive(const RunOptions& options) {
         std::max(result.max_turn_error, std::abs(error.theta));
   }
   result.mean_error /= std::max(1, result.matched);
-  result.records = MatchRecorder::Global()->All();
-  MatchRecorder::Global()->Stop();
+  result.records = context->Get<MatchRecorder>()->All();
   return result;
 }
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "Eigen/Core"
-#include "cartographer_ext/common/full_information.h"
+#include "cartographer_ext/common/loop_information.h"
 #include "cartographer_ext/overlay/signature.h"
 
 #ifndef CARTOGRAPHER_EXT_OVERLAY_SPA_COST_FUNCTION_2D_H_
@@ -61,8 +61,8 @@ class WeightedCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
 ceres::CostFunction* Create(ceres::CostFunction* (*const stock)(const Pose&),
                             const Pose& pose) {
   Eigen::Matrix3d sqrt_information;
-  if (!::cartographer_ext::FindSqrtInformation(::cartographer_ext::BitsOf(pose),
-                                               &sqrt_information)) {
+  if (!::cartographer_ext::ScopedSqrtInformation::Find(&pose,
+                                                       &sqrt_information)) {
     return stock(pose);
   }
   Pose unweighted = pose;

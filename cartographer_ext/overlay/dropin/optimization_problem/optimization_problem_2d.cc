@@ -3,7 +3,9 @@
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 
 #include "absl/memory/memory.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
+#include "cartographer_ext/optimization/dropin/stock_solve.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/overlay/signature.h"
 #include "cartographer_ext/robust_optimization_options.pb.h"
@@ -19,6 +21,8 @@ namespace optimization {
 namespace {
 
 using Stock = StockOptimizationProblem2D;
+using ::cartographer_ext::PoseGraphContext;
+using ::cartographer_ext::ScopedPoseGraphContext;
 using ::cartographer_ext::optimization::RobustOptimizationProblem2D;
 
 // The compiler checks the virtual functions against the interface.
@@ -39,7 +43,8 @@ CARTOGRAPHER_EXT_EXPECT_SIGNATURE(
 }  // namespace
 
 OptimizationProblem2D::OptimizationProblem2D(
-    const optimization::proto::OptimizationProblemOptions& options) {
+    const optimization::proto::OptimizationProblemOptions& options)
+    : context_(PoseGraphContext::Current()) {
   ::cartographer_ext::proto::RobustOptimizationOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
     robust_ =
@@ -101,7 +106,21 @@ void OptimizationProblem2D::Solve(
     const std::map<int, PoseGraphInterface::TrajectoryState>&
         trajectories_state,
     const std::map<std::string, LandmarkNode>& landmark_nodes) {
-  problem_->Solve(constraints, trajectories_state, landmark_nodes);
+  // Within a callback of the constraint builder of the same pose graph.
+  std::shared_ptr<PoseGraphContext> context = PoseGraphContext::Current();
+  if (context == nullptr) context = context_;
+  std::vector<Constraint> kept;
+  const std::vector<Constraint>& in_force =
+      ::cartographer_ext::optimization::WithoutWithdrawnLoops(
+          constraints, context.get(), &kept);
+  if (stock_ != nullptr) {
+    ::cartographer_ext::optimization::StockSolve(in_force, trajectories_state,
+                                                 landmark_nodes, context.get(),
+                                                 stock_.get());
+  } else {
+    const ScopedPoseGraphContext scope(context);
+    robust_->Solve(in_force, trajectories_state, landmark_nodes);
+  }
 }
 
 const MapById<NodeId, NodeSpec2D>& OptimizationProblem2D::node_data() const {

@@ -26,6 +26,7 @@
 #include <vector>
 
 namespace cartographer_ext {
+class PoseGraphContext;
 namespace optimization {
 class RobustOptimizationProblem2D;
 }  // namespace optimization
@@ -35,7 +36,8 @@ namespace cartographer {
 namespace mapping {
 namespace optimization {
 
-// Exactly one of the two problems exists, chosen once by the options.
+// Exactly one of the two problems exists, chosen once by the options. Neither
+// sees loops that are withdrawn (cartographer_ext/common/withdrawn_loops.h).
 class OptimizationProblem2D
     : public OptimizationProblemInterface<NodeSpec2D, SubmapSpec2D,
                                           transform::Rigid2d> {
@@ -88,6 +90,8 @@ class OptimizationProblem2D
  private:
   using Interface = OptimizationProblemInterface<NodeSpec2D, SubmapSpec2D,
                                                  transform::Rigid2d>;
+  // Of the scope of construction, null without one.
+  const std::shared_ptr<::cartographer_ext::PoseGraphContext> context_;
   std::unique_ptr<StockOptimizationProblem2D> stock_;
   std::unique_ptr<::cartographer_ext::optimization::RobustOptimizationProblem2D>
       robust_;
