@@ -21,14 +21,14 @@ OdometryNoiseOptions ToOdometryNoiseOptions(
 OdometryCalibrationOptions ToOdometryCalibrationOptions(
     const proto::FrontEndOptions::Calibration& from) {
   OdometryCalibrationOptions to;
-  to.estimate_way = from.estimate_way();
-  to.estimate_turn = from.estimate_turn();
-  to.way_scale = from.way_scale();
-  to.way_sigma = from.way_sigma();
-  to.turn_scale = from.turn_scale();
-  to.turn_sigma = from.turn_sigma();
-  to.turn_per_metre = from.turn_per_metre();
-  to.turn_per_metre_sigma = from.turn_per_metre_sigma();
+  to.estimate_odometry_scale = from.estimate_way();
+  to.estimate_rotation = from.estimate_turn();
+  to.translation_scale = from.way_scale();
+  to.translation_scale_sigma = from.way_sigma();
+  to.rotation_scale = from.turn_scale();
+  to.rotation_scale_sigma = from.turn_sigma();
+  to.rotation_per_metre = from.turn_per_metre();
+  to.rotation_per_metre_sigma = from.turn_per_metre_sigma();
   to.max_deviation = from.max_deviation();
   return to;
 }
@@ -57,7 +57,7 @@ ImuPredictorOptions ToImuPredictorOptions(
   to.noise.yaw_rate_density = from.yaw_rate_noise();
   to.yaw_rate_bias_noise = from.yaw_rate_bias_noise();
   to.acceleration_bias_noise = from.acceleration_bias_noise();
-  to.standing_time = from.standing_time();
+  to.stationary_time = from.standing_time();
   return to;
 }
 

@@ -5,9 +5,9 @@
 #ifndef CARTOGRAPHER_EXT_FRONT_END_FRONT_END_OPTIONS_H_
 #define CARTOGRAPHER_EXT_FRONT_END_FRONT_END_OPTIONS_H_
 
-#include "cartographer_ext/front_end/adaptive_features.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
-#include "cartographer_ext/front_end/wall_filling.h"
+#include "cartographer_ext/front_end/point_cloud/adaptive_features.h"
+#include "cartographer_ext/front_end/point_cloud/wall_filling.h"
 #include "cartographer_ext/front_end_options.pb.h"
 
 namespace cartographer_ext {

@@ -132,12 +132,12 @@ void SetPrediction(const PredictionSource source, const OdometryState state,
 
 void SetCalibration(const OdometryCalibration& calibration,
                     MatchRecord* const record) {
-  record->set_way_scale(calibration.way_scale());
-  record->set_way_scale_sigma(calibration.way_sigma());
-  record->set_turn_scale(calibration.turn_scale());
-  record->set_turn_scale_sigma(calibration.turn_sigma());
-  record->set_turn_per_metre(calibration.turn_per_metre());
-  record->set_turn_per_metre_sigma(calibration.turn_per_metre_sigma());
+  record->set_way_scale(calibration.translation_scale());
+  record->set_way_scale_sigma(calibration.translation_scale_sigma());
+  record->set_turn_scale(calibration.rotation_scale());
+  record->set_turn_scale_sigma(calibration.rotation_scale_sigma());
+  record->set_turn_per_metre(calibration.rotation_per_metre());
+  record->set_turn_per_metre_sigma(calibration.rotation_per_metre_sigma());
 }
 
 Eigen::Matrix3d Covariance(const MatchRecord& record) {

@@ -15,7 +15,7 @@
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
-#include "cartographer_ext/front_end/odometry_calibration.h"
+#include "cartographer_ext/front_end/odometry/odometry_calibration.h"
 #include "cartographer_ext/match_record.pb.h"
 #include "cartographer_ext/scan_matching/match_report.h"
 

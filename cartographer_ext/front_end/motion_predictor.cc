@@ -12,30 +12,34 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// A velocity needs an interval that a stamp of arrival does not spoil, seconds.
+// A shorter interval gives no velocity, because the jitter of stamps by arrival
+// time would dominate it; seconds.
 constexpr double kMinVelocityInterval = 0.02;
-// Odometry is not asked for a longer way than this since the last scan that is
-// in the map: metres, radians, seconds.
-constexpr double kMaxWaySinceMap = 1.;
-constexpr double kMaxTurnSinceMap = 1.;
-constexpr double kMaxTimeSinceMap = 10.;
-// Changes of the speed that the bias of the accelerometer may feign are none:
-// added up they would soon be metres a second. Standard deviations.
+// Odometry predicts over no more than this since the last insertion: metres,
+// radians, seconds.
+constexpr double kMaxTranslationSinceInsertion = 1.;
+constexpr double kMaxRotationSinceInsertion = 1.;
+constexpr double kMaxTimeSinceInsertion = 10.;
+// Changes of speed below this many standard deviations of the accelerometer's
+// bias count as zero, because they would add up to metres per second.
 constexpr double kAccelerationGate = 2.;
-// Wheels that moved less between two scans stand still; matches of a robot that
-// stands are off by less: metres, radians.
-constexpr double kStandingWheels = 1e-3;
-constexpr double kStandingMatchWay = 0.02;
-constexpr double kStandingMatchTurn = 0.01;
+// A stationary robot's wheels move less between two scans, and its matches
+// scatter less: metres, radians.
+constexpr double kStationaryWheelMotion = 1e-3;
+constexpr double kStationaryMatchTranslation = 0.02;
+constexpr double kStationaryMatchRotation = 0.01;
+// Error of the matched speed, relative to the largest change of speed, over a
+// gap that the IMU bridges.
+constexpr double kRelativeSpeedError = 0.2;
 
-// The second moment of being off by all of `difference`.
+// The second moment of an error of `difference`.
 Eigen::Matrix3d Spread(const Pose2& difference) {
   const Eigen::Vector3d d(difference.x, difference.y, difference.theta);
   return d.cwiseAbs2().asDiagonal();
 }
 
-// Two independent readings of the turn.
-void WeighTurns(const ImuMotion& imu, OdometryMotion* const odometry) {
+// The mean of two independent rotations, weighted by their variances.
+void FuseRotations(const ImuMotion& imu, OdometryMotion* const odometry) {
   const double a = odometry->covariance(2, 2);
   const double b = imu.covariance(2, 2);
   const double ratio = a / (a + b);
@@ -63,127 +67,59 @@ void MotionPredictor::AddImu(const PlanarImuReading& reading) {
   imu_.Add(reading);
 }
 
-Pose2 MotionPredictor::VelocityMotion(const double interval) const {
-  // Beyond that nothing is known, least of all a turn.
-  if (interval > options_.constant_velocity.max_time) return Pose2();
-  return velocity_.Motion(interval);
-}
-
-Eigen::Matrix3d MotionPredictor::WideCovariance(const double interval) const {
-  const double way = options_.odometry.translation +
-                     options_.constant_velocity.speed_noise * interval;
-  const double turn = options_.odometry.rotation +
-                      options_.constant_velocity.turn_rate_noise * interval;
-  return Eigen::Vector3d(Squared(way), Squared(way), Squared(turn))
-      .asDiagonal();
-}
-
-bool MotionPredictor::PredictOdometry(const double time,
-                                      OdometryMotion* const motion) const {
-  return options_.use_odometry && odometry_.Predict(last_time_, time, motion);
-}
-
 MotionPrediction MotionPredictor::Predict(const double time) const {
-  MotionPrediction prediction;
   const double interval = time - last_time_;
-  if (!has_match_ || !(interval > 0.)) return prediction;
+  if (!has_match_ || !(interval > 0.)) return MotionPrediction();
 
-  prediction.source = interval > options_.constant_velocity.max_time
-                          ? PredictionSource::kNothing
-                          : PredictionSource::kConstantVelocity;
-  prediction.motion = VelocityMotion(interval);
-  prediction.covariance =
-      prediction.source == PredictionSource::kConstantVelocity
-          ? velocity_.MotionCovariance(interval)
-          : WideCovariance(interval);
-  prediction.is_uncertain = prediction.source == PredictionSource::kNothing;
-  if (prediction.is_uncertain) {
-    prediction.unknown_way = options_.constant_velocity.speed_noise * interval;
-    prediction.unknown_turn = std::min(
-        kPi, 2. * options_.constant_velocity.turn_rate_noise * interval);
-  }
-
+  MotionPrediction prediction = PredictByVelocity(interval);
   ImuMotion imu;
-  const bool has_imu = imu_.Predict(
-      last_time_, time, Eigen::Vector2d(velocity().x, velocity().y), &imu);
-  if (has_imu) {
-    PredictInertially(interval, imu, &prediction);
-  }
+  const bool has_imu = IntegrateImu(last_time_, time, &imu);
+  if (has_imu) PredictByImu(interval, imu, &prediction);
 
   OdometryMotion odometry;
-  if (!PredictOdometry(time, &odometry)) {
-    prediction.odometry_is_missing =
-        prediction.source == PredictionSource::kNothing &&
-        monitor_.IsTrusted() && PredictOdometry(last_time_, &odometry);
-    return prediction;
-  }
-  const Pose2 without = prediction.motion;
-  const bool expectation_is_known =
-      has_imu || interval <= options_.constant_velocity.max_time;
-  const bool is_suspect =
-      expectation_is_known && !odometry.is_late &&
-      monitor_.IsSuspect(interval, odometry.motion, odometry.frozen, without);
-  if (!monitor_.IsTrusted() && monitor_.state() != OdometryState::kAbsent &&
-      expectation_is_known) {
-    // Out of favour until the monitor says otherwise; still worth a try.
-    prediction.alternatives.push_back(odometry.motion);
-    prediction.alternatives.push_back(monitor_.BacklogUntilNow() *
-                                      odometry.motion);
-    prediction.is_uncertain = prediction.is_uncertain || is_suspect;
-    return prediction;
-  }
-  prediction.unknown_way = prediction.unknown_turn = 0.;
-  const Eigen::Matrix3d covariance_without =
-      has_imu ? prediction.covariance : WideCovariance(interval);
-  prediction.source = PredictionSource::kOdometry;
-  prediction.motion = odometry.motion;
-  prediction.covariance = CovarianceOf(odometry, interval);
-  prediction.is_uncertain = is_suspect;
-  OdometryMotion since_anchor;
-  if (monitor_.state() == OdometryState::kAbsent && has_anchor_ &&
-      odometry_.Predict(anchor_time_, time, &since_anchor)) {
-    // Odometry is back: it knows what happened in between, too.
-    prediction.is_uncertain = !odometry.is_late;
-    prediction.alternatives.push_back(since_anchor_.Inverse() *
-                                      since_anchor.motion);
-  }
-  if (is_suspect) {
-    prediction.alternatives.push_back(without);
-    prediction.covariance += covariance_without;
-    prediction.covariance += Spread(
-        Pose2(odometry.motion.x - without.x, odometry.motion.y - without.y,
-              NormalizeAngle(odometry.motion.theta - without.theta)));
+  if (IntegrateOdometry(time, &odometry)) {
+    PredictByOdometry(time, odometry, has_imu, &prediction);
   } else {
-    prediction.alternatives.push_back(without);
-    PredictFromMap(time, &prediction);
+    prediction.odometry_pending =
+        prediction.source == PredictionSource::kNothing &&
+        monitor_.IsTrusted() && IntegrateOdometry(last_time_, &odometry);
   }
   return prediction;
 }
 
-double MotionPredictor::SpeedChange(const double interval,
-                                    const ImuMotion& imu) const {
-  const double least =
-      kAccelerationGate * options_.imu.acceleration_bias_noise * interval;
-  return imu_.bias_is_known() && std::abs(imu.speed_change) > least
-             ? imu.speed_change
-             : 0.;
+MotionPrediction MotionPredictor::PredictByVelocity(
+    const double interval) const {
+  MotionPrediction prediction;
+  if (interval <= options_.constant_velocity.max_time) {
+    prediction.source = PredictionSource::kConstantVelocity;
+    prediction.motion = velocity_.Motion(interval);
+    prediction.covariance = velocity_.MotionCovariance(interval);
+    return prediction;
+  }
+  // After so long the velocity says nothing, least of all about rotation.
+  prediction.covariance = WideCovariance(interval);
+  prediction.is_uncertain = true;
+  prediction.search_radius = options_.constant_velocity.speed_noise * interval;
+  prediction.search_angle =
+      std::min(kPi, 2. * options_.constant_velocity.turn_rate_noise * interval);
+  return prediction;
 }
 
-void MotionPredictor::PredictInertially(
-    const double interval, const ImuMotion& imu,
-    MotionPrediction* const prediction) const {
+void MotionPredictor::PredictByImu(const double interval, const ImuMotion& imu,
+                                   MotionPrediction* const prediction) const {
   prediction->source = PredictionSource::kImu;
-  prediction->unknown_way = prediction->unknown_turn = 0.;
+  prediction->search_radius = prediction->search_angle = 0.;
   const Eigen::Matrix3d at_rest =
       OdometryCovariance(options_.odometry, Pose2());
   prediction->is_uncertain = interval > options_.constant_velocity.max_time;
   if (prediction->is_uncertain) {
     prediction->motion = imu.motion;
     prediction->covariance = imu.covariance + at_rest;
-    // The speed at the start is that of a match.
-    const double way = 0.2 * options_.constant_velocity.speed_noise * interval;
-    prediction->covariance(0, 0) += Squared(way);
-    prediction->covariance(1, 1) += Squared(way);
+    // The integration starts with the speed of a match.
+    const double sigma =
+        kRelativeSpeedError * options_.constant_velocity.speed_noise * interval;
+    prediction->covariance(0, 0) += Squared(sigma);
+    prediction->covariance(1, 1) += Squared(sigma);
     return;
   }
   prediction->motion = velocity_.Motion(interval);
@@ -195,53 +131,149 @@ void MotionPredictor::PredictInertially(
   prediction->covariance(2, 2) = imu.covariance(2, 2) + at_rest(2, 2);
 }
 
-Eigen::Matrix3d MotionPredictor::CovarianceOf(const OdometryMotion& odometry,
-                                              const double interval) const {
+void MotionPredictor::PredictByOdometry(
+    const double time, const OdometryMotion& odometry, const bool has_imu,
+    MotionPrediction* const prediction) const {
+  const double interval = time - last_time_;
+  const Pose2 without = prediction->motion;
+  const bool has_expectation =
+      has_imu || interval <= options_.constant_velocity.max_time;
+  const bool is_suspect =
+      has_expectation && !odometry.is_late &&
+      monitor_.IsSuspect(interval, odometry.motion, odometry.frozen, without);
+  if (!monitor_.IsTrusted() && monitor_.state() != OdometryState::kAbsent &&
+      has_expectation) {
+    // Not used until the monitor trusts it again, but worth a search.
+    prediction->alternatives.push_back(odometry.motion);
+    prediction->alternatives.push_back(monitor_.MissedMotion() *
+                                       odometry.motion);
+    prediction->is_uncertain = prediction->is_uncertain || is_suspect;
+    return;
+  }
+  const Eigen::Matrix3d covariance_without =
+      has_imu ? prediction->covariance : WideCovariance(interval);
+  prediction->source = PredictionSource::kOdometry;
+  prediction->search_radius = prediction->search_angle = 0.;
+  prediction->motion = odometry.motion;
+  prediction->covariance = OdometryMotionCovariance(odometry, interval);
+  prediction->is_uncertain = is_suspect;
+  OdometryMotion since_anchor;
+  if (monitor_.state() == OdometryState::kAbsent && has_anchor_ &&
+      odometry_.Predict(anchor_time_, time, &since_anchor)) {
+    // Odometry is back, and it covers the time of its absence.
+    prediction->is_uncertain = !odometry.is_late;
+    prediction->alternatives.push_back(since_anchor_.Inverse() *
+                                       since_anchor.motion);
+  }
+  prediction->alternatives.push_back(without);
+  if (is_suspect) {
+    prediction->covariance += covariance_without;
+    prediction->covariance += Spread(
+        Pose2(odometry.motion.x - without.x, odometry.motion.y - without.y,
+              NormalizeAngle(odometry.motion.theta - without.theta)));
+  } else {
+    PredictFromInsertion(time, prediction);
+  }
+}
+
+void MotionPredictor::PredictFromInsertion(
+    const double time, MotionPrediction* const prediction) const {
+  OdometryMotion odometry;
+  if (!odometry_.Predict(insertion_time_, time, &odometry)) return;
+  ImuMotion imu;
+  if (IntegrateImu(insertion_time_, time, &imu)) FuseRotations(imu, &odometry);
+  prediction->motion = since_insertion_.Inverse() * odometry.motion;
+  // Into the frame of the last scan.
+  const Eigen::Matrix3d rotation = PlanarRotation(since_insertion_.theta);
+  prediction->covariance =
+      rotation.transpose() *
+      OdometryMotionCovariance(odometry, time - last_time_) * rotation;
+}
+
+bool MotionPredictor::IntegrateImu(const double from, const double to,
+                                   ImuMotion* const motion) const {
+  return imu_.Predict(from, to, Eigen::Vector2d(velocity().x, velocity().y),
+                      motion);
+}
+
+bool MotionPredictor::IntegrateOdometry(const double to,
+                                        OdometryMotion* const motion) const {
+  return options_.use_odometry && odometry_.Predict(last_time_, to, motion);
+}
+
+Eigen::Matrix3d MotionPredictor::WideCovariance(const double interval) const {
+  const double translation = options_.odometry.translation +
+                             options_.constant_velocity.speed_noise * interval;
+  const double rotation = options_.odometry.rotation +
+                          options_.constant_velocity.turn_rate_noise * interval;
+  return Eigen::Vector3d(Squared(translation), Squared(translation),
+                         Squared(rotation))
+      .asDiagonal();
+}
+
+Eigen::Matrix3d MotionPredictor::OdometryMotionCovariance(
+    const OdometryMotion& odometry, const double interval) const {
   Eigen::Matrix3d covariance = odometry.covariance;
-  // Its end is a guess from the readings before.
+  // The end of the interval is extrapolated.
   if (odometry.is_late) covariance += WideCovariance(interval);
   return covariance;
 }
 
-void MotionPredictor::PredictFromMap(const double time,
-                                     MotionPrediction* const prediction) const {
-  OdometryMotion odometry;
-  if (!odometry_.Predict(map_time_, time, &odometry)) return;
-  ImuMotion imu;
-  if (imu_.Predict(map_time_, time, Eigen::Vector2d::Zero(), &imu)) {
-    WeighTurns(imu, &odometry);
-  }
-  prediction->motion = since_map_.Inverse() * odometry.motion;
-  // Into the frame of the last scan.
-  const Eigen::Matrix3d rotation = PlanarRotation(since_map_.theta);
-  prediction->covariance = rotation.transpose() *
-                           CovarianceOf(odometry, time - last_time_) * rotation;
+double MotionPredictor::SpeedChange(const double interval,
+                                    const ImuMotion& imu) const {
+  const double least =
+      kAccelerationGate * options_.imu.acceleration_bias_noise * interval;
+  return imu_.bias_is_known() && std::abs(imu.speed_change) > least
+             ? imu.speed_change
+             : 0.;
 }
 
-void MotionPredictor::AddToMap() {
-  map_time_ = last_time_;
-  since_map_ = Pose2();
-}
-
-bool MotionPredictor::Stands(const double time, const Pose2& match) const {
+bool MotionPredictor::IsStationary(const double time,
+                                   const Pose2& match) const {
   OdometryMotion odometry;
-  return monitor_.IsTrusted() && PredictOdometry(time, &odometry) &&
+  return monitor_.IsTrusted() && IntegrateOdometry(time, &odometry) &&
          !odometry.is_late &&
-         std::hypot(odometry.motion.x, odometry.motion.y) < kStandingWheels &&
-         std::abs(odometry.motion.theta) < kStandingWheels &&
-         std::hypot(match.x, match.y) < kStandingMatchWay &&
-         std::abs(match.theta) < kStandingMatchTurn;
+         std::hypot(odometry.motion.x, odometry.motion.y) <
+             kStationaryWheelMotion &&
+         std::abs(odometry.motion.theta) < kStationaryWheelMotion &&
+         std::hypot(match.x, match.y) < kStationaryMatchTranslation &&
+         std::abs(match.theta) < kStationaryMatchRotation;
+}
+
+OdometryState MotionPredictor::AddMatch(const double time,
+                                        const MatchedMotion& matched) {
+  const double interval = time - last_time_;
+  if (!has_match_) {
+    has_match_ = has_anchor_ = true;
+    last_time_ = anchor_time_ = insertion_time_ = compared_time_ = time;
+    return monitor_.state();
+  }
+  if (!(interval > 0.)) return monitor_.state();
+
+  const OdometryState state = CheckOdometry(time, matched);
+  if (state == OdometryState::kOk && matched.rotation_observable) {
+    odometry_.AddMatch(last_time_, time, matched.motion);
+  }
+  ImuMotion imu;
+  const double speed_change =
+      IntegrateImu(last_time_, time, &imu) ? SpeedChange(interval, imu) : 0.;
+  imu_.AddMatch(last_time_, time,
+                IsStationary(time, matched.motion) ? Pose2() : matched.motion);
+  UpdateVelocity(time, matched, speed_change);
+  last_time_ = time;
+  UpdateInsertion(time, matched.motion, state);
+  return state;
 }
 
 OdometryState MotionPredictor::CheckOdometry(const double time,
                                              const MatchedMotion& matched) {
   since_anchor_ = since_anchor_ * matched.motion;
   OdometryMotion odometry;
-  const bool has_odometry = PredictOdometry(time, &odometry);
+  const bool has_odometry = IntegrateOdometry(time, &odometry);
   if (has_odometry && odometry.is_late) {
-    // Up to the scan before everything is there.
+    // The readings are complete up to the scan before.
     const OdometryState state = Compare(last_time_, has_odometry);
-    not_compared_ = matched;
+    uncompared_ = matched;
     return state;
   }
   if (has_odometry) {
@@ -249,12 +281,12 @@ OdometryState MotionPredictor::CheckOdometry(const double time,
     anchor_time_ = time;
     since_anchor_ = Pose2();
   }
-  not_compared_.motion = not_compared_.motion * matched.motion;
-  not_compared_.way_is_determined =
-      not_compared_.way_is_determined && matched.way_is_determined;
-  not_compared_.turn_is_determined =
-      not_compared_.turn_is_determined && matched.turn_is_determined;
-  not_compared_.covariance = matched.covariance;
+  uncompared_.motion = uncompared_.motion * matched.motion;
+  uncompared_.translation_observable =
+      uncompared_.translation_observable && matched.translation_observable;
+  uncompared_.rotation_observable =
+      uncompared_.rotation_observable && matched.rotation_observable;
+  uncompared_.covariance = matched.covariance;
   return Compare(time, has_odometry);
 }
 
@@ -269,11 +301,10 @@ OdometryState MotionPredictor::Compare(const double time,
       has_odometry && odometry_.Predict(compared_time_, time, &odometry);
   comparison.odometry = odometry.motion;
   comparison.frozen = odometry.frozen;
-  comparison.match = not_compared_.motion;
-  comparison.way_is_determined = not_compared_.way_is_determined;
+  comparison.match = uncompared_.motion;
+  comparison.translation_observable = uncompared_.translation_observable;
   ImuMotion imu;
-  if (imu_.Predict(compared_time_, time,
-                   Eigen::Vector2d(velocity().x, velocity().y), &imu)) {
+  if (IntegrateImu(compared_time_, time, &imu)) {
     comparison.has_inertial = imu_.bias_is_known();
     comparison.inertial_speed_change = imu.speed_change;
   }
@@ -283,15 +314,15 @@ OdometryState MotionPredictor::Compare(const double time,
   interval.time = time;
   interval.interval = comparison.interval;
   interval.odometry = odometry.raw;
-  interval.match = not_compared_.motion;
+  interval.match = uncompared_.motion;
   interval.is_sound = state == OdometryState::kOk;
-  interval.way_is_determined = not_compared_.way_is_determined;
-  interval.turn_is_determined = not_compared_.turn_is_determined;
-  interval.covariance = not_compared_.covariance;
+  interval.translation_observable = uncompared_.translation_observable;
+  interval.rotation_observable = uncompared_.rotation_observable;
+  interval.covariance = uncompared_.covariance;
   odometry_.Calibrate(interval);
 
   compared_time_ = time;
-  not_compared_ = MatchedMotion();
+  uncompared_ = MatchedMotion();
   return state;
 }
 
@@ -310,44 +341,22 @@ void MotionPredictor::UpdateVelocity(const double time,
   }
 }
 
-OdometryState MotionPredictor::AddMatch(const double time,
-                                        const MatchedMotion& matched) {
-  const double interval = time - last_time_;
-  if (!has_match_) {
-    has_match_ = true;
-    last_time_ = time;
-    has_anchor_ = true;
-    anchor_time_ = time;
-    map_time_ = time;
-    compared_time_ = time;
-    return monitor_.state();
-  }
-  if (!(interval > 0.)) return monitor_.state();
-
-  const OdometryState state = CheckOdometry(time, matched);
-  if (state == OdometryState::kOk && matched.turn_is_determined) {
-    odometry_.AddMatch(last_time_, time, matched.motion);
-  }
-  ImuMotion imu;
-  const double speed_change =
-      imu_.Predict(last_time_, time, Eigen::Vector2d::Zero(), &imu)
-          ? SpeedChange(interval, imu)
-          : 0.;
-  imu_.AddMatch(last_time_, time,
-                Stands(time, matched.motion) ? Pose2() : matched.motion);
-
-  UpdateVelocity(time, matched, speed_change);
-  last_time_ = time;
-  since_map_ = since_map_ * matched.motion;
+void MotionPredictor::UpdateInsertion(const double time, const Pose2& motion,
+                                      const OdometryState state) {
+  since_insertion_ = since_insertion_ * motion;
   const bool is_far =
-      std::hypot(since_map_.x, since_map_.y) > kMaxWaySinceMap ||
-      std::abs(since_map_.theta) > kMaxTurnSinceMap ||
-      time - map_time_ > kMaxTimeSinceMap;
-  if (is_far || !(state == OdometryState::kOk ||
-                  state == OdometryState::kSlipSuspected)) {
-    AddToMap();
-  }
-  return state;
+      std::hypot(since_insertion_.x, since_insertion_.y) >
+          kMaxTranslationSinceInsertion ||
+      std::abs(since_insertion_.theta) > kMaxRotationSinceInsertion ||
+      time - insertion_time_ > kMaxTimeSinceInsertion;
+  const bool is_faulty =
+      state != OdometryState::kOk && state != OdometryState::kSlipSuspected;
+  if (is_far || is_faulty) AddInsertion();
+}
+
+void MotionPredictor::AddInsertion() {
+  insertion_time_ = last_time_;
+  since_insertion_ = Pose2();
 }
 
 }  // namespace front_end

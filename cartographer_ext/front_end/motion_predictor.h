@@ -1,28 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where the robot will be found at the next scan, and how sure that is: from
-// odometry, IMU, or the velocity of the last scans, whichever is there and to
-// be believed.
+// Predicts the motion of the robot between two scans, with its covariance, from
+// whichever of odometry, IMU and the velocity of the last scans is available
+// and trusted:
 //
-//   odometry and IMU   the way from odometry, the turn from both, weighed by
+//   odometry and IMU   translation of odometry; rotation of both, weighted by
 //                      their variances
 //   odometry alone     its motion over the interval
-//   IMU alone          the turn from the IMU, the way from the velocity of
-//                      the last scans and the accelerations since then; over a
+//   IMU alone          rotation of the IMU; translation from the velocity of
+//                      the last scans and the acceleration since then; over a
 //                      long gap both preintegrated
 //   neither            constant velocity for a while, then no motion
 //
-// Odometry that the monitor has found at fault is not used as long as the
-// velocity does better. An interval that looks wrong before the match (a jump,
-// a frozen pose while moving) gets a wide covariance and alternatives to search
-// around; the match then tells who was right.
+// Odometry that the monitor has found faulty is not used as long as the
+// velocity predicts better. An interval that looks wrong before the match (a
+// jump, a repeated pose while moving) gets a large covariance and alternative
+// motions to search around; the match then decides between them.
 //
-// Scans that are matched with one and the same map err alike: a scan that hangs
-// on the beginnings of a map goes on hanging there, a little behind odometry
-// every time. So odometry is asked for the whole way since the last scan that
-// became part of the map, and predicts from where that scan lies; the matches
-// in between change nothing of it.
+// Scans matched against the same submap have correlated errors: against a map
+// of few scans, every match may fall a little short of the true motion, and the
+// errors add up. So odometry predicts over the whole interval since the last
+// scan that was inserted into the map, starting from the pose of that scan; the
+// matches in between do not contribute.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_
 
@@ -30,10 +30,10 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/front_end/imu_predictor.h"
-#include "cartographer_ext/front_end/odometry_calibration.h"
-#include "cartographer_ext/front_end/odometry_monitor.h"
-#include "cartographer_ext/front_end/odometry_predictor.h"
+#include "cartographer_ext/front_end/imu/imu_predictor.h"
+#include "cartographer_ext/front_end/odometry/odometry_calibration.h"
+#include "cartographer_ext/front_end/odometry/odometry_monitor.h"
+#include "cartographer_ext/front_end/odometry/odometry_predictor.h"
 #include "cartographer_ext/front_end/velocity_filter.h"
 
 namespace cartographer_ext {
@@ -56,27 +56,30 @@ struct MotionPrediction {
   Pose2 motion;  // (robot at the last scan <- robot now)
   // Of (x, y, theta) of the motion, in the frame of the robot at the last scan.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  // Not to be relied on: search.
+  // The prediction may be wrong by more than its covariance; the matcher should
+  // search.
   bool is_uncertain = false;
-  // How far the robot may have gone (metres) and turned (radians) from the
-  // motions on trial, where nothing tells.
-  double unknown_way = 0.;
-  double unknown_turn = 0.;
-  // Odometry was there at the last scan, and will tell of the gap since then as
-  // soon as its next reading comes.
-  bool odometry_is_missing = false;
-  // Other motions worth a try then.
+  // Half widths of the search window around `motion` and `alternatives`, in
+  // metres and radians, where no sensor measured the motion; otherwise zero.
+  double search_radius = 0.;
+  double search_angle = 0.;
+  // Odometry covered the last scan and its next reading will cover the gap
+  // since then.
+  bool odometry_pending = false;
+  // Other motions to start a search from.
   std::vector<Pose2> alternatives;
 };
 
 // The outcome of a match, for AddMatch.
 struct MatchedMotion {
   Pose2 motion;  // (robot at the last scan <- robot now)
-  bool way_is_determined = true;
-  bool turn_is_determined = true;
+  // Whether the scan determines the translation along the direction of motion,
+  // and the rotation.
+  bool translation_observable = true;
+  bool rotation_observable = true;
   // Of the pose, in the frame of the robot at the last scan.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  // The match began with a prediction of the velocity, with or without IMU.
+  // The match started from a prediction by the velocity, with or without IMU.
   bool from_velocity = false;
 };
 
@@ -84,51 +87,60 @@ class MotionPredictor {
  public:
   explicit MotionPredictor(const MotionPredictorOptions& options);
 
-  // Times in seconds from any one start. Late readings are ignored.
+  // Times in seconds since an arbitrary start. Readings that are not later than
+  // the one before are ignored.
   void AddOdometry(double time, const Pose2& pose);
   void AddImu(const PlanarImuReading& reading);
 
-  // For a scan at `time`, not before the last one. Without a scan before it
+  // For a scan at `time`, not before the last one. Before the first match
   // nothing is predicted.
   MotionPrediction Predict(double time) const;
 
-  // The scan at `time` was matched. Returns what the match says of odometry.
+  // The scan at `time` was matched. Returns the state of odometry over the
+  // interval.
   OdometryState AddMatch(double time, const MatchedMotion& matched);
 
-  // The last scan that was matched became part of the map.
-  void AddToMap();
+  // The scan matched last was inserted into the map.
+  void AddInsertion();
 
   double time_offset() const { return odometry_.time_offset(); }
   const OdometryCalibration& calibration() const {
     return odometry_.calibration();
   }
   OdometryState odometry_state() const { return monitor_.state(); }
-  // Robot's frame, per second; zero before the second match.
+  // In the robot's frame, per second; zero before the second match.
   const Pose2& velocity() const { return velocity_.velocity(); }
 
  private:
-  Pose2 VelocityMotion(double interval) const;
-  // Where the velocity is a mere guess.
+  // The sources of a prediction, in the order in which they replace each other.
+  MotionPrediction PredictByVelocity(double interval) const;
+  void PredictByImu(double interval, const ImuMotion& imu,
+                    MotionPrediction* prediction) const;
+  // `prediction` is that without odometry.
+  void PredictByOdometry(double time, const OdometryMotion& odometry,
+                         bool has_imu, MotionPrediction* prediction) const;
+  // By odometry and IMU since the last insertion.
+  void PredictFromInsertion(double time, MotionPrediction* prediction) const;
+
+  // Integrates the IMU between two times.
+  bool IntegrateImu(double from, double to, ImuMotion* motion) const;
+  bool IntegrateOdometry(double to, OdometryMotion* motion) const;
+  // Where the velocity is hardly known.
   Eigen::Matrix3d WideCovariance(double interval) const;
-  bool PredictOdometry(double time, OdometryMotion* motion) const;
-  // Whether the wheels stand still; a match may move a little all the same.
-  bool Stands(double time, const Pose2& match) const;
-  // By odometry and IMU since the last scan that is in the map.
-  void PredictFromMap(double time, MotionPrediction* prediction) const;
-  // Forwards, metres a second, over an interval; zero where the bias of the
-  // accelerometer may be all there is.
+  Eigen::Matrix3d OdometryMotionCovariance(const OdometryMotion& odometry,
+                                           double interval) const;
+  // Forwards, in metres per second, over an interval; zero within the
+  // uncertainty of the accelerometer's bias.
   double SpeedChange(double interval, const ImuMotion& imu) const;
-  // Without odometry: the turn of the IMU, and the way of the velocity.
-  void PredictInertially(double interval, const ImuMotion& imu,
-                         MotionPrediction* prediction) const;
+  // The wheels do not move, and the match only by its noise.
+  bool IsStationary(double time, const Pose2& match) const;
+
+  OdometryState CheckOdometry(double time, const MatchedMotion& matched);
+  // Compares odometry with `uncompared_`, up to `time`.
+  OdometryState Compare(double time, bool has_odometry);
   void UpdateVelocity(double time, const MatchedMotion& matched,
                       double speed_change);
-  OdometryState CheckOdometry(double time, const MatchedMotion& matched);
-  // Odometry with `not_compared_`, up to `time`.
-  OdometryState Compare(double time, bool has_odometry);
-  // Covariance of a motion by odometry.
-  Eigen::Matrix3d CovarianceOf(const OdometryMotion& odometry,
-                               double interval) const;
+  void UpdateInsertion(double time, const Pose2& motion, OdometryState state);
 
   const MotionPredictorOptions options_;
   OdometryPredictor odometry_;
@@ -137,18 +149,18 @@ class MotionPredictor {
   bool has_match_ = false;
   double last_time_ = 0.;
   VelocityFilter velocity_;
-  // The last scan that had odometry, and the matched motion since then.
+  // The last scan covered by odometry, and the matched motion since then.
   bool has_anchor_ = false;
   double anchor_time_ = 0.;
   Pose2 since_anchor_;
-  // The scan up to which odometry was compared with the matches, and what was
-  // matched since then.
+  // The scan up to which odometry was compared with the matches, and the
+  // matched motion since then.
   double compared_time_ = 0.;
-  MatchedMotion not_compared_;
-  // The last scan that is in the map, or the last one since which odometry is
-  // without fault; and the matched motion since then.
-  double map_time_ = 0.;
-  Pose2 since_map_;
+  MatchedMotion uncompared_;
+  // The last scan inserted into the map, or a later one before which odometry
+  // was faulty, and the matched motion since then.
+  double insertion_time_ = 0.;
+  Pose2 since_insertion_;
 };
 
 }  // namespace front_end

@@ -30,18 +30,22 @@ TEST(FrontEndOptionsTest, DefaultsOfTheMessageAreThoseOfTheParts) {
   EXPECT_EQ(from_message.time_offset.initial, own.time_offset.initial);
   EXPECT_EQ(from_message.time_offset.minimum, own.time_offset.minimum);
   EXPECT_EQ(from_message.time_offset.maximum, own.time_offset.maximum);
-  EXPECT_EQ(from_message.calibration.estimate_way,
-            own.calibration.estimate_way);
-  EXPECT_EQ(from_message.calibration.estimate_turn,
-            own.calibration.estimate_turn);
-  EXPECT_EQ(from_message.calibration.way_scale, own.calibration.way_scale);
-  EXPECT_EQ(from_message.calibration.way_sigma, own.calibration.way_sigma);
-  EXPECT_EQ(from_message.calibration.turn_scale, own.calibration.turn_scale);
-  EXPECT_EQ(from_message.calibration.turn_sigma, own.calibration.turn_sigma);
-  EXPECT_EQ(from_message.calibration.turn_per_metre,
-            own.calibration.turn_per_metre);
-  EXPECT_EQ(from_message.calibration.turn_per_metre_sigma,
-            own.calibration.turn_per_metre_sigma);
+  EXPECT_EQ(from_message.calibration.estimate_odometry_scale,
+            own.calibration.estimate_odometry_scale);
+  EXPECT_EQ(from_message.calibration.estimate_rotation,
+            own.calibration.estimate_rotation);
+  EXPECT_EQ(from_message.calibration.translation_scale,
+            own.calibration.translation_scale);
+  EXPECT_EQ(from_message.calibration.translation_scale_sigma,
+            own.calibration.translation_scale_sigma);
+  EXPECT_EQ(from_message.calibration.rotation_scale,
+            own.calibration.rotation_scale);
+  EXPECT_EQ(from_message.calibration.rotation_scale_sigma,
+            own.calibration.rotation_scale_sigma);
+  EXPECT_EQ(from_message.calibration.rotation_per_metre,
+            own.calibration.rotation_per_metre);
+  EXPECT_EQ(from_message.calibration.rotation_per_metre_sigma,
+            own.calibration.rotation_per_metre_sigma);
   EXPECT_EQ(from_message.calibration.max_deviation,
             own.calibration.max_deviation);
   EXPECT_EQ(from_message.constant_velocity.speed_noise,
@@ -76,7 +80,7 @@ TEST(FrontEndOptionsTest, DefaultsOfTheMessageAreThoseOfTheParts) {
   EXPECT_EQ(from_message.imu.yaw_rate_bias_noise, own.imu.yaw_rate_bias_noise);
   EXPECT_EQ(from_message.imu.acceleration_bias_noise,
             own.imu.acceleration_bias_noise);
-  EXPECT_EQ(from_message.imu.standing_time, own.imu.standing_time);
+  EXPECT_EQ(from_message.imu.stationary_time, own.imu.stationary_time);
 }
 
 TEST(FrontEndOptionsTest, ValuesArrive) {
@@ -96,11 +100,11 @@ TEST(FrontEndOptionsTest, ValuesArrive) {
   EXPECT_FALSE(options.use_odometry);
   EXPECT_EQ(options.odometry.rotation_per_metre, 0.5);
   EXPECT_EQ(options.time_offset.maximum, 0.4);
-  EXPECT_TRUE(options.calibration.estimate_way);
-  EXPECT_TRUE(options.calibration.estimate_turn);
-  EXPECT_EQ(options.calibration.way_scale, 1.03);
+  EXPECT_TRUE(options.calibration.estimate_odometry_scale);
+  EXPECT_TRUE(options.calibration.estimate_rotation);
+  EXPECT_EQ(options.calibration.translation_scale, 1.03);
   EXPECT_EQ(options.check.gate, 7.);
-  EXPECT_EQ(options.imu.standing_time, 3.);
+  EXPECT_EQ(options.imu.stationary_time, 3.);
   const AdaptiveFeatureOptions features = ToAdaptiveFeatureOptions(message);
   EXPECT_EQ(features.num_neighbors, 6);
   EXPECT_FALSE(features.distance_weighted);

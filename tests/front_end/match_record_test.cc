@@ -41,8 +41,8 @@ MatchRecord Example() {
   SetPrediction(PredictionSource::kOdometry, OdometryState::kSlipping, &record);
   record.set_score(0.625);
   OdometryCalibrationOptions calibration;
-  calibration.way_scale = 1.02;
-  calibration.turn_per_metre = kPi / 180.;
+  calibration.translation_scale = 1.02;
+  calibration.rotation_per_metre = kPi / 180.;
   SetCalibration(OdometryCalibration(calibration), &record);
   return record;
 }

@@ -69,20 +69,20 @@ TEST(MotionPredictorTest, OdometryThatWillTellOfAGapIsMissed) {
   MotionPredictor predictor((MotionPredictorOptions()));
   predictor.AddMatch(0., Matched(Pose2()));
   // There was none before.
-  EXPECT_FALSE(predictor.Predict(3.).odometry_is_missing);
+  EXPECT_FALSE(predictor.Predict(3.).odometry_pending);
   for (int i = 1; i <= 10; ++i) {
     predictor.AddOdometry(0.1 * i, Pose2(0.05 * i, 0., 0.));
     predictor.AddMatch(0.1 * i, Matched(Pose2(0.05, 0., 0.)));
   }
-  EXPECT_FALSE(predictor.Predict(1.1).odometry_is_missing);
+  EXPECT_FALSE(predictor.Predict(1.1).odometry_pending);
   // Velocity will do.
-  EXPECT_FALSE(predictor.Predict(1.5).odometry_is_missing);
+  EXPECT_FALSE(predictor.Predict(1.5).odometry_pending);
   const MotionPrediction prediction = predictor.Predict(4.);
   EXPECT_EQ(prediction.source, PredictionSource::kNothing);
-  EXPECT_TRUE(prediction.odometry_is_missing);
+  EXPECT_TRUE(prediction.odometry_pending);
   predictor.AddOdometry(4.05, Pose2(0.5, 0., 0.8));
   const MotionPrediction later = predictor.Predict(4.1);
-  EXPECT_FALSE(later.odometry_is_missing);
+  EXPECT_FALSE(later.odometry_pending);
   EXPECT_EQ(later.source, PredictionSource::kOdometry);
   EXPECT_NEAR(later.motion.theta, 0.8, 1e-9);
   // A match without it means that it is gone.
@@ -91,7 +91,7 @@ TEST(MotionPredictorTest, OdometryThatWillTellOfAGapIsMissed) {
   for (int i = 0; i <= 10; ++i) other.AddOdometry(0.1 * i, Pose2());
   other.AddMatch(1., Matched(Pose2()));
   other.AddMatch(4., Matched(Pose2()));
-  EXPECT_FALSE(other.Predict(7.).odometry_is_missing);
+  EXPECT_FALSE(other.Predict(7.).odometry_pending);
 }
 
 TEST(MotionPredictorTest, AJumpWidensThePredictionAndOffersTheVelocity) {
@@ -168,7 +168,7 @@ TEST(MotionPredictorTest, SmallAccelerationsAreTakenForBias) {
     for (int i = 0; i <= 420; ++i) {
       PlanarImuReading reading;
       reading.time = 0.01 * i;
-      // Stands for two seconds.
+      // IsStationary for two seconds.
       reading.acceleration.x() = i < 400 ? 0.02 : 0.02 + acceleration;
       predictor.AddImu(reading);
     }
@@ -230,7 +230,7 @@ TEST(MotionPredictorTest, OdometryCountsFromTheLastScanInTheMap) {
   // 6 cm of chords of a gentle arc, of which the matches had 2.4 cm.
   EXPECT_NEAR(behind.motion.x, 0.06 - 0.024, 1e-4);
   EXPECT_GT(behind.covariance(0, 0), variance);
-  predictor.AddToMap();
+  predictor.AddInsertion();
   const MotionPrediction from_map = predictor.Predict(0.5);
   EXPECT_NEAR(from_map.motion.x, 0.02, 1e-4);
   EXPECT_NEAR(from_map.motion.theta, 0.01, 1e-9);
@@ -269,7 +269,7 @@ TEST(MotionPredictorTest, SlowOdometryIsExtrapolatedAndComparedLater) {
     if (i > 2) {
       EXPECT_EQ(state, OdometryState::kOk);
     }
-    predictor.AddToMap();
+    predictor.AddInsertion();
     predictor.AddOdometry(time, Pose2(0.2 * i, 0., 0.));
   }
   // Later than usual by far: odometry has stopped.
@@ -279,10 +279,10 @@ TEST(MotionPredictorTest, SlowOdometryIsExtrapolatedAndComparedLater) {
 TEST(MotionPredictorTest, WhatIsUnknownGrowsWithTheGap) {
   MotionPredictor predictor((MotionPredictorOptions()));
   predictor.AddMatch(0., Matched(Pose2()));
-  EXPECT_EQ(predictor.Predict(0.3).unknown_way, 0.);
-  EXPECT_NEAR(predictor.Predict(2.).unknown_way, 1., 1e-9);
-  EXPECT_NEAR(predictor.Predict(2.).unknown_turn, 2., 1e-9);
-  EXPECT_NEAR(predictor.Predict(20.).unknown_turn, kPi, 1e-9);
+  EXPECT_EQ(predictor.Predict(0.3).search_radius, 0.);
+  EXPECT_NEAR(predictor.Predict(2.).search_radius, 1., 1e-9);
+  EXPECT_NEAR(predictor.Predict(2.).search_angle, 2., 1e-9);
+  EXPECT_NEAR(predictor.Predict(20.).search_angle, kPi, 1e-9);
 }
 
 // A drive of 60 s with a scan every 0.1 s and odometry every 0.05 s, on which
@@ -323,7 +323,7 @@ DriveResult SimulateDrive(const double fault_start, const double fault_end,
                         motion.y + random.Normal(0., 0.003),
                         motion.theta + random.Normal(0., 0.001));
     const OdometryState state = predictor.AddMatch(t, Matched(matched));
-    predictor.AddToMap();
+    predictor.AddInsertion();
     const bool told = state != OdometryState::kOk;
     if (t > fault_start + 0.6 && t <= fault_end) {
       ++result.scans_in;
@@ -382,10 +382,10 @@ double ForeseenWay(const bool told) {
                             Pose2(0.5 * odometry_time / 1.03, 0., 0.));
     }
     MatchedMotion matched = Matched(Pose2(0.05, 0., 0.));
-    matched.way_is_determined = told;
+    matched.translation_observable = told;
     matched.covariance = Eigen::Vector3d(1e-5, 1e-5, 1e-6).asDiagonal();
     predictor.AddMatch(0.1 * i, matched);
-    predictor.AddToMap();
+    predictor.AddInsertion();
   }
   for (; odometry_time <= 51.1; odometry_time += 0.05) {
     predictor.AddOdometry(odometry_time,

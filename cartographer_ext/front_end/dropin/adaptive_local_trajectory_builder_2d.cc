@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "absl/memory/memory.h"
 #include "cartographer/mapping/trajectory_node.h"
@@ -15,6 +16,7 @@
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
 #include "cartographer_ext/front_end/front_end_options.h"
 #include "cartographer_ext/front_end/match_record.h"
+#include "cartographer_ext/match_record.pb.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -28,34 +30,60 @@ using cartographer::transform::Rigid3d;
 
 namespace mapping = cartographer::mapping;
 
-// Below this weight a direction counts as not determined by the scan.
-constexpr double kDetermined = 0.5;
+// A direction of translation, or rotation, with a lower weight in the match is
+// not observable in the scan.
+constexpr double kMinObservableWeight = 0.5;
 
-// So many scans begin a map, whether the robot moves or not: one scan is too
-// little to match the next one with.
-constexpr int kFirstScans = 5;
+// The first scans are inserted whether or not the robot moves: a single scan is
+// not enough to match the next one against.
+constexpr int kNumFirstScans = 5;
 
-// Whether the scan tells how far the robot went in the direction it went.
-bool WayIsDetermined(const scan_matching::DegeneracyResult& degeneracy,
-                     const Pose2& from, const Pose2& to) {
-  const Eigen::Vector2d way(to.x - from.x, to.y - from.y);
-  const double length = way.norm();
+// Whether the scan determines the translation along the direction of motion.
+bool IsTranslationObservable(const scan_matching::DegeneracyResult& degeneracy,
+                             const Pose2& from, const Pose2& to) {
+  const Eigen::Vector2d translation(to.x - from.x, to.y - from.y);
+  const double length = translation.norm();
   const Eigen::Vector2d heading =
-      length > 0.01 ? Eigen::Vector2d(way / length)
+      length > 0.01 ? Eigen::Vector2d(translation / length)
                     : Eigen::Vector2d(std::cos(to.theta), std::sin(to.theta));
   double weight = 0.;
   for (int i = 0; i < 2; ++i) {
     const double along = degeneracy.eigenvectors.col(i).dot(heading);
     weight += along * along * degeneracy.translation_weights(i);
   }
-  return weight > kDetermined;
+  return weight > kMinObservableWeight;
 }
 
-// A covariance in the frame of the map, as seen by the robot at `pose`.
+// A covariance from the local frame into that of the robot at `pose`.
 Eigen::Matrix3d InFrameOf(const Pose2& pose,
                           const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix3d rotation = PlanarRotation(pose.theta);
   return rotation.transpose() * covariance * rotation;
+}
+
+PointCloud FeaturePoints(const AdaptiveFeatureOptions& options,
+                         const PointCloud& cloud) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(cloud.size());
+  for (const auto& point : cloud) {
+    points.push_back(point.position.head<2>().cast<double>());
+  }
+  PointCloud features;
+  for (const int i : SelectFeatures(options, points)) {
+    features.push_back(cloud[i]);
+  }
+  return features;
+}
+
+AssembledScan Transform(const AssembledScan& scan, const Pose2& pose) {
+  const auto pose_3d =
+      cartographer::transform::Embed3D(ToRigid2d(pose).cast<float>());
+  AssembledScan result;
+  result.range_data =
+      cartographer::sensor::TransformRangeData(scan.range_data, pose_3d);
+  result.filling =
+      cartographer::sensor::TransformPointCloud(scan.filling, pose_3d);
+  return result;
 }
 
 }  // namespace
@@ -142,148 +170,125 @@ AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
     const cartographer::sensor::TimedPointCloudData& range_data) {
   const cartographer::sensor::TimedPointCloudOriginData sweep =
       range_data_collator_.AddRangeData(sensor_id, range_data);
-  if (sweep.ranges.empty()) return nullptr;
-  if (options_.use_imu_data() && imu_tracker_ == nullptr) {
-    LOG_EVERY_N(INFO, 100) << "waiting for the IMU";
-    return nullptr;
-  }
+  if (!CanProcess(sweep)) return nullptr;
+
   const double seconds = Seconds(sweep.time);
   const double interval = has_pose_ ? seconds - last_seconds_ : 0.;
-  if (has_pose_ && !(interval > 0.)) {
-    LOG_EVERY_N(WARNING, 100) << "a scan that is not later is dropped";
-    return nullptr;
-  }
   const MotionPrediction prediction = predictor_.Predict(seconds);
+
   const Eigen::Quaterniond alignment = GravityAlignment();
   assembler_.Add(sweep, interval, prediction.motion, alignment);
   if (assembler_.num_sweeps() < options_.num_accumulated_range_data()) {
     return nullptr;
   }
   const AssembledScan scan = assembler_.Take();
-  if (WaitsForOdometry(seconds, prediction)) return nullptr;
-  return MatchAndInsert(sweep.time, prediction, scan, alignment);
-}
+  if (MustWaitForOdometry(seconds, prediction)) return nullptr;
 
-bool AdaptiveLocalTrajectoryBuilder2D::WaitsForOdometry(
-    const double seconds, const MotionPrediction& prediction) {
-  if (!prediction.odometry_is_missing) {
-    waits_ = false;
-    return false;
-  }
-  if (!waits_) {
-    waits_ = true;
-    waits_since_ = seconds;
-  }
-  return seconds - waits_since_ < extension_.odometry().max_wait_after_gap();
-}
-
-PointCloud AdaptiveLocalTrajectoryBuilder2D::SelectFeatures(
-    const PointCloud& cloud) const {
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(cloud.size());
-  for (const auto& point : cloud) {
-    points.push_back(point.position.head<2>().cast<double>());
-  }
-  PointCloud features;
-  for (const int i : front_end::SelectFeatures(
-           ToAdaptiveFeatureOptions(extension_), points)) {
-    features.push_back(cloud[i]);
-  }
-  return features;
-}
-
-std::unique_ptr<AdaptiveLocalTrajectoryBuilder2D::MatchingResult>
-AdaptiveLocalTrajectoryBuilder2D::MatchAndInsert(
-    const cartographer::common::Time time, const MotionPrediction& prediction,
-    const AssembledScan& scan, const Eigen::Quaterniond& alignment) {
-  const RangeData& gravity_aligned_range_data = scan.range_data;
-  if (gravity_aligned_range_data.returns.empty()) {
+  const PointCloud cloud = cartographer::sensor::AdaptiveVoxelFilter(
+      scan.range_data.returns, options_.adaptive_voxel_filter_options());
+  if (cloud.empty()) {
     LOG_EVERY_N(WARNING, 100) << "a scan without returns is dropped";
     return nullptr;
   }
-  const PointCloud cloud = cartographer::sensor::AdaptiveVoxelFilter(
-      gravity_aligned_range_data.returns,
-      options_.adaptive_voxel_filter_options());
-  if (cloud.empty()) return nullptr;
+  const LocalMatch match = MatchScan(prediction, cloud);
+  const OdometryState odometry = UpdatePredictor(seconds, prediction, match);
 
-  proto::MatchRecord record;
-  record.set_builder(builder_number_);
-  record.set_time(cartographer::common::ToUniversal(time));
-  MatchScan(Seconds(time), prediction, cloud, &record);
-
-  const Rigid2d pose = ToRigid2d(pose_);
-  const Rigid3d local_pose =
-      cartographer::transform::Embed3D(pose) * Rigid3d::Rotation(alignment);
-  const auto pose_3d = cartographer::transform::Embed3D(pose.cast<float>());
-  RangeData range_data_in_local = cartographer::sensor::TransformRangeData(
-      gravity_aligned_range_data, pose_3d);
-  auto insertion_result = MaybeInsert(
-      time, range_data_in_local,
-      cartographer::sensor::TransformPointCloud(scan.filling, pose_3d), cloud,
-      local_pose, alignment);
-  if (insertion_result != nullptr) predictor_.AddToMap();
-  record.set_is_node(insertion_result != nullptr);
-  if (recorder_ != nullptr) recorder_->Record(record);
-  CountMatch(record);
+  AssembledScan in_local = Transform(scan, pose_);
+  auto node = MaybeInsert(sweep.time, in_local, cloud, alignment);
+  Record(sweep.time, interval, prediction, match, odometry, node != nullptr);
   return absl::make_unique<MatchingResult>(
-      MatchingResult{time, local_pose, std::move(range_data_in_local),
-                     std::move(insertion_result)});
+      MatchingResult{sweep.time, LocalPose(alignment),
+                     std::move(in_local.range_data), std::move(node)});
 }
 
-void AdaptiveLocalTrajectoryBuilder2D::MatchScan(
-    const double seconds, const MotionPrediction& prediction,
-    const PointCloud& cloud, proto::MatchRecord* const record) {
-  const Pose2 last_pose = pose_;
-  const auto submaps = active_submaps_.submaps();
-  LocalMatch match;
-  match.pose = last_pose * prediction.motion;
-  if (!submaps.empty()) {
-    // The older submap knows more.
-    match = matcher_.Match(
-        last_pose, prediction,
-        extension_.features().enabled() ? SelectFeatures(cloud) : cloud,
-        *submaps.front());
+bool AdaptiveLocalTrajectoryBuilder2D::CanProcess(
+    const cartographer::sensor::TimedPointCloudOriginData& sweep) {
+  if (sweep.ranges.empty()) return false;
+  if (options_.use_imu_data() && imu_tracker_ == nullptr) {
+    LOG_EVERY_N(INFO, 100) << "waiting for the IMU";
+    return false;
   }
+  if (has_pose_ && !(Seconds(sweep.time) > last_seconds_)) {
+    LOG_EVERY_N(WARNING, 100)
+        << "a scan that is not later than the one before is dropped";
+    return false;
+  }
+  return true;
+}
+
+bool AdaptiveLocalTrajectoryBuilder2D::MustWaitForOdometry(
+    const double seconds, const MotionPrediction& prediction) {
+  if (!prediction.odometry_pending) {
+    is_waiting_ = false;
+    return false;
+  }
+  if (!is_waiting_) {
+    is_waiting_ = true;
+    waiting_since_ = seconds;
+  }
+  return seconds - waiting_since_ < extension_.odometry().max_wait_after_gap();
+}
+
+LocalMatch AdaptiveLocalTrajectoryBuilder2D::MatchScan(
+    const MotionPrediction& prediction, const PointCloud& cloud) {
+  const auto submaps = active_submaps_.submaps();
+  if (submaps.empty()) {
+    LocalMatch match;
+    match.pose = pose_ * prediction.motion;
+    return match;
+  }
+  // The older submap contains more scans.
+  return matcher_.Match(
+      pose_, prediction,
+      extension_.features().enabled()
+          ? FeaturePoints(ToAdaptiveFeatureOptions(extension_), cloud)
+          : cloud,
+      *submaps.front());
+}
+
+OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
+    const double seconds, const MotionPrediction& prediction,
+    const LocalMatch& match) {
   MatchedMotion matched;
-  matched.motion = Between(last_pose, match.pose);
-  matched.way_is_determined =
-      WayIsDetermined(match.report.degeneracy, last_pose, match.pose);
-  matched.turn_is_determined =
-      match.report.degeneracy.rotation_weight > kDetermined;
-  matched.covariance = InFrameOf(last_pose, match.report.covariance);
+  matched.motion = Between(pose_, match.pose);
+  matched.translation_observable =
+      IsTranslationObservable(match.report.degeneracy, pose_, match.pose);
+  matched.rotation_observable =
+      match.report.degeneracy.rotation_weight > kMinObservableWeight;
+  matched.covariance = InFrameOf(pose_, match.report.covariance);
   matched.from_velocity =
       (prediction.source == PredictionSource::kConstantVelocity ||
        prediction.source == PredictionSource::kImu) &&
       !match.relocated;
-  record->set_interval(has_pose_ ? seconds - last_seconds_ : 0.);
-  const OdometryState state = predictor_.AddMatch(seconds, matched);
   pose_ = match.pose;
   last_seconds_ = seconds;
   has_pose_ = true;
+  return predictor_.AddMatch(seconds, matched);
+}
 
-  SetPose(match.pose, record);
-  SetReport(match.report, record);
-  SetPrediction(prediction.source, state, record);
-  if (match.relocated) record->set_source(proto::MatchRecord::SEARCH);
-  record->set_searched(match.searched);
-  record->set_score(match.score);
-  record->set_time_offset(predictor_.time_offset());
-  SetCalibration(predictor_.calibration(), record);
+Rigid3d AdaptiveLocalTrajectoryBuilder2D::LocalPose(
+    const Eigen::Quaterniond& alignment) const {
+  return cartographer::transform::Embed3D(ToRigid2d(pose_)) *
+         Rigid3d::Rotation(alignment);
 }
 
 std::unique_ptr<AdaptiveLocalTrajectoryBuilder2D::InsertionResult>
 AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
-    const cartographer::common::Time time, const RangeData& range_data_in_local,
-    const PointCloud& filling_in_local, const PointCloud& cloud,
-    const Rigid3d& local_pose, const Eigen::Quaterniond& alignment) {
+    const cartographer::common::Time time, const AssembledScan& scan_in_local,
+    const PointCloud& cloud, const Eigen::Quaterniond& alignment) {
+  const Rigid3d local_pose = LocalPose(alignment);
   const auto submaps = active_submaps_.submaps();
-  const bool is_young =
-      submaps.empty() || submaps.front()->num_range_data() < kFirstScans;
-  if (motion_filter_.IsSimilar(time, local_pose) && !is_young) return nullptr;
-  RangeData completed = range_data_in_local;
-  for (const auto& point : filling_in_local) completed.returns.push_back(point);
+  const bool is_first_scan =
+      submaps.empty() || submaps.front()->num_range_data() < kNumFirstScans;
+  if (motion_filter_.IsSimilar(time, local_pose) && !is_first_scan) {
+    return nullptr;
+  }
+  RangeData with_filling = scan_in_local.range_data;
+  for (const auto& point : scan_in_local.filling) {
+    with_filling.returns.push_back(point);
+  }
   auto result = absl::make_unique<InsertionResult>();
-  for (auto& submap : active_submaps_.InsertRangeData(completed)) {
+  for (auto& submap : active_submaps_.InsertRangeData(with_filling)) {
     result->insertion_submaps.push_back(submap);
   }
   auto data = std::make_shared<mapping::TrajectoryNode::Data>();
@@ -292,7 +297,29 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
   data->filtered_gravity_aligned_point_cloud = cloud;
   data->local_pose = local_pose;
   result->constant_data = std::move(data);
+  predictor_.AddInsertion();
   return result;
+}
+
+void AdaptiveLocalTrajectoryBuilder2D::Record(
+    const cartographer::common::Time time, const double interval,
+    const MotionPrediction& prediction, const LocalMatch& match,
+    const OdometryState odometry, const bool is_node) const {
+  proto::MatchRecord record;
+  record.set_builder(builder_number_);
+  record.set_time(cartographer::common::ToUniversal(time));
+  record.set_interval(interval);
+  SetPose(match.pose, &record);
+  SetReport(match.report, &record);
+  SetPrediction(prediction.source, odometry, &record);
+  if (match.relocated) record.set_source(proto::MatchRecord::SEARCH);
+  record.set_searched(match.searched);
+  record.set_score(match.score);
+  record.set_time_offset(predictor_.time_offset());
+  SetCalibration(predictor_.calibration(), &record);
+  record.set_is_node(is_node);
+  if (recorder_ != nullptr) recorder_->Record(record);
+  CountMatch(record);
 }
 
 void AdaptiveLocalTrajectoryBuilder2D::RegisterMetrics(

@@ -1,22 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// LocalTrajectoryBuilder2D for options with our block. What is done with a scan
-// is the stock builder's: points are collated, filtered, matched against the
-// older of two submaps and inserted into both when the robot has moved. What
-// is different:
+// LocalTrajectoryBuilder2D for options with our block. The stages of a scan are
+// those of the stock builder, and AddRangeData() shows them in order: collate,
+// predict, assemble, filter, match, update the predictor, insert, record. The
+// differences:
 //
-//  1. Prediction (motion_predictor.h): odometry over the very interval, at the
-//     stamps of the scans less the clock offset, or IMU, or velocity, with a
-//     covariance; odometry that is at fault is found out and left aside.
-//  2. Match (local_matcher.h): scan and prediction weighed by what each knows,
-//     direction by direction; a correlative search only where the prediction
-//     is in doubt.
-//  3. Evidence: one record a scan (match_recorder.h), and metrics.
+//  1. Prediction (motion_predictor.h): odometry over exactly the interval
+//     between the scans, at their stamps less the clock offset, or IMU, or
+//     velocity, with a covariance; faulty odometry is detected and not used.
+//  2. Match (local_matcher.h): scan and prediction are weighted by their
+//     information, direction by direction; a correlative search only where the
+//     prediction is doubtful.
+//  3. Evidence: one record per scan (match_recorder.h), and metrics.
 //
-// A gap in the scans is bridged by the motion over the gap. If odometry is
-// about to come, scans wait for it, that is, they are left out; without
-// odometry and IMU no motion is made up, and the search looks around.
+// A gap in the scans is bridged by the motion over the gap. While odometry for
+// the gap is pending, scans are dropped, for a limited time; without odometry
+// and IMU no motion is assumed, and the match searches around the last pose.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_ADAPTIVE_LOCAL_TRAJECTORY_BUILDER_2D_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_ADAPTIVE_LOCAL_TRAJECTORY_BUILDER_2D_H_
 
@@ -44,7 +44,6 @@
 #include "cartographer_ext/front_end/match_recorder.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
 #include "cartographer_ext/front_end_options.pb.h"
-#include "cartographer_ext/match_record.pb.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -68,7 +67,9 @@ class AdaptiveLocalTrajectoryBuilder2D {
   AdaptiveLocalTrajectoryBuilder2D& operator=(
       const AdaptiveLocalTrajectoryBuilder2D&) = delete;
 
-  // As the stock builder: null if nothing was matched.
+  // Adds a sweep of a range sensor. Returns the pose of the scan, and the node
+  // if the scan was inserted into the submaps; null if the sweep did not
+  // complete a scan or the scan could not be matched.
   std::unique_ptr<MatchingResult> AddRangeData(
       const std::string& sensor_id,
       const cartographer::sensor::TimedPointCloudData& range_data);
@@ -82,28 +83,32 @@ class AdaptiveLocalTrajectoryBuilder2D {
  private:
   // Since the first data of any kind.
   double Seconds(cartographer::common::Time time);
-  // (gravity aligned <- tracking), without turn about the vertical.
+  // (gravity aligned <- tracking), without rotation about the vertical.
   Eigen::Quaterniond GravityAlignment() const;
-  cartographer::sensor::PointCloud SelectFeatures(
-      const cartographer::sensor::PointCloud& cloud) const;
 
-  // Whether a scan that follows a gap had better be left out, because odometry
-  // will tell of the gap soon.
-  bool WaitsForOdometry(double seconds, const MotionPrediction& prediction);
-  std::unique_ptr<MatchingResult> MatchAndInsert(
-      cartographer::common::Time time, const MotionPrediction& prediction,
-      const AssembledScan& scan, const Eigen::Quaterniond& alignment);
-  // Moves the pose, learns from the match, fills in the record.
-  void MatchScan(double seconds, const MotionPrediction& prediction,
-                 const cartographer::sensor::PointCloud& cloud,
-                 proto::MatchRecord* record);
+  // The stages of AddRangeData().
+  bool CanProcess(const cartographer::sensor::TimedPointCloudOriginData& sweep);
+  // Whether to drop a scan after a gap, because odometry for the gap is
+  // pending.
+  bool MustWaitForOdometry(double seconds, const MotionPrediction& prediction);
+  // Against the older active submap; the prediction itself without one.
+  LocalMatch MatchScan(const MotionPrediction& prediction,
+                       const cartographer::sensor::PointCloud& cloud);
+  // Moves the pose to that of the match and updates the predictor.
+  OdometryState UpdatePredictor(double seconds,
+                                const MotionPrediction& prediction,
+                                const LocalMatch& match);
+  // (local <- tracking) at the last match.
+  cartographer::transform::Rigid3d LocalPose(
+      const Eigen::Quaterniond& alignment) const;
+  // Null if the robot has hardly moved since the last insertion.
   std::unique_ptr<InsertionResult> MaybeInsert(
-      cartographer::common::Time time,
-      const cartographer::sensor::RangeData& range_data_in_local,
-      const cartographer::sensor::PointCloud& filling_in_local,
+      cartographer::common::Time time, const AssembledScan& scan_in_local,
       const cartographer::sensor::PointCloud& cloud,
-      const cartographer::transform::Rigid3d& local_pose,
       const Eigen::Quaterniond& alignment);
+  void Record(cartographer::common::Time time, double interval,
+              const MotionPrediction& prediction, const LocalMatch& match,
+              OdometryState odometry, bool is_node) const;
 
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
   const proto::FrontEndOptions extension_;
@@ -125,9 +130,9 @@ class AdaptiveLocalTrajectoryBuilder2D {
   bool has_pose_ = false;
   double last_seconds_ = 0.;
   Pose2 pose_;  // (local <- gravity-aligned robot) at the last match
-  // Since when scans have been left out behind a gap.
-  bool waits_ = false;
-  double waits_since_ = 0.;
+  // Scans are dropped after a gap until odometry has caught up.
+  bool is_waiting_ = false;
+  double waiting_since_ = 0.;
 };
 
 }  // namespace front_end

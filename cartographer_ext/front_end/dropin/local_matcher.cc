@@ -26,20 +26,20 @@ using scan_matching::Prediction;
 namespace mapping = cartographer::mapping;
 namespace stock_proto = cartographer::mapping::scan_matching::proto;
 
-// Of a new score in the running mean.
+// Weight of a new score in the running mean.
 constexpr double kScoreRate = 0.02;
 // Penalties of the search, per metre and radian: only to break ties.
 constexpr double kSearchPenalty = 0.1;
-// A place that is less off agrees with the prediction, one that is more off
-// contradicts it.
-constexpr double kAgreeingWay = 0.05;                   // metres
-constexpr double kContradictingWay = 0.15;              // metres
-constexpr double kAgreeingTurn = 2. * kPi / 180.;       // radians
-constexpr double kContradictingTurn = 5. * kPi / 180.;  // radians
-// Predictions around which is searched at most.
-constexpr size_t kMaxStarts = 4;
-// A search result stands for itself; the motion it came from hardly pulls.
-constexpr double kSearchSpread = 100.;
+// Limits of Inconsistency().
+constexpr double kConsistentTranslation = 0.05;            // metres
+constexpr double kInconsistentTranslation = 0.15;          // metres
+constexpr double kConsistentRotation = 2. * kPi / 180.;    // radians
+constexpr double kInconsistentRotation = 5. * kPi / 180.;  // radians
+// At most this many motions are searched around.
+constexpr size_t kMaxSearches = 4;
+// Scales the covariance of a motion after a search, so that the motion hardly
+// constrains the match.
+constexpr double kCovarianceScaleAfterSearch = 100.;
 
 // The block of the scan matcher, or its defaults.
 proto::ScanMatcherOptions MatcherExtension(
@@ -51,7 +51,7 @@ proto::ScanMatcherOptions MatcherExtension(
   return extension;
 }
 
-// Into the local frame.
+// In the local frame.
 Prediction ToPrediction(const Pose2& last_pose, const Pose2& motion,
                         const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix3d rotation = PlanarRotation(last_pose.theta);
@@ -66,15 +66,29 @@ bool IsNear(const Pose2& a, const Pose2& b) {
          std::abs(NormalizeAngle(a.theta - b.theta)) < 0.01;
 }
 
+// The predicted motion and its alternatives, without near duplicates.
+std::vector<Pose2> MotionsToSearch(const MotionPrediction& prediction) {
+  std::vector<Pose2> motions = {prediction.motion};
+  for (const Pose2& motion : prediction.alternatives) {
+    bool is_new = motions.size() < kMaxSearches;
+    for (const Pose2& other : motions) {
+      is_new = is_new && !IsNear(motion, other);
+    }
+    if (is_new) motions.push_back(motion);
+  }
+  return motions;
+}
+
 }  // namespace
 
-double Contradiction(const Pose2& predicted, const Pose2& found) {
+double Inconsistency(const Pose2& predicted, const Pose2& found) {
   const Pose2 off = Between(predicted, found);
-  const double way = (std::hypot(off.x, off.y) - kAgreeingWay) /
-                     (kContradictingWay - kAgreeingWay);
-  const double turn = (std::abs(off.theta) - kAgreeingTurn) /
-                      (kContradictingTurn - kAgreeingTurn);
-  return std::min(1., std::max({0., way, turn}));
+  const double translation =
+      (std::hypot(off.x, off.y) - kConsistentTranslation) /
+      (kInconsistentTranslation - kConsistentTranslation);
+  const double rotation = (std::abs(off.theta) - kConsistentRotation) /
+                          (kInconsistentRotation - kConsistentRotation);
+  return std::min(1., std::max({0., translation, rotation}));
 }
 
 LocalMatcher::LocalMatcher(
@@ -111,10 +125,10 @@ Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
   options.set_linear_search_window(std::min(
       options_.max_linear_window(),
       std::max(
-          prediction.unknown_way,
+          prediction.search_radius,
           options_.linear_window() + 0.5 * std::hypot(motion.x, motion.y))));
   options.set_angular_search_window(
-      std::max(prediction.unknown_turn,
+      std::max(prediction.search_angle,
                std::min(options_.max_angular_window(),
                         options_.angular_window() + std::abs(motion.theta))));
   options.set_translation_delta_cost_weight(kSearchPenalty);
@@ -133,41 +147,44 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   Prediction predicted =
       ToPrediction(last_pose, prediction.motion, prediction.covariance);
   predicted.scans_in_map = submap.num_range_data();
-  LocalMatch best = MatchFrom(predicted, predicted.pose, cloud, grid);
-  if (options_.enabled() && IsDoubtful(best, prediction)) {
-    best.searched = true;
-    std::vector<Pose2> motions = {prediction.motion};
-    for (const Pose2& motion : prediction.alternatives) {
-      bool is_new = motions.size() < kMaxStarts;
-      for (const Pose2& other : motions) {
-        is_new = is_new && !IsNear(motion, other);
-      }
-      if (is_new) motions.push_back(motion);
-    }
-    const double first_score = best.score;
-    double to_beat = first_score + options_.min_gain();
-    for (const Pose2& motion : motions) {
-      Prediction start = ToPrediction(last_pose, motion,
-                                      kSearchSpread * prediction.covariance);
-      start.scans_in_map = predicted.scans_in_map;
-      const LocalMatch match =
-          MatchFrom(start, Search(start.pose, motion, prediction, cloud, grid),
-                    cloud, grid);
-      const double gain = options_.min_gain() +
-                          (prediction.is_uncertain
-                               ? 0.
-                               : options_.contradiction_gain() *
-                                     Contradiction(predicted.pose, match.pose));
-      if (match.score <= std::max(to_beat, first_score + gain)) continue;
-      to_beat = match.score;
-      best = match;
-      best.searched = true;
-      best.relocated = true;
-    }
+  LocalMatch match = MatchFrom(predicted, predicted.pose, cloud, grid);
+  if (options_.enabled() && IsDoubtful(match, prediction)) {
+    match =
+        MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
   }
   mean_score_ +=
-      (has_mean_score_ ? kScoreRate : 1.) * (best.score - mean_score_);
+      (has_mean_score_ ? kScoreRate : 1.) * (match.score - mean_score_);
   has_mean_score_ = true;
+  return match;
+}
+
+LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
+                                         const MotionPrediction& prediction,
+                                         const Prediction& predicted,
+                                         const PointCloud& cloud,
+                                         const Grid2D& grid,
+                                         const LocalMatch& matched) const {
+  LocalMatch best = matched;
+  best.searched = true;
+  double to_beat = matched.score + options_.min_gain();
+  for (const Pose2& motion : MotionsToSearch(prediction)) {
+    Prediction start = ToPrediction(
+        last_pose, motion, kCovarianceScaleAfterSearch * prediction.covariance);
+    start.scans_in_map = predicted.scans_in_map;
+    const LocalMatch match =
+        MatchFrom(start, Search(start.pose, motion, prediction, cloud, grid),
+                  cloud, grid);
+    const double gain = options_.min_gain() +
+                        (prediction.is_uncertain
+                             ? 0.
+                             : options_.contradiction_gain() *
+                                   Inconsistency(predicted.pose, match.pose));
+    if (match.score <= std::max(to_beat, matched.score + gain)) continue;
+    to_beat = match.score;
+    best = match;
+    best.searched = true;
+    best.relocated = true;
+  }
   return best;
 }
 

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// One scan against one grid: the degeneracy-aware match from the prediction,
-// and where that is not enough, a correlative search around everything the
-// robot may have done.
+// Matches one scan against one grid: the degeneracy-aware match from the
+// prediction, and where that is not enough, a correlative search around the
+// motions that the robot may have made.
 //
-// The search only offers starting points. Every starting point is matched with
-// the motion it came from as prediction, so that along a direction that the
-// scan does not determine (a corridor) the outcome is still that motion and not
-// where the search happened to score best. Of the outcomes the one under whose
-// points the grid is most probable wins, if it is clearly better than the match
-// without search, and by more than that if it contradicts a prediction that was
-// held for certain: odometry is seldom wrong, and a scan that fits badly finds
-// many places nearly as good.
+// The search only provides initial poses. Each of them is matched with the
+// motion it came from as prediction, so that along a direction that the scan
+// does not determine (a corridor) the result is still that motion and not where
+// the search happened to score best. The result with the highest score wins if
+// its score exceeds that of the match without search by a margin, which is
+// larger where the result is inconsistent with a prediction that was considered
+// certain: odometry is seldom wrong, and a scan that fits badly finds many
+// places that score nearly as high.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_LOCAL_MATCHER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_LOCAL_MATCHER_H_
 
@@ -35,7 +35,7 @@ struct LocalMatch {
   // Mean probability under the points, 0 to 1.
   double score = 0.;
   bool searched = false;
-  // The search found another place than the match from the prediction.
+  // The result comes from the search.
   bool relocated = false;
 };
 
@@ -45,8 +45,8 @@ class LocalMatcher {
                const cartographer::mapping::scan_matching::proto::
                    CeresScanMatcherOptions2D& matcher_options);
 
-  // `last_pose` is (local <- robot) at the scan before. Remembers how well
-  // scans fit.
+  // `last_pose` is (local <- robot) at the scan before. Updates the mean score
+  // that later scans are compared with.
   LocalMatch Match(const Pose2& last_pose, const MotionPrediction& prediction,
                    const cartographer::sensor::PointCloud& cloud,
                    const cartographer::mapping::Submap2D& submap);
@@ -58,8 +58,15 @@ class LocalMatcher {
                        const cartographer::mapping::Grid2D& grid) const;
   bool IsDoubtful(const LocalMatch& match,
                   const MotionPrediction& prediction) const;
-  // Around `center`, where `motion` leads, in a window for all that is not
-  // known of it.
+  // The best of `matched` and the matches started from searches.
+  LocalMatch MatchWithSearch(const Pose2& last_pose,
+                             const MotionPrediction& prediction,
+                             const scan_matching::Prediction& predicted,
+                             const cartographer::sensor::PointCloud& cloud,
+                             const cartographer::mapping::Grid2D& grid,
+                             const LocalMatch& matched) const;
+  // Around `center`, the end of `motion`, in a window that covers the
+  // uncertainty of the prediction.
   Pose2 Search(const Pose2& center, const Pose2& motion,
                const MotionPrediction& prediction,
                const cartographer::sensor::PointCloud& cloud,
@@ -71,9 +78,9 @@ class LocalMatcher {
   bool has_mean_score_ = false;
 };
 
-// How far `found` contradicts `predicted`, from 0 (less than 5 cm and 2 degrees
-// off) to 1 (15 cm or 5 degrees and more).
-double Contradiction(const Pose2& predicted, const Pose2& found);
+// How inconsistent `found` is with `predicted`, from 0 (within 5 cm and 2
+// degrees) to 1 (15 cm or 5 degrees and more).
+double Inconsistency(const Pose2& predicted, const Pose2& found);
 
 }  // namespace front_end
 }  // namespace cartographer_ext

@@ -12,7 +12,7 @@
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/front_end/wall_filling.h"
+#include "cartographer_ext/front_end/point_cloud/wall_filling.h"
 
 namespace cartographer_ext {
 namespace front_end {

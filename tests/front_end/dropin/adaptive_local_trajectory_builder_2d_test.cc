@@ -365,7 +365,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, TheClockOffsetIsLearnt) {
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, ACorridorKeepsTheLengthOfOdometry) {
   RunOptions options;
   options.walls = test::Corridor();
-  // Stands, sets off with 0.4 m/s^2, and goes at 0.4 m/s.
+  // IsStationary, sets off with 0.4 m/s^2, and goes at 0.4 m/s.
   options.path = [](const double t) {
     const double moving = std::max(0., t - 2.);
     return Pose2(moving < 1. ? 0.2 * moving * moving : 0.4 * moving - 0.2, 0.1,

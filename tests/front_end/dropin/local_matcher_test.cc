@@ -27,22 +27,22 @@ using cartographer::sensor::PointCloud;
 
 TEST(ContradictionTest, GrowsBetweenItsBounds) {
   const Pose2 predicted(3., -2., 1.5);
-  EXPECT_EQ(Contradiction(predicted, predicted), 0.);
+  EXPECT_EQ(Inconsistency(predicted, predicted), 0.);
   // In the frame of the prediction; only the distance counts.
-  EXPECT_EQ(Contradiction(predicted, predicted * Pose2(0.03, -0.03, 0.)), 0.);
-  EXPECT_NEAR(Contradiction(predicted, predicted * Pose2(0.06, 0.08, 0.)), 0.5,
+  EXPECT_EQ(Inconsistency(predicted, predicted * Pose2(0.03, -0.03, 0.)), 0.);
+  EXPECT_NEAR(Inconsistency(predicted, predicted * Pose2(0.06, 0.08, 0.)), 0.5,
               1e-9);
-  EXPECT_EQ(Contradiction(predicted, predicted * Pose2(0., -0.2, 0.)), 1.);
-  EXPECT_EQ(Contradiction(predicted, predicted * Pose2(0., 0., DegToRad(1.9))),
+  EXPECT_EQ(Inconsistency(predicted, predicted * Pose2(0., -0.2, 0.)), 1.);
+  EXPECT_EQ(Inconsistency(predicted, predicted * Pose2(0., 0., DegToRad(1.9))),
             0.);
   EXPECT_NEAR(
-      Contradiction(predicted, predicted * Pose2(0., 0., -DegToRad(4.))),
+      Inconsistency(predicted, predicted * Pose2(0., 0., -DegToRad(4.))),
       2. / 3., 1e-9);
-  EXPECT_EQ(Contradiction(predicted, predicted * Pose2(0., 0., DegToRad(170.))),
+  EXPECT_EQ(Inconsistency(predicted, predicted * Pose2(0., 0., DegToRad(170.))),
             1.);
   // The larger of both.
   EXPECT_NEAR(
-      Contradiction(predicted, predicted * Pose2(0.06, 0., DegToRad(3.5))), 0.5,
+      Inconsistency(predicted, predicted * Pose2(0.06, 0., DegToRad(3.5))), 0.5,
       1e-9);
 }
 

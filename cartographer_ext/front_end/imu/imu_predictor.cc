@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/imu_predictor.h"
+#include "cartographer_ext/front_end/imu/imu_predictor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +14,9 @@ constexpr double kBufferSeconds = 10.;
 constexpr size_t kMaxReadings = 20000;
 // The newest reading may be this much older than the scan, seconds.
 constexpr double kMaxExtrapolation = 0.1;
-// A matched motion below these rates is standing, m/s and rad/s.
-constexpr double kStandingSpeed = 0.03;
-constexpr double kStandingTurnRate = 0.02;
+// A robot with a matched motion below these rates is stationary, m/s and rad/s.
+constexpr double kStationarySpeed = 0.03;
+constexpr double kStationaryTurnRate = 0.02;
 
 bool IsFinite(const PlanarImuReading& reading) {
   return std::isfinite(reading.time) && reading.acceleration.allFinite() &&
@@ -35,6 +35,7 @@ ImuPredictor::ImuPredictor(const ImuPredictorOptions& options)
 void ImuPredictor::Add(const PlanarImuReading& reading) {
   if (!options_.enabled || !IsFinite(reading)) return;
   if (!readings_.empty() && reading.time <= readings_.back().time) return;
+  last_.is_valid = false;
   readings_.push_back(reading);
   while (readings_.size() > kMaxReadings ||
          readings_.front().time < reading.time - kBufferSeconds) {
@@ -42,12 +43,12 @@ void ImuPredictor::Add(const PlanarImuReading& reading) {
   }
 }
 
-bool ImuPredictor::Predict(const double from, const double to,
-                           const Eigen::Vector2d& velocity,
-                           ImuMotion* const motion) const {
+absl::optional<PreintegratedImu> ImuPredictor::Preintegrate(
+    const double from, const double to) const {
+  if (last_.is_valid && last_.from == from && last_.to == to) return last_.imu;
   if (readings_.size() < 2 || readings_.front().time > from ||
       readings_.back().time < to - kMaxExtrapolation || !(to > from)) {
-    return false;
+    return absl::nullopt;
   }
   const auto after =
       std::lower_bound(readings_.begin(), readings_.end(), from, IsEarlier);
@@ -74,21 +75,32 @@ bool ImuPredictor::Predict(const double from, const double to,
   }
   final_reading.time = to;
   integrator.Add(last, final_reading);
+  last_.is_valid = true;
+  last_.from = from;
+  last_.to = to;
+  last_.imu = integrator.result();
+  return last_.imu;
+}
 
+bool ImuPredictor::Predict(const double from, const double to,
+                           const Eigen::Vector2d& velocity,
+                           ImuMotion* const motion) const {
+  const absl::optional<PreintegratedImu> imu = Preintegrate(from, to);
+  if (!imu.has_value()) return false;
   PlanarState state;
   state.velocity = velocity;
-  const PreintegratedImu& imu = integrator.result();
-  const PlanarState next = front_end::Predict(state, imu);
-  motion->motion = next.pose;
-  motion->speed_change = imu.beta.x();
-  const double t = imu.duration;
-  const double bias_way = 0.5 * options_.acceleration_bias_noise * t * t;
-  const double bias_turn = options_.yaw_rate_bias_noise * t;
+  motion->motion = front_end::Predict(state, *imu).pose;
+  motion->speed_change = imu->beta.x();
+  const double t = imu->duration;
+  const double translation_sigma =
+      0.5 * options_.acceleration_bias_noise * t * t;
+  const double rotation_sigma = options_.yaw_rate_bias_noise * t;
   motion->covariance.setZero();
   motion->covariance.topLeftCorner<2, 2>() =
-      imu.covariance.topLeftCorner<2, 2>() +
-      bias_way * bias_way * Eigen::Matrix2d::Identity();
-  motion->covariance(2, 2) = imu.covariance(4, 4) + bias_turn * bias_turn;
+      imu->covariance.topLeftCorner<2, 2>() +
+      translation_sigma * translation_sigma * Eigen::Matrix2d::Identity();
+  motion->covariance(2, 2) =
+      imu->covariance(4, 4) + rotation_sigma * rotation_sigma;
   return true;
 }
 
@@ -96,16 +108,16 @@ void ImuPredictor::AddMatch(const double from, const double to,
                             const Pose2& match) {
   const double interval = to - from;
   if (readings_.empty() || !(interval > 0.)) return;
-  const bool stands =
-      std::hypot(match.x, match.y) <= kStandingSpeed * interval &&
-      std::abs(match.theta) <= kStandingTurnRate * interval;
-  if (!stands) {
-    is_standing_ = false;
+  const bool is_stationary =
+      std::hypot(match.x, match.y) <= kStationarySpeed * interval &&
+      std::abs(match.theta) <= kStationaryTurnRate * interval;
+  if (!is_stationary) {
+    is_stationary_ = false;
     return;
   }
-  if (!is_standing_) {
-    is_standing_ = true;
-    standing_since_ = from;
+  if (!is_stationary_) {
+    is_stationary_ = true;
+    stationary_since_ = from;
     sum_.setZero();
     num_summed_ = 0;
     newest_sum_.setZero();
@@ -122,10 +134,11 @@ void ImuPredictor::AddMatch(const double from, const double to,
                                    it->yaw_rate);
     ++num_newest_;
   }
-  if (from - standing_since_ < options_.standing_time || num_summed_ == 0) {
+  if (from - stationary_since_ < options_.stationary_time || num_summed_ == 0) {
     return;
   }
   const Eigen::Vector3d mean = sum_ / num_summed_;
+  last_.is_valid = false;
   bias_.acceleration = mean.head<2>();
   bias_.yaw_rate = mean.z();
   bias_is_known_ = true;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/time_offset.h"
+#include "cartographer_ext/front_end/odometry/time_offset.h"
 
 #include <cmath>
 #include <vector>

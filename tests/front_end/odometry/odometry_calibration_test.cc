@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/odometry_calibration.h"
+#include "cartographer_ext/front_end/odometry/odometry_calibration.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr double kStep = 0.1;  // seconds
 
 OdometryCalibrationOptions WayAndTurn() {
   OdometryCalibrationOptions options;
-  options.estimate_turn = true;
+  options.estimate_rotation = true;
   return options;
 }
 
@@ -97,12 +97,12 @@ TEST(CalibrationFilterTest, NeverBetterThanTheFloor) {
 // A robot whose odometry is wrong by constant factors.
 class Robot {
  public:
-  Robot(const uint64_t seed, const double way_scale, const double turn_scale,
-        const double turn_per_metre)
+  Robot(const uint64_t seed, const double translation_scale,
+        const double rotation_scale, const double rotation_per_metre)
       : random_(seed),
-        way_scale_(way_scale),
-        turn_scale_(turn_scale),
-        turn_per_metre_(turn_per_metre) {}
+        translation_scale_(translation_scale),
+        rotation_scale_(rotation_scale),
+        rotation_per_metre_(rotation_per_metre) {}
 
   // 0.5 m/s on a winding way; odometry goes `slip` times as far.
   CalibrationInterval Step(const double slip = 1.) {
@@ -113,17 +113,19 @@ class Robot {
     interval.time = time_;
     interval.interval = kStep;
     // The errors of the matched poses are not those of motions.
-    const double way_error = random_.Normal(0., 0.004);
-    const double turn_error = random_.Normal(0., 0.001);
-    interval.match =
-        Arc(way + way_error - way_error_, turn + turn_error - turn_error_);
-    way_error_ = way_error;
-    turn_error_ = turn_error;
-    const double odometry_way =
-        way / way_scale_ * slip + random_.Normal(0., 0.003 * std::sqrt(way));
+    const double translation_error = random_.Normal(0., 0.004);
+    const double rotation_error = random_.Normal(0., 0.001);
+    interval.match = Arc(way + translation_error - translation_error_,
+                         turn + rotation_error - rotation_error_);
+    translation_error_ = translation_error;
+    rotation_error_ = rotation_error;
+    const double odometry_translation =
+        way / translation_scale_ * slip +
+        random_.Normal(0., 0.003 * std::sqrt(way));
     interval.odometry = Arc(
-        odometry_way, (turn - turn_per_metre_ * odometry_way) / turn_scale_ +
-                          random_.Normal(0., 0.01 * std::sqrt(way)));
+        odometry_translation,
+        (turn - rotation_per_metre_ * odometry_translation) / rotation_scale_ +
+            random_.Normal(0., 0.01 * std::sqrt(way)));
     interval.covariance = Eigen::Vector3d(1.6e-5, 1.6e-5, 1e-6).asDiagonal();
     return interval;
   }
@@ -134,12 +136,12 @@ class Robot {
   }
 
   Random random_;
-  const double way_scale_;
-  const double turn_scale_;
-  const double turn_per_metre_;
+  const double translation_scale_;
+  const double rotation_scale_;
+  const double rotation_per_metre_;
   double time_ = 100.;
-  double way_error_ = 0.;
-  double turn_error_ = 0.;
+  double translation_error_ = 0.;
+  double rotation_error_ = 0.;
 };
 
 TEST(OdometryCalibrationTest, FindsTheScalesAndHowSureTheyAre) {
@@ -149,19 +151,20 @@ TEST(OdometryCalibrationTest, FindsTheScalesAndHowSureTheyAre) {
     Robot robot(run + 1, 1.03, 0.97, -0.02);
     OdometryCalibration calibration(WayAndTurn());
     for (int i = 0; i < 1000; ++i) calibration.Add(robot.Step());  // 50 m
-    EXPECT_NEAR(calibration.way_scale(), 1.03, 0.004);
-    EXPECT_NEAR(calibration.turn_scale(), 0.97, 0.02);
-    EXPECT_NEAR(calibration.turn_per_metre(), -0.02, 0.006);
-    EXPECT_LT(calibration.way_sigma(), 0.002);
-    way += std::pow((calibration.way_scale() - 1.03) / calibration.way_sigma(),
+    EXPECT_NEAR(calibration.translation_scale(), 1.03, 0.004);
+    EXPECT_NEAR(calibration.rotation_scale(), 0.97, 0.02);
+    EXPECT_NEAR(calibration.rotation_per_metre(), -0.02, 0.006);
+    EXPECT_LT(calibration.translation_scale_sigma(), 0.002);
+    way += std::pow((calibration.translation_scale() - 1.03) /
+                        calibration.translation_scale_sigma(),
                     2) /
            kRuns;
-    turn +=
-        std::pow((calibration.turn_scale() - 0.97) / calibration.turn_sigma(),
-                 2) /
-        kRuns;
-    per_metre += std::pow((calibration.turn_per_metre() + 0.02) /
-                              calibration.turn_per_metre_sigma(),
+    turn += std::pow((calibration.rotation_scale() - 0.97) /
+                         calibration.rotation_scale_sigma(),
+                     2) /
+            kRuns;
+    per_metre += std::pow((calibration.rotation_per_metre() + 0.02) /
+                              calibration.rotation_per_metre_sigma(),
                           2) /
                  kRuns;
   }
@@ -184,34 +187,36 @@ TEST(OdometryCalibrationTest, ASlipIsKeptOut) {
     interval.is_sound = phase < 190;
     warned.Add(interval);
   }
-  EXPECT_NEAR(warned.way_scale(), 1., 0.003);
+  EXPECT_NEAR(warned.translation_scale(), 1., 0.003);
   // So it was the warning that helped.
-  EXPECT_LT(calibration.way_scale(), 0.995);
+  EXPECT_LT(calibration.translation_scale(), 0.995);
 }
 
 TEST(OdometryCalibrationTest, WhereTheScanDoesNotTellNothingIsLearnt) {
   Robot robot(6, 1.03, 0.97, 0.01);
   const OdometryCalibrationOptions options = WayAndTurn();
-  OdometryCalibration no_way(options), no_turn(options), uncertain(options);
+  OdometryCalibration no_translation(options), no_rotation(options),
+      uncertain(options);
   for (int i = 0; i < 600; ++i) {
     CalibrationInterval interval = robot.Step();
-    interval.way_is_determined = i % 5 != 0;
-    no_way.Add(interval);
-    interval.way_is_determined = true;
-    interval.turn_is_determined = i % 5 != 0;
-    no_turn.Add(interval);
-    interval.turn_is_determined = true;
+    interval.translation_observable = i % 5 != 0;
+    no_translation.Add(interval);
+    interval.translation_observable = true;
+    interval.rotation_observable = i % 5 != 0;
+    no_rotation.Add(interval);
+    interval.rotation_observable = true;
     interval.covariance.diagonal().setConstant(0.01);
     uncertain.Add(interval);
   }
-  EXPECT_EQ(no_way.way_scale(), 1.);
-  EXPECT_NEAR(no_way.way_sigma(), options.way_sigma, 1e-12);
-  EXPECT_LT(no_way.turn_scale(), 0.99);
-  EXPECT_GT(no_turn.way_scale(), 1.02);
-  EXPECT_EQ(no_turn.turn_scale(), 1.);
-  EXPECT_EQ(no_turn.turn_per_metre(), 0.);
-  EXPECT_EQ(uncertain.way_scale(), 1.);
-  EXPECT_EQ(uncertain.turn_scale(), 1.);
+  EXPECT_EQ(no_translation.translation_scale(), 1.);
+  EXPECT_NEAR(no_translation.translation_scale_sigma(),
+              options.translation_scale_sigma, 1e-12);
+  EXPECT_LT(no_translation.rotation_scale(), 0.99);
+  EXPECT_GT(no_rotation.translation_scale(), 1.02);
+  EXPECT_EQ(no_rotation.rotation_scale(), 1.);
+  EXPECT_EQ(no_rotation.rotation_per_metre(), 0.);
+  EXPECT_EQ(uncertain.translation_scale(), 1.);
+  EXPECT_EQ(uncertain.rotation_scale(), 1.);
 }
 
 TEST(OdometryCalibrationTest, GapsAndStandingTellNothing) {
@@ -228,8 +233,8 @@ TEST(OdometryCalibrationTest, GapsAndStandingTellNothing) {
     interval.match = Pose2(random.Normal(0., 0.001), 0., 0.);
     stands.Add(interval);
   }
-  EXPECT_EQ(gaps.way_scale(), 1.);
-  EXPECT_EQ(stands.way_scale(), 1.);
+  EXPECT_EQ(gaps.translation_scale(), 1.);
+  EXPECT_EQ(stands.translation_scale(), 1.);
 }
 
 TEST(OdometryCalibrationTest, NothingIsAppliedBeyondTheLimit) {
@@ -238,15 +243,15 @@ TEST(OdometryCalibrationTest, NothingIsAppliedBeyondTheLimit) {
   Robot robot(9, 1.05, 1., 0.05);
   OdometryCalibration calibration(options);
   for (int i = 0; i < 1000; ++i) calibration.Add(robot.Step());
-  EXPECT_EQ(calibration.way_scale(), 1.02);
-  EXPECT_EQ(calibration.turn_per_metre(), 0.02);
+  EXPECT_EQ(calibration.translation_scale(), 1.02);
+  EXPECT_EQ(calibration.rotation_per_metre(), 0.02);
 }
 
 TEST(OdometryCalibrationTest, CorrectsAMotionByHand) {
   OdometryCalibrationOptions options;
-  options.way_scale = 1.1;
-  options.turn_scale = 0.9;
-  options.turn_per_metre = 0.05;
+  options.translation_scale = 1.1;
+  options.rotation_scale = 0.9;
+  options.rotation_per_metre = 0.05;
   const OdometryCalibration calibration(options);
   // 2 m straight on become 2.2 m on an arc of 0.1 rad.
   const Pose2 straight = calibration.Correct(Pose2(2., 0., 0.));
@@ -260,9 +265,9 @@ TEST(OdometryCalibrationTest, CorrectsAMotionByHand) {
 
 TEST(OdometryCalibrationTest, WhatIsUnknownByHand) {
   OdometryCalibrationOptions options = WayAndTurn();
-  options.way_sigma = 0.02;
-  options.turn_sigma = 0.1;
-  options.turn_per_metre_sigma = 0.01;
+  options.translation_scale_sigma = 0.02;
+  options.rotation_scale_sigma = 0.1;
+  options.rotation_per_metre_sigma = 0.01;
   const Eigen::Matrix3d straight =
       OdometryCalibration(options).Covariance(Pose2(2., 0., 0.));
   // Along 0.02 * 2 m; turn 0.01 * 2 m, across half of the way times that.
@@ -278,8 +283,8 @@ TEST(OdometryCalibrationTest, WhatIsUnknownByHand) {
 
 TEST(OdometryCalibrationTest, OffChangesNothing) {
   OdometryCalibrationOptions options;
-  options.estimate_way = false;
-  options.estimate_turn = false;
+  options.estimate_odometry_scale = false;
+  options.estimate_rotation = false;
   Robot robot(10, 1.03, 0.97, 0.01);
   OdometryCalibration calibration(options);
   for (int i = 0; i < 300; ++i) calibration.Add(robot.Step());

@@ -19,8 +19,8 @@
 // only turns are compared. There a speed that changes faster than the robot can
 // (wheels that lose or find their grip) is all that is left to see; it is
 // reported as a suspicion and changes nothing.
-#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_MONITOR_H_
-#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_MONITOR_H_
+#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_MONITOR_H_
+#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_MONITOR_H_
 
 #include <deque>
 
@@ -61,7 +61,7 @@ struct MotionComparison {
   bool frozen = false;  // odometry repeated one pose
   Pose2 match;
   // Whether the scan tells how far the robot went along its way.
-  bool way_is_determined = true;
+  bool translation_observable = true;
   // Change of forward speed by an IMU, m/s; only with has_inertial.
   bool has_inertial = false;
   double inertial_speed_change = 0.;
@@ -90,7 +90,7 @@ class OdometryMonitor {
   // The motion by odometry from the last moment it agreed until now, against
   // the motion by the matches: (robot now <- where odometry, once it has caught
   // up, puts the robot). Identity while it agrees.
-  Pose2 BacklogUntilNow() const;
+  Pose2 MissedMotion() const;
 
  private:
   struct Entry {
@@ -120,4 +120,4 @@ class OdometryMonitor {
 }  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_MONITOR_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_MONITOR_H_

@@ -2,17 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Prediction from an IMU: preintegration between two scans (paper G, improved
-// graph optimisation 2024, section 3.2) with biases learnt while the robot
-// stands. Readings are to be gravity aligned, so that tilt does not turn
-// gravity into acceleration; what is left of it is part of the bias.
-#ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_PREDICTOR_H_
-#define CARTOGRAPHER_EXT_FRONT_END_IMU_PREDICTOR_H_
+// graph optimisation 2024, section 3.2) with biases estimated while the robot
+// is stationary. Readings must be gravity aligned, so that tilt does not turn
+// gravity into acceleration; the remainder is part of the bias.
+//
+// A scan asks for the same interval before and after its match, so the last
+// integration is kept.
+#ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_IMU_PREDICTOR_H_
+#define CARTOGRAPHER_EXT_FRONT_END_IMU_IMU_PREDICTOR_H_
 
 #include <deque>
 
 #include "Eigen/Core"
+#include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/front_end/imu_preintegration.h"
+#include "cartographer_ext/front_end/imu/imu_preintegration.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -22,13 +26,13 @@ struct ImuPredictorOptions {
   ImuNoiseOptions noise;
   double yaw_rate_bias_noise = 0.002;     // rad/s
   double acceleration_bias_noise = 0.05;  // m/s^2
-  double standing_time = 1.;              // seconds
+  double stationary_time = 1.;            // seconds
 };
 
 struct ImuMotion {
   Pose2 motion;  // (robot at `from` <- robot at `to`)
-  // Of (x, y, theta) of the motion, biases included, that of the speed at
-  // `from` not.
+  // Of (x, y, theta) of the motion. Includes the biases, not the velocity at
+  // `from`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   double speed_change = 0.;  // forwards, m/s
 };
@@ -37,7 +41,7 @@ class ImuPredictor {
  public:
   explicit ImuPredictor(const ImuPredictorOptions& options);
 
-  // Late and not finite readings are ignored.
+  // Readings that are not finite or not later than the last one are ignored.
   void Add(const PlanarImuReading& reading);
 
   // The motion between two times, seconds, with the velocity at `from` in the
@@ -45,22 +49,33 @@ class ImuPredictor {
   bool Predict(double from, double to, const Eigen::Vector2d& velocity,
                ImuMotion* motion) const;
 
-  // What really happened between two scans; learns the biases when it is
-  // nothing.
+  // The matched motion between two scans; estimates the biases when it is zero.
   void AddMatch(double from, double to, const Pose2& match);
 
   const ImuBias& bias() const { return bias_; }
   bool bias_is_known() const { return bias_is_known_; }
 
  private:
+  absl::optional<PreintegratedImu> Preintegrate(double from, double to) const;
+
   const ImuPredictorOptions options_;
   std::deque<PlanarImuReading> readings_;
   ImuBias bias_;
   bool bias_is_known_ = false;
+  // Of the last successful Preintegrate(), invalid after any change of the
+  // readings or of the biases.
+  struct Preintegrated {
+    bool is_valid = false;
+    double from = 0.;
+    double to = 0.;
+    PreintegratedImu imu;
+  };
+  mutable Preintegrated last_;
   // Sums over the readings since the robot stopped. Those of the newest
-  // interval wait for the next one: in it the robot may have set off.
-  double standing_since_ = 0.;
-  bool is_standing_ = false;
+  // interval are added with the next one: in it the robot may have started to
+  // move.
+  double stationary_since_ = 0.;
+  bool is_stationary_ = false;
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   int num_summed_ = 0;
   Eigen::Vector3d newest_sum_ = Eigen::Vector3d::Zero();
@@ -70,4 +85,4 @@ class ImuPredictor {
 }  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_FRONT_END_IMU_PREDICTOR_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_IMU_IMU_PREDICTOR_H_

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/wall_filling.h"
+#include "cartographer_ext/front_end/point_cloud/wall_filling.h"
 
 #include <limits>
 

@@ -12,8 +12,8 @@
 // The estimate is the minimum, refined by the parabola through its neighbours,
 // and taken over only when there is enough evidence and it is clearly better
 // than the value in force. A few turns on the spot are enough.
-#ifndef CARTOGRAPHER_EXT_FRONT_END_TIME_OFFSET_H_
-#define CARTOGRAPHER_EXT_FRONT_END_TIME_OFFSET_H_
+#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_TIME_OFFSET_H_
+#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_TIME_OFFSET_H_
 
 #include <vector>
 
@@ -62,4 +62,4 @@ class TimeOffsetEstimator {
 }  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_FRONT_END_TIME_OFFSET_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_TIME_OFFSET_H_

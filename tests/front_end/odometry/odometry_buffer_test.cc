@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/odometry_buffer.h"
+#include "cartographer_ext/front_end/odometry/odometry_buffer.h"
 
 #include <limits>
 
@@ -45,15 +45,15 @@ TEST(OdometryBufferTest, GoesOnWithTheLastVelocityForABoundedTime) {
 
 TEST(OdometryBufferTest, TellsHowOftenAReadingComes) {
   OdometryBuffer buffer(100., 100, 0.3);
-  EXPECT_EQ(buffer.UsualInterval(), 0.);
+  EXPECT_EQ(buffer.MedianInterval(), 0.);
   buffer.Add(0., Pose2());
-  EXPECT_EQ(buffer.UsualInterval(), 0.);
+  EXPECT_EQ(buffer.MedianInterval(), 0.);
   buffer.Add(3., Pose2());
-  EXPECT_DOUBLE_EQ(buffer.UsualInterval(), 3.);
+  EXPECT_DOUBLE_EQ(buffer.MedianInterval(), 3.);
   // One gap among many does not count.
   for (int i = 1; i <= 20; ++i)
     buffer.Add(3. + 0.4 * i, Pose2(0.2 * i, 0., 0.));
-  EXPECT_NEAR(buffer.UsualInterval(), 0.4, 1e-9);
+  EXPECT_NEAR(buffer.MedianInterval(), 0.4, 1e-9);
   // Readings that are that rare are extrapolated by one interval.
   OdometrySample sample;
   ASSERT_TRUE(buffer.Lookup(11.4, &sample));

@@ -12,16 +12,15 @@
 //   G eq. 11     v' = v + a_mean dt
 //   G eq. 12     theta' = theta + omega_mean dt
 //   G eq. 13     a_mean, omega_mean: midpoint of two readings, the former
-//   rotated
-//                into the frame of the start, biases removed
+//                rotated into the frame of the start, biases removed
 //
 // In the plane the quaternions are headings and gravity has no component, once
-// the readings are expressed in a gravity-aligned frame, which is the caller's
-// part. The covariance of (alpha, beta, gamma) is propagated with the readings'
+// the readings are expressed in a gravity-aligned frame, which the caller does.
+// The covariance of (alpha, beta, gamma) is propagated with the readings'
 // white noise; Jacobians with respect to the biases are not needed, because the
 // biases are fixed over the short interval (as in the paper).
-#ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_PREINTEGRATION_H_
-#define CARTOGRAPHER_EXT_FRONT_END_IMU_PREINTEGRATION_H_
+#ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_IMU_PREINTEGRATION_H_
+#define CARTOGRAPHER_EXT_FRONT_END_IMU_IMU_PREINTEGRATION_H_
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
@@ -92,4 +91,4 @@ PlanarState Predict(const PlanarState& state, const PreintegratedImu& imu);
 }  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_FRONT_END_IMU_PREINTEGRATION_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_IMU_IMU_PREINTEGRATION_H_

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/odometry_predictor.h"
+#include "cartographer_ext/front_end/odometry/odometry_predictor.h"
 
 #include <cmath>
 #include <vector>
@@ -22,7 +22,7 @@ constexpr size_t kMaxPending = 20;
 // interval between readings, ...
 constexpr double kMaxLateness = 1.25;
 // ... if that is not longer than this, seconds.
-constexpr double kMaxUsualInterval = 0.8;
+constexpr double kMaxMedianInterval = 0.8;
 
 }  // namespace
 
@@ -64,8 +64,8 @@ bool OdometryPredictor::Predict(const double from, const double to,
   }
   motion->is_late = end.extrapolated > noise_.max_extrapolation;
   if (motion->is_late) {
-    const double usual = buffer_.UsualInterval();
-    if (usual > kMaxUsualInterval || end.extrapolated > kMaxLateness * usual) {
+    const double usual = buffer_.MedianInterval();
+    if (usual > kMaxMedianInterval || end.extrapolated > kMaxLateness * usual) {
       return false;
     }
   }

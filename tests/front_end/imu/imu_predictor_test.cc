@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/imu_predictor.h"
+#include "cartographer_ext/front_end/imu/imu_predictor.h"
 
 #include <cmath>
 #include <limits>
@@ -50,7 +50,7 @@ TEST(ImuPredictorTest, OnlyWhereThereAreReadings) {
 
 TEST(ImuPredictorTest, LearnsTheBiasWhileStandingAndOnlyThen) {
   ImuPredictorOptions options;
-  options.standing_time = 1.;
+  options.stationary_time = 1.;
   ImuPredictor predictor(options);
   for (int i = 0; i <= 500; ++i) predictor.Add(Reading(0.01 * i, 0.3, 0.02));
   for (int i = 0; i < 5; ++i) {
@@ -72,7 +72,7 @@ TEST(ImuPredictorTest, LearnsTheBiasWhileStandingAndOnlyThen) {
 // The robot sets off within an interval that still looks like standing.
 TEST(ImuPredictorTest, SettingOffIsNoBias) {
   ImuPredictorOptions options;
-  options.standing_time = 1.;
+  options.stationary_time = 1.;
   ImuPredictor predictor(options);
   for (int i = 0; i <= 300; ++i) {
     predictor.Add(Reading(0.01 * i, 0., i < 155 ? 0.02 : 0.3));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/odometry_monitor.h"
+#include "cartographer_ext/front_end/odometry/odometry_monitor.h"
 
 #include <algorithm>
 
@@ -27,7 +27,7 @@ class Drive {
     comparison.odometry = odometry;
     comparison.match = match;
     comparison.frozen = frozen;
-    comparison.way_is_determined = determined;
+    comparison.translation_observable = determined;
     return monitor_.Add(comparison);
   }
 
@@ -67,14 +67,14 @@ TEST(OdometryMonitorTest, AStaleBurstAndTheJumpBehindIt) {
     EXPECT_EQ(drive.Step(kStill, kForward, true), OdometryState::kStale);
     EXPECT_FALSE(drive.monitor()->IsTrusted());
     // What odometry owes.
-    EXPECT_NEAR(drive.monitor()->BacklogUntilNow().x, -0.05 * (i + 1), 1e-9);
+    EXPECT_NEAR(drive.monitor()->MissedMotion().x, -0.05 * (i + 1), 1e-9);
   }
   // It catches up with 6 steps in one, which belongs to the burst.
   const OdometryState catching_up = drive.Step(Pose2(0.6, 0., 0.), kForward);
   EXPECT_NE(catching_up, OdometryState::kOk);
   EXPECT_EQ(drive.Step(kForward, kForward), OdometryState::kOk);
   EXPECT_TRUE(drive.monitor()->IsTrusted());
-  EXPECT_NEAR(drive.monitor()->BacklogUntilNow().x, 0., 1e-9);
+  EXPECT_NEAR(drive.monitor()->MissedMotion().x, 0., 1e-9);
 }
 
 TEST(OdometryMonitorTest, StandingIsNotStale) {
@@ -155,7 +155,7 @@ TEST(OdometryMonitorTest, AnImuClearsTheRobotsOwnAcceleration) {
   OdometryMonitor monitor(options);
   MotionComparison comparison;
   comparison.interval = kInterval;
-  comparison.way_is_determined = false;
+  comparison.translation_observable = false;
   comparison.has_inertial = true;
   comparison.odometry = comparison.match = Pose2(0.03, 0., 0.);
   comparison.time = 0.1;

@@ -17,8 +17,8 @@
 //
 // On a straight wall hardly any point passes and a matcher would starve, so a
 // floor fills up with the most varied of the remaining points.
-#ifndef CARTOGRAPHER_EXT_FRONT_END_ADAPTIVE_FEATURES_H_
-#define CARTOGRAPHER_EXT_FRONT_END_ADAPTIVE_FEATURES_H_
+#ifndef CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_ADAPTIVE_FEATURES_H_
+#define CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_ADAPTIVE_FEATURES_H_
 
 #include <vector>
 
@@ -48,4 +48,4 @@ std::vector<int> SelectFeatures(const AdaptiveFeatureOptions& options,
 }  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_FRONT_END_ADAPTIVE_FEATURES_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_ADAPTIVE_FEATURES_H_

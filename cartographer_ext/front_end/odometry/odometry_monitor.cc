@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/odometry_monitor.h"
+#include "cartographer_ext/front_end/odometry/odometry_monitor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +11,10 @@ namespace front_end {
 namespace {
 
 // Motions below these are standing.
-constexpr double kStandingDistance = 0.03;  // metres
-constexpr double kStandingAngle = 0.035;    // radians
+constexpr double kStationaryDistance = 0.03;  // metres
+constexpr double kStationaryAngle = 0.035;    // radians
 // What stamps that are not quite even make of a steady motion, metres.
-constexpr double kUnevenWay = 0.06;
+constexpr double kStampJitterDistance = 0.06;
 // A fault ends at this part of the gate, so that it does not flicker.
 constexpr double kExitRatio = 0.4;
 // A suspected slip is forgotten after this long, seconds.
@@ -25,15 +25,15 @@ constexpr size_t kMaxEntries = 200;
 double Distance(const Pose2& pose) { return std::hypot(pose.x, pose.y); }
 
 bool IsMotion(const Pose2& motion) {
-  return Distance(motion) > kStandingDistance ||
-         std::abs(motion.theta) > kStandingAngle;
+  return Distance(motion) > kStationaryDistance ||
+         std::abs(motion.theta) > kStationaryAngle;
 }
 
 // Of a clear motion odometry saw hardly half.
-bool FallsShort(const Pose2& odometry, const Pose2& motion) {
+bool MissesMotion(const Pose2& odometry, const Pose2& motion) {
   return IsMotion(motion) && Distance(odometry) <= 0.5 * Distance(motion) &&
          std::abs(odometry.theta) <=
-             0.5 * std::max(std::abs(motion.theta), kStandingAngle);
+             0.5 * std::max(std::abs(motion.theta), kStationaryAngle);
 }
 
 }  // namespace
@@ -69,10 +69,10 @@ bool OdometryMonitor::IsSuspect(const double interval, const Pose2& odometry,
                                 const bool frozen,
                                 const Pose2& expected) const {
   if (!options_.enabled) return false;
-  if (frozen && FallsShort(odometry, expected)) return true;
-  const double allowed =
-      std::min(options_.jump_distance,
-               kUnevenWay + options_.max_acceleration * interval * interval);
+  if (frozen && MissesMotion(odometry, expected)) return true;
+  const double allowed = std::min(
+      options_.jump_distance,
+      kStampJitterDistance + options_.max_acceleration * interval * interval);
   return std::hypot(odometry.x - expected.x, odometry.y - expected.y) >
              allowed ||
          std::abs(NormalizeAngle(odometry.theta - expected.theta)) >
@@ -88,7 +88,8 @@ OdometryState OdometryMonitor::CheckInterval(
                               IsMotion(comparison.match);
     return stands_still ? OdometryState::kStale : OdometryState::kOk;
   }
-  if (comparison.frozen && FallsShort(comparison.odometry, comparison.match)) {
+  if (comparison.frozen &&
+      MissesMotion(comparison.odometry, comparison.match)) {
     return OdometryState::kStale;
   }
   const double distance =
@@ -113,7 +114,7 @@ OdometryState OdometryMonitor::CheckWindow() const {
   if (ChiSquare(odometry, match) <= gate) return OdometryState::kOk;
   const double sum = std::abs(odometry.x + match.x);
   const double larger = std::max(std::abs(odometry.x), std::abs(match.x));
-  if (odometry.x * match.x < 0. && larger > 2. * kStandingDistance &&
+  if (odometry.x * match.x < 0. && larger > 2. * kStationaryDistance &&
       sum < 0.4 * larger) {
     return OdometryState::kWrongSign;
   }
@@ -136,7 +137,7 @@ bool OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
     excess_speed_ = ends ? 0. : excess_speed_ + change;
     suspected_since_ = comparison.time;
   }
-  if (comparison.way_is_determined ||
+  if (comparison.translation_observable ||
       comparison.time - suspected_since_ > kSuspicionTime) {
     excess_speed_ = 0.;
   }
@@ -146,7 +147,7 @@ bool OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
 OdometryState OdometryMonitor::Add(const MotionComparison& given) {
   MotionComparison comparison = given;
   Pose2& match = comparison.match;
-  if (!comparison.way_is_determined) {
+  if (!comparison.translation_observable) {
     // The way of the match is that of a prediction; whatever that was, it says
     // nothing against odometry.
     match.x = comparison.odometry.x;
@@ -205,7 +206,7 @@ OdometryState OdometryMonitor::Add(const MotionComparison& given) {
   return state_;
 }
 
-Pose2 OdometryMonitor::BacklogUntilNow() const {
+Pose2 OdometryMonitor::MissedMotion() const {
   const Entry& now = window_.back();
   return Between(now.match, last_agreed_.match) *
          Between(last_agreed_.odometry, now.odometry);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/odometry_buffer.h"
+#include "cartographer_ext/front_end/odometry/odometry_buffer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ Pose2 OdometryBuffer::Extrapolate(const double seconds) const {
          Pose2(motion.x * ratio, motion.y * ratio, motion.theta * ratio);
 }
 
-double OdometryBuffer::UsualInterval() const {
+double OdometryBuffer::MedianInterval() const {
   std::vector<double> intervals;
   for (size_t i = readings_.size();
        i > 1 && intervals.size() + 1 < kUsualReadings; --i) {

@@ -14,16 +14,16 @@
 //   across   the same, and d / 2 times that of the turn
 //   turn     rotation + per_radian |a| + per_metre |d|
 // Besides, what the calibration leaves unknown.
-#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_PREDICTOR_H_
-#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_PREDICTOR_H_
+#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_
+#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_
 
 #include <deque>
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/front_end/odometry_buffer.h"
-#include "cartographer_ext/front_end/odometry_calibration.h"
-#include "cartographer_ext/front_end/time_offset.h"
+#include "cartographer_ext/front_end/odometry/odometry_buffer.h"
+#include "cartographer_ext/front_end/odometry/odometry_calibration.h"
+#include "cartographer_ext/front_end/odometry/time_offset.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -97,4 +97,4 @@ class OdometryPredictor {
 }  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_PREDICTOR_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_

@@ -7,8 +7,8 @@
 // shortest way in angle). Beyond the last one it goes on with the velocity of
 // the last tenth of a second, for a bounded time: a scan may arrive one message
 // before the odometry of its moment. Before the first one it is the first.
-#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_BUFFER_H_
-#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_BUFFER_H_
+#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_BUFFER_H_
+#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_BUFFER_H_
 
 #include <cstddef>
 #include <deque>
@@ -40,7 +40,7 @@ class OdometryBuffer {
   bool Lookup(double time, OdometrySample* sample) const;
 
   // Median time between the last readings, seconds; 0 with fewer than two.
-  double UsualInterval() const;
+  double MedianInterval() const;
 
   bool empty() const { return readings_.empty(); }
   double first_time() const { return readings_.front().time; }
@@ -63,4 +63,4 @@ class OdometryBuffer {
 }  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_BUFFER_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_BUFFER_H_

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/front_end/odometry_predictor.h"
+#include "cartographer_ext/front_end/odometry/odometry_predictor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(OdometryPredictorTest, TheMotionBetweenTheScansItself) {
 TEST(OdometryPredictorTest, TheClockOffsetShiftsBothEnds) {
   OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.1),
                               NoCalibration());
-  // Stands until t = 1, then turns at 1 rad/s.
+  // IsStationary until t = 1, then turns at 1 rad/s.
   for (int i = 0; i <= 60; ++i) {
     const double t = 0.05 * i;
     predictor.Add(t, Pose2(0., 0., std::max(0., t - 1.)));

@@ -10,8 +10,8 @@
 // such place. So before a scan is inserted, the gaps between successive points
 // are filled where the wall is known to go on: four points in a row on one
 // line.
-#ifndef CARTOGRAPHER_EXT_FRONT_END_WALL_FILLING_H_
-#define CARTOGRAPHER_EXT_FRONT_END_WALL_FILLING_H_
+#ifndef CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_WALL_FILLING_H_
+#define CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_WALL_FILLING_H_
 
 #include <vector>
 
@@ -35,4 +35,4 @@ std::vector<Eigen::Vector3f> FillWalls(
 }  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_FRONT_END_WALL_FILLING_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_WALL_FILLING_H_
