@@ -17,7 +17,7 @@ MotionPredictorOptions ToMotionPredictorOptions(
     const proto::FrontEndOptions& options);
 AdaptiveFeatureOptions ToAdaptiveFeatureOptions(
     const proto::FrontEndOptions& options);
-// `resolution` of the grid, metres. Switched off, no gap is small enough.
+// `resolution` of the grid, metres. If disabled, max_gap is 0.
 WallFillingOptions ToWallFillingOptions(const proto::FrontEndOptions& options,
                                         double resolution);
 

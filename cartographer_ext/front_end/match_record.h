@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Records of matched scans: filled in from the parts of local SLAM, as bytes
-// (length-delimited messages one after the other: a varint length, then the
-// message) and as a table (CSV with a head line, one scan a line).
+// Records of matched scans: filled in from the parts of local SLAM, serialized
+// (length-delimited messages: a varint length, then the message) and as CSV (a
+// heading, one line per scan).
 #ifndef CARTOGRAPHER_EXT_FRONT_END_MATCH_RECORD_H_
 #define CARTOGRAPHER_EXT_FRONT_END_MATCH_RECORD_H_
 
@@ -31,14 +31,14 @@ void SetPrediction(PredictionSource source, OdometryState state,
 void SetCalibration(const OdometryCalibration& calibration,
                     proto::MatchRecord* record);
 
-// Of (x, y, theta); zero where the record has none.
+// Of (x, y, theta); zero if the record has none.
 Eigen::Matrix3d Covariance(const proto::MatchRecord& record);
 
 // Appends one record.
 void AppendRecord(const proto::MatchRecord& record, std::string* bytes);
 
-// All records; DataLoss with the byte offset where they end in the middle of a
-// record or do not decode.
+// All records; DataLoss with the byte offset of a record that is truncated or
+// cannot be decoded.
 absl::StatusOr<std::vector<proto::MatchRecord>> ParseRecords(
     absl::string_view bytes);
 

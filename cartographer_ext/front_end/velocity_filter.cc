@@ -12,9 +12,9 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// Standard deviation of the turn rate before anything is known of it, rad/s:
-// robots seldom wake up turning fast.
-constexpr double kFirstTurnRate = 0.2;
+// Initial standard deviation of the rotation rate, rad/s: robots seldom start
+// while they turn fast.
+constexpr double kInitialTurnRateSigma = 0.2;
 
 // Of the change of the velocity over `interval`, per second squared.
 Eigen::Matrix3d Change(const ConstantVelocityOptions& options,
@@ -45,8 +45,8 @@ VelocityFilter::VelocityFilter(const ConstantVelocityOptions& options,
                                        rotation_sigma * rotation_sigma)
                            .asDiagonal()),
       covariance_(Largest(options)) {
-  covariance_(2, 2) =
-      std::min(covariance_(2, 2), kFirstTurnRate * kFirstTurnRate);
+  covariance_(2, 2) = std::min(covariance_(2, 2),
+                               kInitialTurnRateSigma * kInitialTurnRateSigma);
 }
 
 Pose2 VelocityFilter::Motion(const double interval) const {
@@ -84,7 +84,7 @@ void VelocityFilter::AddMatch(const double interval, const Pose2& motion,
   velocity_.theta *= std::exp(-interval / options_.turn_time);
   velocity_.theta += change.z();
   covariance_ = after;
-  // Never surer than nothing, never less sure than at first.
+  // Variances stay between zero and their initial values.
   const Eigen::Vector3d largest = Largest(options_).diagonal();
   for (int k = 0; k < 3; ++k) {
     if (after(k, k) >= 0. && after(k, k) <= largest(k)) continue;

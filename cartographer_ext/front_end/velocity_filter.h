@@ -2,21 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The velocity of a robot without odometry, from its matched scans: a Kalman
-// filter over a velocity that changes by chance, robot's frame.
+// filter with a random-walk velocity in the robot's frame.
 //
-// The motion predicted over dt is v dt (less for the turn, see below), with
-// covariance P = V dt^2 + S, S that of a pose. A match that began there, put
-// the robot d beside it and left the covariance C, tells of the velocity
+// The motion predicted over dt is v dt (with a decaying rotation, see below),
+// of covariance P = V dt^2 + S, with S that of a pose. A match that started
+// from the prediction, moved the robot by d from it and has the covariance C
+// updates the velocity:
 //
 //   v <- v + K d,   V <- V - K (P - C) K^T,   K = V dt P^-1.
 //
-// Where the scan leaves a direction open, C is P, d is nothing, and the
-// velocity stays what it was; where it tells little, d is mostly chance, and
-// the plain difference of two poses would make a lasting drift of it. Between
-// scans V grows by the change of speed that is to be expected, and the turn
-// rate dies away: robots turn to go straight again, and a turn that was begun
-// by mistake where the scan does not tell (within a round wall) comes to an
-// end.
+// Along a degenerate direction of the scan C is P and d is zero, so the
+// velocity does not change; along a poorly observable one d is mostly noise,
+// and the difference of two poses would turn it into lasting drift. Between
+// scans V grows by the expected change of speed, and the rotation rate decays:
+// robots turn in order to drive straight on, and a spurious rotation where the
+// scan cannot observe it (inside a round wall) comes to an end.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_VELOCITY_FILTER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_VELOCITY_FILTER_H_
 
@@ -27,10 +27,10 @@ namespace cartographer_ext {
 namespace front_end {
 
 struct ConstantVelocityOptions {
-  // Of the change between two scans, at most.
+  // Upper bounds of the change between two scans.
   double speed_noise = 0.5;      // m/s
   double turn_rate_noise = 0.5;  // rad/s
-  // That grows with the time between them.
+  // Growth of the change with the time between them.
   double acceleration_noise = 1.;       // m/s^2
   double turn_acceleration_noise = 1.;  // rad/s^2
   double turn_time = 1.;                // seconds, > 0
@@ -46,19 +46,20 @@ class VelocityFilter {
   // Per second; zero at first.
   const Pose2& velocity() const { return velocity_; }
 
-  // v dt, the turn v T (1 - exp(-dt / T)), whatever dt.
+  // v dt, for rotation v T (1 - exp(-dt / T)).
   Pose2 Motion(double interval) const;
   // P above.
   Eigen::Matrix3d MotionCovariance(double interval) const;
 
-  // The match at the end of `interval` (> 0) began at Motion(interval)
-  // with MotionCovariance(interval); `covariance` is what it left, in the frame
-  // of the robot before.
+  // The match at the end of `interval` (> 0) started from Motion(interval) with
+  // MotionCovariance(interval); `covariance` is that of the match, in the frame
+  // of the robot at the last scan.
   void AddMatch(double interval, const Pose2& motion,
                 const Eigen::Matrix3d& covariance);
-  // An accelerometer told a change of the speed forwards, metres a second.
+  // Adds a change of the forward speed measured by an accelerometer, m/s.
   void Accelerate(double speed_change) { velocity_.x += speed_change; }
-  // It began elsewhere: the velocity is the difference of the poses.
+  // The match did not start from the prediction: the velocity becomes the
+  // difference of the poses.
   void Restart(double interval, const Pose2& motion);
 
  private:

@@ -129,9 +129,10 @@ TEST(MotionPredictorTest, TheTurnIsWeighedBetweenOdometryAndImu) {
   EXPECT_LT(prediction.covariance(2, 2), 1e-6);
 }
 
-// Where the scan hardly tells the turn, matches of a robot that stands jitter;
-// the wheels tell that it stands, and the gyroscope's bias is learnt.
-TEST(MotionPredictorTest, WheelsThatStandTellTheBiasOfTheImu) {
+// Where the rotation is hardly observable in the scan, the matches of a
+// stationary robot jitter; the wheels show that it is stationary, and the
+// gyroscope's bias is estimated.
+TEST(MotionPredictorTest, StationaryWheelsLetTheImuEstimateItsBias) {
   for (const bool wheels_turn : {false, true}) {
     MotionPredictorOptions options;
     options.imu.yaw_rate_bias_noise = 1e-4;
@@ -146,7 +147,7 @@ TEST(MotionPredictorTest, WheelsThatStandTellTheBiasOfTheImu) {
         predictor.AddImu(reading);
       }
       predictor.AddOdometry(t, Pose2(0., 0., wheels_turn ? 0.002 * i : 0.));
-      // 0.05 rad/s are not standing by themselves.
+      // 0.05 rad/s alone do not look stationary.
       predictor.AddMatch(t, Matched(Pose2(0., 0., i % 2 ? 0.005 : -0.005)));
     }
     predictor.AddOdometry(4.05, Pose2(0., 0., wheels_turn ? 0.081 : 0.));
@@ -159,16 +160,15 @@ TEST(MotionPredictorTest, WheelsThatStandTellTheBiasOfTheImu) {
   }
 }
 
-// Without odometry the way comes from the velocity that the matches have shown;
-// what the bias of the accelerometer may feign is left out, a robot that brakes
-// is not.
+// Without odometry the translation comes from the velocity of the matches.
+// Accelerations within the uncertainty of the bias are ignored, braking is not.
 TEST(MotionPredictorTest, SmallAccelerationsAreTakenForBias) {
   for (const double acceleration : {-0.05, -1.}) {
     MotionPredictor predictor((MotionPredictorOptions()));
     for (int i = 0; i <= 420; ++i) {
       PlanarImuReading reading;
       reading.time = 0.01 * i;
-      // IsStationary for two seconds.
+      // Stationary for two seconds.
       reading.acceleration.x() = i < 400 ? 0.02 : 0.02 + acceleration;
       predictor.AddImu(reading);
     }
@@ -214,9 +214,9 @@ TEST(MotionPredictorTest, OdometryCanBeSwitchedOff) {
   EXPECT_EQ(predictor.Predict(0.7).motion.x, 0.);
 }
 
-// Matches that hang back by 40 % of every step: the prediction goes on from the
-// last scan in the map, not from them.
-TEST(MotionPredictorTest, OdometryCountsFromTheLastScanInTheMap) {
+// Matches that fall short by 40 % of every step: the prediction starts from the
+// last inserted scan, not from them.
+TEST(MotionPredictorTest, OdometryPredictsFromTheLastInsertion) {
   MotionPredictor predictor((MotionPredictorOptions()));
   for (int i = 0; i <= 10; ++i) {
     predictor.AddOdometry(0.1 * i, Pose2(0.02 * i, 0., 0.01 * i));
@@ -261,7 +261,7 @@ TEST(MotionPredictorTest, SlowOdometryIsExtrapolatedAndComparedLater) {
       EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
       EXPECT_NEAR(prediction.motion.x, 0.2, 1e-9);
       EXPECT_FALSE(prediction.is_uncertain);
-      // Hardly more is known than a velocity tells.
+      // Hardly more certain than by velocity.
       EXPECT_GT(prediction.covariance(0, 0), 0.2 * 0.2);
     }
     const OdometryState state =
@@ -286,13 +286,13 @@ TEST(MotionPredictorTest, WhatIsUnknownGrowsWithTheGap) {
 }
 
 // A drive of 60 s with a scan every 0.1 s and odometry every 0.05 s, on which
-// the matcher is right up to a centimetre and knows nothing of odometry.
+// the matcher is right within a centimetre and independent of odometry.
 struct DriveResult {
-  int faults_in = 0;   // scans in the span of the fault that were told
-  int scans_in = 0;    // scans in the span
-  int faults_out = 0;  // scans outside, a second of recovery left out
+  int faults_in = 0;   // detected faults during the fault
+  int scans_in = 0;    // scans during the fault
+  int faults_out = 0;  // false detections, without a second of recovery
   int scans_out = 0;
-  double mean_error = 0.;  // of the predicted way between two scans, metres
+  double mean_error = 0.;  // of the predicted translation between scans, metres
 };
 
 DriveResult SimulateDrive(const double fault_start, const double fault_end,
@@ -324,13 +324,13 @@ DriveResult SimulateDrive(const double fault_start, const double fault_end,
                         motion.theta + random.Normal(0., 0.001));
     const OdometryState state = predictor.AddMatch(t, Matched(matched));
     predictor.AddInsertion();
-    const bool told = state != OdometryState::kOk;
+    const bool is_fault = state != OdometryState::kOk;
     if (t > fault_start + 0.6 && t <= fault_end) {
       ++result.scans_in;
-      result.faults_in += told;
+      result.faults_in += is_fault;
     } else if (t <= fault_start || t > fault_end + 1.5) {
       ++result.scans_out;
-      result.faults_out += told;
+      result.faults_out += is_fault;
     }
   }
   result.mean_error /= predictions;
@@ -372,8 +372,9 @@ TEST(MotionPredictorTest, AStaleBurstIsToldAndBridged) {
   EXPECT_LT(result.mean_error, 0.01);
 }
 
-// 0.5 m/s, odometry 3 % short, scans every 0.1 s; `told` of them tell the way.
-double ForeseenWay(const bool told) {
+// 0.5 m/s, odometry 3 % short, scans every 0.1 s, in which the translation is
+// `observable` or not.
+double PredictedTranslation(const bool observable) {
   MotionPredictor predictor((MotionPredictorOptions()));
   double odometry_time = 0.;
   for (int i = 0; i <= 500; ++i) {
@@ -382,7 +383,7 @@ double ForeseenWay(const bool told) {
                             Pose2(0.5 * odometry_time / 1.03, 0., 0.));
     }
     MatchedMotion matched = Matched(Pose2(0.05, 0., 0.));
-    matched.translation_observable = told;
+    matched.translation_observable = observable;
     matched.covariance = Eigen::Vector3d(1e-5, 1e-5, 1e-6).asDiagonal();
     predictor.AddMatch(0.1 * i, matched);
     predictor.AddInsertion();
@@ -395,9 +396,9 @@ double ForeseenWay(const bool told) {
 }
 
 TEST(MotionPredictorTest, TheScaleOfOdometryIsLearnt) {
-  EXPECT_NEAR(ForeseenWay(true), 0.5, 0.0015);
+  EXPECT_NEAR(PredictedTranslation(true), 0.5, 0.0015);
   // A match that is odometry's own does not confirm it, nor deny it.
-  EXPECT_NEAR(ForeseenWay(false), 0.5 / 1.03, 1e-9);
+  EXPECT_NEAR(PredictedTranslation(false), 0.5 / 1.03, 1e-9);
 }
 
 }  // namespace

@@ -69,9 +69,9 @@ TEST(VelocityFilterTest, AMatchThatTellsNothingChangesNothing) {
 
 TEST(VelocityFilterTest, FollowsASteadyDrive) {
   VelocityFilter filter = Filter();
-  const Eigen::Matrix3d sure = 1e-6 * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d certain = 1e-6 * Eigen::Matrix3d::Identity();
   for (int i = 0; i < 10; ++i) {
-    filter.AddMatch(0.1, Pose2(0.05, 0., 0.03), sure);
+    filter.AddMatch(0.1, Pose2(0.05, 0., 0.03), certain);
   }
   EXPECT_NEAR(filter.velocity().x, 0.5, 0.005);
   // The dying away of a tenth a scan is made up for.

@@ -25,7 +25,6 @@ namespace {
 
 using cartographer::sensor::PointCloud;
 using cartographer::sensor::RangeData;
-using cartographer::transform::Rigid2d;
 using cartographer::transform::Rigid3d;
 
 namespace mapping = cartographer::mapping;

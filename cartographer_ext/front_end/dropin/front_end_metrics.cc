@@ -73,7 +73,7 @@ void RegisterFrontEndMetrics(metrics::FamilyFactory* const family_factory) {
   handles->way_scale =
       family_factory
           ->NewGaugeFamily(absl::StrCat(kPrefix, "way_scale"),
-                           "What the way of odometry is multiplied with")
+                           "Estimated scale of odometry translation")
           ->Add({});
 }
 

@@ -18,7 +18,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
-// Must precede CountMatch; not synchronised with it.
+// Must precede CountMatch(); not synchronized with it.
 void RegisterFrontEndMetrics(
     cartographer::metrics::FamilyFactory* family_factory);
 

@@ -53,19 +53,19 @@ void ScanAssembler::Add(
     hit.position = pose * range.point_time.position;
     const Eigen::Vector3f ray = hit.position - origin;
     const float length = ray.norm();
-    // Written so that ranges which are not a number fall out.
+    // False for NaN.
     if (!(length >= options_.min_range())) continue;
     if (length <= options_.max_range()) {
       accumulated_.returns.push_back(hit);
     } else if (std::isfinite(length)) {
-      // Only the beginning of the ray is surely free.
+      // Only the first part of the ray is certainly free.
       hit.position = origin + options_.missing_data_ray_length() / length * ray;
       accumulated_.misses.push_back(hit);
     }
   }
   newest_motion_ = motion;
-  // One ray of each point starts at one place: that of the laser if there is
-  // only one, else the robot's own.
+  // All rays of a scan have one origin: the laser if there is only one, else
+  // the robot's origin.
   newest_origin_ = sweep.origins.size() == 1
                        ? (levelled * sweep.origins.front()).eval()
                        : Eigen::Vector3f::Zero().eval();

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Range data of one match from one or more sweeps: every point moved from where
-// the robot was at its moment to where the robot is at the end, sorted into
-// returns and misses, levelled, cropped and thinned as the stock builder does.
+// Assembles the range data of one match from one or more sweeps: corrects the
+// motion distortion, separates returns and misses, aligns them with gravity,
+// crops and filters them as the stock builder does.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_
 
@@ -19,7 +19,7 @@ namespace front_end {
 
 struct AssembledScan {
   cartographer::sensor::RangeData range_data;
-  // Returns that complete the walls, for the grid only.
+  // Additional returns that complete walls, for the grid only.
   cartographer::sensor::PointCloud filling;
 };
 
@@ -31,9 +31,9 @@ class ScanAssembler {
       const WallFillingOptions& filling);
 
   // Adds a sweep. Points are stamped relative to its end. `interval` is the
-  // time since the last match (seconds, positive) and `motion` what the robot
-  // did in it, (robot at the last match <- robot at the end of the sweep);
-  // points in between get their part of it. `alignment` is (gravity aligned <-
+  // time since the last match (seconds, positive) and `motion` the motion since
+  // then, (robot at the last match <- robot at the end of the sweep),
+  // interpolated at the stamp of each point. `alignment` is (gravity aligned <-
   // tracking) now.
   void Add(const cartographer::sensor::TimedPointCloudOriginData& sweep,
            double interval, const Pose2& motion,
@@ -42,8 +42,8 @@ class ScanAssembler {
   int num_sweeps() const { return num_sweeps_; }
 
   // All sweeps since the last call, in the gravity-aligned frame at the end of
-  // the last one. Rays start at the laser (the stock builder's at the robot's
-  // origin), or at the robot's origin where there are several lasers.
+  // the last one. Rays start at the laser, or at the robot's origin if there
+  // are several lasers (in the stock builder always there).
   AssembledScan Take();
 
  private:

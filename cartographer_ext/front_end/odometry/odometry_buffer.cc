@@ -14,7 +14,7 @@ namespace {
 constexpr double kVelocitySpan = 0.05;
 // ... and from readings not further apart than this.
 constexpr double kMaxVelocitySpan = 0.7;
-// Readings that tell how often one comes.
+// Readings that the median interval is computed from.
 constexpr size_t kUsualReadings = 10;
 
 bool IsSame(const Pose2& a, const Pose2& b) {

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The last odometry readings, to be asked for the pose at any time.
+// The last odometry readings, with lookup of the pose at any time.
 //
-// Between two readings the pose is interpolated (straight in translation,
-// shortest way in angle). Beyond the last one it goes on with the velocity of
-// the last tenth of a second, for a bounded time: a scan may arrive one message
-// before the odometry of its moment. Before the first one it is the first.
+// Between two readings the pose is interpolated (linearly in translation, along
+// the shorter arc in angle). After the last one it is extrapolated with the
+// velocity of the last tenth of a second, for a bounded time, because a scan
+// may arrive one message before the odometry of its stamp. Before the first one
+// it is the first.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_BUFFER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_BUFFER_H_
 
@@ -20,10 +21,10 @@ namespace front_end {
 
 struct OdometrySample {
   Pose2 pose;  // (odometry <- robot)
-  // Seconds between `time` and the readings it was made from: beyond the last,
-  // before the first, 0 in between.
+  // Seconds from `time` to the nearest reading if it is before the first or
+  // after the last one; 0 in between.
   double extrapolated = 0.;
-  // The readings around `time` have the same pose: standing, or stale.
+  // The readings around `time` have the same pose: stationary, or stale.
   bool frozen = false;
 };
 
@@ -32,8 +33,8 @@ class OdometryBuffer {
   // Keeps the readings of the last `seconds`, and `max_readings` at most.
   OdometryBuffer(double seconds, size_t max_readings, double max_extrapolation);
 
-  // Seconds and (odometry <- robot). False, and nothing is kept, when the time
-  // is not later than that of the reading before or something is not finite.
+  // Seconds and (odometry <- robot). Returns false and ignores the reading
+  // unless it is finite and later than the last one.
   bool Add(double time, const Pose2& pose);
 
   // False without readings.

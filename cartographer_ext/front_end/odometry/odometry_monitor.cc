@@ -10,16 +10,16 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// Motions below these are standing.
+// A robot with smaller motions is stationary.
 constexpr double kStationaryDistance = 0.03;  // metres
 constexpr double kStationaryAngle = 0.035;    // radians
-// What stamps that are not quite even make of a steady motion, metres.
+// The effect of jitter of the stamps on a steady motion, metres.
 constexpr double kStampJitterDistance = 0.06;
-// A fault ends at this part of the gate, so that it does not flicker.
+// A fault ends below this fraction of the gate (hysteresis).
 constexpr double kExitRatio = 0.4;
-// A suspected slip is forgotten after this long, seconds.
+// A suspicion of slip expires after this time, seconds.
 constexpr double kSuspicionTime = 5.;
-// Entries of the window, whatever the rate of scans.
+// Bound of the window at any rate of scans.
 constexpr size_t kMaxEntries = 200;
 
 double Distance(const Pose2& pose) { return std::hypot(pose.x, pose.y); }
@@ -29,7 +29,7 @@ bool IsMotion(const Pose2& motion) {
          std::abs(motion.theta) > kStationaryAngle;
 }
 
-// Of a clear motion odometry saw hardly half.
+// The robot moved, and odometry reported less than half of it.
 bool MissesMotion(const Pose2& odometry, const Pose2& motion) {
   return IsMotion(motion) && Distance(odometry) <= 0.5 * Distance(motion) &&
          std::abs(odometry.theta) <=
@@ -51,14 +51,15 @@ void OdometryMonitor::Restart(const double time) {
 
 double OdometryMonitor::ChiSquare(const Pose2& odometry,
                                   const Pose2& match) const {
-  const double way = std::max(Distance(odometry), Distance(match));
-  const double turn = std::max(std::abs(odometry.theta), std::abs(match.theta));
+  const double distance = std::max(Distance(odometry), Distance(match));
+  const double angle =
+      std::max(std::abs(odometry.theta), std::abs(match.theta));
   const double rotation_sigma = std::hypot(
-      options_.rotation_noise, options_.rotation_noise_per_radian * turn);
+      options_.rotation_noise, options_.rotation_noise_per_radian * angle);
   const double translation_sigma =
       std::hypot(std::hypot(options_.translation_noise,
-                            options_.translation_noise_per_metre * way),
-                 0.5 * way * rotation_sigma);
+                            options_.translation_noise_per_metre * distance),
+                 0.5 * distance * rotation_sigma);
   const double dt = std::hypot(match.x - odometry.x, match.y - odometry.y);
   const double dr = NormalizeAngle(match.theta - odometry.theta);
   return dt * dt / (translation_sigma * translation_sigma) +
@@ -82,11 +83,10 @@ bool OdometryMonitor::IsSuspect(const double interval, const Pose2& odometry,
 OdometryState OdometryMonitor::CheckInterval(
     const MotionComparison& comparison) const {
   if (ChiSquare(comparison.odometry, comparison.match) <= options_.gate) {
-    // Not much of it may be missing from one scan to the next.
-    const bool stands_still = comparison.frozen &&
-                              !IsMotion(comparison.odometry) &&
-                              IsMotion(comparison.match);
-    return stands_still ? OdometryState::kStale : OdometryState::kOk;
+    // From one scan to the next a missing motion may pass the gate.
+    const bool is_stale = comparison.frozen && !IsMotion(comparison.odometry) &&
+                          IsMotion(comparison.match);
+    return is_stale ? OdometryState::kStale : OdometryState::kOk;
   }
   if (comparison.frozen &&
       MissesMotion(comparison.odometry, comparison.match)) {
@@ -100,7 +100,7 @@ OdometryState OdometryMonitor::CheckInterval(
   if (distance > options_.jump_distance || angle > options_.jump_angle) {
     return OdometryState::kJumping;
   }
-  // What is too small for a jump is left to the window.
+  // Smaller differences are decided by the window.
   return OdometryState::kOk;
 }
 
@@ -126,7 +126,7 @@ bool OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
   const double change = has_speed_ ? speed - speed_ : 0.;
   speed_ = speed;
   has_speed_ = true;
-  // An IMU tells how much of the change is the robot's own.
+  // The IMU measures the part of the change that is the robot's.
   const double own = comparison.has_inertial
                          ? std::abs(change - comparison.inertial_speed_change)
                          : std::abs(change);
@@ -148,8 +148,8 @@ OdometryState OdometryMonitor::Add(const MotionComparison& given) {
   MotionComparison comparison = given;
   Pose2& match = comparison.match;
   if (!comparison.translation_observable) {
-    // The way of the match is that of a prediction; whatever that was, it says
-    // nothing against odometry.
+    // The translation of the match is that of the prediction, which is no
+    // evidence against odometry.
     match.x = comparison.odometry.x;
     match.y = comparison.odometry.y;
   }
@@ -178,7 +178,7 @@ OdometryState OdometryMonitor::Add(const MotionComparison& given) {
 
   const OdometryState interval = CheckInterval(comparison);
   if (interval == OdometryState::kJumping) {
-    // After a stale burst odometry catches up; either way it starts anew.
+    // After stale poses odometry catches up. The window restarts in both cases.
     const bool caught_up =
         state_ == OdometryState::kStale &&
         ChiSquare(Between(last_agreed_.odometry, entry.odometry),
@@ -193,7 +193,7 @@ OdometryState OdometryMonitor::Add(const MotionComparison& given) {
     return state_;
   }
   if (state_ == OdometryState::kStale) {
-    // Moves again: what it left out is either made up for or gone.
+    // Moves again. The missed motion is either caught up with or lost.
     Restart(comparison.time);
     state_ = OdometryState::kOk;
     return state_;

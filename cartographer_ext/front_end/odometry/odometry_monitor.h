@@ -1,24 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Innovation check of odometry: what it says of the way between scans against
-// what the scan matcher says.
+// Innovation check of odometry: its motion between scans against that of the
+// scan matcher.
 //
-// Two comparisons are made, both by chi2 = |dt|^2 / s_t^2 + dr^2 / s_r^2 with
-// standard deviations that grow with the motion,
-//   s_t^2 = translation^2 + (per_metre * way)^2,
-//   s_r^2 = rotation^2 + (per_radian * turn)^2:
-//  * from scan to scan, for what happens at once: odometry that repeats a pose
-//    (stale), or moves the robot by more than it moved (jumping);
-//  * over a window of about a second, for what goes on: the wrong sign in
-//    reverse, and wheels that slip.
-// A fault that goes on ends when the window agrees again; a jump or a burst of
-// stale poses ends with the interval, and the window starts anew.
+// Two comparisons are made, both by
 //
-// Where the scan cannot tell the way, its match is the prediction itself, and
-// only turns are compared. There a speed that changes faster than the robot can
-// (wheels that lose or find their grip) is all that is left to see; it is
-// reported as a suspicion and changes nothing.
+//   chi2 = |dt|^2 / s_t^2 + dr^2 / s_r^2
+//
+// with standard deviations that grow with the motion,
+//
+//   s_t^2 = translation^2 + (per_metre * distance)^2
+//   s_r^2 = rotation^2 + (per_radian * angle)^2:
+//
+//  * from scan to scan, for sudden faults: odometry that repeats a pose
+//  (stale),
+//    or reports more motion than the robot made (jumping);
+//  * over a window of about a second, for lasting faults: the wrong sign in
+//    reverse, and wheel slip.
+//
+// A lasting fault ends when the window agrees again; a jump or a run of stale
+// poses ends with the interval, and the window restarts.
+//
+// Where the translation is not observable in the scan, its match is the
+// prediction itself, and only rotations are compared. A speed that changes
+// faster than the robot can accelerate (wheels that lose or regain grip) is
+// then the only evidence; it is reported as a suspicion without consequences.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_MONITOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_MONITOR_H_
 
@@ -31,12 +38,12 @@ namespace front_end {
 
 enum class OdometryState {
   kOk,
-  kAbsent,         // none, or none for this interval
-  kStale,          // repeats a pose while the scan moves
-  kJumping,        // moved further than the robot
-  kWrongSign,      // forwards for backwards
-  kSlipping,       // wheels do not do what the floor does
-  kSlipSuspected,  // sudden speed where the scan cannot tell the way
+  kAbsent,         // no readings, or none for this interval
+  kStale,          // repeats a pose while the robot moves
+  kJumping,        // moves further than the robot
+  kWrongSign,      // forwards instead of backwards
+  kSlipping,       // wheel slip
+  kSlipSuspected,  // sudden speed where the translation is not observable
 };
 
 struct OdometryCheckOptions {
@@ -60,7 +67,7 @@ struct MotionComparison {
   Pose2 odometry;
   bool frozen = false;  // odometry repeated one pose
   Pose2 match;
-  // Whether the scan tells how far the robot went along its way.
+  // Whether the scan determines the translation along the direction of motion.
   bool translation_observable = true;
   // Change of forward speed by an IMU, m/s; only with has_inertial.
   bool has_inertial = false;
@@ -71,8 +78,8 @@ class OdometryMonitor {
  public:
   explicit OdometryMonitor(const OdometryCheckOptions& options);
 
-  // Before the match: whether the motion by odometry is so different from what
-  // the velocity makes expect that it should not be relied on.
+  // Before the match: whether the motion by odometry differs too much from the
+  // expected one to be trusted.
   bool IsSuspect(double interval, const Pose2& odometry, bool frozen,
                  const Pose2& expected) const;
 
@@ -80,22 +87,21 @@ class OdometryMonitor {
   OdometryState Add(const MotionComparison& given);
 
   OdometryState state() const { return state_; }
-  // Whether a prediction should rest on odometry. A jump is over when it is
-  // seen.
+  // Whether predictions should use odometry. A jump is over once detected.
   bool IsTrusted() const {
     return state_ == OdometryState::kOk || state_ == OdometryState::kJumping ||
            state_ == OdometryState::kSlipSuspected;
   }
 
-  // The motion by odometry from the last moment it agreed until now, against
-  // the motion by the matches: (robot now <- where odometry, once it has caught
-  // up, puts the robot). Identity while it agrees.
+  // The difference of the motions by odometry and by the matches since they
+  // last agreed: (robot now <- robot according to odometry). Identity while
+  // they agree.
   Pose2 MissedMotion() const;
 
  private:
   struct Entry {
     double time;
-    Pose2 odometry;  // since some start, both
+    Pose2 odometry;  // both since the same arbitrary start
     Pose2 match;
   };
 
@@ -107,7 +113,7 @@ class OdometryMonitor {
 
   const OdometryCheckOptions options_;
   OdometryState state_ = OdometryState::kOk;
-  // Never empty: the first entry is where both began.
+  // Never empty: the first entry is the start of both.
   std::deque<Entry> window_;
   Entry last_agreed_;
   // For the suspicion of slip.

@@ -11,37 +11,37 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// A gap between scans may be this long and still be bridged, seconds.
+// Gaps between scans up to this long are bridged, seconds.
 constexpr double kBufferSeconds = 30.;
 constexpr size_t kMaxReadings = 20000;
-// Longer intervals say nothing about a clock offset, seconds.
+// Longer intervals are not used to estimate the clock offset, seconds.
 constexpr double kMaxOffsetInterval = 1.;
-// Matches that wait for the odometry after them.
+// Matches waiting for later odometry.
 constexpr size_t kMaxPending = 20;
-// A scan may come this much before the reading of its moment, of the usual
-// interval between readings, ...
+// A scan may arrive this many median intervals of odometry after the last
+// reading, ...
 constexpr double kMaxLateness = 1.25;
-// ... if that is not longer than this, seconds.
+// ... if the median interval is not longer than this, seconds.
 constexpr double kMaxMedianInterval = 0.8;
 
 }  // namespace
 
 Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
                                    const Pose2& motion) {
-  const double way = std::hypot(motion.x, motion.y);
+  const double distance = std::hypot(motion.x, motion.y);
   const double along =
-      options.translation + options.translation_per_metre * way;
-  const double turn = options.rotation +
-                      options.rotation_per_radian * std::abs(motion.theta) +
-                      options.rotation_per_metre * way;
+      options.translation + options.translation_per_metre * distance;
+  const double rotation = options.rotation +
+                          options.rotation_per_radian * std::abs(motion.theta) +
+                          options.rotation_per_metre * distance;
   const Eigen::Vector2d across =
-      way > 0. ? Eigen::Vector2d(-motion.y / way, motion.x / way)
-               : Eigen::Vector2d(0., 1.);
+      distance > 0. ? Eigen::Vector2d(-motion.y / distance, motion.x / distance)
+                    : Eigen::Vector2d(0., 1.);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   covariance.topLeftCorner<2, 2>() =
       Squared(along) * Eigen::Matrix2d::Identity() +
-      Squared(0.5 * way * turn) * across * across.transpose();
-  covariance(2, 2) = Squared(turn);
+      Squared(0.5 * distance * rotation) * across * across.transpose();
+  covariance(2, 2) = Squared(rotation);
   return covariance;
 }
 
@@ -64,8 +64,9 @@ bool OdometryPredictor::Predict(const double from, const double to,
   }
   motion->is_late = end.extrapolated > noise_.max_extrapolation;
   if (motion->is_late) {
-    const double usual = buffer_.MedianInterval();
-    if (usual > kMaxMedianInterval || end.extrapolated > kMaxLateness * usual) {
+    const double interval = buffer_.MedianInterval();
+    if (interval > kMaxMedianInterval ||
+        end.extrapolated > kMaxLateness * interval) {
       return false;
     }
   }
@@ -86,11 +87,11 @@ void OdometryPredictor::AddMatch(const double from, const double to,
   pending_.push_back({from, to, match.theta});
   while (!pending_.empty()) {
     const MatchedTurn& oldest = pending_.front();
-    const bool is_there =
+    const bool is_covered =
         !buffer_.empty() &&
         buffer_.last_time() >= oldest.to - offset_.candidates().front() &&
         buffer_.first_time() <= oldest.from - offset_.candidates().back();
-    if (is_there) {
+    if (is_covered) {
       LearnOffset(oldest);
     } else if (pending_.size() <= kMaxPending) {
       return;

@@ -1,19 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Prediction from odometry: the motion over the very interval between two
-// scans, taken at their stamps less the clock offset, and its covariance.
+// Prediction from odometry: the motion over exactly the interval between two
+// scans, at their stamps less the clock offset, and its covariance.
 //
-// (A velocity taken from odometry before the interval, as the stock
-// extrapolator has it, is one scan late: after a gap it goes on turning the way
-// the robot turned before.)
+// (A velocity from odometry before the interval, as in the stock extrapolator,
+// is one scan late: after a gap it continues the rotation from before the gap.)
 //
-// Noise of a differential drive over a way d and a turn a, standard deviations
-// in the robot's frame at the start of the interval:
-//   along    translation + per_metre |d|
-//   across   the same, and d / 2 times that of the turn
-//   turn     rotation + per_radian |a| + per_metre |d|
-// Besides, what the calibration leaves unknown.
+// Noise of a differential drive over a distance d and a rotation a, standard
+// deviations in the robot's frame at the start of the interval:
+//
+//   along      translation + per_metre |d|
+//   across     the same, and d / 2 times that of the rotation
+//   rotation   rotation + per_radian |a| + per_metre |d|
+//
+// The uncertainty of the calibration is added.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_
 
@@ -39,13 +40,13 @@ struct OdometryNoiseOptions {
 
 struct OdometryMotion {
   Pose2 motion;  // (robot at `from` <- robot at `to`), corrected
-  Pose2 raw;     // the same as it came
+  Pose2 raw;     // the same, not corrected
   // Of (x, y, theta) of the motion, in the frame of the robot at `from`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   bool frozen = false;  // one pose is repeated at the start or the end
-  // The end lies further beyond the last reading than an extrapolation is good
-  // for, but not further than the usual interval of the readings: the motion is
-  // hardly better known than by constant velocity.
+  // The end is later than the last reading by more than max_extrapolation, but
+  // not by more than the usual interval between readings: the motion is hardly
+  // more certain than by constant velocity.
   bool is_late = false;
 };
 
@@ -62,15 +63,15 @@ class OdometryPredictor {
   bool Add(double time, const Pose2& pose) { return buffer_.Add(time, pose); }
 
   // The motion between two stamps of scans, seconds, from < to. False when
-  // there is no odometry around them.
+  // readings do not cover them.
   bool Predict(double from, double to, OdometryMotion* motion) const;
 
-  // What the scan matcher found between the same two stamps, to learn the clock
-  // offset from, as soon as the odometry of all offsets on trial is there. Only
-  // for matches that are sure of the turn.
+  // The motion of the scan matcher between two stamps, from which the clock
+  // offset is estimated as soon as odometry covers all candidate offsets. Only
+  // for matches with an observable rotation.
   void AddMatch(double from, double to, const Pose2& match);
 
-  // What a match says of the scales; see there.
+  // Updates the calibration.
   void Calibrate(const CalibrationInterval& interval) {
     calibration_.Add(interval);
   }

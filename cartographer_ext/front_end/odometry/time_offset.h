@@ -4,14 +4,14 @@
 // Online estimate of the offset between the clocks of laser and odometry.
 //
 // A scan stamped t shows the world at the moment that odometry stamps t - d.
-// With the right d the turn that odometry reports between two scans is that of
-// the scan matcher. A grid of offsets is tried in parallel: for each one the
-// squared difference of the turns, clipped so that a wheel that slips or a
-// match that fails does not decide, is summed up with slow forgetting. Scans
-// between which all offsets tell the same turn say nothing and are left out.
-// The estimate is the minimum, refined by the parabola through its neighbours,
-// and taken over only when there is enough evidence and it is clearly better
-// than the value in force. A few turns on the spot are enough.
+// With the right d the rotation of odometry between two scans equals that of
+// the scan matcher. A grid of candidate offsets is evaluated in parallel: each
+// one accumulates the squared difference of the rotations with slow forgetting,
+// clipped so that wheel slip or a failed match does not decide. Scans between
+// which all candidates give the same rotation carry no information and are
+// skipped. The estimate is the minimum, refined by a parabola through its
+// neighbours, and adopted only with enough evidence and if it is clearly better
+// than the current value. A few rotations on the spot suffice.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_TIME_OFFSET_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_TIME_OFFSET_H_
 
@@ -26,8 +26,8 @@ struct TimeOffsetOptions {
   double minimum = -0.1;
   double maximum = 0.25;
   double step = 0.01;
-  double forgetting = 0.998;  // a scan, of the sums
-  double min_spread = 0.01;   // radians, of the turns by offset
+  double forgetting = 0.998;  // of the sums, per scan
+  double min_spread = 0.01;   // radians, between the candidates
   double clip = 0.05;         // radians
   double min_weight = 25.;    // scans with evidence
   double evidence = 2.;       // logarithm of the likelihood ratio
@@ -37,11 +37,11 @@ class TimeOffsetEstimator {
  public:
   explicit TimeOffsetEstimator(const TimeOffsetOptions& options);
 
-  // The offsets on trial, seconds, ascending; empty without estimate.
+  // The candidate offsets, seconds, ascending; empty without estimation.
   const std::vector<double>& candidates() const { return candidates_; }
 
-  // The turn between two scans by the scan matcher, and by odometry for every
-  // candidate, radians.
+  // The rotation between two scans by the scan matcher, and by odometry for
+  // every candidate, radians.
   void Add(double matched_turn, const std::vector<double>& odometry_turns);
 
   // Scan minus odometry stamp of the same moment, seconds.

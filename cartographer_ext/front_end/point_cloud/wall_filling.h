@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Points between the points of a straight wall.
+// Fills the gaps between the points of a straight wall.
 //
-// A laser with a beam every degree sees a wall ten metres ahead, or one that it
-// looks along, as dots further apart than the cells of the grid. The next scan
-// has its dots at the same angles; matched with the dots of the first it fits
-// best where the robot has not moved at all. A grid with whole walls has no
-// such place. So before a scan is inserted, the gaps between successive points
-// are filled where the wall is known to go on: four points in a row on one
-// line.
+// A laser with a beam every degree sees a wall ten metres ahead, or one along
+// its line of sight, as points further apart than the cells of the grid. The
+// next scan has its points at the same angles; matched with the points of the
+// first it fits best where the robot has not moved at all. A grid with complete
+// walls has no such local optimum. So before a scan is inserted, gaps between
+// successive points are filled where the wall certainly continues: where four
+// successive points lie on one line.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_WALL_FILLING_H_
 #define CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_WALL_FILLING_H_
 

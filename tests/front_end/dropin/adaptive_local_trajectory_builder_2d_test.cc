@@ -51,7 +51,7 @@ Pose2 ToPose2(const cartographer::transform::Rigid3d& pose) {
                cartographer::transform::GetYaw(pose.rotation()));
 }
 
-// A loop through the room with turns both ways.
+// A loop through the room with turns in both directions.
 Pose2 Path(const double t) {
   return Pose2(1.5 * std::sin(0.25 * t), 1.2 * std::sin(0.5 * t) - 0.5,
                0.9 * std::sin(0.35 * t));
@@ -163,7 +163,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, FollowsARobotWithoutOdometry) {
   EXPECT_EQ(result.records.back().odometry(), MatchRecord::ABSENT);
 }
 
-// Half a round wall tells next to nothing of a turn about its centre. Whoever
+// Half a round wall hardly determines a rotation about its centre. Whoever
 // begins one there by chance must not go on with it.
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedWithinARoundWall) {
   LocalTrajectoryBuilderOptions2D stock = StockOptions();
@@ -177,8 +177,9 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedWithinARoundWall) {
     const double heading = random.Uniform(-kPi, kPi);
     Pose2 first, last, truth;
     for (int i = 0; i < 40; ++i) {
-      const double way = 0.03 * i;
-      truth = Pose2(way * std::cos(heading), way * std::sin(heading), 0.);
+      const double distance = 0.03 * i;
+      truth =
+          Pose2(distance * std::cos(heading), distance * std::sin(heading), 0.);
       const Pose2 to_robot = (start * truth).Inverse();
       cartographer::sensor::TimedPointCloudData scan;
       scan.time = test::At(0.1 * i);
@@ -244,7 +245,7 @@ RunOptions AHoleInEverything() {
 
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, ScansBehindAGapWaitForOdometry) {
   const RunResult result = RunDrive(AHoleInEverything());
-  // The scans at 13.0 and 13.1 s are left out.
+  // The scans at 13.0 and 13.1 s are dropped.
   EXPECT_EQ(result.matched, 101 + 31 - 2);
   EXPECT_EQ(result.records.size(), result.matched);
   EXPECT_LT(result.max_turn_error, 0.03);
@@ -268,8 +269,8 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, ScansBehindAGapDoNotWaitForEver) {
 
 TEST(AdaptiveLocalTrajectoryBuilder2DTest,
      AfterAGapWithoutAnythingItLooksAround) {
-  // A way of 0.4 m and a turn of 75 degrees that neither scans nor odometry
-  // have seen.
+  // A translation of 0.4 m and a rotation of 75 degrees that neither scans nor
+  // odometry have seen.
   const auto path = [](const double t) {
     // Sets off gently.
     const double driven = t < 4.    ? 0.125 * t * t

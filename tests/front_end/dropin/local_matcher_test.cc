@@ -46,7 +46,7 @@ TEST(ContradictionTest, GrowsBetweenItsBounds) {
       1e-9);
 }
 
-// A map of the room, a robot that stands at the origin of it, and a prediction
+// A map of the room, a robot at its origin, and a prediction
 // that is held for certain.
 class LocalMatcherTest : public testing::Test {
  protected:
@@ -86,9 +86,9 @@ class LocalMatcherTest : public testing::Test {
     LocalMatcher matcher(options_, matcher_options_);
     const auto& submap = *submaps_->submaps().front();
     // What is usual.
-    MotionPrediction standing = prediction_;
-    standing.is_uncertain = false;
-    const LocalMatch usual = matcher.Match(Pose2(), standing, Cloud(), submap);
+    MotionPrediction certain = prediction_;
+    certain.is_uncertain = false;
+    const LocalMatch usual = matcher.Match(Pose2(), certain, Cloud(), submap);
     EXPECT_FALSE(usual.relocated);
     EXPECT_NEAR(usual.pose.x, 0., 0.01);
     prediction_.motion = off;

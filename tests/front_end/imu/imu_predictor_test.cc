@@ -69,7 +69,7 @@ TEST(ImuPredictorTest, LearnsTheBiasWhileStandingAndOnlyThen) {
   EXPECT_NEAR(motion.motion.x, 0., 1e-9);
 }
 
-// The robot sets off within an interval that still looks like standing.
+// The robot starts to move within an interval that still looks stationary.
 TEST(ImuPredictorTest, SettingOffIsNoBias) {
   ImuPredictorOptions options;
   options.stationary_time = 1.;

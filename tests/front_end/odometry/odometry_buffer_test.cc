@@ -24,7 +24,7 @@ TEST(OdometryBufferTest, InterpolatesTheShortWay) {
   ASSERT_TRUE(buffer.Lookup(1.25, &sample));
   EXPECT_DOUBLE_EQ(sample.pose.x, 1.);
   EXPECT_DOUBLE_EQ(sample.pose.y, -0.5);
-  // From 3 to -3 it is 0.2832 rad over pi, not 6 the other way.
+  // From 3 to -3 it is 0.2832 rad over pi, not 6 in the other direction.
   EXPECT_NEAR(sample.pose.theta, 3. + 0.25 * (2. * kPi - 6.), 1e-12);
   EXPECT_EQ(sample.extrapolated, 0.);
   EXPECT_FALSE(sample.frozen);

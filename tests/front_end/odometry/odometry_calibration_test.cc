@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kStep = 0.1;  // seconds
 
-OdometryCalibrationOptions WayAndTurn() {
+OdometryCalibrationOptions TranslationAndRotation() {
   OdometryCalibrationOptions options;
   options.estimate_rotation = true;
   return options;
 }
 
-// A filter of the way alone.
+// A filter of the translation alone.
 CalibrationFilter WayFilter(const double sigma, const double floor,
                             const CalibrationFilter::Noise& noise) {
   return CalibrationFilter(Eigen::Vector2d(1., 0.), Eigen::Vector2d(sigma, 0.),
@@ -46,7 +46,7 @@ TEST(CalibrationFilterTest, TwoMetresByHand) {
 
 TEST(CalibrationFilterTest, MatchesAreComparedOverAllTheWayBetweenThem) {
   CalibrationFilter filter = WayFilter(0.1, 0., {0.01, 0., 0., 4.});
-  // Only the last match tells where the robot is.
+  // Only the last match locates the robot.
   for (int i = 0; i < 10; ++i) {
     filter.Add(Eigen::Vector2d(1., 0.), 1., 1.01, i == 9 ? 0. : 1000.);
   }
@@ -104,10 +104,10 @@ class Robot {
         rotation_scale_(rotation_scale),
         rotation_per_metre_(rotation_per_metre) {}
 
-  // 0.5 m/s on a winding way; odometry goes `slip` times as far.
+  // 0.5 m/s on a winding path; odometry goes `slip` times as far.
   CalibrationInterval Step(const double slip = 1.) {
     time_ += kStep;
-    const double way = 0.5 * kStep;
+    const double distance = 0.5 * kStep;
     const double turn = 0.5 * kStep * std::sin(0.3 * time_);
     CalibrationInterval interval;
     interval.time = time_;
@@ -115,24 +115,25 @@ class Robot {
     // The errors of the matched poses are not those of motions.
     const double translation_error = random_.Normal(0., 0.004);
     const double rotation_error = random_.Normal(0., 0.001);
-    interval.match = Arc(way + translation_error - translation_error_,
+    interval.match = Arc(distance + translation_error - translation_error_,
                          turn + rotation_error - rotation_error_);
     translation_error_ = translation_error;
     rotation_error_ = rotation_error;
     const double odometry_translation =
-        way / translation_scale_ * slip +
-        random_.Normal(0., 0.003 * std::sqrt(way));
+        distance / translation_scale_ * slip +
+        random_.Normal(0., 0.003 * std::sqrt(distance));
     interval.odometry = Arc(
         odometry_translation,
         (turn - rotation_per_metre_ * odometry_translation) / rotation_scale_ +
-            random_.Normal(0., 0.01 * std::sqrt(way)));
+            random_.Normal(0., 0.01 * std::sqrt(distance)));
     interval.covariance = Eigen::Vector3d(1.6e-5, 1.6e-5, 1e-6).asDiagonal();
     return interval;
   }
 
  private:
-  static Pose2 Arc(const double way, const double turn) {
-    return Pose2(way * std::cos(0.5 * turn), way * std::sin(0.5 * turn), turn);
+  static Pose2 Arc(const double distance, const double turn) {
+    return Pose2(distance * std::cos(0.5 * turn),
+                 distance * std::sin(0.5 * turn), turn);
   }
 
   Random random_;
@@ -145,39 +146,39 @@ class Robot {
 };
 
 TEST(OdometryCalibrationTest, FindsTheScalesAndHowSureTheyAre) {
-  double way = 0., turn = 0., per_metre = 0.;
+  double translation = 0., rotation = 0., per_metre = 0.;
   constexpr int kRuns = 30;
   for (int run = 0; run < kRuns; ++run) {
     Robot robot(run + 1, 1.03, 0.97, -0.02);
-    OdometryCalibration calibration(WayAndTurn());
+    OdometryCalibration calibration(TranslationAndRotation());
     for (int i = 0; i < 1000; ++i) calibration.Add(robot.Step());  // 50 m
     EXPECT_NEAR(calibration.translation_scale(), 1.03, 0.004);
     EXPECT_NEAR(calibration.rotation_scale(), 0.97, 0.02);
     EXPECT_NEAR(calibration.rotation_per_metre(), -0.02, 0.006);
     EXPECT_LT(calibration.translation_scale_sigma(), 0.002);
-    way += std::pow((calibration.translation_scale() - 1.03) /
-                        calibration.translation_scale_sigma(),
-                    2) /
-           kRuns;
-    turn += std::pow((calibration.rotation_scale() - 0.97) /
-                         calibration.rotation_scale_sigma(),
-                     2) /
-            kRuns;
+    translation += std::pow((calibration.translation_scale() - 1.03) /
+                                calibration.translation_scale_sigma(),
+                            2) /
+                   kRuns;
+    rotation += std::pow((calibration.rotation_scale() - 0.97) /
+                             calibration.rotation_scale_sigma(),
+                         2) /
+                kRuns;
     per_metre += std::pow((calibration.rotation_per_metre() + 0.02) /
                               calibration.rotation_per_metre_sigma(),
                           2) /
                  kRuns;
   }
   // Not surer than it may be; it reckons with worse wheels and matches.
-  EXPECT_LT(way, 1.2);
-  EXPECT_LT(turn, 1.2);
+  EXPECT_LT(translation, 1.2);
+  EXPECT_LT(rotation, 1.2);
   EXPECT_LT(per_metre, 1.2);
 }
 
 TEST(OdometryCalibrationTest, ASlipIsKeptOut) {
   Robot robot(5, 1., 1., 0.), same(5, 1., 1., 0.);
-  OdometryCalibration calibration(WayAndTurn());
-  OdometryCalibration warned(WayAndTurn());
+  OdometryCalibration calibration(TranslationAndRotation());
+  OdometryCalibration warned(TranslationAndRotation());
   for (int i = 0; i < 800; ++i) {
     // Every 20 s wheels slip for 2 s by a tenth, and nothing is said until it
     // has lasted a second.
@@ -194,7 +195,7 @@ TEST(OdometryCalibrationTest, ASlipIsKeptOut) {
 
 TEST(OdometryCalibrationTest, WhereTheScanDoesNotTellNothingIsLearnt) {
   Robot robot(6, 1.03, 0.97, 0.01);
-  const OdometryCalibrationOptions options = WayAndTurn();
+  const OdometryCalibrationOptions options = TranslationAndRotation();
   OdometryCalibration no_translation(options), no_rotation(options),
       uncertain(options);
   for (int i = 0; i < 600; ++i) {
@@ -221,8 +222,8 @@ TEST(OdometryCalibrationTest, WhereTheScanDoesNotTellNothingIsLearnt) {
 
 TEST(OdometryCalibrationTest, GapsAndStandingTellNothing) {
   Robot robot(7, 1.03, 1., 0.);
-  OdometryCalibration gaps(WayAndTurn());
-  OdometryCalibration stands(WayAndTurn());
+  OdometryCalibration gaps(TranslationAndRotation());
+  OdometryCalibration stationary(TranslationAndRotation());
   Random random(8);
   for (int i = 0; i < 600; ++i) {
     CalibrationInterval interval = robot.Step();
@@ -231,14 +232,14 @@ TEST(OdometryCalibrationTest, GapsAndStandingTellNothing) {
     interval.interval = kStep;
     interval.odometry = Pose2();
     interval.match = Pose2(random.Normal(0., 0.001), 0., 0.);
-    stands.Add(interval);
+    stationary.Add(interval);
   }
   EXPECT_EQ(gaps.translation_scale(), 1.);
-  EXPECT_EQ(stands.translation_scale(), 1.);
+  EXPECT_EQ(stationary.translation_scale(), 1.);
 }
 
 TEST(OdometryCalibrationTest, NothingIsAppliedBeyondTheLimit) {
-  OdometryCalibrationOptions options = WayAndTurn();
+  OdometryCalibrationOptions options = TranslationAndRotation();
   options.max_deviation = 0.02;
   Robot robot(9, 1.05, 1., 0.05);
   OdometryCalibration calibration(options);
@@ -258,19 +259,20 @@ TEST(OdometryCalibrationTest, CorrectsAMotionByHand) {
   EXPECT_NEAR(straight.theta, 0.1, 1e-12);
   EXPECT_NEAR(straight.x, 2.2 * std::cos(0.05), 1e-12);
   EXPECT_NEAR(straight.y, 2.2 * std::sin(0.05), 1e-12);
-  // Backwards it turns the other way.
+  // Backwards it turns in the other direction.
   EXPECT_NEAR(calibration.Correct(Pose2(-2., 0., 0.)).theta, -0.1, 1e-12);
   EXPECT_NEAR(calibration.Correct(Pose2(0., 0., 1.)).theta, 0.9, 1e-12);
 }
 
 TEST(OdometryCalibrationTest, WhatIsUnknownByHand) {
-  OdometryCalibrationOptions options = WayAndTurn();
+  OdometryCalibrationOptions options = TranslationAndRotation();
   options.translation_scale_sigma = 0.02;
   options.rotation_scale_sigma = 0.1;
   options.rotation_per_metre_sigma = 0.01;
   const Eigen::Matrix3d straight =
       OdometryCalibration(options).Covariance(Pose2(2., 0., 0.));
-  // Along 0.02 * 2 m; turn 0.01 * 2 m, across half of the way times that.
+  // Along 0.02 * 2 m; rotation 0.01 * 2 m, across half of the distance times
+  // that.
   EXPECT_NEAR(straight(0, 0), 0.04 * 0.04, 1e-12);
   EXPECT_NEAR(straight(1, 1), 0.02 * 0.02, 1e-12);
   EXPECT_NEAR(straight(2, 2), 0.02 * 0.02, 1e-12);

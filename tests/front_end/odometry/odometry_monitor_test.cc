@@ -196,7 +196,7 @@ TEST(OdometryMonitorTest, SuspicionBeforeTheMatch) {
   EXPECT_TRUE(monitor.IsSuspect(0.1, Pose2(0.5, 0., 0.), false, kForward));
   EXPECT_TRUE(monitor.IsSuspect(0.1, Pose2(0.05, 0., 0.5), false, kForward));
   EXPECT_TRUE(monitor.IsSuspect(0.1, kStill, true, kForward));
-  // Standing, and it is known to stand.
+  // Stationary, as expected.
   EXPECT_FALSE(monitor.IsSuspect(0.1, kStill, true, kStill));
 }
 

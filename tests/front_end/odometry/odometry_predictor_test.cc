@@ -20,8 +20,8 @@ TimeOffsetOptions Fixed(const double offset) {
 
 OdometryCalibrationOptions NoCalibration() {
   OdometryCalibrationOptions options;
-  options.estimate_way = false;
-  options.estimate_turn = false;
+  options.estimate_odometry_scale = false;
+  options.estimate_rotation = false;
   return options;
 }
 
@@ -62,14 +62,15 @@ TEST(OdometryPredictorTest, CovarianceByHand) {
   noise.rotation = 0.02;
   noise.rotation_per_radian = 0.2;
   noise.rotation_per_metre = 0.05;
-  // Way 1 m along x, turn 0.5 rad: along 0.11 m, turn 0.02 + 0.1 + 0.05.
+  // Translation 1 m along x, rotation 0.5 rad: along 0.11 m, rotation 0.02 +
+  // 0.1 + 0.05.
   const Eigen::Matrix3d covariance =
       OdometryCovariance(noise, Pose2(1., 0., -0.5));
   EXPECT_NEAR(covariance(0, 0), 0.11 * 0.11, 1e-12);
   EXPECT_NEAR(covariance(1, 1), 0.11 * 0.11 + 0.085 * 0.085, 1e-12);
   EXPECT_NEAR(covariance(2, 2), 0.17 * 0.17, 1e-12);
   EXPECT_NEAR(covariance(0, 1), 0., 1e-12);
-  // The same way along y.
+  // The same translation along y.
   const Eigen::Matrix3d turned = OdometryCovariance(noise, Pose2(0., 1., -0.5));
   EXPECT_NEAR(turned(0, 0), covariance(1, 1), 1e-12);
   EXPECT_NEAR(turned(1, 1), covariance(0, 0), 1e-12);
@@ -77,9 +78,9 @@ TEST(OdometryPredictorTest, CovarianceByHand) {
 
 TEST(OdometryPredictorTest, TheCalibrationHasItsShare) {
   OdometryCalibrationOptions calibration;
-  calibration.way_scale = 1.02;
-  calibration.way_sigma = 0.5;
-  calibration.estimate_turn = false;
+  calibration.translation_scale = 1.02;
+  calibration.translation_scale_sigma = 0.5;
+  calibration.estimate_rotation = false;
   OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.), calibration);
   predictor.Add(0., Pose2());
   predictor.Add(1., Pose2(1., 0., 0.));
@@ -87,7 +88,7 @@ TEST(OdometryPredictorTest, TheCalibrationHasItsShare) {
   ASSERT_TRUE(predictor.Predict(0., 1., &motion));
   EXPECT_EQ(motion.raw.x, 1.);
   EXPECT_EQ(motion.motion.x, 1.02);
-  // 0.01 m and 0.1 a metre; the scale, of the way as it came.
+  // 0.01 m and 0.1 per metre; the scale, of the uncorrected translation.
   EXPECT_NEAR(motion.covariance(0, 0), 0.112 * 0.112 + 0.25, 1e-12);
 }
 

@@ -14,7 +14,9 @@
 #include "cartographer/mapping/2d/probability_grid.h"
 #include "cartographer/mapping/internal/constraints/constraint_builder_2d.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/common/random.h"
+#include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/options/option_description.h"
@@ -496,6 +498,67 @@ TEST_F(VerifiedConstraintBuilder2DTest, FreesDeletedTrajectories) {
   for (int s = 0; s < 3; ++s) Offer(&builder, s, kNumNodes - 1);
   builder.NotifyEndOfNode();
   Collect(&builder);
+}
+
+// A run in the map of another one: located, lost over scans that fit nowhere,
+// and located again. Submap 0 of its own trajectory is deleted when node 5 is
+// the newest; later nodes were certainly no part of it.
+TEST_F(VerifiedConstraintBuilder2DTest, WithdrawsTheLoopsOfARunThatWasLost) {
+  constexpr int kLastBefore = 9, kFirstAfter = 30, kLastDeleted = 5;
+  proto::LoopClosureOptions options = StagesOff();
+  options.mutable_localization()->set_enabled(true);
+  options.mutable_localization()->set_lost_distance(1.);
+  options.mutable_localization()->set_query_spacing(0.05);
+  auto stock_options = StockOptions();
+  stock_options.set_sampling_ratio(1.);
+  for (const bool deletes : {false, true}) {
+    const auto context = std::make_shared<PoseGraphContext>();
+    const ScopedPoseGraphContext scope(context);
+    cartographer::common::ThreadPool pool(2);
+    Builder builder(stock_options, options, &pool);
+    std::vector<Builder::NodeData> nodes = nodes_;
+    Builder::Result all;
+    for (int i = 0; i < kNumNodes; ++i) {
+      if (i > kLastBefore && i < kFirstAfter) {
+        nodes[i].filtered_gravity_aligned_point_cloud =
+            host::test::Cloud({{40.f, 40.f}, {41.f, 43.f}});
+      }
+      for (int s = 0; s < 3; ++s) {
+        builder.MaybeAddConstraint(SubmapId{0, s}, submaps_[s].get(),
+                                   NodeId{1, i}, &nodes[i], Relative(s, i));
+      }
+      builder.NotifyEndOfNode();
+      const Builder::Result result = Collect(&builder);
+      all.insert(all.end(), result.begin(), result.end());
+      if (deletes && i == kLastDeleted) {
+        builder.DeleteScanMatcher(SubmapId{1, 0});
+      }
+    }
+    int before = 0, after = 0;
+    std::set<LoopId> marked;
+    for (const Builder::Constraint& constraint : all) {
+      const LoopDescription loop = DescribeConstraint(constraint);
+      if (!loop.has_weight) {
+        EXPECT_TRUE(marked.insert(loop.id).second);
+        EXPECT_LE(loop.id.node_index, kLastBefore);
+        EXPECT_GT(loop.id.node_index, deletes ? kLastDeleted : -1);
+      } else if (loop.id.node_index <= kLastBefore) {
+        ++before;
+      } else {
+        ++after;
+      }
+    }
+    ASSERT_GT(before, 10);
+    ASSERT_GT(after, 0);
+    const std::set<LoopId> unmarked = context->Get<WithdrawnLoops>()->All();
+    EXPECT_EQ(marked.size() + unmarked.size(), static_cast<size_t>(before));
+    EXPECT_EQ(unmarked.empty(), !deletes);
+    // All of them, and none of those after.
+    EXPECT_EQ(FindWithdrawnLoops(all, DescribeConstraint<Builder::Constraint>,
+                                 unmarked)
+                  .size(),
+              before + marked.size());
+  }
 }
 
 // The callback uses the builder again, from the pool.

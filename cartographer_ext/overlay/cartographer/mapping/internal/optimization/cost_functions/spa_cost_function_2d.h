@@ -26,8 +26,8 @@ namespace cartographer {
 namespace mapping {
 namespace optimization {
 
-// The stock residual, or, where cartographer_ext/common/full_information.h
-// knows the bits of `pose`, the one weighted with the whole matrix.
+// The stock residual, or, for a loop that has a full information matrix
+// (cartographer_ext/common/loop_information.h), the one weighted by the matrix.
 ceres::CostFunction* CreateAutoDiffSpaCostFunction(
     const PoseGraphInterface::Constraint::Pose& pose);
 ceres::CostFunction* CreateAnalyticalSpaCostFunction(
