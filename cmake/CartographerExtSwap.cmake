@@ -14,7 +14,7 @@
 #   optimization_problem      OptimizationProblem2D and its options
 #   local_trajectory_builder  LocalTrajectoryBuilder2D and its options
 #   full_information          the SPA residual, for loops with a full information matrix (no block of its own; the matrix
-#                             comes from constraint_builder by way of optimization_problem, without which it is refused)
+#                             comes from constraint_builder by way of optimization_problem, without which it has no effect)
 #
 # Works on the bundled host and on a real tree, in two ways:
 #   superproject   add_subdirectory(<tree>), then this function (CMake 3.16 or newer)
@@ -319,7 +319,7 @@ function(cartographer_ext_swap_into target)
   endif()
   cartographer_ext_tree_of(${target} "${ARG_SWAPS}" tree)
   if("full_information" IN_LIST ARG_SWAPS AND NOT "optimization_problem" IN_LIST ARG_SWAPS)
-    message(FATAL_ERROR "cartographer_ext: the swap 'full_information' needs the swap 'optimization_problem'")
+    message(STATUS "cartographer_ext: the swap 'full_information' has no effect without the swap 'optimization_problem'")
   endif()
   foreach(swap IN LISTS ARG_SWAPS)
     cartographer_ext_apply_swap(${target} ${swap})

@@ -87,7 +87,3 @@ file(WRITE "${WORK_DIR}/old_api/${spa}.cc" "\n")
 expect_error(old_api "add_library(cartographer STATIC ${sources} ${spa}.cc)
 set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder full_information)
 cartographer_ext_swap_into(cartographer)" "constraint_builder: needs class sensor::PointCloud .*Possible here: full_information")
-
-write_stock("${WORK_DIR}/full_information_alone")
-expect_error(full_information_alone "${add}
-cartographer_ext_swap_into(cartographer SWAPS full_information)" "'full_information' needs the swap 'optimization_problem'")
