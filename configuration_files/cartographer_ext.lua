@@ -181,25 +181,6 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- noise of the laser. [>= 0 and <= 10, m]
     tolerance = 0.04,
   },
-  node_weights = {
-    -- Weaken the constraint between a node and the submap it is part of as
-    -- far as the scan left its pose open, as along a blank corridor. Needs
-    -- the swap full_information; a map loaded from a file has the constant
-    -- weights again.
-    enabled = false,
-    -- full: each direction by itself. two_scalars: one factor for the way and
-    -- one for the turn, of the worst direction. [one of: full, two_scalars]
-    form = "full",
-    -- Standard deviation that matcher_translation_weight of the pose graph
-    -- stands for. Nodes that are known better keep that weight. [> 0 and <=
-    -- 10, m]
-    translation_sigma = 0.01,
-    -- The same for matcher_rotation_weight. [> 0 and <= 3.2, rad]
-    rotation_sigma = 0.002,
-    -- At least this part of the information of the constant weights is left.
-    -- [>= 1e-09 and <= 1]
-    min_ratio = 0.0001,
-  },
   calibration = {
     -- Learn what the way of odometry must be multiplied with, from scans that
     -- tell the way, for where they do not (a blank corridor).
@@ -415,16 +396,14 @@ CARTOGRAPHER_EXT.constraint_builder = {
   fusion = {
     -- Off: the final score is the grid score.
     enabled = true,
-    -- as_printed blends by how typical the scores are, proper_posterior
-    -- normalises that, likelihood_ratio gives the probability that the loop
-    -- is true. [one of: as_printed, proper_posterior, likelihood_ratio]
+    -- as_printed blends by how typical the scores are, likelihood_ratio gives
+    -- the probability that the loop is true. [one of: as_printed,
+    -- likelihood_ratio]
     mode = "likelihood_ratio",
     -- How many of the last scores the blends look at. [>= 1 and <= 100000]
     window = 10,
     -- Smallest deviation of the scores that is believed. [> 0 and <= 1]
     sigma_floor = 0.01,
-    -- Weight of the grid score in proper_posterior. [>= 0 and <= 1]
-    grid_weight = 0.5,
     -- Candidates with a lower final score are rejected. [>= 0 and <= 1]
     min_final_score = 0.01,
     -- Candidates that the prior of the mixture counts as. Stronger is safer

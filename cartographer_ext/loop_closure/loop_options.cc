@@ -65,12 +65,8 @@ DynamicThresholdOptions ToDynamicThresholdOptions(
 ScoreFusionOptions ToScoreFusionOptions(const LoopClosureOptions& options) {
   const auto& from = options.fusion();
   ScoreFusionOptions to;
-  to.mode = from.mode() == LoopClosureOptions::Fusion::PROPER_POSTERIOR
-                ? FusionMode::kProperPosterior
-                : FusionMode::kAsPrinted;
   to.window = from.window();
   to.sigma_floor = from.sigma_floor();
-  to.grid_weight = from.grid_weight();
   return to;
 }
 

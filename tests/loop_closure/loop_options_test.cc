@@ -102,7 +102,6 @@ TEST(LoopOptionsTest, DefaultsAgreeWithTheParts) {
   const ScoreFusionOptions fusion_default;
   EXPECT_EQ(fusion.window, fusion_default.window);
   EXPECT_EQ(fusion.sigma_floor, fusion_default.sigma_floor);
-  EXPECT_EQ(fusion.grid_weight, fusion_default.grid_weight);
   EXPECT_EQ(ToLoopMixtureOptions(defaults).prior_strength,
             LoopMixtureOptions().prior_strength);
   EXPECT_EQ(ToLoopMixtureOptions(defaults).capacity,
@@ -149,15 +148,12 @@ TEST(LoopOptionsTest, ChoicesArePassedOn) {
       proto::LoopClosureOptions::TemporalVerification::SYMMETRIC);
   options.mutable_dynamic_threshold()->set_direction(
       proto::LoopClosureOptions::DynamicThreshold::AS_PRINTED);
-  options.mutable_fusion()->set_mode(
-      proto::LoopClosureOptions::Fusion::PROPER_POSTERIOR);
   options.mutable_compatible_subset()->set_test(
       proto::LoopClosureOptions::CompatibleSubset::FIXED_BOUND);
   EXPECT_EQ(ToTemporalVerificationOptions(options).step,
             WarpingStep::kSymmetric);
   EXPECT_EQ(ToDynamicThresholdOptions(options).direction,
             ThresholdDirection::kAsPrinted);
-  EXPECT_EQ(ToScoreFusionOptions(options).mode, FusionMode::kProperPosterior);
   EXPECT_EQ(ToCompatibleSubsetOptions(options).cycle.test,
             uncertainty::CycleTest::kFixedBound);
 }

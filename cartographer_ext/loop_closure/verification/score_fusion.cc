@@ -22,12 +22,8 @@ double FusionLambda(const ScoreFusionOptions& options, const double grid_score,
                     const ScoreStatistics& temporal) {
   const double sigma_g = std::max(grid.sigma, options.sigma_floor);
   const double sigma_t = std::max(temporal.sigma, options.sigma_floor);
-  double log_g = LogGaussian(grid_score, grid.mean, sigma_g);
-  double log_t = LogGaussian(temporal_score, temporal.mean, sigma_t);
-  if (options.mode == FusionMode::kProperPosterior) {
-    log_g += std::log(options.grid_weight) - std::log(sigma_g);
-    log_t += std::log1p(-options.grid_weight) - std::log(sigma_t);
-  }
+  const double log_g = LogGaussian(grid_score, grid.mean, sigma_g);
+  const double log_t = LogGaussian(temporal_score, temporal.mean, sigma_t);
   // g / (g + t) = 1 / (1 + exp(log t - log g)); exp may overflow to infinity,
   // which gives the right limit 0.
   return 1. / (1. + std::exp(log_t - log_g));

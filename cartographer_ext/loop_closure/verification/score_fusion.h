@@ -15,10 +15,7 @@
 // far from both means. It is evaluated in the log domain, where it is a
 // logistic function of the difference of the exponents, with a floor on sigma.
 //
-//   kAsPrinted         eq. 6 as it stands
-//   kProperPosterior   Gaussians with 1/sigma and mixture weights
-//
-// The third mode, a calibrated probability by a mixture over both scores, is in
+// The other mode, a calibrated probability by a mixture over both scores, is in
 // loop_mixture.h.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_FUSION_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_FUSION_H_
@@ -28,13 +25,9 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-enum class FusionMode { kAsPrinted, kProperPosterior };
-
 struct ScoreFusionOptions {
-  FusionMode mode = FusionMode::kAsPrinted;
   int window = 10;              // k, > 0
   double sigma_floor = 0.01;    // > 0, in units of the scores
-  double grid_weight = 0.5;     // mixture weight of S_g, kProperPosterior only
   double initial_lambda = 0.5;  // until k scores exist, in [0, 1]
 };
 

@@ -18,15 +18,6 @@ TEST(ScoreFusionTest, EquationSixAsPrinted) {
   EXPECT_NEAR(lambda, std::exp(-0.5) / (std::exp(-0.5) + 1.), 1e-12);
 }
 
-TEST(ScoreFusionTest, ProperPosteriorHasSigmaAndWeights) {
-  ScoreFusionOptions options;
-  options.mode = FusionMode::kProperPosterior;
-  options.grid_weight = 0.25;
-  // Both on their means: (0.25 / 0.1) / (0.25 / 0.1 + 0.75 / 0.05) = 1 / 7.
-  EXPECT_NEAR(FusionLambda(options, 0.6, {0.6, 0.1}, 0.8, {0.8, 0.05}), 1. / 7.,
-              1e-12);
-}
-
 TEST(ScoreFusionTest, FiniteFarFromBothMeansAndWithZeroSigma) {
   ScoreFusionOptions options;
   // The printed formula is 0/0 here.
