@@ -40,11 +40,11 @@ TEST(SlamMainTest, WritesMapTrajectoriesAndNumbers) {
   EXPECT_GT(json["nodes"], 50);
   EXPECT_GE(json["submaps"], 1);
   EXPECT_GT(json["constraints"]["intra"], 50);
-  EXPECT_GE(json["constraints"]["inter"], 0);
+  EXPECT_EQ(json["constraints"]["inter"], 0);
   EXPECT_GT(json["wall_seconds"], 0.);
   EXPECT_GT(json["cpu_seconds"], 0.);
   EXPECT_GT(json["peak_memory_bytes"], 1000000);
-  EXPECT_GE(json["loop_search"]["count"], 0);
+  EXPECT_EQ(json["loop_search"]["count"], 0);
   EXPECT_GE(json["loop_search"]["cpu_seconds"], 0.);
   // A pose at every scan but those before the first one could be matched.
   const std::string trajectory = ReadFile(folder / "global.tum");
