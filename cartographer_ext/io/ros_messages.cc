@@ -19,11 +19,19 @@ constexpr uint32_t kMaxEchoes = 64;
 // Reads fields in their order; once something is missing, `ok` stays false.
 class Decoder {
  public:
-  explicit Decoder(absl::string_view data) : rest_(data) {}
+  Decoder(absl::string_view data, RosEncoding encoding)
+      : rest_(data), cdr_(encoding == RosEncoding::kCdr) {
+    if (!cdr_) return;
+    // Big-endian or parameter-list messages are not written by ROS 2.
+    ok_ = rest_.size() >= 4 && rest_[0] == 0 && rest_[1] == 1;
+    if (ok_) rest_.remove_prefix(4);
+    begin_ = rest_.data();
+  }
 
   template <typename T>
   T Take() {
     T value{};
+    Align(sizeof(T));
     if (!ok_ || rest_.size() < sizeof(T)) {
       ok_ = false;
       return value;
@@ -41,6 +49,10 @@ class Decoder {
     }
     std::string text(rest_.substr(0, length));
     rest_.remove_prefix(length);
+    if (cdr_ && !text.empty()) {
+      if (text.back() != '\0') ok_ = false;
+      text.pop_back();
+    }
     return text;
   }
 
@@ -73,10 +85,15 @@ class Decoder {
     rest_.remove_prefix(size);
   }
 
+  void SkipDoubles(size_t count) {
+    Align(sizeof(double));
+    Skip(count * sizeof(double));
+  }
+
   RosHeader TakeHeader() {
     RosHeader header;
-    Take<uint32_t>();  // sequence number
-    const int64_t seconds = Take<uint32_t>();
+    if (!cdr_) Take<uint32_t>();  // sequence number
+    const int64_t seconds = cdr_ ? int64_t{Take<int32_t>()} : int64_t{Take<uint32_t>()};
     const int64_t nanoseconds = Take<uint32_t>();
     header.time = seconds * 1000000000 + nanoseconds;
     header.frame = TakeFrame();
@@ -109,10 +126,19 @@ class Decoder {
   }
 
   bool ok() const { return ok_; }
-  bool AtEnd() const { return ok_ && rest_.empty(); }
+  // A CDR message may be padded at its end.
+  bool AtEnd() const { return ok_ && rest_.size() < (cdr_ ? 8u : 1u); }
 
  private:
+  void Align(size_t size) {
+    if (!cdr_ || !ok_) return;
+    const size_t past = static_cast<size_t>(rest_.data() - begin_) % size;
+    if (past != 0) Skip(size - past);
+  }
+
   absl::string_view rest_;
+  bool cdr_;
+  const char* begin_ = nullptr;  // where CDR counts from
   bool ok_ = true;
 };
 
@@ -144,9 +170,9 @@ bool FinishScan(const RosHeader& header, LaserScan* scan) {
 
 }  // namespace
 
-bool DecodeLaserScan(absl::string_view data, RosHeader* header,
+bool DecodeLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
                      LaserScan* scan) {
-  Decoder decoder(data);
+  Decoder decoder(data, encoding);
   TakeScanHead(&decoder, header, scan);
   decoder.TakeFloats(&scan->ranges);
   scan->echoes.clear();
@@ -155,9 +181,9 @@ bool DecodeLaserScan(absl::string_view data, RosHeader* header,
   return decoder.AtEnd() && FinishScan(*header, scan);
 }
 
-bool DecodeMultiEchoLaserScan(absl::string_view data, RosHeader* header,
+bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
                               LaserScan* scan) {
-  Decoder decoder(data);
+  Decoder decoder(data, encoding);
   TakeScanHead(&decoder, header, scan);
   const uint32_t n = decoder.TakeCount(sizeof(uint32_t));
   if (n > CarmenLine::kMaxReadings) return false;
@@ -175,38 +201,35 @@ bool DecodeMultiEchoLaserScan(absl::string_view data, RosHeader* header,
   return decoder.AtEnd() && FinishScan(*header, scan);
 }
 
-bool DecodeOdometry(absl::string_view data, RosHeader* header,
+bool DecodeOdometry(RosEncoding encoding, absl::string_view data, RosHeader* header,
                     std::string* child_frame, Eigen::Isometry3d* pose) {
-  constexpr size_t kCovarianceSize = 36 * sizeof(double);
-  Decoder decoder(data);
+  Decoder decoder(data, encoding);
   *header = decoder.TakeHeader();
   *child_frame = decoder.TakeFrame();
   *pose = decoder.TakePose();
-  decoder.Skip(kCovarianceSize);
-  decoder.Skip(6 * sizeof(double) + kCovarianceSize);  // velocities
+  decoder.SkipDoubles(36);      // covariance
+  decoder.SkipDoubles(6 + 36);  // velocities
   return decoder.AtEnd();
 }
 
-bool DecodeImu(absl::string_view data, RosHeader* header, ImuReading* reading) {
-  constexpr size_t kCovarianceSize = 9 * sizeof(double);
+bool DecodeImu(RosEncoding encoding, absl::string_view data, RosHeader* header, ImuReading* reading) {
   constexpr double kMaxValue = 1e6;
-  Decoder decoder(data);
+  Decoder decoder(data, encoding);
   *header = decoder.TakeHeader();
-  decoder.Skip(4 * sizeof(double) + kCovarianceSize);  // orientation
+  decoder.SkipDoubles(4 + 9);  // orientation
   reading->angular_velocity = decoder.TakeVector();
-  decoder.Skip(kCovarianceSize);
+  decoder.SkipDoubles(9);
   reading->linear_acceleration = decoder.TakeVector();
-  decoder.Skip(kCovarianceSize);
+  decoder.SkipDoubles(9);
   reading->time = header->time;
   return decoder.AtEnd() &&
          (reading->angular_velocity.array().abs() <= kMaxValue).all() &&
          (reading->linear_acceleration.array().abs() <= kMaxValue).all();
 }
 
-bool DecodeTransforms(absl::string_view data,
-                      std::vector<RosTransform>* transforms) {
-  Decoder decoder(data);
-  const uint32_t n = decoder.TakeCount(76);  // all but the names
+bool DecodeTransforms(RosEncoding encoding, absl::string_view data, std::vector<RosTransform>* transforms) {
+  Decoder decoder(data, encoding);
+  const uint32_t n = decoder.TakeCount(64);  // all but the names and padding
   if (n > kMaxTransforms) return false;
   transforms->resize(n);
   for (RosTransform& transform : *transforms) {

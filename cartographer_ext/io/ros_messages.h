@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Decoding of the serialized ROS 1 messages we read. It is our own because the
-// generated code believes the array lengths it finds and would ask for
-// gigabytes where a file is damaged; here every length is checked against what
-// is left of the message.
+// Decoding of the serialized ROS 1 and ROS 2 messages we read. It is our own
+// because the generated code believes the array lengths it finds and would ask
+// for gigabytes where a file is damaged; here every length is checked against
+// what is left of the message.
 //
-// Serialized: fields one after another, little endian; strings and arrays with
-// a uint32 length in front; a stamp is two uint32, seconds and nanoseconds.
+// ROS 1: fields one after another, little endian; strings and arrays with a
+// uint32 length in front; a stamp is two uint32, seconds and nanoseconds.
+// ROS 2 (CDR, little endian): four bytes of encapsulation (0 1 and two of
+// options), then the fields, each aligned to its size counted from there; the
+// length of a string counts its final zero; a header has no sequence number.
+// The fields of the messages we read are the same and in the same order.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_MESSAGES_H_
 #define CARTOGRAPHER_EXT_IO_ROS_MESSAGES_H_
 
@@ -38,6 +42,8 @@ constexpr RosType kRosImu{"sensor_msgs/Imu",
 constexpr RosType kRosTransforms{"tf2_msgs/TFMessage",
                                  "94810edda583a504dfda3829e70d7eec"};
 
+enum class RosEncoding { kRos1, kCdr };
+
 struct RosHeader {
   TimeNs time = 0;
   std::string frame;  // without a leading slash
@@ -54,17 +60,16 @@ struct RosTransform {
 // CarmenLine::kMaxReadings, beams over more than a full turn).
 
 // `scan->time` becomes the time of the last beam.
-bool DecodeLaserScan(absl::string_view data, RosHeader* header,
+bool DecodeLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
                      LaserScan* scan);
-bool DecodeMultiEchoLaserScan(absl::string_view data, RosHeader* header,
+bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
                               LaserScan* scan);
 // `pose` is (header.frame <- child_frame).
-bool DecodeOdometry(absl::string_view data, RosHeader* header,
+bool DecodeOdometry(RosEncoding encoding, absl::string_view data, RosHeader* header,
                     std::string* child_frame, Eigen::Isometry3d* pose);
 // In the frame of the sensor.
-bool DecodeImu(absl::string_view data, RosHeader* header, ImuReading* reading);
-bool DecodeTransforms(absl::string_view data,
-                      std::vector<RosTransform>* transforms);
+bool DecodeImu(RosEncoding encoding, absl::string_view data, RosHeader* header, ImuReading* reading);
+bool DecodeTransforms(RosEncoding encoding, absl::string_view data, std::vector<RosTransform>* transforms);
 
 }  // namespace io
 }  // namespace cartographer_ext

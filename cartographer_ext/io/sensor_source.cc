@@ -6,10 +6,13 @@
 
 #include <cerrno>
 #include <fstream>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/io/carmen_reader.h"
+#include "cartographer_ext/io/ros/mcap_reader.h"
+#include "cartographer_ext/io/ros/rosbag2_reader.h"
 #include "cartographer_ext/io/rosbag_reader.h"
 
 namespace cartographer_ext {
@@ -24,6 +27,13 @@ std::string ReadHead(const std::string& filename) {
   return std::string(head, static_cast<size_t>(file.gcount()));
 }
 
+absl::StatusOr<std::unique_ptr<SensorSource>> OpenRos2(const std::string& filename,
+                                                       absl::StatusOr<std::unique_ptr<RosContainer>> container,
+                                                       const SensorSourceOptions& options) {
+  if (!container.ok()) return container.status();
+  return OpenRosRecording(filename, std::move(*container), options);
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<SensorSource>> OpenSensorSource(
@@ -31,6 +41,9 @@ absl::StatusOr<std::unique_ptr<SensorSource>> OpenSensorSource(
   struct stat info;
   if (::stat(filename.c_str(), &info) != 0) {
     return absl::ErrnoToStatus(errno, absl::StrCat("cannot open ", filename));
+  }
+  if (S_ISDIR(info.st_mode)) {
+    return OpenRos2(filename, OpenRosbag2Folder(filename), options);
   }
   if (!S_ISREG(info.st_mode)) {
     // Logs are read twice, which pipes and devices cannot give.
@@ -47,12 +60,11 @@ absl::StatusOr<std::unique_ptr<SensorSource>> OpenSensorSource(
     return absl::InvalidArgumentError(
         absl::StrCat(filename, ": not a ROS 1 bag"));
   }
-  if (absl::StartsWith(head, absl::string_view("\x89MCAP", 5)) ||
-      absl::StartsWith(head, "SQLite format 3")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(filename,
-                     ": ROS 2 bags are not read; convert it to a ROS 1 bag "
-                     "(rosbags-convert)"));
+  if (absl::StartsWith(head, "\x89MCAP")) {
+    return OpenRos2(filename, OpenMcap(filename), options);
+  }
+  if (absl::StartsWith(head, "SQLite format 3")) {
+    return OpenRos2(filename, OpenDb3(filename), options);
   }
   return OpenCarmenLog(filename, options);
 }

@@ -70,7 +70,7 @@ inline TimeNs EventTime(const SensorEvent& event) {
 
 // What a recording holds, known after opening it.
 struct SensorSourceInfo {
-  std::string format;  // "carmen", "rosbag", "world"
+  std::string format;  // "carmen", "rosbag", "mcap", "db3", "world"
   int64_t num_scans = 0;
   int64_t num_odometry = 0;
   int64_t num_imu = 0;
@@ -90,7 +90,7 @@ class SensorSource {
 };
 
 struct SensorSourceOptions {
-  // rosbag only; empty: the only (or first by name) topic of that type.
+  // Of ROS; empty: the only (or first by name) topic of that type.
   std::string scan_topic;
   std::string odometry_topic;
   std::string imu_topic;
@@ -102,7 +102,8 @@ struct SensorSourceOptions {
   std::string odometry_source = "auto";
 };
 
-// Opens a log by its content and name: .clf/.log (also .gz .xz .bz2), .bag.
+// Opens a log by its content and name: .clf/.log (also .gz .xz .bz2), .bag,
+// .mcap, .db3, or a folder of rosbag2.
 // Worlds are opened by simulation::OpenWorld.
 absl::StatusOr<std::unique_ptr<SensorSource>> OpenSensorSource(
     const std::string& filename, const SensorSourceOptions& options);

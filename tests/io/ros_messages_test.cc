@@ -62,7 +62,7 @@ std::string LaserScanBytes(const std::vector<float>& ranges) {
 TEST(RosMessagesTest, LaserScan) {
   RosHeader header;
   LaserScan scan;
-  ASSERT_TRUE(DecodeLaserScan(LaserScanBytes({1.f, 2.f, 3.f}), &header, &scan));
+  ASSERT_TRUE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes({1.f, 2.f, 3.f}), &header, &scan));
   EXPECT_EQ(header.time, 10500000000);
   EXPECT_EQ(header.frame, "laser");
   EXPECT_EQ(scan.time, 11000000000);  // of the last beam
@@ -71,9 +71,9 @@ TEST(RosMessagesTest, LaserScan) {
   EXPECT_EQ(scan.time_increment, 0.25);
   EXPECT_EQ(scan.range_max, 30.);
   EXPECT_EQ(scan.ranges, (std::vector<float>{1.f, 2.f, 3.f}));
-  EXPECT_FALSE(DecodeLaserScan(LaserScanBytes({}), &header, &scan));
+  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes({}), &header, &scan));
   // More than a full turn.
-  EXPECT_FALSE(DecodeLaserScan(LaserScanBytes(std::vector<float>(20, 1.f)),
+  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes(std::vector<float>(20, 1.f)),
                                &header, &scan));
 }
 
@@ -91,7 +91,7 @@ TEST(RosMessagesTest, MultiEchoLaserScan) {
                                .data();
   RosHeader header;
   LaserScan scan;
-  ASSERT_TRUE(DecodeMultiEchoLaserScan(data, &header, &scan));
+  ASSERT_TRUE(DecodeMultiEchoLaserScan(RosEncoding::kRos1, data, &header, &scan));
   ASSERT_EQ(scan.ranges.size(), 2u);
   EXPECT_EQ(scan.ranges[0], 4.f);
   EXPECT_TRUE(std::isnan(scan.ranges[1]));
@@ -111,7 +111,7 @@ TEST(RosMessagesTest, Odometry) {
   RosHeader header;
   std::string child;
   Eigen::Isometry3d pose;
-  ASSERT_TRUE(DecodeOdometry(OdometryBytes({1., 2., 3., 0., 0., 0.6, 0.8}),
+  ASSERT_TRUE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0.6, 0.8}),
                              &header, &child, &pose));
   EXPECT_EQ(header.time, 1000000002);
   EXPECT_EQ(child, "base_link");
@@ -119,13 +119,13 @@ TEST(RosMessagesTest, Odometry) {
   EXPECT_NEAR(std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)),
               2. * std::atan2(0.6, 0.8), 1e-12);
   // All zero stands for no rotation.
-  ASSERT_TRUE(DecodeOdometry(OdometryBytes({1., 2., 3., 0., 0., 0., 0.}),
+  ASSERT_TRUE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0., 0.}),
                              &header, &child, &pose));
   EXPECT_TRUE(pose.linear().isIdentity());
-  EXPECT_FALSE(DecodeOdometry(OdometryBytes({1., 2., 3., 0., 0., 0., 0.5}),
+  EXPECT_FALSE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0., 0.5}),
                               &header, &child, &pose));
   EXPECT_FALSE(
-      DecodeOdometry(OdometryBytes({std::nan(""), 2., 3., 0., 0., 0., 1.}),
+      DecodeOdometry(RosEncoding::kRos1, OdometryBytes({std::nan(""), 2., 3., 0., 0., 0., 1.}),
                      &header, &child, &pose));
 }
 
@@ -143,11 +143,11 @@ TEST(RosMessagesTest, Imu) {
   };
   RosHeader header;
   ImuReading reading;
-  ASSERT_TRUE(DecodeImu(bytes(0.3), &header, &reading));
+  ASSERT_TRUE(DecodeImu(RosEncoding::kRos1, bytes(0.3), &header, &reading));
   EXPECT_EQ(reading.time, 3000000000);
   EXPECT_EQ(reading.angular_velocity, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(reading.linear_acceleration, Eigen::Vector3d(1., 2., 9.8));
-  EXPECT_FALSE(DecodeImu(bytes(std::nan("")), &header, &reading));
+  EXPECT_FALSE(DecodeImu(RosEncoding::kRos1, bytes(std::nan("")), &header, &reading));
 }
 
 TEST(RosMessagesTest, Transforms) {
@@ -161,7 +161,7 @@ TEST(RosMessagesTest, Transforms) {
                                .Doubles({2., 0., 0., 0., 0., 0., 1.})
                                .data();
   std::vector<RosTransform> transforms;
-  ASSERT_TRUE(DecodeTransforms(data, &transforms));
+  ASSERT_TRUE(DecodeTransforms(RosEncoding::kRos1, data, &transforms));
   ASSERT_EQ(transforms.size(), 2u);
   EXPECT_EQ(transforms[0].header.frame, "odom");
   EXPECT_EQ(transforms[0].child_frame, "base");
@@ -169,7 +169,7 @@ TEST(RosMessagesTest, Transforms) {
   // A count that the message cannot hold.
   std::string lying = data;
   lying[3] = '\x7f';
-  EXPECT_FALSE(DecodeTransforms(lying, &transforms));
+  EXPECT_FALSE(DecodeTransforms(RosEncoding::kRos1, lying, &transforms));
 }
 
 TEST(RosMessagesTest, TooShortOrTooLongIsRefused) {
@@ -177,9 +177,9 @@ TEST(RosMessagesTest, TooShortOrTooLongIsRefused) {
   RosHeader header;
   LaserScan decoded;
   for (size_t size = 0; size < scan.size(); ++size) {
-    EXPECT_FALSE(DecodeLaserScan(scan.substr(0, size), &header, &decoded));
+    EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, scan.substr(0, size), &header, &decoded));
   }
-  EXPECT_FALSE(DecodeLaserScan(scan + "x", &header, &decoded));
+  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, scan + "x", &header, &decoded));
 }
 
 TEST(RosMessagesTest, SurvivesMutations) {
@@ -193,11 +193,11 @@ TEST(RosMessagesTest, SurvivesMutations) {
       std::string child;
       Eigen::Isometry3d pose;
       std::vector<RosTransform> transforms;
-      DecodeLaserScan(damaged, &header, &scan);
-      DecodeMultiEchoLaserScan(damaged, &header, &scan);
-      DecodeImu(damaged, &header, &imu);
-      DecodeOdometry(damaged, &header, &child, &pose);
-      DecodeTransforms(damaged, &transforms);
+      DecodeLaserScan(RosEncoding::kRos1, damaged, &header, &scan);
+      DecodeMultiEchoLaserScan(RosEncoding::kRos1, damaged, &header, &scan);
+      DecodeImu(RosEncoding::kRos1, damaged, &header, &imu);
+      DecodeOdometry(RosEncoding::kRos1, damaged, &header, &child, &pose);
+      DecodeTransforms(RosEncoding::kRos1, damaged, &transforms);
     });
   }
 }

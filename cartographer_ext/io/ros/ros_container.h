@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A file or folder of recorded ROS messages, whatever its format: ROS 1 bag,
+// MCAP, rosbag2 database. It knows nothing of what is in the messages; that is
+// OpenRosRecording's part.
+#ifndef CARTOGRAPHER_EXT_IO_ROS_ROS_CONTAINER_H_
+#define CARTOGRAPHER_EXT_IO_ROS_ROS_CONTAINER_H_
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cartographer_ext/io/ros_messages.h"
+#include "cartographer_ext/io/rosbag_topics.h"
+#include "cartographer_ext/io/sensor_source.h"
+
+namespace cartographer_ext {
+namespace io {
+
+struct RosMessage {
+  std::string topic;
+  TimeNs received = 0;  // when it was recorded
+  std::string data;     // serialized
+};
+
+class RosContainer {
+ public:
+  virtual ~RosContainer() = default;
+
+  virtual std::string format() const = 0;  // "rosbag", "mcap", "db3"
+  virtual RosEncoding encoding() const = 0;
+  virtual const RosTopics& topics() const = 0;
+
+  // Starts over; Next gives the messages on `topics` only, in the order of the
+  // recording. Without a call there are no messages.
+  virtual absl::Status Rewind(const std::set<std::string>& topics) = 0;
+  // False at the end. Errors name the file.
+  virtual absl::StatusOr<bool> Next(RosMessage* message) = 0;
+
+  // What was wrong with the file and could be lived with. Complete once all of
+  // it was read. They name the file.
+  virtual std::vector<std::string> warnings() const { return {}; }
+};
+
+// The type of a topic as ChooseTopics knows it: "sensor_msgs/msg/LaserScan" has
+// the fields of the ROS 1 type "sensor_msgs/LaserScan" and gets its checksum.
+RosTopicType TypeOfRos2(const std::string& name);
+
+// A recording out of a container. Errors and warnings name `filename`.
+absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosRecording(
+    const std::string& filename, std::unique_ptr<RosContainer> container,
+    const SensorSourceOptions& options);
+
+}  // namespace io
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_IO_ROS_ROS_CONTAINER_H_

@@ -1,0 +1,345 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Topics, frames and stamps of a ROS recording, whatever its container; what
+// rosbag_reader.h says of them holds for all.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "absl/memory/memory.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "cartographer_ext/io/reorder.h"
+#include "cartographer_ext/io/ros/ros_container.h"
+#include "cartographer_ext/io/ros_frames.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+constexpr size_t kMaxEvents = 50000000;
+constexpr size_t kMaxReorderWindow = 1 << 16;
+constexpr size_t kMaxSensorFrames = 100;
+// Tilt beyond which projecting a scan onto the plane distorts it by over 2 %.
+const double kMaxTilt = DegToRad(11.);
+
+Pose2 Planar(const Eigen::Isometry3d& pose) {
+  return Pose2(pose.translation().x(), pose.translation().y(),
+               std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)));
+}
+
+enum Rank { kOdometryRank, kImuRank, kScanRank, kNumRanks };
+
+// A message of one of the chosen topics, not yet in the robot's frame.
+struct Decoded {
+  Rank rank = kOdometryRank;
+  SensorEvent event;
+  std::string frame;           // of the sensor, or the child of odometry
+  Eigen::Isometry3d odometry;  // (odometry <- frame)
+};
+
+class RosRecording : public SensorSource {
+ public:
+  RosRecording(const std::string& filename, std::unique_ptr<RosContainer> container,
+               const SensorSourceOptions& options)
+      : filename_(filename), container_(std::move(container)), tracking_frame_(options.tracking_frame) {
+    if (!tracking_frame_.empty() && tracking_frame_[0] == '/') {
+      tracking_frame_.erase(0, 1);
+    }
+  }
+
+  absl::Status Open(const SensorSourceOptions& options);
+
+  const SensorSourceInfo& info() const override { return info_; }
+
+  absl::StatusOr<bool> Next(SensorEvent* event) override {
+    while (!at_end_ && !waiting_.Ready()) {
+      const absl::Status status = Advance();
+      if (!status.ok()) return status;
+    }
+    if (waiting_.empty()) return false;
+    *event = waiting_.Pop();
+    return true;
+  }
+
+ private:
+  absl::Status Survey();
+  void CountEvents(const std::vector<EventKey>& keys);
+  void ChooseTrackingFrame();
+  void CheckFrames();
+  bool Decode(const RosMessage& message, Decoded* decoded);
+  // Adds the transforms of a message to the frames.
+  bool TakeTransforms(const RosMessage& message);
+  // Moves the event into the robot's frame.
+  void Place(Decoded* decoded);
+  // Reads one message on.
+  absl::Status Advance();
+  Eigen::Isometry3d SensorPose(const std::string& frame) const {
+    return frames_.Lookup(tracking_frame_, frame)
+        .value_or(Eigen::Isometry3d::Identity());
+  }
+  bool IsEventTopic(const std::string& topic) const {
+    return topic == topics_.scan || topic == topics_.odometry ||
+           topic == topics_.imu;
+  }
+  Rank RankOf(const std::string& event_topic) const {
+    return event_topic == topics_.scan  ? kScanRank
+           : event_topic == topics_.imu ? kImuRank
+                                        : kOdometryRank;
+  }
+
+  std::set<std::string> EventTopics() const {
+    std::set<std::string> topics = {topics_.scan, topics_.odometry, topics_.imu};
+    topics.erase("");
+    return topics;
+  }
+
+  const std::string filename_;
+  const std::unique_ptr<RosContainer> container_;
+  std::string tracking_frame_;
+  SensorSourceInfo info_;
+  ChosenTopics topics_;
+  RosFrames frames_;
+  std::set<std::string> seen_frames_[kNumRanks];
+
+  ReorderPlan reordering_;
+  ReorderBuffer<SensorEvent> waiting_;
+  int64_t ordinal_ = 0;
+  size_t next_dropped_ = 0;
+  bool at_end_ = false;
+};
+
+absl::Status RosRecording::Open(const SensorSourceOptions& options) {
+  auto chosen = ChooseTopics(container_->topics(), options);
+  if (!chosen.ok()) {
+    return absl::Status(chosen.status().code(), absl::StrCat(filename_, ": ", chosen.status().message()));
+  }
+  topics_ = std::move(*chosen);
+  info_.format = container_->format();
+  for (const std::string& warning : topics_.warnings) {
+    info_.warnings.push_back(absl::StrCat(filename_, ": ", warning));
+  }
+  absl::Status status = Survey();
+  if (!status.ok()) return status;
+  for (std::string& warning : container_->warnings()) info_.warnings.push_back(std::move(warning));
+  CheckFrames();
+  status = container_->Rewind(EventTopics());
+  if (!status.ok()) return status;
+  waiting_ = ReorderBuffer<SensorEvent>(reordering_.window);
+  return absl::OkStatus();
+}
+
+bool RosRecording::Decode(const RosMessage& message, Decoded* decoded) {
+  const RosEncoding encoding = container_->encoding();
+  RosHeader header;
+  bool valid;
+  decoded->rank = RankOf(message.topic);
+  if (decoded->rank == kScanRank) {
+    LaserScan scan;
+    valid = topics_.multi_echo ? DecodeMultiEchoLaserScan(encoding, message.data, &header, &scan)
+                               : DecodeLaserScan(encoding, message.data, &header, &scan);
+    decoded->frame = header.frame;
+    decoded->event = std::move(scan);
+  } else if (decoded->rank == kOdometryRank) {
+    OdometryReading reading;
+    valid = DecodeOdometry(encoding, message.data, &header, &decoded->frame, &decoded->odometry);
+    reading.time = header.time;
+    decoded->event = reading;
+  } else {
+    ImuReading reading;
+    valid = DecodeImu(encoding, message.data, &header, &reading);
+    decoded->frame = header.frame;
+    decoded->event = reading;
+  }
+  if (valid && header.time == 0) {
+    const TimeNs received = message.received;
+    absl::visit([received](auto& event) { event.time += received; }, decoded->event);
+  }
+  return valid;
+}
+
+bool RosRecording::TakeTransforms(const RosMessage& message) {
+  std::vector<RosTransform> transforms;
+  if (!DecodeTransforms(container_->encoding(), message.data, &transforms)) return false;
+  for (const RosTransform& transform : transforms) frames_.Add(transform);
+  return true;
+}
+
+absl::Status RosRecording::Survey() {
+  std::set<std::string> topics = EventTopics();
+  topics.insert(topics_.transforms.begin(), topics_.transforms.end());
+  const absl::Status rewound = container_->Rewind(topics);
+  if (!rewound.ok()) return rewound;
+  std::vector<EventKey> keys;
+  std::map<std::string, int64_t> damaged;
+  std::map<std::string, TimeNs> last;
+  int64_t ordinal = 0;
+  Decoded decoded;
+  RosMessage message;
+  while (true) {
+    const absl::StatusOr<bool> more = container_->Next(&message);
+    if (!more.ok()) return more.status();
+    if (!*more) break;
+    if (!IsEventTopic(message.topic)) {
+      if (!TakeTransforms(message)) ++damaged[message.topic];
+      continue;
+    }
+    if (!Decode(message, &decoded)) {
+      ++damaged[message.topic];
+      continue;
+    }
+    std::set<std::string>& frames = seen_frames_[decoded.rank];
+    if (frames.size() < kMaxSensorFrames) frames.insert(decoded.frame);
+    const TimeNs time = EventTime(decoded.event);
+    const auto known = last.emplace(message.topic, time);
+    if (time < known.first->second) ++info_.num_out_of_order;
+    known.first->second = time;
+    keys.push_back(EventKey{time, decoded.rank, ordinal++});
+    if (keys.size() > kMaxEvents) {
+      return absl::OutOfRangeError(absl::StrCat(filename_, ": more than ", kMaxEvents, " messages"));
+    }
+  }
+  for (const auto& topic : damaged) {
+    info_.warnings.push_back(
+        absl::StrCat(filename_, ": ", topic.second, " messages on ", topic.first, " cannot be decoded; skipped"));
+  }
+  CountEvents(keys);
+  if (info_.num_scans == 0) {
+    return absl::InvalidArgumentError(absl::StrCat(filename_, ": no valid scan on ", topics_.scan));
+  }
+  return absl::OkStatus();
+}
+
+void RosRecording::CountEvents(const std::vector<EventKey>& keys) {
+  reordering_ = PlanReordering(keys, kMaxReorderWindow);
+  if (!reordering_.dropped.empty()) {
+    info_.warnings.push_back(absl::StrCat(filename_, ": ", reordering_.dropped.size(), " messages more than ",
+                                          kMaxReorderWindow, " messages late dropped"));
+  }
+  int64_t counts[kNumRanks] = {};
+  info_.begin = std::numeric_limits<TimeNs>::max();
+  size_t next_dropped = 0;
+  for (const EventKey& key : keys) {
+    if (next_dropped < reordering_.dropped.size() && reordering_.dropped[next_dropped] == key.ordinal) {
+      ++next_dropped;
+      continue;
+    }
+    ++counts[key.rank];
+    info_.begin = std::min(info_.begin, key.time);
+    info_.end = std::max(info_.end, key.time);
+  }
+  info_.num_scans = counts[kScanRank];
+  info_.num_odometry = counts[kOdometryRank];
+  info_.num_imu = counts[kImuRank];
+}
+
+void RosRecording::ChooseTrackingFrame() {
+  if (frames_.Knows(tracking_frame_)) return;
+  for (const Rank rank : {kOdometryRank, kScanRank}) {
+    const std::set<std::string>& seen = seen_frames_[rank];
+    if (seen.empty() || seen.count(tracking_frame_) > 0) continue;
+    info_.warnings.push_back(
+        absl::StrCat(filename_, ": tracking frame \"", tracking_frame_,
+                     "\" does not occur; taking \"", *seen.begin(), "\""));
+    tracking_frame_ = *seen.begin();
+    return;
+  }
+}
+
+void RosRecording::CheckFrames() {
+  ChooseTrackingFrame();
+  std::set<std::string> frames;
+  for (const std::set<std::string>& seen : seen_frames_) {
+    frames.insert(seen.begin(), seen.end());
+  }
+  for (const std::string& frame : frames) {
+    std::vector<std::string> moving;
+    const auto pose = frames_.Lookup(tracking_frame_, frame, &moving);
+    if (!pose.has_value()) {
+      info_.warnings.push_back(absl::StrCat(filename_, ": no transform from \"",
+                                            frame, "\" to \"", tracking_frame_,
+                                            "\"; taken to coincide"));
+    } else if (!moving.empty()) {
+      info_.warnings.push_back(
+          absl::StrCat(filename_, ": \"", absl::StrJoin(moving, "\", \""),
+                       "\" moves on the robot; its first pose is used"));
+    }
+    if (pose.has_value() && seen_frames_[kScanRank].count(frame) > 0 &&
+        std::abs(pose->linear()(2, 2)) < std::cos(kMaxTilt)) {
+      info_.warnings.push_back(absl::StrCat(
+          filename_, ": laser frame \"", frame,
+          "\" is tilted; its scans are taken as if it were level"));
+    }
+  }
+}
+
+void RosRecording::Place(Decoded* decoded) {
+  const Eigen::Isometry3d sensor = SensorPose(decoded->frame);
+  if (decoded->rank == kScanRank) {
+    LaserScan& scan = absl::get<LaserScan>(decoded->event);
+    scan.laser_pose = Planar(sensor);
+    if (sensor.linear()(2, 2) <
+        0.) {  // Upside down: beams run in the other direction.
+      scan.angle_min = -scan.angle_min;
+      scan.angle_increment = -scan.angle_increment;
+    }
+  } else if (decoded->rank == kOdometryRank) {
+    absl::get<OdometryReading>(decoded->event).pose =
+        Planar(decoded->odometry * sensor.inverse());
+  } else {
+    ImuReading& reading = absl::get<ImuReading>(decoded->event);
+    reading.angular_velocity = sensor.linear() * reading.angular_velocity;
+    reading.linear_acceleration = sensor.linear() * reading.linear_acceleration;
+  }
+}
+
+absl::Status RosRecording::Advance() {
+  RosMessage message;
+  const absl::StatusOr<bool> more = container_->Next(&message);
+  if (!more.ok()) return more.status();
+  if (!*more) {
+    at_end_ = true;
+    return absl::OkStatus();
+  }
+  Decoded decoded;
+  if (!Decode(message, &decoded)) return absl::OkStatus();
+  const EventKey key{EventTime(decoded.event), decoded.rank, ordinal_++};
+  if (next_dropped_ < reordering_.dropped.size() && reordering_.dropped[next_dropped_] == key.ordinal) {
+    ++next_dropped_;
+    return absl::OkStatus();
+  }
+  Place(&decoded);
+  waiting_.Push(key, std::move(decoded.event));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+RosTopicType TypeOfRos2(const std::string& name) {
+  RosTopicType type;
+  type.name = name;
+  const size_t at = name.find("/msg/");
+  if (at == std::string::npos) return type;
+  const std::string ros1 = absl::StrCat(name.substr(0, at), "/", name.substr(at + 5));
+  for (const RosType& known : {kRosLaserScan, kRosMultiEchoLaserScan, kRosOdometry, kRosImu, kRosTransforms}) {
+    if (ros1 == known.name) type.md5sum = known.md5sum;
+  }
+  return type;
+}
+
+absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosRecording(const std::string& filename,
+                                                               std::unique_ptr<RosContainer> container,
+                                                               const SensorSourceOptions& options) {
+  auto source = absl::make_unique<RosRecording>(filename, std::move(container), options);
+  const absl::Status status = source->Open(options);
+  if (!status.ok()) return status;
+  return std::unique_ptr<SensorSource>(std::move(source));
+}
+
+}  // namespace io
+}  // namespace cartographer_ext

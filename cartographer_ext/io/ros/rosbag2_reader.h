@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Recordings of rosbag2: its SQLite databases (.db3) and its folders, whose
+// files (.db3 or .mcap, in order of the number in their names) are one
+// recording.
+#ifndef CARTOGRAPHER_EXT_IO_ROS_ROSBAG2_READER_H_
+#define CARTOGRAPHER_EXT_IO_ROS_ROSBAG2_READER_H_
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/io/ros/ros_container.h"
+
+namespace cartographer_ext {
+namespace io {
+
+// Errors name the file.
+absl::StatusOr<std::unique_ptr<RosContainer>> OpenDb3(
+    const std::string& filename);
+
+// A folder without such files is an error that says what was looked for.
+absl::StatusOr<std::unique_ptr<RosContainer>> OpenRosbag2Folder(
+    const std::string& folder);
+
+}  // namespace io
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_IO_ROS_ROSBAG2_READER_H_
