@@ -11,6 +11,7 @@
 #include "cartographer_ext/io/carmen_writer.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/relations_file.h"
+#include "cartographer_ext/io/ros/rosbag2_writer.h"
 #include "cartographer_ext/io/rosbag_writer.h"
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/simulation/truth.h"
@@ -25,7 +26,7 @@ std::string Seconds(const io::TimeNs time) {
   return absl::StrFormat("%d.%09d", time / 1000000000, time % 1000000000);
 }
 
-// Writes each event to the log and to the bag, whichever are open.
+// Writes each event to the log and to the bags, whichever are open.
 class LogWriter {
  public:
   absl::Status Open(const Simulation& simulation,
@@ -43,10 +44,20 @@ class LogWriter {
     }
     if (options.bag) {
       const std::string filename = options.filestem + ".bag";
-      auto bag = io::RosbagWriter::Open(filename, io::RosbagWriterOptions());
-      if (!bag.ok()) return bag.status();
-      bag_ = *std::move(bag);
-      summary->files.push_back(filename);
+      const absl::Status status = AddBag(filename, io::RosbagWriter::Open(filename, io::RosbagWriterOptions()));
+      if (!status.ok()) return status;
+    }
+    io::RosbagWriterOptions ros2;
+    ros2.compression = "zstd";
+    if (options.mcap) {
+      const std::string filename = options.filestem + ".mcap";
+      const absl::Status status =
+          AddBag(filename, io::OpenRosbag2Writer(filename, io::Rosbag2Storage::kMcap, ros2));
+      if (!status.ok()) return status;
+    }
+    if (options.db3) {
+      const std::string filename = options.filestem + ".db3";
+      return AddBag(filename, io::OpenRosbag2Writer(filename, io::Rosbag2Storage::kDb3, ros2));
     }
     return absl::OkStatus();
   }
@@ -69,13 +80,12 @@ class LogWriter {
           carmen_->AddOdometry(reading, linear, angular);
       if (!status.ok()) return status;
     }
-    return bag_ == nullptr ? absl::OkStatus()
-                           : bag_->AddOdometry(reading, linear, angular);
+    return ToBags([&](io::RosbagWriter* bag) { return bag->AddOdometry(reading, linear, angular); });
   }
 
   absl::Status operator()(const io::ImuReading& reading) {
     ++summary_->imu_readings;
-    return bag_ == nullptr ? absl::OkStatus() : bag_->AddImu(reading);
+    return ToBags([&](io::RosbagWriter* bag) { return bag->AddImu(reading); });
   }
 
   absl::Status operator()(const io::LaserScan& scan) {
@@ -86,7 +96,7 @@ class LogWriter {
       const absl::Status status = carmen_->AddScan(scan, odometry_.pose);
       if (!status.ok()) return status;
     }
-    return bag_ == nullptr ? absl::OkStatus() : bag_->AddScan(scan);
+    return ToBags([&](io::RosbagWriter* bag) { return bag->AddScan(scan); });
   }
 
   absl::Status Finish() {
@@ -94,12 +104,28 @@ class LogWriter {
       const absl::Status status = carmen_->Finish();
       if (!status.ok()) return status;
     }
-    return bag_ == nullptr ? absl::OkStatus() : bag_->Finish();
+    return ToBags([](io::RosbagWriter* bag) { return bag->Finish(); });
   }
 
  private:
+  absl::Status AddBag(const std::string& filename, absl::StatusOr<std::unique_ptr<io::RosbagWriter>> bag) {
+    if (!bag.ok()) return bag.status();
+    bags_.push_back(*std::move(bag));
+    summary_->files.push_back(filename);
+    return absl::OkStatus();
+  }
+
+  template <typename Action>
+  absl::Status ToBags(const Action& action) {
+    for (const auto& bag : bags_) {
+      const absl::Status status = action(bag.get());
+      if (!status.ok()) return status;
+    }
+    return absl::OkStatus();
+  }
+
   std::unique_ptr<io::CarmenWriter> carmen_;
-  std::unique_ptr<io::RosbagWriter> bag_;
+  std::vector<std::unique_ptr<io::RosbagWriter>> bags_;
   SimulationSummary* summary_ = nullptr;
   io::OdometryReading odometry_;
   bool has_odometry_ = false;

@@ -4,6 +4,7 @@
 // A simulated run as files, all named <filestem> plus
 //   .clf             CARMEN log: odometry and scans (no IMU in that format)
 //   .bag             ROS 1 bag with the IMU, where bags are compiled in
+//   .mcap, .db3      ROS 2 recordings with the IMU
 //   .tum             true pose of the robot at every scan
 //   .relations       true relations, sequential and loop pairs
 //   .loops.csv       the loop pairs alone
@@ -31,6 +32,8 @@ struct SimulationOutputOptions {
   std::string filestem;
   bool carmen = true;
   bool bag = false;
+  bool mcap = false;
+  bool db3 = false;
   bool truth_map = true;
   double map_resolution = 0.05;  // metres a cell
   // Told the number of scans written so far.

@@ -36,6 +36,8 @@ DEFINE_string(output_filestem, "",
 DEFINE_bool(carmen, true, "Write the CARMEN log <stem>.clf.");
 DEFINE_bool(bag, false,
             "Also write the ROS 1 bag <stem>.bag, which has the IMU.");
+DEFINE_bool(mcap, false, "Also write the ROS 2 recording <stem>.mcap (zstd), which has the IMU.");
+DEFINE_bool(db3, false, "Also write the ROS 2 recording <stem>.db3, which has the IMU.");
 DEFINE_bool(truth_map, true, "Write the map a perfect mapper would draw.");
 DEFINE_double(resolution, 0.05, "Metres a cell of that map.");
 DEFINE_string(picture_filename, "",
@@ -127,6 +129,8 @@ absl::Status Run() {
     output.filestem = FLAGS_output_filestem;
     output.carmen = FLAGS_carmen;
     output.bag = FLAGS_bag;
+    output.mcap = FLAGS_mcap;
+    output.db3 = FLAGS_db3;
     output.truth_map = FLAGS_truth_map;
     output.map_resolution = FLAGS_resolution;
     output.progress = [&progress](const int64_t scans) {

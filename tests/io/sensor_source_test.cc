@@ -50,8 +50,8 @@ TEST(SensorSourceTest, TellsFormatsByContent) {
 TEST(SensorSourceTest, SaysWhatIsWrong) {
   EXPECT_THAT(ErrorOf(".bag", "FLASER 1 2 0 0 0 0 0 0 1 h 1\n"),
               HasSubstr("not a ROS 1 bag"));
-  EXPECT_THAT(ErrorOf(".mcap", "\x89MCAP0\r\n"), HasSubstr("ROS 2 bags"));
-  EXPECT_THAT(ErrorOf(".db3", "SQLite format 3"), HasSubstr("ROS 2 bags"));
+  EXPECT_THAT(ErrorOf(".mcap", "\x89MCAP0\r\n"), HasSubstr("no topic of type"));
+  EXPECT_THAT(ErrorOf(".db3", "SQLite format 3"), HasSubstr("not a database"));
   EXPECT_THAT(ErrorOf(".clf", ""), HasSubstr("empty"));
   EXPECT_THAT(ErrorOf(".clf", "some text"), HasSubstr("a CARMEN log?"));
   EXPECT_EQ(OpenSensorSource("/nonexistent.clf", {}).status().code(),

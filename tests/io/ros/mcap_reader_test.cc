@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/ros/mcap_reader.h"
+
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/io/ros/ros2_sample.h"
+#include "tests/mutation.h"
+#include "tests/test_data.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Chunks are 768 KiB, so that these make several of them.
+constexpr int kManySteps = 100;
+constexpr int kManyBeams = 5000;
+
+TEST(McapReaderTest, ReadsWhatWasWrittenWithAnyCompression) {
+  for (const std::string compression : {"none", "lz4", "zstd"}) {
+    for (const bool large : {false, true}) {
+      const int num_steps = large ? kManySteps : 10, num_beams = large ? kManyBeams : 8;
+      SCOPED_TRACE(compression);
+      test::TemporaryFile file(".mcap");
+      test::WriteRos2Sample(file.path(), Rosbag2Storage::kMcap, compression, num_steps, num_beams);
+      auto source = OpenSensorSource(file.path(), {});
+      ASSERT_TRUE(source.ok()) << source.status();
+      EXPECT_EQ((*source)->info().format, "mcap");
+      EXPECT_THAT((*source)->info().warnings, IsEmpty());
+      test::ExpectRos2Sample(source->get(), num_steps, num_beams);
+    }
+  }
+}
+
+TEST(McapReaderTest, TopicsHaveTheTypesOfTheirSchemas) {
+  test::TemporaryFile file(".mcap");
+  test::WriteRos2Sample(file.path(), Rosbag2Storage::kMcap, "lz4");
+  auto container = OpenMcap(file.path());
+  ASSERT_TRUE(container.ok()) << container.status();
+  EXPECT_EQ(ListTopics((*container)->topics()),
+            "/imu (sensor_msgs/msg/Imu), /odom (nav_msgs/msg/Odometry), /scan (sensor_msgs/msg/LaserScan), "
+            "/tf (tf2_msgs/msg/TFMessage), /tf_static (tf2_msgs/msg/TFMessage)");
+}
+
+TEST(McapReaderTest, AFileThatWasCutOffIsReadAsFarAsItIsWhole) {
+  test::TemporaryFile file(".mcap");
+  test::WriteRos2Sample(file.path(), Rosbag2Storage::kMcap, "none", kManySteps, kManyBeams);
+  const std::string whole = test::ReadBytes(file.path());
+  test::WriteBytes(file.path(), whole.substr(0, whole.size() / 2));
+  auto source = OpenSensorSource(file.path(), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_GT((*source)->info().num_scans, 1);
+  EXPECT_LT((*source)->info().num_scans, kManySteps);
+  EXPECT_THAT((*source)->info().warnings, ElementsAre(HasSubstr("cut off; read up to byte")));
+}
+
+TEST(McapReaderTest, DamageIsAnErrorThatNamesFileAndPlace) {
+  test::TemporaryFile file(".mcap");
+  test::WriteRos2Sample(file.path(), Rosbag2Storage::kMcap, "none");
+  std::string bytes = test::ReadBytes(file.path());
+  bytes[bytes.size() / 3] ^= 0x55;  // in the only chunk
+  test::WriteBytes(file.path(), bytes);
+  const auto container = OpenMcap(file.path());
+  ASSERT_FALSE(container.ok());
+  EXPECT_EQ(container.status().code(), absl::StatusCode::kDataLoss);
+  EXPECT_THAT(std::string(container.status().message()), HasSubstr(file.path() + ": a chunk with a wrong checksum"));
+  EXPECT_THAT(std::string(container.status().message()), HasSubstr("record at byte"));
+  test::WriteBytes(file.path(), "\x89MCAP1\r\n");
+  EXPECT_THAT(std::string(OpenMcap(file.path()).status().message()), HasSubstr("not an MCAP file of version 0"));
+}
+
+TEST(McapReaderTest, SurvivesDamagedFiles) {
+  for (const std::string compression : {"none", "lz4", "zstd"}) {
+    test::TemporaryFile sample(".mcap");
+    test::WriteRos2Sample(sample.path(), Rosbag2Storage::kMcap, compression);
+    test::TemporaryFile file(".mcap");
+    test::ForEachMutation(test::ReadBytes(sample.path()), [&](const std::string& damaged) {
+      test::WriteBytes(file.path(), damaged);
+      auto container = OpenMcap(file.path());
+      if (!container.ok()) {
+        EXPECT_THAT(std::string(container.status().message()), HasSubstr(file.path()));
+        return;
+      }
+      auto source = OpenRosRecording(file.path(), *std::move(container), {});
+      SensorEvent event;
+      for (int i = 0; source.ok() && i < 1000; ++i) {
+        const auto more = (*source)->Next(&event);
+        if (!more.ok() || !*more) break;
+      }
+    });
+  }
+}
+
+}  // namespace
+}  // namespace io
+}  // namespace cartographer_ext

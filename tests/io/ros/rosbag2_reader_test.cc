@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/ros/rosbag2_reader.h"
+
+#include <sqlite3.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/io/ros/ros2_sample.h"
+#include "tests/mutation.h"
+#include "tests/test_data.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A folder that is removed with what the test put into it.
+class Folder {
+ public:
+  Folder() { mkdir(path().c_str(), 0755); }
+  ~Folder() {
+    for (const std::string& name : names_) unlink((path() + "/" + name).c_str());
+    rmdir(path().c_str());
+  }
+  const std::string& path() const { return file_.path(); }
+  std::string Add(const std::string& name) {
+    names_.push_back(name);
+    return path() + "/" + name;
+  }
+
+ private:
+  test::TemporaryFile file_{".rosbag2"};
+  std::vector<std::string> names_;
+};
+
+TEST(Rosbag2ReaderTest, ReadsADatabase) {
+  test::TemporaryFile file(".db3");
+  test::WriteRos2Sample(file.path(), Rosbag2Storage::kDb3, "none");
+  auto source = OpenSensorSource(file.path(), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_EQ((*source)->info().format, "db3");
+  EXPECT_THAT((*source)->info().warnings, IsEmpty());
+  test::ExpectRos2Sample(source->get());
+}
+
+TEST(Rosbag2ReaderTest, TheFilesOfAFolderAreOneRecording) {
+  Folder folder;
+  test::WriteRos2Sample(folder.Add("run_9.db3"), Rosbag2Storage::kDb3, "none");
+  test::WriteRos2Sample(folder.Add("run_10.db3"), Rosbag2Storage::kDb3, "none");
+  test::WriteBytes(folder.Add("metadata.yaml"), "rosbag2_bagfile_information:\n");
+  auto source = OpenSensorSource(folder.path(), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  // The same stamps twice: both are there, in order.
+  EXPECT_EQ((*source)->info().num_scans, 20);
+  EXPECT_EQ((*source)->info().num_out_of_order, 3);
+}
+
+TEST(Rosbag2ReaderTest, FoldersWithoutARecordingAreRefused) {
+  Folder folder;
+  EXPECT_THAT(std::string(OpenSensorSource(folder.path(), {}).status().message()),
+              HasSubstr("a folder without .db3 and .mcap files"));
+  test::WriteBytes(folder.Add("run_0.db3.zstd"), "x");
+  EXPECT_THAT(std::string(OpenSensorSource(folder.path(), {}).status().message()), HasSubstr("unzstd"));
+}
+
+TEST(Rosbag2ReaderTest, OtherDatabasesAreRefused) {
+  test::TemporaryFile file(".db3");
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.path().c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "CREATE TABLE people(name TEXT)", nullptr, nullptr, nullptr);
+  sqlite3_close(database);
+  const auto source = OpenSensorSource(file.path(), {});
+  ASSERT_FALSE(source.ok());
+  EXPECT_THAT(std::string(source.status().message()), HasSubstr("no such table: topics (not a database of rosbag2?)"));
+  test::WriteBytes(file.path(), "SQLite format 3");
+  EXPECT_FALSE(OpenSensorSource(file.path(), {}).ok());
+}
+
+TEST(Rosbag2ReaderTest, MessagesInAnotherEncodingAreNotTaken) {
+  test::TemporaryFile file(".db3");
+  test::WriteRos2Sample(file.path(), Rosbag2Storage::kDb3, "none");
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.path().c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "UPDATE topics SET serialization_format = 'protobuf'", nullptr, nullptr, nullptr);
+  sqlite3_close(database);
+  EXPECT_THAT(std::string(OpenSensorSource(file.path(), {}).status().message()), HasSubstr("no topic of type"));
+}
+
+TEST(Rosbag2ReaderTest, SurvivesDamagedDatabases) {
+  test::TemporaryFile sample(".db3");
+  test::WriteRos2Sample(sample.path(), Rosbag2Storage::kDb3, "none");
+  test::TemporaryFile file(".db3");
+  test::ForEachMutation(test::ReadBytes(sample.path()), [&](const std::string& damaged) {
+    test::WriteBytes(file.path(), damaged);
+    auto source = OpenSensorSource(file.path(), {});
+    SensorEvent event;
+    for (int i = 0; source.ok() && i < 1000; ++i) {
+      const auto more = (*source)->Next(&event);
+      if (!more.ok() || !*more) break;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace io
+}  // namespace cartographer_ext
