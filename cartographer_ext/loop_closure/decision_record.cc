@@ -20,7 +20,7 @@ LoopDecision::Temporal::Outcome ToProto(const TemporalOutcome outcome) {
       return LoopDecision::Temporal::SCORED;
     case TemporalOutcome::kShortHistory:
       return LoopDecision::Temporal::SHORT_HISTORY;
-    case TemporalOutcome::kUnknownWay:
+    case TemporalOutcome::kPathUnknown:
       break;
   }
   return LoopDecision::Temporal::UNKNOWN_WAY;

@@ -17,7 +17,7 @@ void DecisionRecorder::Start(const size_t capacity) {
   absl::MutexLock lock(&mutex_);
   started_ = true;
   capacity_ = capacity;
-  num_left_out_ = 0;
+  num_dropped_ = 0;
   decisions_.clear();
 }
 
@@ -38,7 +38,7 @@ void DecisionRecorder::Record(const Decisions& decisions) {
   const size_t kept = std::min(room, decisions.size());
   decisions_.insert(decisions_.end(), decisions.begin(),
                     decisions.begin() + static_cast<std::ptrdiff_t>(kept));
-  num_left_out_ += static_cast<int64_t>(decisions.size() - kept);
+  num_dropped_ += static_cast<int64_t>(decisions.size() - kept);
 }
 
 int64_t DecisionRecorder::AddPending(std::function<Decisions()> undecided) {
@@ -65,9 +65,9 @@ DecisionRecorder::Decisions DecisionRecorder::All() const {
   return all;
 }
 
-int64_t DecisionRecorder::num_left_out() const {
+int64_t DecisionRecorder::num_dropped() const {
   absl::MutexLock lock(&mutex_);
-  return num_left_out_;
+  return num_dropped_;
 }
 
 }  // namespace loop_closure

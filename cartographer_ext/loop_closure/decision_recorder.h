@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where the records of loop decisions go. The builder of loop closures is deep
-// inside the host, out of reach of who runs it, so there is one recorder for
-// the process, like the host's metrics. It keeps nothing until somebody starts
-// it. Thread-safe.
+// Collects the records of loop decisions. The constraint builder is deep inside
+// the host, out of reach of the program that runs it, so there is one recorder
+// for the process, like the host's metrics. It keeps nothing until it is
+// started. Thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 
@@ -27,14 +27,14 @@ class DecisionRecorder {
 
   static DecisionRecorder* Global();
 
-  // Forgets everything and keeps up to `capacity` records from now on; what
-  // comes after is counted only.
+  // Forgets everything and keeps up to `capacity` records from now on; later
+  // ones are only counted.
   void Start(size_t capacity) ABSL_LOCKS_EXCLUDED(mutex_);
   void Stop() ABSL_LOCKS_EXCLUDED(mutex_);
   bool started() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   void Record(const Decisions& decisions) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Registers somebody whose candidates wait for a decision. `undecided` is
+  // Registers a source of candidates that wait for a decision. `undecided` is
   // called without any lock of the recorder held. Returns a number for
   // `RemovePending`, after which it is not called any more.
   int64_t AddPending(std::function<Decisions()> undecided)
@@ -44,8 +44,8 @@ class DecisionRecorder {
   // All records in the order of their verdicts, and behind them what is
   // undecided now.
   Decisions All() const ABSL_LOCKS_EXCLUDED(mutex_);
-  // Records that the capacity left out.
-  int64_t num_left_out() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Records beyond the capacity.
+  int64_t num_dropped() const ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
   mutable absl::Mutex mutex_;
@@ -53,7 +53,7 @@ class DecisionRecorder {
   mutable absl::Mutex pending_mutex_ ABSL_ACQUIRED_BEFORE(mutex_);
   size_t capacity_ ABSL_GUARDED_BY(mutex_) = 0;
   bool started_ ABSL_GUARDED_BY(mutex_) = false;
-  int64_t num_left_out_ ABSL_GUARDED_BY(mutex_) = 0;
+  int64_t num_dropped_ ABSL_GUARDED_BY(mutex_) = 0;
   Decisions decisions_ ABSL_GUARDED_BY(mutex_);
   std::map<int64_t, std::function<Decisions()>> pending_
       ABSL_GUARDED_BY(pending_mutex_);

@@ -327,9 +327,9 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   }
   run.decisions = recorder->All();
   recorder->Stop();
-  if (recorder->num_left_out() > 0) {
+  if (recorder->num_dropped() > 0) {
     run.warnings.push_back(
-        absl::StrCat(recorder->num_left_out(), " decision records left out"));
+        absl::StrCat(recorder->num_dropped(), " decision records dropped"));
   }
   CountResults(*pose_graph, &run);
   run.online_scan_poses = online->At(run.local_scan_poses);

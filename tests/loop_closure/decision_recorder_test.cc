@@ -38,7 +38,7 @@ TEST(DecisionRecorderTest, CountsBeyondItsCapacity) {
   recorder.Record(Some(6, 1));
   EXPECT_EQ(recorder.All().size(), 4u);
   EXPECT_EQ(recorder.All().back().candidate(), 3);
-  EXPECT_EQ(recorder.num_left_out(), 3);
+  EXPECT_EQ(recorder.num_dropped(), 3);
 }
 
 TEST(DecisionRecorderTest, AsksForWhatIsPending) {

@@ -11,7 +11,7 @@
 //              closes a cycle with it, otherwise it leads a new cluster.
 //   relations  Leaders are tested in pairs by the cycle of eq. 20. A closed
 //              cycle supports only when it could well have failed: where the
-//              way between the loops is so uncertain that anything closes,
+//              path between the loops is so uncertain that anything closes,
 //              the pair is merely not in contradiction.
 //   subset     The maximum clique of the graph without the contradictions
 //              (eq. 21), every cluster counting once, those accepted before a
@@ -19,16 +19,17 @@
 //   verdicts   A cluster is accepted when it is in the clique, has support from
 //              enough others, and no rival has as much. A rival is a cluster
 //              that contradicts it, unless more clusters of the subset
-//              contradict the rival than stand by it. A single strong loop
+//              contradict the rival than support it. A single strong loop
 //              without support is accepted by stricter rules of its own. What
 //              is neither stays buffered and is tested again when new evidence
 //              comes; `Flush` ends that.
 //
 // Pairwise tests of true loops fail now and then; `tolerance` forgives a few
-// contradictions so that long runs do not lose true loops. Zero is the print.
+// contradictions so that long runs do not lose true loops. Zero is the paper's
+// rule.
 //
 // Between trajectories one scan fits each of the submaps that overlap where it
-// was taken, without telling more than one of them would. There support counts
+// was taken, which is no more evidence than one of them. There support counts
 // places along the run, `revisit_distance` apart, instead of clusters.
 //
 // Bounded: beyond `max_clusters` the oldest accepted cluster is forgotten when
@@ -148,7 +149,7 @@ class CompatibleSubset {
 
  private:
   enum class Relation : char {
-    kUntestable,  // no way between the loops
+    kUntestable,  // no path between the loops
     kVague,       // closes, but so would anything
     kSupports,
     kContradicts,

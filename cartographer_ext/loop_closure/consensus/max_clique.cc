@@ -12,8 +12,8 @@ namespace cartographer_ext {
 namespace loop_closure {
 namespace {
 
-// A step with n candidates compares up to n^2 / 2 pairs; so many pairs count as
-// one more step.
+// A step with n candidates compares up to n^2 / 2 pairs; this many pairs count
+// as one more step.
 constexpr int64_t kPairsPerStep = 1024;
 
 class Search {

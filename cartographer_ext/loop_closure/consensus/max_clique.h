@@ -7,7 +7,7 @@
 //   S* = argmax |S|_0  over S in {0,1}^n  subject to e_uv S_u S_v <= Delta
 //
 // Vertices are loops, edges join compatible pairs, weights count the distinct
-// revisits a vertex stands for (consecutive nodes matched to one submap are one
+// revisits a vertex represents (consecutive nodes matched to one submap are one
 // piece of evidence, not many). Loops that no chain of contradictions connects
 // are decided apart from each other. Exact branch and bound with a greedy
 // colouring bound, started from a greedy clique, stopped after a fixed amount

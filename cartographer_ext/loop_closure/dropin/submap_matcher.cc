@@ -20,11 +20,11 @@ using cartographer::mapping::GridType;
 // Usual ones need a hundredth of it.
 constexpr int64_t kMaxCandidates = 5000000;
 
-// Searches of many submaps look at about so many points at first, whose score
-// differs by so much from that of all.
+// Searches of many submaps use about this many of the points at first; their
+// score may be this much below that of all points.
 constexpr size_t kPointsToFind = 80;
-constexpr double kScoreOfSomeOff = 0.05;
-// Then all points are matched so near to the places found.
+constexpr double kSubsampledScoreMargin = 0.05;
+// Then all points are matched within this window around the places found.
 constexpr double kClosestWindowMetres = 0.2;
 constexpr double kClosestWindowRadians = 0.02;
 
@@ -73,7 +73,7 @@ std::vector<SubmapRanking> MatchBestSubmaps(
     const std::vector<const SubmapMatcher*>& submaps,
     const cartographer::sensor::PointCloud& cloud, const double min_score,
     const int num_best) {
-  // Some of the points find the places, all of them tell which is the best.
+  // Some of the points find the places, all of them rank them.
   const scan_matching::PlanarCloud all = scan_matching::ToPlanarCloud(cloud);
   scan_matching::PlanarCloud some;
   const size_t stride = std::max<size_t>(1, all.x.size() / kPointsToFind);
@@ -86,7 +86,7 @@ std::vector<SubmapRanking> MatchBestSubmaps(
     tasks[i].grid = &submaps[i]->search();
     tasks[i].cloud = &some;
     tasks[i].full_submap = true;
-    tasks[i].min_score = static_cast<float>(min_score - kScoreOfSomeOff);
+    tasks[i].min_score = static_cast<float>(min_score - kSubsampledScoreMargin);
   }
   scan_matching::SearchWindow window;
   window.linear = kClosestWindowMetres;

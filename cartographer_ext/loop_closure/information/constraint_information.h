@@ -49,13 +49,13 @@ Eigen::Matrix3d PaperInformation(double final_score, double alpha, double beta,
                                  double angle);
 
 // The full matrix for weights w of a loop whose match is as uncertain as
-// `match_covariance`, where the weights stand for one as certain as
+// `match_covariance`, where the weights express one as certain as
 // `certain_covariance` (diagonal; metres, radians):
 //
 //   Omega = W L^(1/2) C^-1 L^(1/2) W,  W = diag(w_t, w_t, w_r)
 //
 // with L and C the two covariances. A certain match has W^2; along a corridor
-// that leaves the way open the loop pulls less. Weights are no deviations in
+// that the scan does not observe the loop pulls less. Weights are no deviations in
 // metres, therefore only the ratio of the covariances counts. Zero where C has
 // no inverse.
 Eigen::Matrix3d FullInformation(const ConstraintWeights& weights,

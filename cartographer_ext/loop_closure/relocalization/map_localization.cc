@@ -15,7 +15,7 @@ MapLocalization::MapLocalization(
     const uncertainty::PathUncertainty* const paths)
     : options_(options), paths_(CHECK_NOTNULL(paths)) {}
 
-// Also where the way is not known any more: it is a long one then.
+// Also where the distance is not known any more: it is a long one then.
 bool MapLocalization::Farther(const uncertainty::NodeId& node, const int before,
                               const double distance) const {
   if (before < 0) return true;
@@ -69,7 +69,7 @@ MapLocalization::Plan MapLocalization::PlanNode(const uncertainty::NodeId& node,
 bool MapLocalization::AddAcceptedLoop(const uncertainty::NodeId& node,
                                       const int map_trajectory_id) {
   State& state = states_[std::make_pair(node.trajectory_id, map_trajectory_id)];
-  // One that waited since before the run was lost tells nothing new.
+  // One that waited since before the run was lost is no new evidence.
   if (node.node_index <= state.last_before_lost) return false;
   state.last_accepted = std::max(state.last_accepted, node.node_index);
   if (state.known) return false;

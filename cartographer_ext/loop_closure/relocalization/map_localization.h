@@ -1,25 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether a run knows its place in the map of another run, and when it is
-// looked for in the whole of it.
+// Whether the pose of a run in the map of another run is known, and when the
+// run is searched in the whole map.
 //
-//   unknown   From the beginning without a prediction, and once the run is
+//   unknown   From the first node on without a prediction, and once the run is
 //             lost. All submaps of the map are searched for a node every
 //             `query_spacing` metres, and the places found are followed
 //             (PlaceTracker).
-//   told      From the beginning with a prediction (an operator's), for
+//   given     From the first node on with a prediction (an operator's), for
 //             `lost_distance` metres. Searched around the prediction.
 //   known     From the first accepted loop on, as long as others follow within
 //             `lost_distance` metres. Searched around the prediction; every
 //             `watch_spacing` metres the whole map is searched nevertheless,
-//             for a place that looks alike may go on fooling the search around
-//             it.
+//             for the search around a wrong prediction may go on finding a
+//             place that looks alike.
 //
-// A run that was known becomes lost when no loop is accepted for too long a
-// way, or when of the last `watches` + 1 decisions about its place all but one
-// were for another one. What was found before then says nothing about where
-// it is now: somebody may have carried the robot.
+// A run whose place was known becomes lost when no loop is accepted for too
+// long a distance, or when of the last `watches` + 1 decisions about its place
+// all but one were for another one. Loops from before then do not locate it any
+// more: somebody may have carried the robot.
 //
 // Keyed by the trajectory of the run and that of the map. Depends on the calls
 // in their order only. Not thread-safe.

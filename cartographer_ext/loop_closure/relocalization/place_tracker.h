@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where in a map is a run, when places look alike? One scan cannot tell, a
-// sequence of them can: several places are followed at a time.
+// Where in a map is a run, when places look alike? One scan does not decide it,
+// a sequence of scans does: several places are followed at a time.
 //
 //   track      A place that the search of the whole map has found for a node,
 //              and what follows from it for the nodes before and after by the
@@ -49,7 +49,7 @@ struct PlaceTrackerOptions {
   // visits are a little off each other before the map is optimised.
   double same_metres = 1.2;
   double same_radians = 0.15;
-  // Scores that differ by more tell that the motion was wrong.
+  // Scores that differ by more show that the motion was wrong.
   double break_margin = 0.1;
   // Of a node that has no match where a track says it is.
   double score_without_match = 0.3;
@@ -84,7 +84,7 @@ class PlaceTracker {
     double lead = 0.;
     double significance = 0.;
     // Of the best place, with the newest node last. Nodes without a match are
-    // left out.
+    // missing.
     std::vector<int> nodes;
     std::vector<PlaceMatch> matches;
   };

@@ -6,18 +6,18 @@
 // far end of a corridor. Averages over sectors blur just that, so the temporal
 // score (temporal_verification.h) compares each beam at its own angle:
 //
-//   ends at a wall or in free space   it disagrees by the distance from its end
+//   ends at a wall or in free space   It disagrees by the distance from its end
 //                                     to the nearest occupied cell, which
 //                                     forgives beams that graze a wall.
-//   ends in unknown space             by the difference between its range and
-//                                     the range that the map predicts along it:
-//                                     a beam does not go through walls. Where
-//                                     the map predicts nothing it tells
-//                                     nothing.
+//   ends in unknown space             It disagrees by the difference between
+//                                     its range and the range that the map
+//                                     predicts along it: a beam does not go
+//                                     through walls. Where the map predicts
+//                                     nothing the beam is not compared.
 //
 // A tolerance is forgiven, and disagreements are clipped since people walk by.
-// A beam longer than the largest range has no end; it says that the way is free
-// up to there.
+// A beam longer than the largest range has no end; space is free along it up to
+// that range.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_BEAM_AGREEMENT_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_BEAM_AGREEMENT_H_
 
@@ -55,7 +55,7 @@ struct Beam {
 };
 
 // Of points in the frame of the node, in their order. Points that are not
-// finite or nearer than the smallest range are left out.
+// finite or nearer than the smallest range are ignored.
 std::vector<Beam> BeamsFromPoints(const BeamAgreementOptions& options,
                                   const std::vector<Eigen::Vector2f>& points);
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A bounded memory of what the robot saw at its nodes. The host guarantees a
-// node's data only until its constraints are computed and never says when it is
-// trimmed, so whatever spans several nodes has to keep its own copies. They are
-// taken of every node offered, before any sampler, so that the sequence has no
+// A bounded memory of the scans at the last nodes. The host guarantees a node's
+// data only until its constraints are computed and does not announce when it is
+// trimmed, so whatever spans several nodes keeps copies of its own. They are
+// taken of every node proposed, before any sampler, so that the sequence has no
 // gaps.
 //
 // Not thread-safe; nodes may be added in any order (a finished submap is
-// offered all older nodes in a burst).
+// proposed with all older nodes in a burst).
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_NODE_HISTORY_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_NODE_HISTORY_H_
 
@@ -49,7 +49,7 @@ class NodeHistory {
   // Up to `count` nodes that end with `node_index`, oldest first; going back,
   // the next one is the first at least `spacing` metres of travel (>= 0) away.
   // Empty when `node_index` is not kept. Looks back over at most `max_scan`
-  // nodes, so a robot that stands still costs little.
+  // nodes, so a stationary robot costs little.
   std::vector<const HistoryNode*> Sequence(int trajectory_id, int node_index,
                                            int count, double spacing,
                                            int max_scan) const;

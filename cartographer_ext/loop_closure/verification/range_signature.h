@@ -42,7 +42,7 @@ struct RangeSignatureOptions {
 using RangeSignature = std::vector<float>;
 
 // Of points in the frame of the node, metres. Points that are not finite are
-// left out.
+// ignored.
 RangeSignature SignatureFromPoints(const RangeSignatureOptions& options,
                                    const std::vector<Eigen::Vector2f>& points);
 

@@ -133,8 +133,8 @@ class CostMatrix {
   std::vector<bool> exact_;
 };
 
-// As if the whole matrix were exact: the cheapest way over bounds that turn out
-// to be exact has no cheaper one beside it.
+// The result is that of the exact matrix: where the cheapest warping path over
+// lower bounds turns out to consist of exact costs, no other path is cheaper.
 absl::optional<DtwResult> WarpLazily(const int num_reference, const double band,
                                      const int max_advance,
                                      CostMatrix* const matrix) {
@@ -174,7 +174,7 @@ TemporalResult VerifySequence(const TemporalVerificationOptions& options,
   const int length = static_cast<int>(query.size());
   if (length < std::max(options.minimum_length, 1)) return result;
 
-  // From the newest node backwards, as far as the maps know the way. Reference
+  // From the newest node backwards, as far as the maps know the path. Reference
   // 0 belongs to the newest node.
   const Pose2 submap_from_local =
       candidate * query.back()->local_pose.Inverse();
@@ -195,7 +195,7 @@ TemporalResult VerifySequence(const TemporalVerificationOptions& options,
     unwarped.push_back(cost);
   }
   const int used = static_cast<int>(unwarped.size());
-  result.outcome = TemporalOutcome::kUnknownWay;
+  result.outcome = TemporalOutcome::kPathUnknown;
   if (used < options.minimum_length) return result;
 
   const int num_reference = (used - 1) * options.oversampling + 1;

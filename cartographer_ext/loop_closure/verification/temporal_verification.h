@@ -6,28 +6,32 @@
 // open).
 //
 // A look-alike place matches one scan as well as the true place does. It rarely
-// matches the whole way the robot took to get there. So the last nodes up to
-// the candidate's node (the query) are compared with what the submap predicts
-// along the same way, placed so that its last pose is the candidate pose (the
-// reference):
+// matches all scans along the path that the robot took to get there. So the
+// last nodes up to the candidate's node (the query) are compared with what the
+// submap predicts along the same path, placed so that its last pose is the
+// candidate pose (the reference):
 //
-//   reference pose k   = candidate (submap <- node)
-//                        * (node <- local) * (local <- node k)
-//   local cost c(i, j) = how far scan i and the map disagree at reference pose
-//   j S_t                = 1 - D / path length        (dtw.h)
+//   reference pose k:  (submap <- k) = (submap <- node) (node <- local)
+//                                      (local <- k)
+//   local cost:        c(i, j), how far scan i and the map disagree at
+//                      reference pose j
+//   score:             S_t = 1 - D / path length        (dtw.h)
 //
-// Two local costs: the clipped mean difference of range signatures, which sum
-// up sectors of a scan (range_signature.h), and the disagreement of the beams
-// themselves (beam_agreement.h), which tells more and costs less.
+// Two local costs: the clipped mean difference of range signatures, which
+// summarise sectors of a scan (range_signature.h), and the disagreement of the
+// beams themselves (beam_agreement.h), which separates places better and costs
+// less.
+//
 // The reference is sampled `oversampling` times finer than the query, and
 // warping within the band absorbs the error of the odometry's scale. In the
 // textbook's symmetric warping the samples between two nodes have to be matched
 // as well, so even a perfect repetition scores below one; the asymmetric
 // warping picks one sample for each node and lets the first begin anywhere in
 // the band.
-// Neighbouring submaps continue the reference where the way leaves the submap.
-// Where none of them knows the way any more the query is cut: what is left has
-// to have a minimum length, otherwise there is no score.
+//
+// Neighbouring submaps continue the reference where the path leaves the submap.
+// Where none of them knows it any more the query is cut: the rest must have a
+// minimum length, otherwise there is no score.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_TEMPORAL_VERIFICATION_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_TEMPORAL_VERIFICATION_H_
 
@@ -59,7 +63,7 @@ struct TemporalVerificationOptions {
   int oversampling = 2;  // reference samples per step of the query, > 0
   WarpingStep step = WarpingStep::kAsymmetric;
   // Half width of the Sakoe-Chiba band in steps of the query; negative: no
-  // band. Symmetric warping takes at least 0.5, less would leave no way.
+  // band. Symmetric warping takes at least 0.5; with less there is no path.
   double band = 1.;
   int minimum_length = 3;  // nodes of the query, > 0
 };
@@ -67,7 +71,7 @@ struct TemporalVerificationOptions {
 enum class TemporalOutcome {
   kScored,
   kShortHistory,  // too few nodes before the candidate's
-  kUnknownWay,    // the maps know too little of the way
+  kPathUnknown,   // the maps know too little of the path
 };
 
 struct TemporalResult {

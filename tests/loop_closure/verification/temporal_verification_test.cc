@@ -185,7 +185,7 @@ TEST_F(TemporalVerificationTest, BeamsTellLookAlikesApart) {
   ASSERT_EQ(other.outcome, TemporalOutcome::kScored);
   EXPECT_GT(same.score - other.score, 0.05);
   EXPECT_EQ(Verify(maps, Pose2(10., 40., 0.)).outcome,
-            TemporalOutcome::kUnknownWay);
+            TemporalOutcome::kPathUnknown);
 }
 
 // Costs that are only bounded do not change the result.
@@ -228,11 +228,11 @@ TEST_F(TemporalVerificationTest, WithoutEvidenceThereIsNoScore) {
   EXPECT_EQ(Verify(maps, Pose2(10., 0., 0.), 3).outcome,
             TemporalOutcome::kShortHistory);
   EXPECT_EQ(Verify(maps, Pose2(10., 40., 0.)).outcome,
-            TemporalOutcome::kUnknownWay);
+            TemporalOutcome::kPathUnknown);
   EXPECT_EQ(Verify(maps, Pose2(NAN, 0., 0.)).outcome,
-            TemporalOutcome::kUnknownWay);
+            TemporalOutcome::kPathUnknown);
   EXPECT_EQ(Verify({}, Pose2(10., 0., 0.)).outcome,
-            TemporalOutcome::kUnknownWay);
+            TemporalOutcome::kPathUnknown);
   EXPECT_EQ(VerifySequence(options_, {}, Pose2(), maps).outcome,
             TemporalOutcome::kShortHistory);
   // Half of the way is beyond the start of the map.

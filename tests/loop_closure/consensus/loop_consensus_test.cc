@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/consensus/loop_consensus.h"
+
+#include <memory>
+#include <vector>
+
+#include "cartographer_ext/options/option_description.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using proto::LoopDecision;
+using testing::IsEmpty;
+
+// Forth and back along a line, a node every metre.
+class LoopConsensusTest : public testing::Test {
+ protected:
+  LoopConsensusTest() : paths_(uncertainty::PathNoiseOptions(), 1000) {
+    options::SetDefaults(&options_);
+    options_.mutable_compatible_subset()->set_single_strong(false);
+    for (int i = 0; i <= 100; ++i) {
+      paths_.Add(uncertainty::NodeId{0, i}, Truth(i));
+    }
+    consensus_.reset(new LoopConsensus(options_, &paths_));
+  }
+
+  static Pose2 Truth(const int i) {
+    return i <= 50 ? Pose2(i, 0., 0.) : Pose2(100. - i, 0., kPi);
+  }
+
+  // Node 100 - i found in the submap of node i.
+  LoopCandidate Candidate(const int i) {
+    LoopCandidate candidate;
+    candidate.number = num_candidates_++;
+    candidate.submap = uncertainty::SubmapId{0, i};
+    candidate.submap_local_pose = Truth(i);
+    candidate.anchor = uncertainty::NodeId{0, i};
+    candidate.node = uncertainty::NodeId{0, 100 - i};
+    candidate.predicted = Between(Truth(i), Truth(100 - i));
+    candidate.match.found = true;
+    candidate.match.score = 0.7;
+    candidate.match.refined = *candidate.predicted;
+    return candidate;
+  }
+
+  proto::LoopClosureOptions options_;
+  uncertainty::PathUncertainty paths_;
+  std::unique_ptr<LoopConsensus> consensus_;
+  int num_candidates_ = 0;
+};
+
+TEST_F(LoopConsensusTest, CandidatesConfirmEachOther) {
+  consensus_->Add(Candidate(5));
+  EXPECT_THAT(consensus_->Decide(), IsEmpty());
+  const std::vector<LoopCandidate> undecided = consensus_->Undecided();
+  ASSERT_EQ(undecided.size(), 1u);
+  EXPECT_EQ(undecided[0].verdict, LoopDecision::UNDECIDED);
+  EXPECT_EQ(undecided[0].reason, LoopDecision::UNSUPPORTED);
+  EXPECT_EQ(undecided[0].consensus->num_tests, 1);
+  consensus_->Add(Candidate(25));
+  const std::vector<LoopCandidate> accepted = consensus_->Decide();
+  ASSERT_EQ(accepted.size(), 2u);
+  for (const LoopCandidate& candidate : accepted) {
+    EXPECT_TRUE(candidate.is_accepted());
+    EXPECT_EQ(candidate.reason, LoopDecision::CONFIRMED_BY_SUBSET);
+    EXPECT_EQ(candidate.consensus->decision.support, 1);
+  }
+  EXPECT_EQ(accepted[0].consensus->num_tests, 2);
+  EXPECT_EQ(accepted[1].consensus->num_tests, 1);
+  EXPECT_EQ(consensus_->num_undecided(), 0);
+}
+
+TEST_F(LoopConsensusTest, RemovedCandidatesConfirmNothing) {
+  consensus_->Add(Candidate(5));
+  const std::vector<LoopCandidate> removed = consensus_->Remove(
+      [](const LoopCandidate& c) { return c.node.node_index == 95; });
+  ASSERT_EQ(removed.size(), 1u);
+  EXPECT_EQ(removed[0].number, 0);
+  EXPECT_EQ(removed[0].verdict, LoopDecision::UNDECIDED);
+  consensus_->Add(Candidate(25));
+  EXPECT_THAT(consensus_->Decide(), IsEmpty());
+  const std::vector<LoopCandidate> rest = consensus_->Flush();
+  ASSERT_EQ(rest.size(), 1u);
+  EXPECT_TRUE(rest[0].is_rejected());
+  EXPECT_EQ(rest[0].reason, LoopDecision::UNSUPPORTED);
+}
+
+}  // namespace
+}  // namespace loop_closure
+}  // namespace cartographer_ext

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/verification/score_verifier.h"
+
+#include "cartographer_ext/options/option_description.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using proto::LoopDecision;
+using Fusion = proto::LoopClosureOptions::Fusion;
+
+proto::LoopClosureOptions Options(const Fusion::Mode mode) {
+  proto::LoopClosureOptions options;
+  options::SetDefaults(&options);
+  options.mutable_fusion()->set_mode(mode);
+  options.mutable_dynamic_threshold()->set_base_threshold(0.5);
+  return options;
+}
+
+LoopCandidate Scored(const double grid_score, const double temporal_score) {
+  LoopCandidate candidate;
+  candidate.match.found = true;
+  candidate.match.score = grid_score;
+  candidate.temporal = TemporalScore();
+  candidate.temporal->result.outcome = TemporalOutcome::kScored;
+  candidate.temporal->result.score = temporal_score;
+  return candidate;
+}
+
+TEST(ScoreVerifierTest, TheThresholdIsThatOfTheCandidatesBefore) {
+  proto::LoopClosureOptions options = Options(Fusion::AS_PRINTED);
+  options.mutable_dynamic_threshold()->set_window(2);
+  ScoreVerifier verifier(options);
+  for (const double score : {0.4, 0.9}) {
+    LoopCandidate candidate = Scored(0.7, score);
+    verifier.TestTemporalScore(&candidate);
+    EXPECT_EQ(candidate.temporal->threshold, 0.5);
+    EXPECT_EQ(candidate.temporal->score_variance, 0.);
+    EXPECT_EQ(candidate.is_rejected(), score < 0.5);
+  }
+  LoopCandidate third = Scored(0.7, 0.9);
+  verifier.TestTemporalScore(&third);
+  EXPECT_NEAR(third.temporal->score_variance, 0.0625, 1e-12);
+  EXPECT_NE(third.temporal->threshold, 0.5);
+}
+
+TEST(ScoreVerifierTest, WithoutATemporalScoreTheFinalOneIsNeutralAtBest) {
+  for (const Fusion::Mode mode :
+       {Fusion::AS_PRINTED, Fusion::LIKELIHOOD_RATIO}) {
+    ScoreVerifier verifier(Options(mode));
+    LoopCandidate candidate = Scored(0.9, 0.);
+    candidate.temporal->result.outcome = TemporalOutcome::kShortHistory;
+    verifier.TestTemporalScore(&candidate);
+    verifier.FuseScores(&candidate);
+    EXPECT_FALSE(candidate.is_rejected());
+    EXPECT_EQ(candidate.FinalScore(), 0.5);
+    EXPECT_EQ(candidate.fusion->mixture.has_value(),
+              mode == Fusion::LIKELIHOOD_RATIO);
+  }
+}
+
+TEST(ScoreVerifierTest, FusionLearnsFromRejectedCandidates) {
+  proto::LoopClosureOptions options = Options(Fusion::AS_PRINTED);
+  options.mutable_fusion()->set_window(1);
+  options.mutable_fusion()->set_min_final_score(0.65);
+  ScoreVerifier verifier(options);
+  LoopCandidate rejected = Scored(0.7, 0.1);
+  verifier.TestTemporalScore(&rejected);
+  verifier.FuseScores(&rejected);
+  // The first reason stays.
+  EXPECT_EQ(rejected.reason, LoopDecision::LOW_TEMPORAL_SCORE);
+  EXPECT_EQ(rejected.fusion->lambda, 0.5);
+  LoopCandidate next = Scored(0.7, 0.6);
+  verifier.TestTemporalScore(&next);
+  verifier.FuseScores(&next);
+  // S_g is as before, S_t is not: C eq. 6 puts the weight on S_g.
+  EXPECT_NEAR(next.fusion->lambda, 1., 1e-9);
+  EXPECT_NEAR(next.fusion->final_score, 0.7, 1e-9);
+  EXPECT_FALSE(next.is_rejected());
+  LoopCandidate low = Scored(0.6, 0.6);
+  verifier.FuseScores(&low);
+  EXPECT_EQ(low.reason, LoopDecision::LOW_FINAL_SCORE);
+}
+
+TEST(ScoreVerifierTest, StagesThatAreOffLeaveNoResult) {
+  proto::LoopClosureOptions options = Options(Fusion::AS_PRINTED);
+  options.mutable_temporal_verification()->set_enabled(false);
+  options.mutable_fusion()->set_enabled(false);
+  ScoreVerifier verifier(options);
+  const NodeHistory history(10);
+  LoopCandidate candidate;
+  candidate.match.score = 0.7;
+  verifier.ComputeTemporalScore(history, &candidate);
+  verifier.TestTemporalScore(&candidate);
+  verifier.FuseScores(&candidate);
+  EXPECT_FALSE(candidate.temporal.has_value());
+  EXPECT_FALSE(candidate.fusion.has_value());
+  EXPECT_EQ(candidate.FinalScore(), 0.7);
+}
+
+}  // namespace
+}  // namespace loop_closure
+}  // namespace cartographer_ext
