@@ -85,7 +85,9 @@ TEST_F(CoarseSearchTest, BoundsAreUpperBoundsAndMissNothing) {
       }
     }
     EXPECT_EQ(num_poses, expected) << threshold;
-    if (threshold < 2000) EXPECT_GT(expected, 0);
+    if (threshold < 2000) {
+      EXPECT_GT(expected, 0);
+    }
   }
 }
 
