@@ -57,7 +57,7 @@ float LaserModel::Measure(double range) {
   return static_cast<float>(range);
 }
 
-io::LaserScan LaserModel::Scan(const Drive& drive, const double time) {
+io::LaserScan LaserModel::EmptyScan() const {
   io::LaserScan scan;
   scan.angle_min = settings_.angle_min;
   scan.angle_increment = settings_.angle_increment;
@@ -65,6 +65,23 @@ io::LaserScan LaserModel::Scan(const Drive& drive, const double time) {
   scan.range_max = settings_.max_range;
   scan.laser_pose = settings_.mounting;
   scan.ranges.reserve(settings_.beams);
+  return scan;
+}
+
+io::LaserScan LaserModel::Snapshot(const Pose2& robot,
+                                   const std::vector<Disc>& obstacles) {
+  io::LaserScan scan = EmptyScan();
+  const Pose2 laser = robot * settings_.mounting;
+  for (int i = 0; i != settings_.beams; ++i) {
+    scan.ranges.push_back(Measure(
+        ExactRange(laser, settings_.angle_min + i * settings_.angle_increment,
+                   obstacles)));
+  }
+  return scan;
+}
+
+io::LaserScan LaserModel::Scan(const Drive& drive, const double time) {
+  io::LaserScan scan = EmptyScan();
   const bool rolling = settings_.sweep > 0. && settings_.beams > 1;
   if (rolling) scan.time_increment = settings_.sweep / (settings_.beams - 1);
   Pose2 laser = drive.PoseAt(time) * settings_.mounting;

@@ -37,12 +37,18 @@ class LaserModel {
   // the drive); its stamp is left to the caller.
   io::LaserScan Scan(const Drive& drive, double time);
 
+  // A scan taken in one instant from a robot at that pose (world <- robot),
+  // among these obstacles.
+  io::LaserScan Snapshot(const Pose2& robot,
+                         const std::vector<Disc>& obstacles);
+
   // Range of one beam without any error, kNoHit when nothing is in range.
   // `laser` is (world <- laser), `angle` in the laser frame.
   double ExactRange(const Pose2& laser, double angle,
                     const std::vector<Disc>& obstacles) const;
 
  private:
+  io::LaserScan EmptyScan() const;
   float Measure(double range);
 
   const LaserSettings settings_;

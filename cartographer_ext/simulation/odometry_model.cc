@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cartographer_ext/common/arc.h"
 #include "cartographer_ext/simulation/seeds.h"
+#include "cartographer_ext/simulation/wheel.h"
 
 namespace cartographer_ext {
 namespace simulation {
@@ -20,43 +22,6 @@ bool InWindow(const OdometryFault& fault, const double time) {
   return time >= fault.start &&
          (for_ever || time < fault.start + fault.duration);
 }
-
-// Step (ds, dtheta) on an arc of constant curvature.
-Pose2 ArcStep(const double distance, const double angle) {
-  const double half = 0.5 * angle;
-  const double chord = std::abs(half) < 1e-6
-                           ? distance * (1. - half * half / 6.)
-                           : distance * std::sin(half) / half;
-  return Pose2(chord * std::cos(half), chord * std::sin(half), angle);
-}
-
-// One wheel: true distance in, counted distance out.
-class Wheel {
- public:
-  Wheel(const double scale, const double noise, const double ticks_per_meter)
-      : scale_(scale), noise_(noise), ticks_per_meter_(ticks_per_meter) {}
-
-  // The change of the counted distance over a true `distance` with extra
-  // `slip`.
-  double Advance(const double distance, const double slip, Random* random) {
-    turned_ += (1. + scale_) * distance + slip +
-               noise_ * std::sqrt(std::abs(distance)) * random->Normal();
-    const double counted =
-        ticks_per_meter_ > 0.
-            ? std::floor(turned_ * ticks_per_meter_) / ticks_per_meter_
-            : turned_;
-    const double change = counted - counted_;
-    counted_ = counted;
-    return change;
-  }
-
- private:
-  double scale_;
-  double noise_;
-  double ticks_per_meter_;
-  double turned_ = 0.;
-  double counted_ = 0.;
-};
 
 class Odometer {
  public:
@@ -173,7 +138,7 @@ class Odometer {
         break;
       }
     }
-    pose_ = pose_ * ArcStep(counted, (counted_right - counted_left) /
+    pose_ = pose_ * ArcPose(counted, (counted_right - counted_left) /
                                          run_.believed_wheel_base);
   }
 

@@ -185,6 +185,19 @@ TEST(LaserModelTest, IsFast) {
   EXPECT_GT(beams / seconds, 2e4);
 }
 
+TEST(LaserModelTest, ASnapshotIsAScanOfTheSameInstant) {
+  const Scene scene =
+      Scene::Make(std::string(kRoom) + "laser beams=90 fov=360 noise=0.02");
+  LaserModel laser = scene.Laser(3), same = scene.Laser(3);
+  EXPECT_EQ(laser.Snapshot(scene.drive.PoseAt(0.), {}).ranges,
+            same.Scan(scene.drive, 0.).ranges);
+  // Obstacles are those that are given.
+  Disc disc;
+  disc.center = Eigen::Vector2d(5., 2.);
+  disc.radius = 0.3;
+  EXPECT_NEAR(laser.Snapshot(Pose2(4., 2., 0.), {disc}).ranges[45], 0.7, 0.1);
+}
+
 }  // namespace
 }  // namespace simulation
 }  // namespace cartographer_ext

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Counts what the robot touches, by the true shapes. Something that moves may
+// run into a robot that stands still; a contact in which the robot itself moves
+// at any time is a collision.
+#ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_CONTACT_COUNTER_H_
+#define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_CONTACT_COUNTER_H_
+
+#include <limits>
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/navigation/closed_loop/live_robot.h"
+#include "cartographer_ext/simulation/ray_caster.h"
+
+namespace cartographer_ext {
+namespace navigation {
+
+struct Contact {
+  double time = 0.;       // when it began, or when the robot moved in it
+  Eigen::Vector2d place;  // of the robot
+  bool with_moving = false;
+  double speed = 0.;  // of the robot, m/s
+};
+
+class ContactCounter {
+ public:
+  explicit ContactCounter(double robot_radius) : radius_(robot_radius) {}
+
+  // A few times a decimetre of driving; everything in the world frame.
+  void Check(const LiveRobot& robot, const simulation::RayCaster& plan,
+             const std::vector<simulation::Disc>& standing,
+             const std::vector<simulation::Disc>& moving);
+
+  int static_collisions() const { return static_collisions_; }
+  int moving_collisions() const { return moving_collisions_; }
+  int run_into() const { return run_into_; }
+  // Metres from the outline to what stands, the least so far.
+  double least_clearance() const { return least_clearance_; }
+  const std::vector<Contact>& contacts() const { return contacts_; }
+
+ private:
+  void Record(const LiveRobot& robot, bool with_moving);
+
+  const double radius_;
+  bool touches_static_ = false;
+  bool touches_moving_ = false;
+  bool collision_counted_ = false;  // of the present contact
+  int static_collisions_ = 0;
+  int moving_collisions_ = 0;
+  int run_into_ = 0;
+  double least_clearance_ = std::numeric_limits<double>::infinity();
+  std::vector<Contact> contacts_;
+};
+
+}  // namespace navigation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_CONTACT_COUNTER_H_

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The surroundings of the robot as one distance map: what the finished map, the
+// obstacle layer and the latest scan say together.
+#ifndef CARTOGRAPHER_EXT_NAVIGATION_LOCAL_OBSTACLES_H_
+#define CARTOGRAPHER_EXT_NAVIGATION_LOCAL_OBSTACLES_H_
+
+#include <cmath>
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/navigation/costmap.h"
+#include "cartographer_ext/navigation/footprint.h"
+#include "cartographer_ext/navigation/obstacle_layer.h"
+
+namespace cartographer_ext {
+namespace navigation {
+
+class LocalObstacles {
+ public:
+  // A square window of 2 `half_width` metres around `center` (map frame).
+  // `layer` may be null; echoes (map frame) that are not finite are ignored.
+  LocalObstacles(const Costmap& costmap, const ObstacleLayer* layer,
+                 const std::vector<Eigen::Vector2d>& echoes,
+                 const Eigen::Vector2d& center, double half_width);
+
+  // Metres from a point to the nearest obstacle: to the centre of its cell,
+  // from the centre of the point's cell. 0 outside the window.
+  double Distance(const Eigen::Vector2d& point) const {
+    const Eigen::Vector2d p = geometry_->ToGrid(point);
+    const int x = static_cast<int>(std::floor(p.x())) - first_.x;
+    const int y = static_cast<int>(std::floor(p.y())) - first_.y;
+    if (x < 0 || y < 0 || x >= width_ || y >= width_) return 0.;
+    return distances_[y * width_ + x];
+  }
+
+  // Metres from the outline at `pose` (map <- robot) to the nearest obstacle;
+  // negative inside.
+  double Clearance(const Footprint& footprint, const Pose2& pose) const;
+
+ private:
+  const GridGeometry* geometry_;
+  Cell first_;  // lower left cell of the window
+  int width_ = 0;
+  std::vector<float> distances_;
+};
+
+}  // namespace navigation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_NAVIGATION_LOCAL_OBSTACLES_H_

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/navigation/moving_obstacles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cartographer_ext {
+namespace navigation {
+
+std::vector<MovingObstacles::Cluster> MovingObstacles::FindClusters(
+    const std::vector<Echo>& echoes) const {
+  // Neighbouring beams see neighbouring points: one pass joins them. The first
+  // and the last beam are neighbours, too.
+  std::vector<std::vector<Echo>> groups;
+  const auto apart = [this](const Echo& a, const Echo& b) {
+    return (a.point - b.point).norm() > options_.join_distance;
+  };
+  for (const Echo& echo : echoes) {
+    if (!echo.point.allFinite()) continue;
+    if (groups.empty() || apart(groups.back().back(), echo)) {
+      groups.emplace_back();
+    }
+    groups.back().push_back(echo);
+  }
+  if (groups.size() > 1 &&
+      !apart(groups.back().back(), groups.front().front())) {
+    groups.front().insert(groups.front().begin(), groups.back().begin(),
+                          groups.back().end());
+    groups.pop_back();
+  }
+  std::vector<Cluster> clusters;
+  for (const auto& group : groups) {
+    // One echo alone may be an error of the laser.
+    if (group.size() < 2) continue;
+    Eigen::Vector2d low = group.front().point, high = low;
+    int old = 0;
+    for (const Echo& echo : group) {
+      low = low.cwiseMin(echo.point);
+      high = high.cwiseMax(echo.point);
+      old += echo.age > options_.old_seconds;
+    }
+    Cluster cluster;
+    cluster.center = 0.5 * (low + high);
+    cluster.old_share = static_cast<double>(old) / group.size();
+    for (const Echo& echo : group) {
+      cluster.radius =
+          std::max(cluster.radius, (echo.point - cluster.center).norm());
+    }
+    if (2. * cluster.radius <= options_.max_extent) clusters.push_back(cluster);
+  }
+  return clusters;
+}
+
+void MovingObstacles::Update(const std::vector<Echo>& echoes,
+                             const double time) {
+  const std::vector<Cluster> clusters = FindClusters(echoes);
+  // Nearest pairs first.
+  struct Pair {
+    double distance;
+    size_t track, cluster;
+  };
+  std::vector<Pair> pairs;
+  for (size_t i = 0; i != tracks_.size(); ++i) {
+    const Eigen::Vector2d predicted =
+        tracks_[i].disc.At(time - tracks_[i].seen);
+    for (size_t j = 0; j != clusters.size(); ++j) {
+      const double distance = (clusters[j].center - predicted).norm();
+      if (distance <= options_.gate) pairs.push_back({distance, i, j});
+    }
+  }
+  std::stable_sort(
+      pairs.begin(), pairs.end(),
+      [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  std::vector<bool> track_used(tracks_.size()), cluster_used(clusters.size());
+  for (const Pair& pair : pairs) {
+    if (track_used[pair.track] || cluster_used[pair.cluster]) continue;
+    track_used[pair.track] = cluster_used[pair.cluster] = true;
+    Track& track = tracks_[pair.track];
+    const Cluster& cluster = clusters[pair.cluster];
+    const double elapsed = time - track.seen;
+    if (elapsed <= 0.) continue;
+    const Eigen::Vector2d predicted = track.disc.At(elapsed);
+    const Eigen::Vector2d innovation = cluster.center - predicted;
+    track.disc.position = predicted + options_.position_gain * innovation;
+    track.disc.velocity += options_.velocity_gain / elapsed * innovation;
+    const double speed = track.disc.velocity.norm();
+    if (speed > options_.max_speed) {
+      track.disc.velocity *= options_.max_speed / speed;
+    }
+    track.disc.radius = std::max(cluster.radius, 0.9 * track.disc.radius);
+    track.seen = time;
+    ++track.updates;
+    track.stands = cluster.old_share > options_.max_old_share;
+  }
+  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
+                               [&](const Track& track) {
+                                 return time - track.seen >
+                                        options_.memory_seconds;
+                               }),
+                tracks_.end());
+  for (size_t j = 0; j != clusters.size(); ++j) {
+    if (cluster_used[j] ||
+        tracks_.size() >= static_cast<size_t>(options_.max_tracks)) {
+      continue;
+    }
+    Track track;
+    track.disc.position = clusters[j].center;
+    track.disc.radius = clusters[j].radius;
+    track.seen = time;
+    tracks_.push_back(track);
+  }
+}
+
+std::vector<MovingDisc> MovingObstacles::Moving(const double time) const {
+  std::vector<MovingDisc> moving;
+  for (const Track& track : tracks_) {
+    if (track.stands || track.updates < options_.min_updates ||
+        track.disc.velocity.norm() < options_.moving_speed) {
+      continue;
+    }
+    MovingDisc disc = track.disc;
+    disc.position = track.disc.At(time - track.seen);
+    moving.push_back(disc);
+  }
+  return moving;
+}
+
+}  // namespace navigation
+}  // namespace cartographer_ext

@@ -1,0 +1,422 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/navigation/navigator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_ext/navigation/speed_limiter.h"
+
+namespace cartographer_ext {
+namespace navigation {
+namespace {
+
+constexpr double kTurnFrom = 0.9;   // radians off the path: turn on the spot
+constexpr double kTurnUntil = 0.2;  // radians
+constexpr double kSlowSpeed = 0.1;  // m/s: slow enough to turn on the spot
+constexpr double kBendSpeed = 0.3;  // m/s, at least, where the path bends
+constexpr double kLookahead = 0.5;  // metres, and what one second covers
+constexpr double kPathAhead = 3.;   // metres of path the window looks at
+constexpr double kProgress = 0.25;  // metres
+constexpr double kReplanSeconds = 0.3;  // soonest after a failure on the way
+constexpr double kBackUpSpeed = 0.1;    // m/s
+constexpr double kBackUpSeconds = 3.;
+constexpr double kTurnSeconds = 4.;
+constexpr double kWaitSeconds = 5.;
+constexpr double kKeepPathDistance = 0.4;  // metres
+constexpr double kKeepPathRatio = 1.15;    // of costs
+constexpr double kPersonMargin = 0.2;      // metres around what moves
+constexpr double kHoldDistance = 0.3;      // metres from the outline
+constexpr double kHoldSeconds = 0.8;
+constexpr double kForgetRadius = 3.;  // metres
+
+bool IsFinite(const Pose2& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) &&
+         std::isfinite(pose.theta);
+}
+
+double BearingError(const Pose2& pose, const Eigen::Vector2d& target) {
+  const Eigen::Vector2d direction = target - pose.translation();
+  return NormalizeAngle(std::atan2(direction.y(), direction.x()) - pose.theta);
+}
+
+bool IsAtAny(const std::vector<MovingDisc>& discs,
+             const Eigen::Vector2d& point) {
+  for (const MovingDisc& disc : discs) {
+    if ((point - disc.position).norm() < disc.radius + kPersonMargin) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Reasons that waiting does not change.
+bool IsFinal(const PlanOutcome outcome) {
+  switch (outcome) {
+    case PlanOutcome::kFound:
+    case PlanOutcome::kGoalObstructed:
+    case PlanOutcome::kStartBlocked:
+    case PlanOutcome::kObstructed:
+      return false;
+    default:
+      return true;
+  }
+}
+
+}  // namespace
+
+const char* ToString(const DriveState state) {
+  switch (state) {
+    case DriveState::kDriving:
+      return "driving";
+    case DriveState::kTurning:
+      return "turning";
+    case DriveState::kObstructed:
+      return "obstructed";
+    case DriveState::kRecovering:
+      return "recovering";
+    case DriveState::kLost:
+      return "lost";
+    case DriveState::kBlind:
+      return "blind";
+    case DriveState::kFinished:
+      return "finished";
+  }
+  return "";
+}
+
+Navigator::Navigator(const Costmap* const costmap,
+                     const NavigatorOptions& options,
+                     const std::vector<Eigen::Vector2d>& goals)
+    : costmap_(costmap),
+      options_(options),
+      goals_(goals),
+      layer_(costmap, options.obstacles),
+      moving_(options.moving),
+      monitor_(options.localization),
+      planner_(costmap),
+      window_(options.robot, options.window) {}
+
+void Navigator::AddScan(const NavigatorScan& scan) {
+  scan_ = scan;
+  has_scan_ = true;
+  monitor_.AddScan(*costmap_, scan.echoes, scan.map_from_robot,
+                   scan.odometry_step, scan.time);
+  // From a wrong pose every wall would become an obstacle.
+  if (!IsFinite(scan.map_from_robot) || monitor_.IsLost(scan.time)) return;
+  ScanInMap in_map;
+  in_map.time = scan.time;
+  in_map.laser = scan.map_from_robot * scan.laser;
+  std::vector<MovingObstacles::Echo> unexplained;
+  const std::vector<MovingDisc> people = moving_.Moving(scan.time);
+  for (const Eigen::Vector2d& echo : scan.echoes) {
+    if (!echo.allFinite()) continue;
+    const Eigen::Vector2d point = scan.map_from_robot * echo;
+    // What moves is for the dynamic window: a path around it would be wrong a
+    // moment later.
+    (IsAtAny(people, point) ? in_map.free_ends : in_map.echoes)
+        .push_back(point);
+    if ((point - in_map.laser).norm() <= options_.obstacles.range &&
+        !layer_.IsWall(point)) {
+      unexplained.push_back({point, layer_.MarkAge(point, scan.time)});
+    }
+  }
+  for (const Eigen::Vector2d& end : scan.free_ends) {
+    if (end.allFinite()) in_map.free_ends.push_back(scan.map_from_robot * end);
+  }
+  layer_.Update(in_map);
+  moving_.Update(unexplained, scan.time);
+}
+
+Velocity Navigator::Stop(const DriveState state, const std::string& message) {
+  state_ = state;
+  message_ = message;
+  turning_ = false;
+  return Velocity();
+}
+
+bool Navigator::SensesAreGood(const NavigatorStep& step) {
+  if (!has_scan_ || !(step.time - scan_.time <= options_.max_scan_age)) {
+    Stop(DriveState::kBlind, "stopped: no scan of late");
+    return false;
+  }
+  int echoes = 0;
+  for (const Eigen::Vector2d& echo : scan_.echoes) echoes += echo.allFinite();
+  if (echoes < options_.min_echoes) {
+    Stop(DriveState::kBlind, "stopped: the laser sees nothing");
+    return false;
+  }
+  if (!IsFinite(step.map_from_robot)) {
+    Stop(DriveState::kLost, "stopped: the pose is not a number");
+    return false;
+  }
+  if (monitor_.IsLost(step.time)) {
+    Stop(DriveState::kLost,
+         absl::StrCat("stopped, lost: ", monitor_.Reason(step.time)));
+    return false;
+  }
+  return true;
+}
+
+void Navigator::FinishGoal(const bool reached, const std::string& reason,
+                           const double time) {
+  results_.push_back({goals_[goal_], reached, reason, time});
+  ++goal_;
+  plan_ = Plan();
+  tracker_ = PathTracker();
+  planned_ = -1e9;
+  has_progress_ = false;
+  recovery_count_ = 0;
+}
+
+bool Navigator::KeepsPath(const Plan& plan,
+                          const Eigen::Vector2d& place) const {
+  if (!plan.found() || !plan_.found() || tracker_.empty()) return false;
+  std::vector<Eigen::Vector2d> rest =
+      tracker_.PointsAhead(std::numeric_limits<double>::infinity());
+  if ((rest.front() - place).norm() > kKeepPathDistance) return false;
+  return planner_.Cost(rest) <= kKeepPathRatio * planner_.Cost(plan.points);
+}
+
+bool Navigator::HoldsStill(const NavigatorStep& step) {
+  if (std::abs(step.velocity.linear) > kSlowSpeed) return false;
+  const double reach =
+      options_.robot.footprint.circumscribed_radius() + kHoldDistance;
+  for (const MovingDisc& disc : moving_.Moving(step.time)) {
+    if ((disc.position - step.map_from_robot.translation()).norm() <
+        reach + disc.radius) {
+      hold_until_ = step.time + kHoldSeconds;
+    }
+  }
+  return step.time < hold_until_;
+}
+
+bool Navigator::FollowsPlan(const NavigatorStep& step) {
+  const bool due = step.time - planned_ >= options_.plan_period ||
+                   (!plan_.found() && step.time - planned_ >= kReplanSeconds);
+  if (due) {
+    const Eigen::Vector2d place = step.map_from_robot.translation();
+    Plan plan = planner_.MakePlan(place, goals_[goal_], &layer_);
+    ++plans_;
+    planned_ = step.time;
+    if (KeepsPath(plan, place)) return true;
+    plan_ = std::move(plan);
+    tracker_ = plan_.found() ? PathTracker(plan_.points) : PathTracker();
+    if (IsFinal(plan_.outcome)) {
+      const std::string reason = ToString(plan_.outcome);
+      FinishGoal(false, reason, step.time);
+      Stop(DriveState::kObstructed, absl::StrCat("goal given up: ", reason));
+      return false;
+    }
+  }
+  if (!plan_.found()) {
+    Stop(DriveState::kObstructed,
+         absl::StrCat("waiting: ", ToString(plan_.outcome)));
+    return false;
+  }
+  return true;
+}
+
+void Navigator::WatchProgress(const NavigatorStep& step) {
+  const Eigen::Vector2d place = step.map_from_robot.translation();
+  if (!has_progress_ || (step.time >= recovery_end_ &&
+                         (place - progress_place_).norm() > kProgress)) {
+    has_progress_ = true;
+    progress_place_ = place;
+    progress_time_ = step.time;
+    recovery_count_ = 0;
+    return;
+  }
+  const double idle = step.time - progress_time_;
+  // What a recovery moves is no progress.
+  if (step.time < recovery_end_) progress_place_ = place;
+  if (idle > options_.give_up_seconds) {
+    FinishGoal(false,
+               absl::StrFormat("no progress for %.0f s: %s", idle, message_),
+               step.time);
+    return;
+  }
+  if (step.time < recovery_end_ ||
+      idle < options_.stuck_seconds * (1 + recovery_count_)) {
+    return;
+  }
+  recovery_ = static_cast<Recovery>(recovery_count_ % 4);
+  ++recovery_count_;
+  ++recoveries_;
+  switch (recovery_) {
+    case Recovery::kForget:
+      layer_.Clear(place, kForgetRadius);
+      planned_ = -1e9;
+      break;
+    case Recovery::kTurn:
+      recovery_end_ = step.time + kTurnSeconds;
+      break;
+    case Recovery::kBackUp:
+      recovery_end_ = step.time + kBackUpSeconds;
+      break;
+    case Recovery::kWait:
+      recovery_end_ = step.time + kWaitSeconds;
+      break;
+  }
+}
+
+Velocity Navigator::Recover(const NavigatorStep& step) {
+  state_ = DriveState::kRecovering;
+  planned_ = -1e9;  // a new path afterwards
+  if (recovery_ == Recovery::kWait) {
+    message_ = "no progress: waiting";
+    return Velocity();
+  }
+  DynamicWindowInput input;
+  const LocalObstacles obstacles(*costmap_, &layer_, {},
+                                 step.map_from_robot.translation(),
+                                 options_.window_half_width);
+  input.pose = step.map_from_robot;
+  input.current = step.velocity;
+  input.target = input.pose.translation();
+  input.obstacles = &obstacles;
+  input.moving = moving_.Moving(step.time);
+  Velocity wish;
+  if (recovery_ == Recovery::kTurn) {
+    message_ = "no progress: turning";
+    wish.angular = 0.6 * options_.robot.max_turn_rate;
+  } else {
+    message_ = "no progress: backing up";
+    wish.linear = -std::min(kBackUpSpeed, options_.robot.max_reverse_speed);
+  }
+  const Velocity command = Reach(step.velocity, wish);
+  return window_.Evaluate(input, command).admissible ? command : Velocity();
+}
+
+Velocity Navigator::Reach(const Velocity& current, const Velocity& wish) const {
+  const double period = options_.window.control_period;
+  const RobotLimits& robot = options_.robot;
+  const auto toward = [](const double from, const double to,
+                         const double step) {
+    return from + std::max(-step, std::min(step, to - from));
+  };
+  const bool braking = std::abs(wish.linear) < std::abs(current.linear);
+  return {
+      toward(current.linear, wish.linear,
+             period * (braking ? robot.deceleration : robot.acceleration)),
+      toward(current.angular, wish.angular, period * robot.turn_acceleration)};
+}
+
+DynamicWindowInput Navigator::WindowInput(
+    const NavigatorStep& step, const LocalObstacles* const obstacles) const {
+  DynamicWindowInput input;
+  input.pose = step.map_from_robot;
+  input.current = step.velocity;
+  const double to_goal =
+      (goals_[goal_] - step.map_from_robot.translation()).norm();
+  input.max_speed =
+      std::min(options_.robot.max_speed,
+               std::max(0.08, std::sqrt(2. * 0.5 * options_.robot.acceleration *
+                                        std::max(0., to_goal - 0.05))));
+  input.target = tracker_.Ahead(kLookahead + std::abs(step.velocity.linear));
+  input.path = tracker_.PointsAhead(kPathAhead);
+  input.obstacles = obstacles;
+  input.moving = moving_.Moving(step.time);
+  return input;
+}
+
+Velocity Navigator::Approach(const NavigatorStep& step,
+                             const DynamicWindowInput& input) {
+  const Eigen::Vector2d goal = goals_[goal_];
+  const double distance = (goal - step.map_from_robot.translation()).norm();
+  const double error = BearingError(step.map_from_robot, goal);
+  Velocity wish;
+  if (std::abs(error) < 0.3) {
+    wish.linear = std::max(0.05, std::min(input.max_speed, 0.8 * distance));
+  }
+  wish.angular = std::max(-0.6, std::min(0.6, 1.5 * error));
+  const Velocity command = Reach(step.velocity, wish);
+  return window_.Evaluate(input, command).admissible ? command : Velocity();
+}
+
+Velocity Navigator::Follow(const NavigatorStep& step) {
+  std::vector<Eigen::Vector2d> echoes;
+  echoes.reserve(echoes_now_.size());
+  for (const Eigen::Vector2d& echo : echoes_now_) {
+    echoes.push_back(step.map_from_robot * echo);
+  }
+  const LocalObstacles obstacles(*costmap_, &layer_, echoes,
+                                 step.map_from_robot.translation(),
+                                 options_.window_half_width);
+  DynamicWindowInput input = WindowInput(step, &obstacles);
+  const double to_goal =
+      (goals_[goal_] - step.map_from_robot.translation()).norm();
+  state_ = DriveState::kDriving;
+  message_ = absl::StrFormat("driving to goal %d", goal_ + 1);
+  if (to_goal <= options_.approach_distance) return Approach(step, input);
+
+  const double error = BearingError(step.map_from_robot, input.target);
+  // Slower where the path bends.
+  input.max_speed = std::max(
+      std::min(input.max_speed, kBendSpeed),
+      input.max_speed * (1. - std::min(1., std::abs(error) / kTurnFrom)));
+  const bool slow = std::abs(step.velocity.linear) < kSlowSpeed;
+  turning_ = std::abs(error) > (turning_ ? kTurnUntil : kTurnFrom);
+  if (turning_) {
+    state_ = DriveState::kTurning;
+    message_ = "turning towards the path";
+    Velocity wish;
+    // Slows down so as not to overshoot.
+    const double rate =
+        std::min(options_.robot.max_turn_rate,
+                 std::sqrt(options_.robot.turn_acceleration * std::abs(error)));
+    if (slow) wish.angular = error > 0. ? rate : -rate;
+    const Velocity command = Reach(step.velocity, wish);
+    return window_.Evaluate(input, command).admissible ? command : Velocity();
+  }
+  const absl::optional<EvaluatedVelocity> best = window_.Choose(input);
+  if (!best.has_value()) {
+    planned_ =
+        std::min(planned_, step.time - options_.plan_period + kReplanSeconds);
+    message_ = "braking: no admissible velocity";
+    return Velocity();
+  }
+  return best->velocity;
+}
+
+Velocity Navigator::Step(const NavigatorStep& step) {
+  echoes_now_.clear();
+  const Pose2 now_from_scan = step.motion_since_scan.Inverse();
+  for (const Eigen::Vector2d& echo : scan_.echoes) {
+    if (echo.allFinite()) echoes_now_.push_back(now_from_scan * echo);
+  }
+  if (finished()) return Stop(DriveState::kFinished, "all goals done");
+  if (!SensesAreGood(step)) {
+    planned_ = -1e9;
+    has_progress_ = false;
+    return Velocity();
+  }
+  const double to_goal =
+      (goals_[goal_] - step.map_from_robot.translation()).norm();
+  if (to_goal <= options_.goal_tolerance) {
+    if (std::abs(step.velocity.linear) < 0.02) {
+      FinishGoal(true, "", step.time);
+      if (finished()) return Stop(DriveState::kFinished, "all goals done");
+    }
+    return Stop(DriveState::kDriving, "stopping at the goal");
+  }
+  WatchProgress(step);
+  if (finished()) return Stop(DriveState::kFinished, "all goals done");
+  Velocity command;
+  if (HoldsStill(step)) {
+    Stop(DriveState::kObstructed, "waiting: somebody passes by");
+  } else if (step.time < recovery_end_ && recovery_count_ > 0) {
+    command = Recover(step);
+  } else if (FollowsPlan(step)) {
+    tracker_.Advance(step.map_from_robot.translation());
+    command = Follow(step);
+  }
+  return LimitSpeed(echoes_now_, options_.robot, options_.stop_margin, command);
+}
+
+}  // namespace navigation
+}  // namespace cartographer_ext

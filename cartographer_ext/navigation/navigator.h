@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Drives a robot to goals on a finished map:
+//
+//   scan, pose ─► ObstacleLayer, MovingObstacles, LocalizationMonitor
+//   PathPlanner (A*) ─► path ─► DynamicWindow ─► LimitSpeed ─► command
+//
+// once a second a new path, ten times a second a new command. It stops where it
+// does not know its place or sees nothing, and says why. Where it makes no
+// progress it recovers: it forgets old obstacles, turns, backs up, waits, and
+// at last gives the goal up. Plain types only, deterministic.
+#ifndef CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_
+#define CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_
+
+#include <string>
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/navigation/costmap.h"
+#include "cartographer_ext/navigation/dynamic_window.h"
+#include "cartographer_ext/navigation/localization_monitor.h"
+#include "cartographer_ext/navigation/moving_obstacles.h"
+#include "cartographer_ext/navigation/obstacle_layer.h"
+#include "cartographer_ext/navigation/path_planner.h"
+#include "cartographer_ext/navigation/path_tracker.h"
+#include "cartographer_ext/navigation/robot.h"
+
+namespace cartographer_ext {
+namespace navigation {
+
+struct NavigatorOptions {
+  RobotLimits robot;
+  ObstacleLayerOptions obstacles;
+  MovingObstacleOptions moving;
+  DynamicWindowOptions window;
+  LocalizationMonitorOptions localization;
+  double plan_period = 1.;          // seconds
+  double goal_tolerance = 0.05;     // metres, by the pose reported
+  double approach_distance = 0.25;  // metres: straight to the goal from here
+  double window_half_width = 2.5;   // metres, of the local obstacles
+  double stop_margin = 0.02;        // metres, kept by LimitSpeed
+  double max_scan_age = 0.5;        // seconds
+  int min_echoes = 10;              // fewer: the laser sees nothing
+  double stuck_seconds = 5.;        // without progress: recover
+  double give_up_seconds = 90.;     // without progress: next goal
+};
+
+enum class DriveState {
+  kDriving,
+  kTurning,     // on the spot, towards the path
+  kObstructed,  // waiting for a path to become free
+  kRecovering,
+  kLost,      // stopped: the pose cannot be believed
+  kBlind,     // stopped: no scan, or one that shows nothing
+  kFinished,  // no goal is left
+};
+
+const char* ToString(DriveState state);
+
+struct GoalResult {
+  Eigen::Vector2d goal = Eigen::Vector2d::Zero();
+  bool reached = false;
+  std::string reason;  // why not
+  double time = 0.;    // when it was reached or given up
+};
+
+// One scan, with the pose of the robot at its stamp as localisation reports it.
+struct NavigatorScan {
+  double time = 0.;
+  Pose2 map_from_robot;
+  // Motion since the last scan, as odometry measured it.
+  Pose2 odometry_step;
+  // In the robot frame at the stamp.
+  Eigen::Vector2d laser = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector2d> echoes;
+  std::vector<Eigen::Vector2d> free_ends;  // beams without an echo
+};
+
+struct NavigatorStep {
+  double time = 0.;
+  Pose2 map_from_robot;     // now
+  Velocity velocity;        // measured
+  Pose2 motion_since_scan;  // (robot at the scan <- robot now)
+};
+
+class Navigator {
+ public:
+  // The costmap must outlive the navigator.
+  Navigator(const Costmap* costmap, const NavigatorOptions& options,
+            const std::vector<Eigen::Vector2d>& goals);
+
+  void AddScan(const NavigatorScan& scan);
+  // The command for the next control period; never one from which the robot
+  // could not stop before the nearest echo of the last scan.
+  Velocity Step(const NavigatorStep& step);
+
+  DriveState state() const { return state_; }
+  // What the robot does and why, for the user.
+  const std::string& message() const { return message_; }
+  bool finished() const { return goal_ == goals_.size(); }
+  size_t goal() const { return goal_; }
+  const std::vector<GoalResult>& results() const { return results_; }
+  const Plan& plan() const { return plan_; }
+  int plans() const { return plans_; }
+  int recoveries() const { return recoveries_; }
+
+ private:
+  enum class Recovery { kForget, kTurn, kBackUp, kWait };
+
+  Velocity Stop(DriveState state, const std::string& message);
+  // Whether scan and pose allow to drive at all; else stops.
+  bool SensesAreGood(const NavigatorStep& step);
+  // Plans when it is time to. False where there is nothing to follow.
+  bool FollowsPlan(const NavigatorStep& step);
+  // Whether the path followed so far is still free and hardly worse than a new
+  // one: changing one's mind at every turn of the laser gets nowhere.
+  bool KeepsPath(const Plan& plan, const Eigen::Vector2d& place) const;
+  // Whether somebody passes by so close that the robot had better not start.
+  bool HoldsStill(const NavigatorStep& step);
+  void FinishGoal(bool reached, const std::string& reason, double time);
+  // Starts or ends a recovery where there was no progress.
+  void WatchProgress(const NavigatorStep& step);
+  Velocity Recover(const NavigatorStep& step);
+  Velocity Follow(const NavigatorStep& step);
+  Velocity Approach(const NavigatorStep& step, const DynamicWindowInput& input);
+  DynamicWindowInput WindowInput(const NavigatorStep& step,
+                                 const LocalObstacles* obstacles) const;
+  // Nearest to the wish that acceleration allows.
+  Velocity Reach(const Velocity& current, const Velocity& wish) const;
+
+  const Costmap* const costmap_;
+  const NavigatorOptions options_;
+  const std::vector<Eigen::Vector2d> goals_;
+  ObstacleLayer layer_;
+  MovingObstacles moving_;
+  LocalizationMonitor monitor_;
+  PathPlanner planner_;
+  DynamicWindow window_;
+  NavigatorScan scan_;
+  bool has_scan_ = false;
+  std::vector<Eigen::Vector2d> echoes_now_;  // robot frame, now
+
+  size_t goal_ = 0;
+  std::vector<GoalResult> results_;
+  Plan plan_;
+  PathTracker tracker_;
+  double planned_ = -1e9;  // when
+  bool turning_ = false;
+  double hold_until_ = -1e9;  // seconds
+
+  DriveState state_ = DriveState::kDriving;
+  std::string message_;
+  int plans_ = 0;
+  int recoveries_ = 0;
+  // Progress: where and when the robot last came nearer to the goal.
+  Eigen::Vector2d progress_place_ = Eigen::Vector2d::Zero();
+  double progress_time_ = 0.;
+  bool has_progress_ = false;
+  double recovery_end_ = 0.;
+  Recovery recovery_ = Recovery::kForget;
+  int recovery_count_ = 0;  // since the last progress
+};
+
+}  // namespace navigation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_

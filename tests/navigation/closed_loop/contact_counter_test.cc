@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/navigation/closed_loop/contact_counter.h"
+
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace navigation {
+namespace {
+
+using simulation::Disc;
+
+class ContactCounterTest : public testing::Test {
+ protected:
+  ContactCounterTest()
+      : plan_({{Eigen::Vector2d(2., -5.), Eigen::Vector2d(2., 5.)}}, {}),
+        robot_(simulation::World(), RobotLimits(), LiveRobotOptions(), Pose2(),
+               1),
+        counter_(0.25) {}
+
+  void Drive(const double seconds, const std::vector<Disc>& standing,
+             const std::vector<Disc>& moving) {
+    for (double time = 0.; time < seconds; time += 0.02) {
+      robot_.Advance(0.02);
+      counter_.Check(robot_, plan_, standing, moving);
+    }
+  }
+
+  const simulation::RayCaster plan_;
+  LiveRobot robot_;
+  ContactCounter counter_;
+};
+
+TEST_F(ContactCounterTest, CountsTheWallOnce) {
+  robot_.Command({0.7, 0.});
+  Drive(6., {}, {});
+  EXPECT_EQ(counter_.static_collisions(), 1);
+  ASSERT_EQ(counter_.contacts().size(), 1u);
+  EXPECT_NEAR(counter_.contacts()[0].place.x(), 1.75, 0.03);
+  EXPECT_LT(counter_.least_clearance(), 0.);
+}
+
+TEST_F(ContactCounterTest, KnowsTheLeastClearance) {
+  Drive(0.1, {{Eigen::Vector2d(0., 1.), 0.3}}, {});
+  EXPECT_EQ(counter_.static_collisions(), 0);
+  EXPECT_NEAR(counter_.least_clearance(), 1. - 0.3 - 0.25, 1e-9);
+}
+
+TEST_F(ContactCounterTest, ARobotThatStandsIsRunInto) {
+  const std::vector<Disc> person = {{Eigen::Vector2d(0.3, 0.), 0.2}};
+  Drive(0.5, {}, person);
+  EXPECT_EQ(counter_.run_into(), 1);
+  EXPECT_EQ(counter_.moving_collisions(), 0);
+  // But it must not start in the contact.
+  robot_.Command({0.3, 0.});
+  Drive(0.5, {}, person);
+  EXPECT_EQ(counter_.run_into(), 0);
+  EXPECT_EQ(counter_.moving_collisions(), 1);
+  // A new contact counts anew.
+  Drive(0.1, {}, {});
+  Drive(0.1, {}, {{robot_.pose().translation(), 0.2}});
+  EXPECT_EQ(counter_.moving_collisions(), 2);
+}
+
+}  // namespace
+}  // namespace navigation
+}  // namespace cartographer_ext

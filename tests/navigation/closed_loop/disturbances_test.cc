@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/navigation/closed_loop/disturbances.h"
+
+#include <algorithm>
+
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace navigation {
+namespace {
+
+class DisturbancesTest : public testing::Test {
+ protected:
+  DisturbancesTest() : plan_(Walls(), {}) {}
+
+  // Two rooms of 12 m by 5 m with two doors between them.
+  static std::vector<simulation::Segment> Walls() {
+    const auto p = [](const double x, const double y) {
+      return Eigen::Vector2d(x, y);
+    };
+    return {{p(0, 0), p(24, 0)},    {p(24, 0), p(24, 5)},
+            {p(24, 5), p(0, 5)},    {p(0, 5), p(0, 0)},
+            {p(12, 0), p(12, 0.5)}, {p(12, 1.9), p(12, 3.1)},
+            {p(12, 4.5), p(12, 5)}};
+  }
+
+  const simulation::RayCaster plan_;
+  const std::vector<std::vector<Eigen::Vector2d>> legs_ = {
+      {{1., 1.2}, {23., 1.2}}, {{23., 1.2}, {1., 1.2}}};
+};
+
+TEST_F(DisturbancesTest, ComeToBeNearTheRobotButNotTooNear) {
+  DisturbanceOptions options;
+  options.obstacles = 3;
+  options.crossings = 2;
+  auto disturbances = Disturbances::Create(plan_, legs_, options, 4);
+  ASSERT_TRUE(disturbances.ok()) << disturbances.status();
+  EXPECT_EQ(disturbances->all().size(), 5u);
+  EXPECT_TRUE(disturbances->standing().empty());
+  size_t most_moving = 0, before = 0;
+  std::vector<Eigen::Vector2d> seen;
+  for (double time = 0.; time < 40.; time += 0.05) {
+    const Eigen::Vector2d robot(1. + 0.55 * time, 1.2);
+    disturbances->Update(time, robot);
+    const auto& standing = disturbances->standing();
+    // A new one is no nearer than it may be.
+    for (size_t i = 0; i < standing.size() && standing.size() > before; ++i) {
+      const double distance =
+          (standing[i].center - robot).norm() - standing[i].radius;
+      if (std::find_if(seen.begin(), seen.end(), [&](const auto& center) {
+            return center == standing[i].center;
+          }) == seen.end()) {
+        EXPECT_GE(distance, options.min_distance);
+        seen.push_back(standing[i].center);
+      }
+    }
+    before = standing.size();
+    most_moving = std::max(most_moving, disturbances->moving().size());
+  }
+  EXPECT_EQ(disturbances->standing().size(), 3u);
+  EXPECT_GE(most_moving, 1u);
+  // Those who cross are gone in the end.
+  for (double time = 40.; time < 60.; time += 0.1) {
+    disturbances->Update(time, {23., 1.2});
+  }
+  EXPECT_TRUE(disturbances->moving().empty());
+}
+
+TEST_F(DisturbancesTest, NothingAppearsWithinReach) {
+  DisturbanceOptions options;
+  options.obstacles = 1;
+  auto disturbances = Disturbances::Create(plan_, legs_, options, 7);
+  ASSERT_TRUE(disturbances.ok());
+  const simulation::Disc disc = disturbances->all()[0].discs[0];
+  disturbances->Update(0., disc.center + Eigen::Vector2d(1., 0.));
+  EXPECT_TRUE(disturbances->standing().empty());
+  disturbances->Update(1., disc.center + Eigen::Vector2d(2.5, 0.));
+  EXPECT_EQ(disturbances->standing().size(), 1u);
+  // And stays.
+  disturbances->Update(2., disc.center + Eigen::Vector2d(20., 0.));
+  EXPECT_EQ(disturbances->standing().size(), 1u);
+}
+
+TEST_F(DisturbancesTest, ADoorLeavesAnotherPath) {
+  DisturbanceOptions options;
+  options.doors = 1;
+  EXPECT_TRUE(
+      Disturbances::Create(plan_, {{{8., 1.2}, {16., 1.2}}}, options, 3).ok());
+  // Two closed doors would not.
+  options.doors = 20;
+  const auto too_many = Disturbances::Create(plan_, legs_, options, 3);
+  ASSERT_FALSE(too_many.ok());
+  EXPECT_NE(too_many.status().message().find("there is room for"),
+            absl::string_view::npos);
+}
+
+TEST_F(DisturbancesTest, TheSeedDecides) {
+  DisturbanceOptions options;
+  options.obstacles = 2;
+  const auto place = [&](const uint64_t seed) {
+    return Disturbances::Create(plan_, legs_, options, seed)
+        ->all()[0]
+        .discs[0]
+        .center.x();
+  };
+  EXPECT_EQ(place(1), place(1));
+  EXPECT_NE(place(1), place(2));
+}
+
+}  // namespace
+}  // namespace navigation
+}  // namespace cartographer_ext

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/navigation/navigator.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "absl/memory/memory.h"
+#include "cartographer_ext/common/arc.h"
+#include "gtest/gtest.h"
+#include "tests/navigation/test_maps.h"
+
+namespace cartographer_ext {
+namespace navigation {
+namespace {
+
+// A robot that does exactly what it is told, in a world that may have more in
+// it than the map.
+class Loop {
+ public:
+  Loop(const io::OccupancyMap& map, const io::OccupancyMap& world,
+       const Pose2& start, const std::vector<Eigen::Vector2d>& goals)
+      : world_(world), costmap_(MakeCostmap(map)), pose_(start) {
+    navigator_ = absl::make_unique<Navigator>(&costmap_, options_, goals);
+  }
+
+  NavigatorScan MakeScan() const {
+    NavigatorScan scan;
+    scan.time = time_;
+    scan.map_from_robot = pose_;
+    scan.odometry_step = step_;
+    scan.echoes = ScanOf(world_, pose_, 120);
+    return scan;
+  }
+
+  Velocity Step() {
+    navigator_->AddScan(MakeScan());
+    return StepWithoutScan();
+  }
+
+  Velocity StepWithoutScan() {
+    NavigatorStep step;
+    step.time = time_;
+    step.map_from_robot = pose_;
+    step.velocity = velocity_;
+    velocity_ = navigator_->Step(step);
+    step_ = ArcPose(0.1 * velocity_.linear, 0.1 * velocity_.angular);
+    pose_ = pose_ * step_;
+    time_ += 0.1;
+    return velocity_;
+  }
+
+  // Metres from the outline to the nearest occupied cell of the world.
+  double Gap() const {
+    const Costmap truth = MakeCostmap(world_);
+    return truth.WallDistance(pose_.translation()) -
+           options_.robot.footprint.inscribed_radius();
+  }
+
+  io::OccupancyMap world_;
+  NavigatorOptions options_;
+  Costmap costmap_;
+  Pose2 pose_;
+  Pose2 step_;
+  Velocity velocity_;
+  double time_ = 0.;
+  std::unique_ptr<Navigator> navigator_;
+};
+
+TEST(NavigatorTest, ReachesItsGoals) {
+  const io::OccupancyMap map = RoomMap(8., 6.);
+  Loop loop(map, map, Pose2(1., 1., 0.), {{6., 4.}, {1., 1.}});
+  for (int i = 0; i != 600 && !loop.navigator_->finished(); ++i) loop.Step();
+  ASSERT_EQ(loop.navigator_->results().size(), 2u);
+  EXPECT_TRUE(loop.navigator_->results()[0].reached);
+  EXPECT_TRUE(loop.navigator_->results()[1].reached);
+  EXPECT_LT((loop.pose_.translation() - Eigen::Vector2d(1., 1.)).norm(), 0.06);
+  EXPECT_EQ(loop.navigator_->state(), DriveState::kFinished);
+  EXPECT_EQ(loop.Step().linear, 0.);
+}
+
+TEST(NavigatorTest, DrivesAroundWhatTheMapDoesNotHave) {
+  const io::OccupancyMap map = RoomMap(8., 6.);
+  io::OccupancyMap world = map;
+  FillBox(3.7, 2.2, 4.3, 3.6, 1.f, &world);
+  Loop loop(map, world, Pose2(1., 3., 0.), {{7., 3.}});
+  double gap = std::numeric_limits<double>::infinity();
+  for (int i = 0; i != 600 && !loop.navigator_->finished(); ++i) {
+    loop.Step();
+    gap = std::min(gap, loop.Gap());
+  }
+  ASSERT_EQ(loop.navigator_->results().size(), 1u);
+  EXPECT_TRUE(loop.navigator_->results()[0].reached)
+      << loop.navigator_->results()[0].reason;
+  EXPECT_GT(gap, 0.);
+}
+
+TEST(NavigatorTest, GivesReasonsForBadGoals) {
+  io::OccupancyMap map = RoomMap(8., 6.);
+  FillBox(5., 0., 5.1, 6., 1.f, &map);
+  Loop loop(map, map, Pose2(1., 3., 0.),
+            {{std::nan(""), 1.}, {5.05, 3.}, {7., 3.}, {30., 3.}, {2., 3.}});
+  for (int i = 0; i != 300 && !loop.navigator_->finished(); ++i) loop.Step();
+  const auto& results = loop.navigator_->results();
+  ASSERT_EQ(results.size(), 5u);
+  EXPECT_EQ(results[0].reason, ToString(PlanOutcome::kNotFinite));
+  EXPECT_EQ(results[1].reason, ToString(PlanOutcome::kGoalOccupied));
+  EXPECT_EQ(results[2].reason, ToString(PlanOutcome::kUnreachable));
+  EXPECT_EQ(results[3].reason, ToString(PlanOutcome::kGoalOutside));
+  EXPECT_TRUE(results[4].reached);
+}
+
+TEST(NavigatorTest, WaitsAndGivesUpBehindAClosedDoor) {
+  io::OccupancyMap map = RoomMap(8., 6.);
+  FillBox(5., 0., 5.1, 6., 1.f, &map);
+  FillBox(5., 2.4, 5.1, 3.6, 0.f, &map);
+  io::OccupancyMap world = map;
+  FillBox(5., 2.4, 5.1, 3.6, 1.f, &world);
+  // Echoes at the closed door are far enough from the door posts of the map.
+  Loop loop(map, world, Pose2(2., 3., 0.), {{7., 3.}});
+  bool obstructed = false;
+  for (int i = 0; i != 3000 && !loop.navigator_->finished(); ++i) {
+    loop.Step();
+    obstructed =
+        obstructed || loop.navigator_->state() == DriveState::kObstructed;
+  }
+  EXPECT_TRUE(obstructed);
+  ASSERT_TRUE(loop.navigator_->finished());
+  EXPECT_FALSE(loop.navigator_->results()[0].reached);
+  EXPECT_NE(loop.navigator_->results()[0].reason.find("no progress"),
+            std::string::npos);
+  EXPECT_GT(loop.navigator_->recoveries(), 2);
+}
+
+class NavigatorStopTest : public testing::Test {
+ protected:
+  NavigatorStopTest()
+      : map_(RoomMap(8., 6.)),
+        loop_(map_, map_, Pose2(1., 3., 0.), {{7., 3.}}) {
+    for (int i = 0; i != 30; ++i) loop_.Step();
+    EXPECT_GT(loop_.velocity_.linear, 0.5);
+  }
+
+  void ExpectStop(const DriveState state, const std::string& words) {
+    const Velocity command = loop_.StepWithoutScan();
+    EXPECT_EQ(command.linear, 0.);
+    EXPECT_EQ(command.angular, 0.);
+    EXPECT_EQ(loop_.navigator_->state(), state);
+    EXPECT_NE(loop_.navigator_->message().find(words), std::string::npos)
+        << loop_.navigator_->message();
+  }
+
+  const io::OccupancyMap map_;
+  Loop loop_;
+};
+
+TEST_F(NavigatorStopTest, WhenTheScanIsEmpty) {
+  NavigatorScan scan = loop_.MakeScan();
+  scan.echoes.clear();
+  loop_.navigator_->AddScan(scan);
+  ExpectStop(DriveState::kBlind, "sees nothing");
+}
+
+TEST_F(NavigatorStopTest, WhenTheScanIsNotNumbers) {
+  NavigatorScan scan = loop_.MakeScan();
+  for (auto& echo : scan.echoes) echo.x() = std::nan("");
+  loop_.navigator_->AddScan(scan);
+  ExpectStop(DriveState::kBlind, "sees nothing");
+}
+
+TEST_F(NavigatorStopTest, WhenScansStop) {
+  for (int i = 0; i != 4; ++i) loop_.StepWithoutScan();
+  loop_.time_ += 0.2;
+  ExpectStop(DriveState::kBlind, "no scan");
+}
+
+TEST_F(NavigatorStopTest, WhenThePoseIsNotANumber) {
+  loop_.navigator_->AddScan(loop_.MakeScan());
+  loop_.pose_.theta = std::nan("");
+  ExpectStop(DriveState::kLost, "not a number");
+}
+
+TEST_F(NavigatorStopTest, WhenThePoseJumps) {
+  NavigatorScan scan = loop_.MakeScan();
+  scan.map_from_robot.x += 1.;
+  loop_.navigator_->AddScan(scan);
+  ExpectStop(DriveState::kLost, "lost: the pose jumped");
+}
+
+TEST_F(NavigatorStopTest, WhenTheScanContradictsTheMap) {
+  // Somebody carries the robot away; localisation believes in its old place.
+  io::OccupancyMap elsewhere = RoomMap(20., 20.);
+  for (int i = 0; i != 12; ++i) {
+    NavigatorScan scan = loop_.MakeScan();
+    scan.echoes = ScanOf(elsewhere, Pose2(10., 10., 0.5), 120);
+    loop_.navigator_->AddScan(scan);
+    loop_.time_ += 0.1;
+  }
+  ExpectStop(DriveState::kLost, "at walls");
+  EXPECT_FALSE(loop_.navigator_->finished());
+  // Back on its map it goes on.
+  for (int i = 0; i != 40; ++i) loop_.Step();
+  EXPECT_GT(loop_.velocity_.linear, 0.3);
+}
+
+TEST_F(NavigatorStopTest, BeforeAnEchoInItsWay) {
+  // Whatever the map and the localisation say.
+  NavigatorScan scan = loop_.MakeScan();
+  for (double y = -0.3; y <= 0.3; y += 0.02) scan.echoes.emplace_back(0.35, y);
+  loop_.navigator_->AddScan(scan);
+  const Velocity command = loop_.StepWithoutScan();
+  EXPECT_EQ(command.linear, 0.);
+}
+
+}  // namespace
+}  // namespace navigation
+}  // namespace cartographer_ext
