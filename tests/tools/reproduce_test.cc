@@ -35,7 +35,8 @@ TEST(ReproduceTest, ListsEveryTable) {
   EXPECT_EQ(result.exit_code, 0) << result.out;
   for (const char* name : {"a_table_2", "r_table_2", "g_table_2", "g_table_3",
                            "c_table_1", "c_table_3", "c_table_4", "c_table_5",
-                           "c_gamma", "c_alpha_beta", "stored_maps"}) {
+                           "c_gamma", "c_alpha_beta", "stored_maps",
+                           "c_navigation"}) {
     EXPECT_THAT(result.out, HasSubstr(name));
   }
 }

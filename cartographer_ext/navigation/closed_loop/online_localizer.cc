@@ -27,7 +27,7 @@ using SensorId = TrajectoryBuilderInterface::SensorId;
 
 constexpr char kScanId[] = "scan";
 constexpr char kOdometryId[] = "odom";
-const absl::Duration kPatience = absl::Seconds(20);
+const absl::Duration kPatience = absl::Seconds(120);
 
 Rigid3d ToRigid(const Pose2& pose) {
   return Rigid3d(Eigen::Vector3d(pose.x, pose.y, 0.),
