@@ -83,13 +83,29 @@ TEST_F(DisturbancesTest, NothingAppearsWithinReach) {
 }
 
 TEST_F(DisturbancesTest, ADoorLeavesAnotherPath) {
+  // Two parallel corridors of 2 m that meet at both ends.
+  const auto p = [](const double x, const double y) {
+    return Eigen::Vector2d(x, y);
+  };
+  const simulation::RayCaster corridors({{p(0, 0), p(20, 0)},
+                                         {p(20, 0), p(20, 4.2)},
+                                         {p(20, 4.2), p(0, 4.2)},
+                                         {p(0, 4.2), p(0, 0)},
+                                         {p(2, 2), p(18, 2)},
+                                         {p(18, 2), p(18, 2.2)},
+                                         {p(18, 2.2), p(2, 2.2)},
+                                         {p(2, 2.2), p(2, 2)}},
+                                        {});
   DisturbanceOptions options;
   options.doors = 1;
-  EXPECT_TRUE(
-      Disturbances::Create(plan_, {{{8., 1.2}, {16., 1.2}}}, options, 3).ok());
-  // Two closed doors would not.
+  const auto one =
+      Disturbances::Create(corridors, {{{1., 1.}, {19., 1.}}}, options, 3);
+  ASSERT_TRUE(one.ok()) << one.status();
+  EXPECT_GT(one->all()[0].discs.size(), 10u);
+  // With both corridors closed the goal could not be reached.
   options.doors = 20;
-  const auto too_many = Disturbances::Create(plan_, legs_, options, 3);
+  const auto too_many = Disturbances::Create(
+      corridors, {{{1., 1.}, {19., 1.}, {19., 3.2}, {1., 3.2}}}, options, 3);
   ASSERT_FALSE(too_many.ok());
   EXPECT_NE(too_many.status().message().find("there is room for"),
             absl::string_view::npos);
