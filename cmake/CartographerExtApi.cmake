@@ -4,7 +4,8 @@
 # Which swaps a Cartographer tree can take, read off what its headers declare, before anything is compiled.
 #
 # Cartographer 2.0 and master declare everything. Version 1.0 and forks made from it, as the ROS 2 fork, have a PointCloud that
-# is a vector, no RangefinderPoint and no TrajectoryState; only the residual of a constraint is the same there.
+# is a vector, no RangefinderPoint and no TrajectoryState. The residual of a constraint is the same there, but of no use without
+# the optimization problem.
 
 # What a swap needs, as "file below the tree|regular expression|its name". CMake lists are split at semicolons, so that the
 # expressions have none.
@@ -19,7 +20,7 @@ set(CARTOGRAPHER_EXT_API_OF_optimization_problem ${CARTOGRAPHER_EXT_TRAJECTORY_S
     "cartographer/mapping/internal/optimization/optimization_problem_2d.h|TrajectoryState>|OptimizationProblem2D::Solve with trajectory states")
 set(CARTOGRAPHER_EXT_API_OF_local_trajectory_builder ${CARTOGRAPHER_EXT_POINT_CLOUD}
     "cartographer/mapping/proto/local_trajectory_builder_options_2d.proto|message LocalTrajectoryBuilderOptions2D|its options message")
-set(CARTOGRAPHER_EXT_API_OF_full_information)
+set(CARTOGRAPHER_EXT_API_OF_full_information ${CARTOGRAPHER_EXT_TRAJECTORY_STATE})
 
 # The declarations that `swap` needs and the tree below `root` lacks, as one text.
 function(cartographer_ext_missing_api swap root result)

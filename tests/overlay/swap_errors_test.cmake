@@ -76,7 +76,7 @@ expect_error(compiler "${add}
 set(CMAKE_CXX_COMPILER_ID MSVC)
 cartographer_ext_swap_into(cartographer)" "#include_next")
 
-# A tree from before Cartographer 2.0: PointCloud is a vector, there is no TrajectoryState. What is possible is named.
+# A tree from before Cartographer 2.0: PointCloud is a vector, there is no TrajectoryState.
 set(spa "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d")
 write_stock("${WORK_DIR}/old_api")
 file(WRITE "${WORK_DIR}/old_api/cartographer/sensor/point_cloud.h" "typedef std::vector<Eigen::Vector3f> PointCloud;\n")
@@ -85,5 +85,13 @@ file(WRITE "${WORK_DIR}/old_api/${spa}.h"
      "Cost* CreateAutoDiffSpaCostFunction(\n    Pose);\nCost* CreateAnalyticalSpaCostFunction(\n    Pose);\n")
 file(WRITE "${WORK_DIR}/old_api/${spa}.cc" "\n")
 expect_error(old_api "add_library(cartographer STATIC ${sources} ${spa}.cc)
+set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder full_information)
+cartographer_ext_swap_into(cartographer)" "constraint_builder: needs class sensor::PointCloud .*full_information: needs enum .*None of the swaps")
+
+# A tree with trajectory states and the old PointCloud: what is possible is named.
+write_stock("${WORK_DIR}/half_api")
+file(COPY "${WORK_DIR}/old_api/cartographer" DESTINATION "${WORK_DIR}/half_api")
+file(WRITE "${WORK_DIR}/half_api/cartographer/mapping/pose_graph_interface.h" "  enum class TrajectoryState { ACTIVE };\n")
+expect_error(half_api "add_library(cartographer STATIC ${sources} ${spa}.cc)
 set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder full_information)
 cartographer_ext_swap_into(cartographer)" "constraint_builder: needs class sensor::PointCloud .*Possible here: full_information")
