@@ -27,6 +27,7 @@ absl::StatusOr<std::unique_ptr<RosbagWriter>> RosbagWriter::Open(
 #include <vector>
 
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/io/ros/ros2_messages.h"
 #include "nav_msgs/Odometry.h"
 #include "rosbag/bag.h"
 #include "sensor_msgs/Imu.h"
@@ -115,11 +116,7 @@ class Writer : public RosbagWriter {
   }
 
   absl::Status AddScan(const LaserScan& scan) override {
-    // The header has the stamp of the first beam.
-    const size_t n = scan.ranges.size();
-    const TimeNs time =
-        n == 0 ? scan.time
-               : scan.time - FromSeconds(scan.time_increment * (n - 1));
+    const TimeNs time = FirstBeamTime(scan);
     if (!IsValidStamp(time)) return BadStamp(time);
     if (!static_sent_[0]) {
       const absl::Status status =

@@ -15,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/io/ros/mcap_reader.h"
+#include "cartographer_ext/io/ros/sqlite_database.h"
 
 namespace cartographer_ext {
 namespace io {
@@ -23,9 +24,6 @@ namespace {
 // No message of a planar robot is larger; what a damaged file asks for may be.
 constexpr int kMaxMessageSize = 1 << 28;
 
-struct CloseDatabase {
-  void operator()(sqlite3* database) const { sqlite3_close(database); }
-};
 struct FinalizeStatement {
   void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 };
@@ -115,7 +113,7 @@ class Db3Container : public RosContainer {
   }
 
   const std::string filename_;
-  std::unique_ptr<sqlite3, CloseDatabase> database_;
+  SqliteDatabase database_;
   Statement messages_;  // destroyed before the database
   std::map<int64_t, std::string> names_;
   RosTopics topics_;

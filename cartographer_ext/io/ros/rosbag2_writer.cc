@@ -14,6 +14,7 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/io/ros/mcap_writer.h"
 #include "cartographer_ext/io/ros/ros2_messages.h"
+#include "cartographer_ext/io/ros/sqlite_database.h"
 
 namespace cartographer_ext {
 namespace io {
@@ -61,10 +62,6 @@ class McapSink : public Sink {
   const std::string compression_;
   std::unique_ptr<McapWriter> writer_;
   std::map<std::string, uint16_t> channels_;
-};
-
-struct CloseDatabase {
-  void operator()(sqlite3* database) const { sqlite3_close(database); }
 };
 
 class Db3Sink : public Sink {
@@ -139,7 +136,7 @@ class Db3Sink : public Sink {
 
   const std::string filename_;
   AtomicFile file_;
-  std::unique_ptr<sqlite3, CloseDatabase> database_;
+  SqliteDatabase database_;
   sqlite3_stmt* insert_ = nullptr;
   std::map<std::string, int> topics_;
 };
