@@ -32,8 +32,8 @@ include("${CMAKE_CURRENT_LIST_DIR}/CartographerExtApi.cmake")
 set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder ceres_scan_matcher optimization_problem local_trajectory_builder
     full_information)
 
-# Modules whose sources need no host; they are compiled once, with those of their subfolders but dropin/, as objects and
-# become part of the target.
+# Modules whose sources need no host; they are compiled once, with those of their subfolders but dropin/ (which need it) and
+# offline/ (which only the workbench uses), as objects and become part of the target.
 set(CARTOGRAPHER_EXT_CORE_MODULES common options uncertainty optimization loop_closure scan_matching front_end)
 
 # The modules whose dropin/ folders hold the class behind a swap and what it uses; full_information needs none.
@@ -124,7 +124,7 @@ function(cartographer_ext_add_core_objects module)
     return()
   endif()
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${module}/*.cc")
-  list(FILTER sources EXCLUDE REGEX "/dropin/")
+  list(FILTER sources EXCLUDE REGEX "/(dropin|offline)/")
   if(NOT sources)
     return()
   endif()

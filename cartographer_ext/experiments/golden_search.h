@@ -24,7 +24,7 @@
 #include "cartographer/mapping/value_conversion_tables.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/experiments/golden_pairs.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/scan_matching/correlative_search/fast_correlative_search_2d.h"
 
 namespace cartographer_ext {

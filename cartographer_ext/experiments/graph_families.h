@@ -31,7 +31,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "cartographer_ext/optimization/pose_graph.h"
+#include "cartographer_ext/optimization/graph/pose_graph.h"
 
 namespace cartographer_ext {
 namespace experiments {

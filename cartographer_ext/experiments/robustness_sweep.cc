@@ -16,10 +16,10 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/experiments/graph_families.h"
+#include "cartographer_ext/experiments/outliers/outlier_generator.h"
 #include "cartographer_ext/map/pose_graph_files.h"
-#include "cartographer_ext/optimization/graph_metrics.h"
-#include "cartographer_ext/optimization/outlier_generator.h"
-#include "cartographer_ext/optimization/robust_solver.h"
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
 namespace experiments {

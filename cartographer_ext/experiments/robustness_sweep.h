@@ -13,7 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "cartographer_ext/optimization/optimize.h"
+#include "cartographer_ext/optimization/offline/optimize.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_ext {

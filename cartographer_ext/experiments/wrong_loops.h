@@ -23,7 +23,7 @@
 #include "cartographer/mapping/map_builder_interface.h"
 #include "cartographer/mapping/proto/map_builder_options.pb.h"
 #include "cartographer_ext/common/random.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
 
 namespace cartographer_ext {

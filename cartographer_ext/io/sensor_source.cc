@@ -10,10 +10,10 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "cartographer_ext/io/carmen_reader.h"
+#include "cartographer_ext/io/carmen/carmen_reader.h"
 #include "cartographer_ext/io/ros/mcap_reader.h"
+#include "cartographer_ext/io/ros/ros1/rosbag_reader.h"
 #include "cartographer_ext/io/ros/rosbag2_reader.h"
-#include "cartographer_ext/io/rosbag_reader.h"
 
 namespace cartographer_ext {
 namespace io {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "Eigen/Core"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
 
 namespace cartographer_ext {

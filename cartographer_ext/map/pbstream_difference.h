@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "nlohmann/json.hpp"
 

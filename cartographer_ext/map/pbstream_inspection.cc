@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/configuration/stored_options.h"
-#include "cartographer_ext/io/pbstream_validation.h"
+#include "cartographer_ext/io/pbstream/pbstream_validation.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/map/pbstream_map.h"

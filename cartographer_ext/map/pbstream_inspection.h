@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_ext {

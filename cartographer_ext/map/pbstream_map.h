@@ -7,7 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer_ext/io/occupancy_map.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
 
 namespace cartographer_ext {

@@ -13,7 +13,7 @@
 #include "cartographer_ext/common/loop_id.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/map/pose_graph_export.h"
-#include "cartographer_ext/optimization/slam_pose_graph.h"
+#include "cartographer_ext/optimization/graph/slam_pose_graph.h"
 
 namespace cartographer_ext {
 namespace evaluation {

@@ -20,9 +20,9 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
-#include "cartographer_ext/optimization/pose_graph.h"
+#include "cartographer_ext/optimization/graph/pose_graph.h"
 
 namespace cartographer_ext {
 namespace evaluation {

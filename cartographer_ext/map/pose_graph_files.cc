@@ -9,8 +9,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/io/picture.h"
-#include "cartographer_ext/optimization/graph_metrics.h"
-#include "cartographer_ext/optimization/starts.h"
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/starts.h"
 
 namespace cartographer_ext {
 namespace evaluation {

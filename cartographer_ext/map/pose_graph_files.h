@@ -11,8 +11,8 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer_ext/io/g2o.h"
-#include "cartographer_ext/optimization/optimize.h"
-#include "cartographer_ext/optimization/pose_graph.h"
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/optimize.h"
 
 namespace cartographer_ext {
 namespace evaluation {

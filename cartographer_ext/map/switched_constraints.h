@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cartographer_ext/map/map_graph.h"
-#include "cartographer_ext/optimization/switched_loops.h"
+#include "cartographer_ext/optimization/selection/switched_loops.h"
 
 namespace cartographer_ext {
 namespace evaluation {

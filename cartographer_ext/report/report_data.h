@@ -11,7 +11,7 @@
 
 #include "absl/types/optional.h"
 #include "cartographer_ext/io/occupancy_map.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/loop_decision.pb.h"
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/map_graph.h"

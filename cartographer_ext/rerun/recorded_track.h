@@ -30,7 +30,7 @@
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/proto/pose_graph_options.pb.h"
 #include "cartographer/transform/rigid_transform.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/rerun/loop_fate.h"
 #include "cartographer_ext/rerun/replay_ids.h"

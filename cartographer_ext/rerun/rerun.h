@@ -28,7 +28,7 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer/mapping/proto/pose_graph_options.pb.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/loop_decision.pb.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/rerun/loop_fate.h"

@@ -7,8 +7,8 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_ext/simulation/odometry_model.h"
 #include "cartographer_ext/simulation/seeds.h"
+#include "cartographer_ext/simulation/sensors/odometry_model.h"
 
 namespace cartographer_ext {
 namespace simulation {

@@ -15,8 +15,8 @@
 #include "absl/status/statusor.h"
 #include "cartographer_ext/simulation/drive.h"
 #include "cartographer_ext/simulation/obstacle_motion.h"
-#include "cartographer_ext/simulation/odometry_model.h"
 #include "cartographer_ext/simulation/ray_caster.h"
+#include "cartographer_ext/simulation/sensors/odometry_model.h"
 #include "cartographer_ext/simulation/world.h"
 
 namespace cartographer_ext {

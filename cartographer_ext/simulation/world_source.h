@@ -13,8 +13,8 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer_ext/io/sensor_source.h"
-#include "cartographer_ext/simulation/imu_model.h"
-#include "cartographer_ext/simulation/laser_model.h"
+#include "cartographer_ext/simulation/sensors/imu_model.h"
+#include "cartographer_ext/simulation/sensors/laser_model.h"
 #include "cartographer_ext/simulation/simulation.h"
 
 namespace cartographer_ext {

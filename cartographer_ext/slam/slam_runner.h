@@ -32,7 +32,7 @@
 #include "cartographer_ext/loop_decision.pb.h"
 #include "cartographer_ext/match_record.pb.h"
 #include "cartographer_ext/metrics/trajectory.h"
-#include "cartographer_ext/optimization/switched_loops.h"
+#include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "cartographer_ext/slam/back_end_metrics.h"
 #include "cartographer_ext/slam/starting_state.h"
 

@@ -5,7 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/transform.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 
 namespace cartographer_ext {
 namespace evaluation {

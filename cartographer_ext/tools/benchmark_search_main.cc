@@ -14,7 +14,7 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/experiments/golden_search.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"

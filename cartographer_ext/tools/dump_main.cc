@@ -10,7 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/pbstream_difference.h"
 #include "cartographer_ext/map/pbstream_inspection.h"
 #include "cartographer_ext/tools/command_line.h"

@@ -18,7 +18,7 @@
 #include "absl/strings/strip.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/io/relations_file.h"
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/map/pbstream_map.h"

@@ -17,7 +17,7 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/experiments/labelled_loops.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/io/relations_file.h"
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/map/host_map.h"

@@ -5,7 +5,7 @@
 #include "cartographer/mapping/2d/probability_grid.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/compressed_point_cloud.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "gtest/gtest.h"
 #include "tests/host/mapping_test_helpers.h"
 #include "tests/test_data.h"

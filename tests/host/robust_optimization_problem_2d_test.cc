@@ -12,7 +12,7 @@
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/pose_graph_context.h"
-#include "cartographer_ext/optimization/switched_loops.h"
+#include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "gtest/gtest.h"
 #include "tests/host/slam_test_helpers.h"
 

@@ -7,7 +7,7 @@
 
 #include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/map/pbstream_map.h"
-#include "cartographer_ext/optimization/optimize.h"
+#include "cartographer_ext/optimization/offline/optimize.h"
 #include "gmock/gmock.h"
 #include "tests/map/square_map.h"
 

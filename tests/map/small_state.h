@@ -5,7 +5,7 @@
 #ifndef TESTS_MAP_SMALL_STATE_H_
 #define TESTS_MAP_SMALL_STATE_H_
 
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/host_types.h"
 
 namespace cartographer_ext {

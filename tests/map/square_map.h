@@ -13,7 +13,7 @@
 
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/host_types.h"
 
 namespace cartographer_ext {

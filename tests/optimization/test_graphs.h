@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "cartographer_ext/common/random.h"
+#include "cartographer_ext/experiments/outliers/outlier_generator.h"
 #include "cartographer_ext/io/g2o.h"
-#include "cartographer_ext/optimization/outlier_generator.h"
-#include "cartographer_ext/optimization/pose_graph.h"
+#include "cartographer_ext/optimization/graph/pose_graph.h"
 
 namespace cartographer_ext {
 namespace optimization {

@@ -19,9 +19,9 @@
 #include "cartographer/mapping/pose_graph.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/pose_graph_context.h"
-#include "cartographer_ext/io/pbstream_reader.h"
-#include "cartographer_ext/io/pbstream_writer.h"
-#include "cartographer_ext/optimization/switched_loops.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
+#include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "cartographer_ext/swaps.h"
 #include "gtest/gtest.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "cartographer_ext/io/pbstream_writer.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
 #include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/report/map_runs.h"
 #include "cartographer_ext/report/report.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "cartographer_ext/io/pbstream_writer.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
 #include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/rerun/loop_comparison.h"
 #include "cartographer_ext/rerun/rerun_configuration.h"

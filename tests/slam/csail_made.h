@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "cartographer_ext/configuration/slam_configuration.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/io/sensor_source.h"
 #include "cartographer_ext/slam/open_recording.h"
 #include "gtest/gtest.h"

@@ -26,7 +26,7 @@
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/transform/transform.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/slam/scan_conversion.h"
 #include "gtest/gtest.h"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "cartographer_ext/configuration/slam_configuration.h"
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/slam/slam_runner.h"
 #include "glog/logging.h"
 #include "tests/slam/room_source.h"

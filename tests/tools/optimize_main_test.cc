@@ -4,8 +4,8 @@
 // The command cartographer_ext_optimize.
 #include "cartographer_ext/common/random.h"
 #include "cartographer_ext/io/g2o.h"
-#include "cartographer_ext/io/pbstream_reader.h"
-#include "cartographer_ext/io/pbstream_writer.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
 #include "gmock/gmock.h"
 #include "tests/map/square_map.h"
 #include "tests/tools/run_command.h"

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "absl/types/variant.h"
-#include "cartographer_ext/io/carmen_writer.h"
+#include "cartographer_ext/io/carmen/carmen_writer.h"
 #include "gtest/gtest.h"
 #include "nlohmann/json.hpp"
 #include "tests/slam/room_source.h"

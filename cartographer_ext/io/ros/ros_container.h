@@ -14,8 +14,8 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "cartographer_ext/io/ros_messages.h"
-#include "cartographer_ext/io/rosbag_topics.h"
+#include "cartographer_ext/io/ros/ros1/rosbag_topics.h"
+#include "cartographer_ext/io/ros/ros_messages.h"
 #include "cartographer_ext/io/sensor_source.h"
 
 namespace cartographer_ext {

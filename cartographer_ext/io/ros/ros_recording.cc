@@ -16,7 +16,7 @@
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/io/reorder.h"
 #include "cartographer_ext/io/ros/ros_container.h"
-#include "cartographer_ext/io/ros_frames.h"
+#include "cartographer_ext/io/ros/ros_frames.h"
 
 namespace cartographer_ext {
 namespace io {

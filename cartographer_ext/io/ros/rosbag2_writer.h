@@ -11,7 +11,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "cartographer_ext/io/rosbag_writer.h"
+#include "cartographer_ext/io/ros/ros1/rosbag_writer.h"
 
 namespace cartographer_ext {
 namespace io {

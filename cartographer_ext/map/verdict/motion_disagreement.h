@@ -11,7 +11,7 @@
 #include <map>
 #include <vector>
 
-#include "cartographer_ext/io/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/metrics/statistics.h"
 #include "cartographer_ext/metrics/trajectory.h"

@@ -20,7 +20,7 @@
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/random.h"
 #include "cartographer_ext/navigation/robot.h"
-#include "cartographer_ext/simulation/wheel.h"
+#include "cartographer_ext/simulation/sensors/wheel.h"
 #include "cartographer_ext/simulation/world.h"
 
 namespace cartographer_ext {

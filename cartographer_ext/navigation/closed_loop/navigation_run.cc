@@ -11,15 +11,15 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/thread_time.h"
-#include "cartographer_ext/slam/resource_usage.h"
 #include "cartographer_ext/navigation/closed_loop/contact_counter.h"
 #include "cartographer_ext/navigation/closed_loop/goals.h"
 #include "cartographer_ext/navigation/closed_loop/localization_error.h"
 #include "cartographer_ext/navigation/closed_loop/online_localizer.h"
 #include "cartographer_ext/navigation/closed_loop/true_plan.h"
-#include "cartographer_ext/simulation/laser_model.h"
 #include "cartographer_ext/simulation/obstacle_motion.h"
 #include "cartographer_ext/simulation/seeds.h"
+#include "cartographer_ext/simulation/sensors/laser_model.h"
+#include "cartographer_ext/slam/resource_usage.h"
 
 namespace cartographer_ext {
 namespace navigation {

@@ -14,7 +14,7 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
 #include "cartographer_ext/optimization/dropin/stock_solve.h"
-#include "cartographer_ext/optimization/switched_loops.h"
+#include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {

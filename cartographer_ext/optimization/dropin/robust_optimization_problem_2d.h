@@ -15,9 +15,9 @@
 
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer_ext/common/loop_id.h"
-#include "cartographer_ext/optimization/loop_selection.h"
-#include "cartographer_ext/optimization/slam_pose_graph.h"
-#include "cartographer_ext/optimization/switched_loops.h"
+#include "cartographer_ext/optimization/graph/slam_pose_graph.h"
+#include "cartographer_ext/optimization/selection/loop_selection.h"
+#include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "cartographer_ext/robust_optimization_options.pb.h"
 
 namespace cartographer_ext {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "cartographer_ext/io/ros_messages.h"
+#include "cartographer_ext/io/ros/ros_messages.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/io/ros/ros2_sample.h"

@@ -31,7 +31,7 @@ class ProtoStreamWriter : public ProtoStreamWriterInterface {
 class ProtoStreamReader : public ProtoStreamReaderInterface {
  public:
   // A file that cannot be opened or is no proto stream is fatal; tools look at
-  // files first with cartographer_ext/io/pbstream_reader.h.
+  // files first with cartographer_ext/io/pbstream/pbstream_reader.h.
   explicit ProtoStreamReader(const std::string& filename);
 
   bool ReadProto(google::protobuf::Message* proto) override;

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/carmen/carmen_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/memory/memory.h"
+#include "absl/strings/str_cat.h"
+#include "cartographer_ext/io/carmen/carmen_line.h"
+#include "cartographer_ext/io/carmen/carmen_survey.h"
+#include "cartographer_ext/io/line_reader.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+// What a SICK laser measures at most.
+constexpr double kDefaultRangeMax = 80.;
+
+class CarmenSource : public SensorSource {
+ public:
+  CarmenSource(CarmenPlan plan, std::unique_ptr<LineReader> reader)
+      : plan_(std::move(plan)),
+        reader_(std::move(reader)),
+        waiting_(plan_.reordering.window) {}
+
+  const SensorSourceInfo& info() const override { return plan_.info; }
+
+  absl::StatusOr<bool> Next(SensorEvent* event) override {
+    while (!at_end_ && !waiting_.Ready()) {
+      absl::string_view text;
+      const auto more = reader_->Next(&text);
+      if (!more.ok()) return more.status();
+      if (!*more) {
+        at_end_ = true;
+        break;
+      }
+      ParseCarmenLine(text, &line_);
+      PushEvents();
+    }
+    if (waiting_.empty()) return false;
+    const TimeNs time = waiting_.first_key().time;
+    if (time < last_time_) {
+      return absl::AbortedError(
+          absl::StrCat(reader_->Location(), ": file changed while reading"));
+    }
+    last_time_ = time;
+    *event = waiting_.Pop();
+    return true;
+  }
+
+ private:
+  void PushEvents() {
+    CarmenEvent events[2];
+    const int n =
+        CarmenEventsOfLine(plan_, line_.kind, line_.time, &ordinal_, events);
+    for (int i = 0; i < n; ++i) {
+      const std::vector<int64_t>& dropped = plan_.reordering.dropped;
+      if (next_dropped_ < dropped.size() &&
+          dropped[next_dropped_] == events[i].key.ordinal) {
+        ++next_dropped_;
+        continue;
+      }
+      if (events[i].is_scan) {
+        waiting_.Push(events[i].key, MakeScan());
+      } else {
+        OdometryReading reading;
+        reading.time = line_.time;
+        reading.pose = line_.robot_pose;
+        reading.inside_scan = events[i].inside_scan;
+        waiting_.Push(events[i].key, reading);
+      }
+    }
+  }
+
+  LaserScan MakeScan() {
+    LaserScan scan;
+    scan.time = line_.time;
+    scan.angle_min = line_.angle_min;
+    scan.angle_increment = line_.angle_increment;
+    scan.range_max = plan_.range_max;
+    if (line_.maximum_range > 0.) {
+      // A reading of the maximum itself is "no return".
+      const float maximum = static_cast<float>(line_.maximum_range);
+      scan.range_max =
+          std::min<double>(scan.range_max, std::nextafter(maximum, 0.f));
+    }
+    if (!std::isfinite(scan.range_max)) scan.range_max = kDefaultRangeMax;
+    scan.ranges = std::move(line_.ranges);
+    line_.ranges.clear();
+    scan.laser_pose = plan_.laser_pose;
+    return scan;
+  }
+
+  const CarmenPlan plan_;
+  const std::unique_ptr<LineReader> reader_;
+  ReorderBuffer<SensorEvent> waiting_;
+  CarmenLine line_;
+  int64_t ordinal_ = 0;
+  size_t next_dropped_ = 0;
+  TimeNs last_time_ = 0;
+  bool at_end_ = false;
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<SensorSource>> OpenCarmenLog(
+    const std::string& filename, const SensorSourceOptions& options) {
+  auto plan = SurveyCarmenLog(filename, options.odometry_source);
+  if (!plan.ok()) return plan.status();
+  auto reader = LineReader::Open(filename);
+  if (!reader.ok()) return reader.status();
+  return std::unique_ptr<SensorSource>(
+      absl::make_unique<CarmenSource>(std::move(*plan), std::move(*reader)));
+}
+
+}  // namespace io
+}  // namespace cartographer_ext

@@ -1,0 +1,404 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/carmen/carmen_survey.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_ext/io/line_reader.h"
+#include "cartographer_ext/io/tokens.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+constexpr size_t kMaxLines = 20000000;
+constexpr size_t kMaxReorderWindow = 1 << 16;
+
+constexpr double kRangeBin = 0.01;
+constexpr int kNumRangeBins = 1 << 14;
+
+// Poses in logs are rounded, and some loggers interpolate one of the two.
+constexpr double kOffsetTolerance = 0.02;  // metres, radians
+constexpr double kMaxOffset = 5.;          // metres
+
+// Of all messages; clocks that step now and then stay below it.
+constexpr double kMaxBackwardShare = 0.01;
+
+struct LineKey {
+  CarmenKind kind;
+  TimeNs time;
+};
+
+// Counts of readings by centimetre.
+class RangeHistogram {
+ public:
+  RangeHistogram() : bins_(kNumRangeBins, 0) {}
+
+  void Add(const std::vector<float>& ranges) {
+    for (const float range : ranges) {
+      if (!(range > 0.f) || !(range < kNumRangeBins * kRangeBin)) continue;
+      ++bins_[std::min<int>(kNumRangeBins - 1, range / kRangeBin)];
+      max_ = std::max(max_, range);
+    }
+  }
+
+  // Just below the code for "no return", infinity if there is none.
+  double RangeMax() const {
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    if (max_ <= 0.f) return kNoLimit;
+    const double below = std::nextafter(max_, 0.f);
+    // The laser counts to 2^n - 1 in its unit and reserves the last nine
+    // values.
+    for (const double reserved : {8.183, 16.375, 32.759, 81.83}) {
+      const double unit = reserved > 80. ? 0.01 : 0.001;
+      if (max_ > reserved - 0.5 * unit && max_ < reserved + 8.5 * unit) {
+        return reserved - unit;
+      }
+    }
+    const int bin = std::min<int>(kNumRangeBins - 1, max_ / kRangeBin);
+    int64_t near = 0;
+    for (int i = std::max(0, bin - 50); i < bin; ++i) near += bins_[i];
+    const bool saturated = bins_[bin] >= 10 && bins_[bin] > 4 * near;
+    return saturated ? below : kNoLimit;
+  }
+
+ private:
+  std::vector<int64_t> bins_;
+  float max_ = 0.f;
+};
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// (robot <- laser) that explains 99 % of `offsets`; false if none does.
+bool FindConstantOffset(const std::vector<Pose2>& offsets, Pose2* offset) {
+  std::vector<double> x, y, sine, cosine;
+  for (const Pose2& pose : offsets) {
+    x.push_back(pose.x);
+    y.push_back(pose.y);
+    sine.push_back(std::sin(pose.theta));
+    cosine.push_back(std::cos(pose.theta));
+  }
+  *offset = Pose2(Median(x), Median(y),
+                  std::atan2(Median(std::move(sine)), Median(cosine)));
+  size_t num_close = 0;
+  for (const Pose2& pose : offsets) {
+    if (std::abs(pose.x - offset->x) <= kOffsetTolerance &&
+        std::abs(pose.y - offset->y) <= kOffsetTolerance &&
+        std::abs(NormalizeAngle(pose.theta - offset->theta)) <=
+            kOffsetTolerance) {
+      ++num_close;
+    }
+  }
+  return num_close >= 0.99 * offsets.size() &&
+         std::hypot(offset->x, offset->y) <= kMaxOffset;
+}
+
+class Survey {
+ public:
+  explicit Survey(const std::string& filename) : filename_(filename) {}
+
+  absl::Status Read();
+  absl::StatusOr<CarmenPlan> Plan(const std::string& odometry_source) const;
+
+ private:
+  void WarnOfIgnored(CarmenPlan* plan) const;
+  // Which lines the odometry is taken from; `disordered` messages have an
+  // earlier stamp than the one before them.
+  void ChooseOdometry(const std::string& odometry_source, int64_t disordered,
+                      CarmenPlan* plan) const;
+  void OrderEvents(CarmenPlan* plan) const;
+  int64_t Count(CarmenKind kind) const {
+    const auto it = counts_.find(kind);
+    return it == counts_.end() ? 0 : it->second;
+  }
+  void AddParameter(const CarmenLine& line);
+  CarmenKind ChooseScanKind() const;
+  bool OdometryLinesCoverScans(CarmenKind scan_kind) const;
+  Pose2 ChooseLaserPose(CarmenKind scan_kind,
+                        std::vector<std::string>* warnings) const;
+  // Messages of a kind with an earlier stamp than the one before them.
+  int64_t CountBackwards(CarmenKind kind) const;
+
+  const std::string filename_;
+  std::map<CarmenKind, int64_t> counts_;
+  std::vector<LineKey> lines_;
+  std::map<CarmenKind, std::vector<Pose2>> offsets_;  // (robot <- laser)
+  std::map<CarmenKind, RangeHistogram> ranges_;
+  Pose2 parameter_offset_;
+  int64_t num_malformed_ = 0;
+  std::string first_malformed_;
+};
+
+void Survey::AddParameter(const CarmenLine& line) {
+  double value;
+  if (!ParseFinite(line.value, &value) || std::abs(value) > kMaxOffset) return;
+  if (line.name == "robot_frontlaser_offset") {
+    parameter_offset_.x = value;
+  } else if (line.name == "robot_frontlaser_side_offset") {
+    parameter_offset_.y = value;
+  } else if (line.name == "robot_frontlaser_angular_offset") {
+    parameter_offset_.theta = NormalizeAngle(value);
+  }
+}
+
+absl::Status Survey::Read() {
+  auto reader = LineReader::Open(filename_);
+  if (!reader.ok()) return reader.status();
+  CarmenLine line;
+  absl::string_view text;
+  while (true) {
+    const auto more = (*reader)->Next(&text);
+    if (!more.ok()) return more.status();
+    if (!*more) return absl::OkStatus();
+    ParseCarmenLine(text, &line);
+    switch (line.kind) {
+      case CarmenKind::kIgnored:
+        continue;
+      case CarmenKind::kMalformed:
+        if (num_malformed_++ == 0) {
+          first_malformed_ =
+              absl::StrCat((*reader)->Location(), ": ", line.error);
+        }
+        continue;
+      case CarmenKind::kParameter:
+        AddParameter(line);
+        continue;
+      case CarmenKind::kRearLaser:
+        ++counts_[line.kind];
+        continue;
+      case CarmenKind::kFrontLaser:
+      case CarmenKind::kRobotLaser:
+        offsets_[line.kind].push_back(
+            Between(line.robot_pose, line.laser_pose));
+        ABSL_FALLTHROUGH_INTENDED;
+      case CarmenKind::kRawLaser:
+        ranges_[line.kind].Add(line.ranges);
+        ABSL_FALLTHROUGH_INTENDED;
+      case CarmenKind::kOdometry:
+        ++counts_[line.kind];
+        lines_.push_back(LineKey{line.kind, line.time});
+    }
+    if (lines_.size() > kMaxLines) {
+      return absl::OutOfRangeError(absl::StrCat((*reader)->Location(),
+                                                ": more than ", kMaxLines,
+                                                " messages; split the log"));
+    }
+  }
+}
+
+CarmenKind Survey::ChooseScanKind() const {
+  const int64_t front = Count(CarmenKind::kFrontLaser);
+  const int64_t robot = Count(CarmenKind::kRobotLaser);
+  if (front == 0 && robot == 0) return CarmenKind::kRawLaser;
+  return front > robot ? CarmenKind::kFrontLaser : CarmenKind::kRobotLaser;
+}
+
+bool Survey::OdometryLinesCoverScans(CarmenKind scan_kind) const {
+  constexpr TimeNs kMax = std::numeric_limits<TimeNs>::max();
+  TimeNs scans[2] = {kMax, -kMax}, odometry[2] = {kMax, -kMax};
+  for (const LineKey& line : lines_) {
+    TimeNs* const bounds = line.kind == scan_kind               ? scans
+                           : line.kind == CarmenKind::kOdometry ? odometry
+                                                                : nullptr;
+    if (bounds == nullptr) continue;
+    bounds[0] = std::min(bounds[0], line.time);
+    bounds[1] = std::max(bounds[1], line.time);
+  }
+  if (5 * Count(CarmenKind::kOdometry) < Count(scan_kind)) return false;
+  if (Count(CarmenKind::kOdometry) == 0) return false;
+  const TimeNs slack = std::max<TimeNs>(2000000000, (scans[1] - scans[0]) / 50);
+  return odometry[0] <= scans[0] + slack && odometry[1] >= scans[1] - slack;
+}
+
+Pose2 Survey::ChooseLaserPose(CarmenKind scan_kind,
+                              std::vector<std::string>* warnings) const {
+  const auto offsets = offsets_.find(scan_kind);
+  if (offsets == offsets_.end()) return parameter_offset_;
+  Pose2 offset;
+  if (!FindConstantOffset(offsets->second, &offset)) {
+    warnings->push_back(
+        absl::StrCat(filename_,
+                     ": the two poses of the scan lines differ by a varying "
+                     "amount (a corrected log?); only the odometry pose is "
+                     "used"));
+    return parameter_offset_;
+  }
+  // Equal poses say nothing: many loggers never knew where the laser is.
+  const bool equal =
+      std::hypot(offset.x, offset.y) < 1e-4 && std::abs(offset.theta) < 1e-4;
+  return equal ? parameter_offset_ : offset;
+}
+
+int64_t Survey::CountBackwards(CarmenKind kind) const {
+  int64_t count = 0;
+  TimeNs last = 0;
+  for (const LineKey& line : lines_) {
+    if (line.kind != kind) continue;
+    if (line.time < last) ++count;
+    last = line.time;
+  }
+  return count;
+}
+
+void Survey::WarnOfIgnored(CarmenPlan* const plan) const {
+  SensorSourceInfo& info = plan->info;
+  if (num_malformed_ > 0) {
+    info.warnings.push_back(absl::StrCat(first_malformed_, "; ", num_malformed_,
+                                         num_malformed_ == 1
+                                             ? " malformed line skipped"
+                                             : " malformed lines skipped"));
+  }
+  int64_t num_other_lasers = Count(CarmenKind::kRearLaser);
+  for (const CarmenKind kind :
+       {CarmenKind::kFrontLaser, CarmenKind::kRobotLaser,
+        CarmenKind::kRawLaser}) {
+    if (kind != plan->scan_kind) num_other_lasers += Count(kind);
+  }
+  if (num_other_lasers > 0) {
+    info.warnings.push_back(absl::StrCat(
+        filename_, ": ", num_other_lasers,
+        " scans of other lasers or in another format ignored (RLASER, ...)"));
+  }
+}
+
+void Survey::ChooseOdometry(const std::string& odometry_source,
+                            const int64_t disordered,
+                            CarmenPlan* const plan) const {
+  SensorSourceInfo& info = plan->info;
+  const bool has_poses = plan->scan_kind != CarmenKind::kRawLaser;
+  if (odometry_source == "both") {
+    plan->use_odometry_lines = true;
+    plan->use_scan_poses = has_poses;
+  } else if (odometry_source == "odom") {
+    plan->use_odometry_lines = true;
+  } else if (odometry_source == "scan") {
+    plan->use_scan_poses = has_poses;
+  } else {
+    const bool cover = OdometryLinesCoverScans(plan->scan_kind);
+    const bool stamps_usable =
+        disordered <= kMaxBackwardShare * static_cast<double>(lines_.size());
+    plan->use_odometry_lines = !has_poses || (cover && stamps_usable);
+    plan->use_scan_poses = !plan->use_odometry_lines;
+    if (plan->use_scan_poses && cover) {
+      info.warnings.push_back(absl::StrCat(
+          filename_,
+          ": stamps are too disordered to pair ODOM lines with scans; odometry "
+          "is taken from the scan lines"));
+    } else if (plan->use_scan_poses && Count(CarmenKind::kOdometry) > 0) {
+      info.warnings.push_back(absl::StrCat(
+          filename_, ": too few ODOM lines (", Count(CarmenKind::kOdometry),
+          "); odometry is taken from the scan lines"));
+    }
+  }
+}
+
+void Survey::OrderEvents(CarmenPlan* const plan) const {
+  SensorSourceInfo& info = plan->info;
+  std::vector<EventKey> keys;
+  int64_t ordinal = 0;
+  CarmenEvent events[2];
+  for (const LineKey& line : lines_) {
+    const int n =
+        CarmenEventsOfLine(*plan, line.kind, line.time, &ordinal, events);
+    for (int i = 0; i < n; ++i) keys.push_back(events[i].key);
+  }
+  plan->reordering = PlanReordering(keys, kMaxReorderWindow);
+  if (!plan->reordering.dropped.empty()) {
+    info.warnings.push_back(absl::StrCat(
+        filename_, ": ", plan->reordering.dropped.size(),
+        " messages more than ", kMaxReorderWindow, " messages late dropped"));
+  }
+  info.begin = std::numeric_limits<TimeNs>::max();
+  info.end = 0;
+  size_t next_dropped = 0;
+  for (const EventKey& key : keys) {
+    if (next_dropped < plan->reordering.dropped.size() &&
+        plan->reordering.dropped[next_dropped] == key.ordinal) {
+      ++next_dropped;
+      continue;
+    }
+    ++(key.rank == 1 ? info.num_scans : info.num_odometry);
+    info.begin = std::min(info.begin, key.time);
+    info.end = std::max(info.end, key.time);
+  }
+}
+
+absl::StatusOr<CarmenPlan> Survey::Plan(
+    const std::string& odometry_source) const {
+  CarmenPlan plan;
+  plan.scan_kind = ChooseScanKind();
+  SensorSourceInfo& info = plan.info;
+  info.format = "carmen";
+  if (Count(plan.scan_kind) == 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        filename_, ": no laser scan (FLASER, ROBOTLASER1 or RAWLASER1) found",
+        num_malformed_ == 0
+            ? "; is this a CARMEN log?"
+            : absl::StrCat(", ", num_malformed_, " malformed lines, first ",
+                           first_malformed_)));
+  }
+  WarnOfIgnored(&plan);
+  const int64_t backward_scans = CountBackwards(plan.scan_kind);
+  int64_t backward_odometry = CountBackwards(CarmenKind::kOdometry);
+  ChooseOdometry(odometry_source, backward_scans + backward_odometry, &plan);
+  plan.laser_pose = ChooseLaserPose(plan.scan_kind, &info.warnings);
+  plan.range_max = ranges_.at(plan.scan_kind).RangeMax();
+  if (!plan.use_odometry_lines) backward_odometry = 0;
+  info.num_out_of_order = backward_scans + backward_odometry;
+  if (info.num_out_of_order > 0) {
+    info.warnings.push_back(
+        absl::StrFormat("%s: stamps of %d scans and %d odometry messages go "
+                        "backwards; sorted",
+                        filename_, backward_scans, backward_odometry));
+  }
+  OrderEvents(&plan);
+  return plan;
+}
+
+}  // namespace
+
+int CarmenEventsOfLine(const CarmenPlan& plan, CarmenKind kind, TimeNs time,
+                       int64_t* ordinal, CarmenEvent events[2]) {
+  int n = 0;
+  const auto add = [&](bool is_scan, bool inside_scan) {
+    events[n].key = EventKey{time, is_scan ? 1 : 0, (*ordinal)++};
+    events[n].is_scan = is_scan;
+    events[n].inside_scan = inside_scan;
+    ++n;
+  };
+  if (kind == CarmenKind::kOdometry) {
+    if (plan.use_odometry_lines) add(false, false);
+  } else if (kind == plan.scan_kind) {
+    if (plan.use_scan_poses) add(false, true);
+    add(true, false);
+  }
+  return n;
+}
+
+absl::StatusOr<CarmenPlan> SurveyCarmenLog(const std::string& filename,
+                                           const std::string& odometry_source) {
+  if (odometry_source != "auto" && odometry_source != "odom" &&
+      odometry_source != "scan" && odometry_source != "both") {
+    return absl::InvalidArgumentError(
+        absl::StrCat("odometry source must be auto, odom, scan or both, not \"",
+                     odometry_source, "\""));
+  }
+  Survey survey(filename);
+  const absl::Status status = survey.Read();
+  if (!status.ok()) return status;
+  return survey.Plan(odometry_source);
+}
+
+}  // namespace io
+}  // namespace cartographer_ext

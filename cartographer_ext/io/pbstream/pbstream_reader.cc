@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
+#include "cartographer_ext/common/withdrawn_loops.h"
+#include "cartographer_ext/io/pbstream/pbstream_records.h"
+#include "cartographer_ext/io/pbstream/pbstream_validation.h"
+#include "google/protobuf/message.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+using Data = cartographer::mapping::proto::SerializedData;
+
+constexpr uint32_t kOldestVersion = 1;
+constexpr uint32_t kNewestVersion = 2;
+
+bool TakeVarint(absl::string_view* bytes, uint64_t* value) {
+  *value = 0;
+  for (int shift = 0; shift < 64 && !bytes->empty(); shift += 7) {
+    const unsigned char byte = bytes->front();
+    bytes->remove_prefix(1);
+    *value |= static_cast<uint64_t>(byte & 0x7f) << shift;
+    if (byte < 0x80) return true;
+  }
+  return false;
+}
+
+// SerializedData is a union of messages, so a record is the number of one
+// field, a size, and that message. Taking this apart by hand lets us know the
+// kind before anything is allocated, and refuses records with several messages,
+// which nobody writes.
+bool OpenEnvelope(absl::string_view record, int* field_number,
+                  absl::string_view* message) {
+  uint64_t tag, size;
+  constexpr uint64_t kLengthDelimited = 2;
+  if (!TakeVarint(&record, &tag) || (tag & 7) != kLengthDelimited ||
+      tag >> 3 == 0 || tag >> 3 >= (uint64_t{1} << 29) ||
+      !TakeVarint(&record, &size) || size != record.size()) {
+    return false;
+  }
+  *field_number = static_cast<int>(tag >> 3);
+  *message = record;
+  return true;
+}
+
+class RecordLimit : public ContentLimit {
+ public:
+  explicit RecordLimit(const PbstreamLimits& limits) : limits_(limits) {}
+
+  int64_t For(absl::string_view beginning,
+              int64_t compressed_size) const override {
+    uint64_t tag = 0;
+    const bool is_submap =
+        TakeVarint(&beginning, &tag) && tag >> 3 == Data::kSubmapFieldNumber;
+    return std::min(limits_.max_record_size,
+                    std::max(limits_.max_expansion * compressed_size,
+                             is_submap ? limits_.submap_record_floor
+                                       : limits_.record_floor));
+  }
+
+ private:
+  const PbstreamLimits limits_;
+};
+
+class Parser {
+ public:
+  Parser(const std::string& content, const std::string& name,
+         const PbstreamReaderOptions& options)
+      : name_(name),
+        options_(options),
+        limit_(options.limits),
+        records_(content, name),
+        max_total_size_(std::max(options.limits.total_floor,
+                                 options.limits.max_expansion *
+                                     static_cast<int64_t>(content.size()))) {}
+
+  absl::StatusOr<Pbstream> Parse() {
+    if (!records_.status().ok()) return records_.status();
+    for (;;) {
+      std::string record;
+      const absl::StatusOr<bool> more = records_.Next(limit_, &record);
+      if (!more.ok()) return more.status();
+      if (!*more) break;
+      total_size_ += static_cast<int64_t>(record.size());
+      if (total_size_ > max_total_size_) {
+        return records_.Error(
+            absl::StatusCode::kResourceExhausted,
+            absl::StrFormat("the file expands to more than the %d bytes that "
+                            "are allowed",
+                            max_total_size_));
+      }
+      const absl::Status status =
+          records_.index() == 0 ? TakeHeader(record) : TakeRecord(record);
+      if (!status.ok()) return status;
+    }
+    if (records_.index() < 2) {
+      return absl::DataLossError(
+          absl::StrCat(name_, ": ends before ",
+                       records_.index() < 0   ? "its header"
+                       : records_.index() < 1 ? "the pose graph"
+                                              : "the options"));
+    }
+    if (options_.validate) {
+      const std::vector<std::string> problems = FindPbstreamProblems(pbstream_);
+      if (!problems.empty()) {
+        std::string more;
+        if (problems.size() > 1) {
+          more = absl::StrCat(" (and ", problems.size() - 1, " more problems)");
+        }
+        return absl::InvalidArgumentError(
+            absl::StrCat(name_, ": ", problems.front(), more));
+      }
+    }
+    SkipWithdrawnLoops();
+    return std::move(pbstream_);
+  }
+
+ private:
+  void SkipWithdrawnLoops() {
+    auto* const constraints = pbstream_.pose_graph.mutable_constraint();
+    const std::vector<size_t> withdrawn = FindWithdrawnLoops(
+        *constraints, DescribeConstraintProto<
+                          cartographer::mapping::proto::PoseGraph::Constraint>);
+    if (withdrawn.empty()) return;
+    pbstream_.num_withdrawn_constraints =
+        static_cast<int64_t>(withdrawn.size());
+    auto next = withdrawn.begin();
+    int kept = 0;
+    for (int i = 0; i != constraints->size(); ++i) {
+      if (next != withdrawn.end() && *next == static_cast<size_t>(i)) {
+        ++next;
+        continue;
+      }
+      if (kept != i) constraints->SwapElements(kept, i);
+      ++kept;
+    }
+    constraints->DeleteSubrange(kept, constraints->size() - kept);
+  }
+
+  absl::Status TakeHeader(const std::string& record) {
+    // The first record of streams from before 1.0 is another message, in which
+    // field 1 is not a number.
+    if (!pbstream_.header.ParseFromString(record) ||
+        pbstream_.header.format_version() == 0) {
+      return records_.Error(
+          absl::StatusCode::kUnimplemented,
+          "there is no format version: the file is not a serialized state, or "
+          "it was written before Cartographer 1.0");
+    }
+    const uint32_t version = pbstream_.header.format_version();
+    if (version < kOldestVersion || version > kNewestVersion) {
+      return records_.Error(
+          absl::StatusCode::kUnimplemented,
+          absl::StrFormat("format version %d is not supported, only %d to %d",
+                          version, kOldestVersion, kNewestVersion));
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status TakeRecord(const std::string& record) {
+    int kind;
+    absl::string_view message;
+    if (record.empty()) {
+      ++pbstream_.num_unknown_records;
+      return absl::OkStatus();
+    }
+    if (!OpenEnvelope(record, &kind, &message)) {
+      return records_.Error(absl::StatusCode::kDataLoss,
+                            "this is not a message of a serialized state");
+    }
+    // Everything else refers to these two.
+    const bool is_pose_graph = kind == Data::kPoseGraphFieldNumber;
+    const bool is_options =
+        kind == Data::kAllTrajectoryBuilderOptionsFieldNumber;
+    if (is_pose_graph != (records_.index() == 1)) {
+      return records_.Error(absl::StatusCode::kInvalidArgument,
+                            is_pose_graph ? "a second pose graph"
+                                          : "the pose graph should be here");
+    }
+    if (is_options != (records_.index() == 2)) {
+      return records_.Error(absl::StatusCode::kInvalidArgument,
+                            is_options ? "trajectory options for a second time"
+                                       : "the trajectory options should be "
+                                         "here");
+    }
+    switch (kind) {
+      case Data::kPoseGraphFieldNumber:
+        return Fill("pose graph", message, &pbstream_.pose_graph);
+      case Data::kAllTrajectoryBuilderOptionsFieldNumber:
+        return Fill("trajectory options", message, &pbstream_.options);
+      case Data::kSubmapFieldNumber:
+        return TakeSubmap(message);
+      case Data::kNodeFieldNumber:
+        return Add("node", message, &pbstream_.nodes);
+      case Data::kTrajectoryDataFieldNumber:
+        return Add("trajectory data", message, &pbstream_.trajectory_data);
+      case Data::kImuDataFieldNumber:
+        return Add("IMU data", message, &pbstream_.imu_data);
+      case Data::kOdometryDataFieldNumber:
+        return Add("odometry data", message, &pbstream_.odometry_data);
+      case Data::kFixedFramePoseDataFieldNumber:
+        return Add("fixed frame pose", message,
+                   &pbstream_.fixed_frame_pose_data);
+      case Data::kLandmarkDataFieldNumber:
+        return Add("landmark data", message, &pbstream_.landmark_data);
+      default:
+        ++pbstream_.num_unknown_records;
+        return absl::OkStatus();
+    }
+  }
+
+  absl::Status TakeSubmap(absl::string_view message) {
+    const absl::Status status = Add("submap", message, &pbstream_.submaps);
+    if (!status.ok()) return status;
+    if (pbstream_.submaps.back().has_submap_3d()) {
+      return records_.Error(absl::StatusCode::kUnimplemented,
+                            "this is a 3D submap; only 2D states are "
+                            "supported");
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status Fill(absl::string_view kind, absl::string_view message,
+                    google::protobuf::Message* proto) const {
+    if (!proto->ParseFromArray(message.data(),
+                               static_cast<int>(message.size()))) {
+      return records_.Error(
+          absl::StatusCode::kDataLoss,
+          absl::StrCat("the ", kind, " in this record is corrupt"));
+    }
+    return absl::OkStatus();
+  }
+
+  template <typename Proto>
+  absl::Status Add(absl::string_view kind, absl::string_view message,
+                   std::vector<Proto>* protos) const {
+    protos->emplace_back();
+    return Fill(kind, message, &protos->back());
+  }
+
+  const std::string name_;
+  const PbstreamReaderOptions options_;
+  const RecordLimit limit_;
+  PbstreamRecords records_;
+  const int64_t max_total_size_;
+  int64_t total_size_ = 0;
+  Pbstream pbstream_;
+};
+
+}  // namespace
+
+absl::StatusOr<Pbstream> ReadPbstream(const std::string& filename,
+                                      const PbstreamReaderOptions& options) {
+  std::ifstream file(filename, std::ios::binary);
+  if (!file) {
+    return absl::NotFoundError(absl::StrCat(filename, ": cannot be opened"));
+  }
+  std::string content;
+  std::vector<char> piece(1 << 20);
+  do {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    content.append(piece.data(), static_cast<size_t>(file.gcount()));
+    // Devices never end.
+    if (static_cast<int64_t>(content.size()) > options.limits.max_file_size) {
+      return absl::ResourceExhaustedError(
+          absl::StrFormat("%s: is larger than the %d bytes that are allowed",
+                          filename, options.limits.max_file_size));
+    }
+  } while (file);
+  if (file.bad()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(filename, ": cannot be read"));
+  }
+  return ParsePbstream(content, filename, options);
+}
+
+absl::StatusOr<Pbstream> ParsePbstream(const std::string& content,
+                                       const std::string& name,
+                                       const PbstreamReaderOptions& options) {
+  return Parser(content, name, options).Parse();
+}
+
+}  // namespace io
+}  // namespace cartographer_ext

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Reads whole Cartographer states (.pbstream, format versions 1 and 2, 2D) from
+// files that nobody vouches for. The host's own loader ends the program when
+// something is wrong with a file; whatever passes here, it takes.
+#ifndef CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_READER_H_
+#define CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_READER_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer/mapping/proto/pose_graph.pb.h"
+#include "cartographer/mapping/proto/serialization.pb.h"
+#include "cartographer/mapping/proto/trajectory_builder_options.pb.h"
+
+namespace cartographer_ext {
+namespace io {
+
+// The records of a state by kind, each in the order of the file. Loops that are
+// withdrawn, and what marks them so (common/withdrawn_loops.h), are skipped:
+// nobody sees them, and a state that is written again is without them.
+struct Pbstream {
+  cartographer::mapping::proto::SerializationHeader header;
+  cartographer::mapping::proto::PoseGraph pose_graph;
+  cartographer::mapping::proto::AllTrajectoryBuilderOptions options;
+  std::vector<cartographer::mapping::proto::Submap> submaps;
+  std::vector<cartographer::mapping::proto::Node> nodes;
+  std::vector<cartographer::mapping::proto::TrajectoryData> trajectory_data;
+  std::vector<cartographer::mapping::proto::ImuData> imu_data;
+  std::vector<cartographer::mapping::proto::OdometryData> odometry_data;
+  std::vector<cartographer::mapping::proto::FixedFramePoseData>
+      fixed_frame_pose_data;
+  std::vector<cartographer::mapping::proto::LandmarkData> landmark_data;
+  // Records of kinds we do not know. They are skipped.
+  int64_t num_unknown_records = 0;
+  // Constraints skipped as withdrawn, with the marks.
+  int64_t num_withdrawn_constraints = 0;
+};
+
+// What a file may claim of memory. A record may expand to `max_expansion` times
+// its size, or to the given floor where that is more: grids of unknown cells
+// compress very well, nothing else does.
+struct PbstreamLimits {
+  int64_t max_file_size = int64_t{1} << 32;    // bytes
+  int64_t max_record_size = int64_t{1} << 30;  // bytes, expanded
+  int64_t max_expansion = 64;
+  int64_t record_floor = int64_t{1} << 20;         // bytes
+  int64_t submap_record_floor = int64_t{1} << 26;  // bytes
+  // Of all records of one file together.
+  int64_t total_floor = int64_t{1} << 28;  // bytes
+};
+
+struct PbstreamReaderOptions {
+  PbstreamLimits limits;
+  // Refuse contents that FindPbstreamProblems complains about.
+  bool validate = true;
+};
+
+// Errors name the file and, where there is one, the record (the header is
+// record 0) and its position: NotFound when the file cannot be opened,
+// InvalidArgument for any other input, Unimplemented for 3D states and versions
+// that are not supported, ResourceExhausted beyond the limits, DataLoss for
+// truncated and corrupt files.
+absl::StatusOr<Pbstream> ReadPbstream(
+    const std::string& filename, const PbstreamReaderOptions& options = {});
+
+// The same for a file in memory; `name` is for messages.
+absl::StatusOr<Pbstream> ParsePbstream(
+    const std::string& content, const std::string& name,
+    const PbstreamReaderOptions& options = {});
+
+}  // namespace io
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_READER_H_

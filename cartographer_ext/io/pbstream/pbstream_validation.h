@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Whether the records of a state fit together: what they refer to exists, grids
+// have as many cells as they say, poses are poses.
+#ifndef CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_VALIDATION_H_
+#define CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_VALIDATION_H_
+
+#include <string>
+#include <vector>
+
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+
+namespace cartographer_ext {
+namespace io {
+
+// One sentence a problem, in the order of the records; empty when all is well.
+// At most `max_problems`.
+//
+// Checked: as many trajectories as options; ids are unique and not negative,
+// indices and stamps of a trajectory grow; every record belongs to a trajectory
+// of the pose graph, every submap and node has a global pose, constraints refer
+// to submaps and nodes that are there; poses are finite with unit quaternions;
+// weights are finite and not negative; grids have limits that fit their cells
+// and cells of 15 bits; point clouds can be unpacked; readings of a sensor are
+// in order of time.
+std::vector<std::string> FindPbstreamProblems(const Pbstream& pbstream,
+                                              size_t max_problems = 100);
+
+}  // namespace io
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_VALIDATION_H_

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which topics of a bag to read.
+#ifndef CARTOGRAPHER_EXT_IO_ROS_ROS1_ROSBAG_TOPICS_H_
+#define CARTOGRAPHER_EXT_IO_ROS_ROS1_ROSBAG_TOPICS_H_
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/io/sensor_source.h"
+
+namespace cartographer_ext {
+namespace io {
+
+struct RosTopicType {
+  std::string name;
+  std::string md5sum;
+};
+
+// The types of a bag's topics.
+using RosTopics = std::map<std::string, RosTopicType>;
+
+struct ChosenTopics {
+  std::string scan;
+  bool multi_echo = false;
+  std::string odometry;  // empty: none
+  std::string imu;       // empty: none
+  std::set<std::string> transforms;
+  std::vector<std::string> warnings;
+};
+
+// "/odom (nav_msgs/Odometry), /scan (sensor_msgs/LaserScan)".
+std::string ListTopics(const RosTopics& topics);
+
+// Errors do not name the file.
+absl::StatusOr<ChosenTopics> ChooseTopics(const RosTopics& topics,
+                                          const SensorSourceOptions& options);
+
+}  // namespace io
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_IO_ROS_ROS1_ROSBAG_TOPICS_H_

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `auto`, the method that guards against what every single kernel fails at:
+//
+//   1. a search by many solvers from many starts (portfolio.h) with the noise
+//      that the information matrices claim;
+//   2. where these turn out to claim too much (noise_scale.h: a gate that cuts
+//      through the loops, chi2 of the odometry above its redundancy), the same
+//      search with the estimated noise, if the loops then look as they should.
+//      That noise is the metric of all that follows, the result included;
+//   3. the members near the lowest truncated cost polished with a gate adapted
+//      to the scale of the accepted loops, where the matrices claim too little;
+//      the lowest cost truncated there is taken;
+//   4. where that costs more than half of what separates the lowest truncated
+//      cost from the best single solver, the lowest is taken, brought near to
+//      (3) (polish_near.h);
+//   5. rejected loops just beyond the gate are accepted where there are no more
+//      of them than the gate rejects right ones.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_AUTO_SEARCH_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_AUTO_SEARCH_H_
+
+#include <string>
+#include <vector>
+
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/noise_scale.h"
+#include "cartographer_ext/optimization/offline/portfolio.h"
+#include "cartographer_ext/optimization/offline/rival_sets.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct AutoOptions {
+  PortfolioOptions portfolio;
+  bool estimate_noise = true;
+  bool adaptive_gate = true;
+  bool lowest_cost = true;
+};
+
+struct AutoResult {
+  std::vector<Pose2> poses;
+  std::vector<double> weights;  // per edge
+  std::vector<bool> accepted;   // per edge
+  std::string member;
+  double member_cost = 0.;
+  int iterations = 0;
+  bool converged = false;
+  // Factors of the standard deviations that the search has used; 1 unless the
+  // information matrices claim too much.
+  double applied_odometry_scale = 1.;
+  double applied_loop_scale = 1.;
+  // Estimate with regard to the given information matrices.
+  NoiseScale noise;
+  std::vector<RivalSets> undecidable;
+};
+
+AutoResult SearchAutomatically(const PoseGraph& graph,
+                               const AutoOptions& options);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_AUTO_SEARCH_H_

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/decision_moves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "Eigen/Cholesky"
+#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+constexpr int kPolishRounds = 30;
+// Loops with a chi2 beyond so many gates are not worth a look.
+constexpr double kNear = 100.;
+// Relative decrease of the cost that counts.
+constexpr double kProgress = 1e-9;
+
+struct Flip {
+  int edge = 0;
+  double gain = 0.;  // predicted decrease of the truncated cost
+};
+
+std::vector<double> Decisions(const std::vector<WhitenedEdge>& edges,
+                              const std::vector<double>& chi2,
+                              const double gate) {
+  std::vector<double> weights(edges.size());
+  for (size_t i = 0; i != edges.size(); ++i) {
+    weights[i] = !edges[i].is_loop || chi2[i] < gate ? 1. : 0.;
+  }
+  return weights;
+}
+
+// Flips that promise a gain, the best first.
+std::vector<Flip> PromisingFlips(const FlipOptions& options,
+                                 const std::vector<double>& chi2,
+                                 const std::vector<double>& weights,
+                                 const std::vector<Pose2>& poses,
+                                 RobustSolver* const solver) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  std::vector<std::pair<double, int>> near;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop || chi2[i] > kNear * options.gate ||
+        chi2[i] < 0.02 * options.gate) {
+      continue;
+    }
+    near.push_back({std::abs(std::log(chi2[i] / options.gate)), i});
+  }
+  std::sort(near.begin(), near.end());
+  if (static_cast<int>(near.size()) > options.max_loops) {
+    near.resize(options.max_loops);
+  }
+  std::vector<Flip> result;
+  if (near.empty()) return result;
+  Eigen::VectorXd rhs;
+  const BlockLdlt* const factorised = solver->Factor(poses, weights, &rhs);
+  if (factorised == nullptr) return result;
+  IncrementalFactor factor;
+  factor.Reset(*factorised, rhs);
+  for (const auto& entry : near) {
+    const WhitenedEdge& edge = edges[entry.second];
+    LinearFactor linear;
+    linear.a = edge.from - 1;
+    linear.b = edge.to - 1;
+    const Eigen::Vector3d residual =
+        Linearize(edge, poses[edge.from], poses[edge.to], &linear.jacobian_a,
+                  &linear.jacobian_b);
+    const bool in_force = weights[entry.second] > 0.;
+    const Eigen::Matrix3d covariance =
+        Eigen::Matrix3d::Identity() +
+        (in_force ? -1. : 1.) * factor.PredictedCovariance(linear);
+    const Eigen::LLT<Eigen::Matrix3d> root(covariance);
+    if (root.info() != Eigen::Success) continue;
+    const double cost = residual.dot(root.solve(residual));
+    const double gain = in_force ? cost - options.gate : options.gate - cost;
+    if (gain > 0.) result.push_back({entry.second, gain});
+  }
+  std::sort(result.begin(), result.end(), [](const Flip& a, const Flip& b) {
+    return a.gain != b.gain ? a.gain > b.gain : a.edge < b.edge;
+  });
+  return result;
+}
+
+}  // namespace
+
+int FlipLoops(const FlipOptions& options, RobustSolver* const solver,
+              std::vector<Pose2>* const poses) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  int kept = 0, trials = 0;
+  std::set<int> tried;
+  double cost = TruncatedCost(edges, *poses, options.gate);
+  for (bool progress = true; progress && trials < options.max_trials;) {
+    progress = false;
+    const std::vector<double> chi2 = Chi2OfEdges(edges, *poses);
+    const std::vector<double> weights = Decisions(edges, chi2, options.gate);
+    for (const Flip& flip :
+         PromisingFlips(options, chi2, weights, *poses, solver)) {
+      if (!tried.insert(flip.edge).second) continue;
+      if (trials++ == options.max_trials) break;
+      SolverOptions solve;
+      solve.edge_weights = weights;
+      solve.edge_weights[flip.edge] = 1. - weights[flip.edge];
+      solve.initial_lambda = 1e-8;
+      solve.max_iterations = 20;
+      std::vector<Pose2> flipped = *poses;
+      solver->Solve(solve, &flipped);
+      PolishTruncated(options.gate, kPolishRounds, solver, &flipped, nullptr);
+      const double flipped_cost = TruncatedCost(edges, flipped, options.gate);
+      if (flipped_cost < cost * (1. - kProgress)) {
+        cost = flipped_cost;
+        *poses = std::move(flipped);
+        ++kept;
+        progress = true;
+        break;
+      }
+    }
+  }
+  return kept;
+}
+
+int ForceGroups(const LoopSupport& support, const ForceOptions& options,
+                std::vector<WhitenedEdge>* const edges,
+                RobustSolver* const solver, std::vector<Pose2>* const poses,
+                std::vector<Alternative>* const alternatives) {
+  CHECK_EQ(&solver->edges(), edges);
+  double cost = TruncatedCost(*edges, *poses, options.gate);
+  int kept = 0, trials = 0;
+  SolverOptions robust;
+  robust.kernel = DefaultKernel(KernelType::kDcs);
+  robust.kernel.parameter = options.gate;
+  robust.cost_tolerance = 1e-4;
+  robust.max_iterations = 40;
+  std::vector<bool> tried(support.groups.size(), false);
+  while (trials < options.max_trials) {
+    // The largest group with most of its loops rejected.
+    const std::vector<double> chi2 = Chi2OfEdges(*edges, *poses);
+    int best = -1;
+    size_t most = 0;
+    for (size_t g = 0; g != support.groups.size(); ++g) {
+      if (tried[g]) continue;
+      size_t rejected = 0;
+      for (const int i : support.groups[g]) {
+        rejected += chi2[i] >= options.gate;
+      }
+      if (rejected > most && 2 * rejected >= support.groups[g].size() &&
+          static_cast<int>(rejected) >= options.min_members) {
+        most = rejected;
+        best = g;
+      }
+    }
+    if (best < 0) break;
+    tried[best] = true;
+    ++trials;
+    std::vector<Pose2> moved = *poses;
+    for (const int i : support.groups[best]) (*edges)[i].is_loop = false;
+    solver->Solve(robust, &moved);
+    for (const int i : support.groups[best]) (*edges)[i].is_loop = true;
+    solver->Solve(robust, &moved);
+    PolishTruncated(options.gate, kPolishRounds, solver, &moved, nullptr);
+    const double moved_cost = TruncatedCost(*edges, moved, options.gate);
+    const bool better = moved_cost < cost * (1. - kProgress);
+    if (better) std::swap(moved, *poses);
+    if (alternatives != nullptr && std::abs(moved_cost - cost) < options.gate) {
+      alternatives->push_back({std::max(cost, moved_cost), moved});
+    }
+    if (better) {
+      cost = moved_cost;
+      ++kept;
+      // What failed before may succeed now.
+      std::fill(tried.begin(), tried.end(), false);
+      tried[best] = true;
+    }
+  }
+  return kept;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Moves in the space of decisions that lower the truncated cost where deciding
+// and solving in turn (PolishTruncated) has come to rest.
+//
+//   FlipLoops    one loop at a time. To bring in a rejected loop costs its
+//                squared innovation r' (I + Q)^-1 r, Q = J H^-1 J', and saves
+//                the gate; to let go of one in force costs the gate and saves
+//                r' (I - Q)^-1 r. Both are exact on the linearised graph.
+//   ForceGroups  one group of loops at a time is put in force whatever it
+//                costs, all others judged by a robust kernel; then the group is
+//                released and decided like the rest. This is how a wrong group
+//                gives way to several right ones that it keeps out.
+//
+// A move is kept only where the truncated cost of the graph has fallen.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_
+
+#include <vector>
+
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/loop_support.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct FlipOptions {
+  double gate = kChi2Gate;
+  int max_trials = 20;
+  // Loops looked at per round, those nearest to the gate first.
+  int max_loops = 300;
+};
+
+// Returns the number of moves kept. `poses` must have come to rest.
+int FlipLoops(const FlipOptions& options, RobustSolver* solver,
+              std::vector<Pose2>* poses);
+
+struct ForceOptions {
+  double gate = kChi2Gate;
+  int max_trials = 30;
+  int min_members = 1;  // of a group
+};
+
+// A solution that was found and not kept.
+struct Alternative {
+  double cost = 0.;  // truncated
+  std::vector<Pose2> poses;
+};
+
+// `edges` are those of `solver`. Returns the number of moves kept. Solutions
+// that cost at most one gate more than the best are added to `alternatives`,
+// if not null.
+int ForceGroups(const LoopSupport& support, const ForceOptions& options,
+                std::vector<WhitenedEdge>* edges, RobustSolver* solver,
+                std::vector<Pose2>* poses,
+                std::vector<Alternative>* alternatives);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_

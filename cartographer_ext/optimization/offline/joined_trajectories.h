@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A start for graphs of several trajectories that only loops join. Nothing is
+// known about where they lie relative to each other but what these loops say,
+// and some of them are wrong:
+//   1. each trajectory is replayed by itself (IncrementalSmoother);
+//   2. beginning with the first, the one with the most loops to those already
+//      placed is put where one of these loops wants it, the one which the
+//      others contradict least, by the sum of log(1 + chi2). That has no scale,
+//      which the drift between two loops would exceed;
+//   3. with the chosen loops in force whatever their error, the whole is solved
+//      by kernels that narrow down to the gate.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_JOINED_TRAJECTORIES_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_JOINED_TRAJECTORIES_H_
+
+#include <vector>
+
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/solvers/incremental_smoother.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+// Poses to start from, the first where it is in the graph. False, and nothing
+// has changed, where odometry joins all poses.
+bool JoinTrajectories(const PoseGraph& graph, const SmootherOptions& options,
+                      std::vector<Pose2>* poses);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_JOINED_TRAJECTORIES_H_

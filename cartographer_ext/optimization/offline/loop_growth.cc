@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/loop_growth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "Eigen/Cholesky"
+#include "Eigen/LU"
+#include "cartographer_ext/optimization/offline/starts.h"
+#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+// A loop whose prediction is hardly less certain than its measurement changes
+// nothing and needs no round of its own: log det of 4 I.
+const double kSharplyPredicted = 3. * std::log(4.);
+// What a solution may cost per loop before another start is tried.
+constexpr double kPoorCost = 3. * 3.;
+
+SolverSummary SolveInForce(const std::vector<double>& weights,
+                           RobustSolver* const solver,
+                           std::vector<Pose2>* const poses) {
+  SolverOptions options;
+  options.edge_weights = weights;
+  options.max_iterations = 30;
+  options.cost_tolerance = 1e-5;
+  options.initial_lambda = 1e-8;
+  return solver->Solve(options, poses);
+}
+
+class Growth {
+ public:
+  Growth(const LoopSupport& support, const GrowthOptions& options,
+         RobustSolver* const solver, std::vector<Pose2>* const poses,
+         std::vector<double>* const weights)
+      : support_(support),
+        options_(options),
+        solver_(*solver),
+        edges_(solver->edges()),
+        poses_(*poses),
+        weights_(*weights) {}
+
+  bool Run() {
+    weights_.assign(edges_.size(), 1.);
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (edges_[i].is_loop) {
+        weights_[i] = 0.;
+        open_.push_back(i);
+      }
+    }
+    banned_.assign(edges_.size(), false);
+    cost_ = SolveInForce(weights_, &solver_, &poses_).final_cost;
+    for (int round = 0; round != options_.max_rounds; ++round) {
+      const std::vector<int> chosen = Choose();
+      if (chosen.empty()) break;
+      Accept(chosen);
+    }
+    return std::isfinite(cost_);
+  }
+
+ private:
+  // Logarithm of the volume of all relative poses, in whitened units of an
+  // edge, over (2 pi)^(3/2).
+  double LogVolume(const int i) const {
+    return log_area_ + std::log(2. * kPi) +
+           std::log(std::abs(edges_[i].whitening.determinant())) -
+           1.5 * std::log(2. * kPi);
+  }
+
+  void MeasureArea() {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const Pose2& pose : poses_) mean += pose.translation();
+    mean /= poses_.size();
+    double sum = 0.;
+    for (const Pose2& pose : poses_) {
+      sum += (pose.translation() - mean).squaredNorm();
+    }
+    log_area_ = std::log(kPi * std::max(1e-6, 2. * sum / poses_.size()));
+  }
+
+  std::vector<int> Candidates() const {
+    std::vector<int> result;
+    for (const int i : open_) {
+      if (weights_[i] == 0. && !banned_[i]) result.push_back(i);
+    }
+    const size_t limit = options_.max_candidates;
+    if (result.size() > limit) {
+      std::vector<int> thinned;
+      for (size_t k = 0; k != limit; ++k) {
+        thinned.push_back(result[k * result.size() / limit]);
+      }
+      result = std::move(thinned);
+    }
+    return result;
+  }
+
+  // The loops to bring in next.
+  std::vector<int> Choose() {
+    const std::vector<int> candidates = Candidates();
+    const std::vector<Innovation> innovations =
+        PredictLoops(candidates, weights_, poses_, &solver_);
+    if (innovations.empty()) return {};
+    MeasureArea();
+    std::vector<double> scores(edges_.size(),
+                               -std::numeric_limits<double>::infinity());
+    for (size_t k = 0; k != candidates.size(); ++k) {
+      if (innovations[k].chi2 >= options_.gate) continue;
+      scores[candidates[k]] =
+          LogVolume(candidates[k]) -
+          0.5 * (innovations[k].chi2 + innovations[k].log_determinant);
+    }
+    int best = -1;
+    double highest = -std::numeric_limits<double>::infinity();
+    std::vector<int> chosen;
+    for (size_t k = 0; k != candidates.size(); ++k) {
+      const int i = candidates[k];
+      if (!std::isfinite(scores[i])) continue;
+      if (innovations[k].log_determinant < kSharplyPredicted) {
+        chosen.push_back(i);
+      }
+      int support = 0;
+      for (const int j : support_.agreeing[i]) {
+        support += weights_[j] == 0. && std::isfinite(scores[j]);
+      }
+      // Given this loop the others of its group are sharply predicted.
+      const double score =
+          scores[i] + std::min(support, options_.max_support) *
+                          std::max(0., LogVolume(i) - 0.5 * options_.gate);
+      if (score > highest) {
+        highest = score;
+        best = i;
+      }
+    }
+    if (best < 0 || !chosen.empty()) return chosen;
+    chosen.push_back(best);
+    return chosen;
+  }
+
+  void Accept(const std::vector<int>& chosen) {
+    const std::vector<Pose2> before = poses_;
+    for (const int i : chosen) weights_[i] = 1.;
+    double cost = SolveInForce(weights_, &solver_, &poses_).final_cost;
+    if (cost - cost_ > kPoorCost * chosen.size()) {
+      std::vector<Pose2> other = before;
+      if (ChordalPoses(edges_, weights_, &other)) {
+        const double other_cost =
+            SolveInForce(weights_, &solver_, &other).final_cost;
+        if (other_cost < cost) {
+          cost = other_cost;
+          poses_ = std::move(other);
+        }
+      }
+    }
+    if (cost - cost_ > options_.gate * chosen.size()) {
+      // The linearised prediction was wrong.
+      for (const int i : chosen) {
+        weights_[i] = 0.;
+        banned_[i] = true;
+      }
+      poses_ = before;
+      return;
+    }
+    cost_ = cost;
+  }
+
+  const LoopSupport& support_;
+  const GrowthOptions& options_;
+  RobustSolver& solver_;
+  const std::vector<WhitenedEdge>& edges_;
+  std::vector<Pose2>& poses_;
+  std::vector<double>& weights_;
+  std::vector<int> open_;
+  std::vector<bool> banned_;
+  double cost_ = 0.;
+  double log_area_ = 0.;
+};
+
+}  // namespace
+
+std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
+                                     const std::vector<double>& weights,
+                                     const std::vector<Pose2>& poses,
+                                     RobustSolver* const solver) {
+  std::vector<Innovation> result;
+  Eigen::VectorXd rhs;
+  const BlockLdlt* const factorised = solver->Factor(poses, weights, &rhs);
+  if (factorised == nullptr) return result;
+  IncrementalFactor factor;
+  factor.Reset(*factorised, rhs);
+  for (const int i : loops) {
+    const WhitenedEdge& edge = solver->edges()[i];
+    LinearFactor linear;
+    linear.a = edge.from - 1;
+    linear.b = edge.to - 1;
+    const Eigen::Vector3d residual =
+        Linearize(edge, poses[edge.from], poses[edge.to], &linear.jacobian_a,
+                  &linear.jacobian_b);
+    const Eigen::Matrix3d covariance =
+        Eigen::Matrix3d::Identity() + factor.PredictedCovariance(linear);
+    const Eigen::LLT<Eigen::Matrix3d> root(covariance);
+    Innovation innovation;
+    innovation.chi2 = residual.dot(root.solve(residual));
+    innovation.log_determinant =
+        2. * root.matrixLLT().diagonal().array().log().sum();
+    result.push_back(innovation);
+  }
+  return result;
+}
+
+bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,
+               RobustSolver* const solver, std::vector<Pose2>* const poses,
+               std::vector<double>* const weights) {
+  return Growth(support, options, solver, poses, weights).Run();
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

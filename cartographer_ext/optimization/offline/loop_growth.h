@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A start that grows from odometry by one group of loops after the other, the
+// surest first. For poses where odometry says little about long paths: a right
+// loop then has a huge chi2 and no solver that starts from odometry sees it.
+// Its innovation r, with the covariance of the prediction
+//
+//   S = I + J H^-1 J',   d2 = r' S^-1 r,
+//
+// tells right from wrong as far as the data do. The order is that of the
+// logarithm of the likelihood ratio between a right loop and one that may lead
+// anywhere in the map (area A, any direction),
+//
+//   log N(r; 0, S) - log 1 / (2 pi A det W^-1),
+//
+// to which each loop of the same group (loop_support.h) adds its own. After
+// each group the poses are solved anew, if need be from a chordal relaxation,
+// and all innovations are worked out again: what was far off before is then
+// sharply predicted.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_GROWTH_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_GROWTH_H_
+
+#include <vector>
+
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/loop_support.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct GrowthOptions {
+  double gate = kChi2Gate;  // of d2
+  int max_rounds = 80;
+  // Loops looked at per round; more are thinned evenly.
+  int max_candidates = 1500;
+  // Loops that a group of more members counts for.
+  int max_support = 8;
+};
+
+// Squared innovation of a loop and the size of its covariance.
+struct Innovation {
+  double chi2 = 0.;             // d2
+  double log_determinant = 0.;  // of S
+};
+
+// Innovations of `loops` with regard to the poses and the edges in force
+// (weight 1; loops with weight 0 are not). Empty when the edges in force do not
+// determine the poses.
+std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
+                                     const std::vector<double>& weights,
+                                     const std::vector<Pose2>& poses,
+                                     RobustSolver* solver);
+
+// Replaces `poses` by a solution with the loops that grew in; `weights`, one
+// per edge, tells which. `solver` is that of `edges`. Odometry must reach all
+// poses.
+bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,
+               RobustSolver* solver, std::vector<Pose2>* poses,
+               std::vector<double>* weights);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_GROWTH_H_

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which loops agree with their neighbours? Two loops (a, b) and (c, d) whose
+// ends are a few poses apart make a cycle a - b - d - c - a that closes when
+// both are right. Only short stretches of odometry enter it, so the test is
+// sharp however little odometry says about the long path from a to b (pairwise
+// consistency as in PCM, Mangelson et al. 2018, restricted to neighbours).
+//
+// Loops that agree, directly or over others, form a group: one revisit of a
+// stretch of the path. A group is one piece of evidence that is as strong as
+// it has members.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_SUPPORT_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_SUPPORT_H_
+
+#include <vector>
+
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/solvers/kernels.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct LoopSupportOptions {
+  int window = 15;  // poses between the ends of neighbours
+  double gate = kChi2Gate;
+  int max_neighbours = 30;  // tested per loop
+};
+
+struct LoopSupport {
+  // Per edge: the loops that agree with it.
+  std::vector<std::vector<int>> agreeing;
+  // Per edge: the number of its group; -1 for odometry.
+  std::vector<int> group;
+  // Members of each group, ascending. Loops without support are groups of one.
+  std::vector<std::vector<int>> groups;
+  // chi2 of all cycles that were tested.
+  std::vector<double> cycle_chi2;
+};
+
+LoopSupport FindLoopSupport(const PoseGraph& graph,
+                            const LoopSupportOptions& options);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_SUPPORT_H_

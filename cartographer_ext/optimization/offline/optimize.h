@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// One entrance to all back ends of this folder: a graph and the name of a
+// method in, poses and a verdict on each loop out.
+//
+// What `auto` does is told in auto_search.h.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_OPTIMIZE_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_OPTIMIZE_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/noise_scale.h"
+#include "cartographer_ext/optimization/offline/rival_sets.h"
+#include "cartographer_ext/optimization/solvers/incremental_smoother.h"
+#include "cartographer_ext/optimization/solvers/kernels.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct OptimizeOptions {
+  // none huber sc gm dcs acs acs_paper gnc_tls auto r_isam
+  std::string method = "auto";
+  // 0: the method's customary value (see DefaultKernel; sc: w = 1).
+  double parameter = 0.;
+  CovarianceNorm norm = CovarianceNorm::kSpectral;  // acs_paper
+  int max_iterations = 200;
+  double max_seconds = 1e9;  // sc, gnc_tls: processor time
+  bool prune = true;
+  // auto: estimate the scale of the noise, and use it where the information
+  // matrices claim too much.
+  bool estimate_noise = true;
+  // Other methods solve with the matrices as they are; this measures their
+  // result (chi2, accepted) with the noise that `auto` would use, so that the
+  // results of all methods can be compared. Takes the time of `auto`, which is
+  // not counted.
+  bool measure_with_estimated_noise = false;
+  // auto: end with the gate narrowed to the scale of the accepted loops
+  // (AdaptiveGate). For graphs whose information matrices are only a guess,
+  // such as those of Cartographer, it would cost right loops.
+  bool adaptive_gate = true;
+  // auto with adaptive_gate: no truncated cost above that of any single kernel,
+  // and of such maps one near that of the adapted gate (polish_near.h).
+  bool lowest_cost = true;
+  SmootherOptions smoother;
+};
+
+struct OptimizeResult {
+  std::vector<Pose2> poses;
+  // Per edge: the weight with which it counts at the end, in [0, 1].
+  std::vector<double> weights;
+  // Per edge: chi2 at the end, and whether it is in force: chi2 < kChi2Gate,
+  // for `auto` and `r_isam` the set of the last polish. Always true for
+  // odometry.
+  std::vector<double> chi2;
+  std::vector<bool> accepted;
+  int iterations = 0;
+  bool converged = false;
+  double cpu_seconds = 0.;
+  double odometry_chi2 = 0.;
+  double accepted_loops_chi2 = 0.;
+  double truncated_chi2 = 0.;  // TruncatedCost at the poses
+  // The same with the information matrices as they were given.
+  double truncated_chi2_as_given = 0.;
+  // auto: the member chosen, and the lowest truncated cost of all before the
+  // last polish.
+  std::string member;
+  double member_truncated_chi2 = 0.;
+  std::vector<double> step_seconds;  // r_isam
+  // auto: the scale of the noise with regard to the given information matrices,
+  // and the scale that the result is measured with (all chi2 above).
+  NoiseScale noise;
+  double applied_odometry_scale = 1.;
+  double applied_loop_scale = 1.;
+  std::vector<RivalSets> undecidable;  // auto
+};
+
+// Names accepted as OptimizeOptions::method.
+const std::vector<std::string>& MethodNames();
+
+// The fixed poses of the graph, or else the first, end where they were. An
+// error for an invalid graph (ValidatePoseGraph), an unknown method or, with
+// r_isam, a graph that cannot be replayed.
+absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
+                                        const OptimizeOptions& options);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_OPTIMIZE_H_

@@ -1,0 +1,323 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/portfolio.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "cartographer_ext/optimization/offline/decision_moves.h"
+#include "cartographer_ext/optimization/offline/joined_trajectories.h"
+#include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/offline/starts.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+constexpr int kPolishRounds = 30;
+// Relative difference of truncated costs of one and the same optimum.
+constexpr double kSame = 1e-6;
+// Loops by which solvers differ that decide only what is near the gate
+// differently.
+constexpr double kNearlySame = 3.;
+// Rejected loops whose innovation is looked at, and how many of them may lie
+// within the gate where the search ends.
+constexpr size_t kMaxInnovations = 200;
+constexpr int kMaxPossible = 2;
+// Loops that agree with one that is relied on without regard to the rest.
+constexpr size_t kSupported = 2;
+// Poses of a graph on which each solution counts.
+constexpr size_t kLargeGraph = 30000;
+// A graph of fewer poses times loops is searched from all starts in any case.
+constexpr double kSmallGraph = 2.5e5;
+// Multiplications of one factorisation that are worth it while the search is
+// open, and those that cost nothing worth mentioning.
+constexpr double kAffordableWork = 6e7;
+constexpr double kLittleWork = 3e6;
+// Beyond so many poses times loops, the search by groups is too dear.
+constexpr double kMaxGrowthWork = 4e6;
+
+bool SamePoses(const std::vector<Pose2>& a, const std::vector<Pose2>& b) {
+  for (size_t i = 0; i != a.size(); ++i) {
+    if (std::abs(a[i].x - b[i].x) > 1e-6 || std::abs(a[i].y - b[i].y) > 1e-6 ||
+        std::abs(NormalizeAngle(a[i].theta - b[i].theta)) > 1e-6) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::vector<int> Thinned(const std::vector<int>& values, const size_t limit) {
+  if (values.size() <= limit) return values;
+  std::vector<int> result;
+  for (size_t k = 0; k != limit; ++k) {
+    result.push_back(values[k * values.size() / limit]);
+  }
+  return result;
+}
+
+}  // namespace
+
+Portfolio::Portfolio(const PoseGraph& graph, const PortfolioOptions& options)
+    : graph_(graph),
+      options_(options),
+      edges_(Whiten(graph.edges)),
+      solver_(edges_),
+      lowest_of_solvers_(std::numeric_limits<double>::infinity()) {
+  for (const WhitenedEdge& edge : edges_) num_loops_ += edge.is_loop;
+}
+
+FlipOptions Portfolio::flip_options() const {
+  FlipOptions options;
+  if (graph_.poses.size() > kLargeGraph) options.max_trials = 2;
+  return options;
+}
+
+void Portfolio::Count(const SolverSummary& summary) {
+  iterations_ += summary.iterations;
+  converged_ = summary.converged;
+}
+
+void Portfolio::Add(const std::string& name, std::vector<Pose2> poses) {
+  Member member;
+  member.name = name;
+  member.poses = std::move(poses);
+  Count(PolishTruncated(kChi2Gate, kPolishRounds, &solver_, &member.poses,
+                        nullptr));
+  member.cost = TruncatedCost(edges_, member.poses);
+  members_.push_back(std::move(member));
+  if (members_.back().cost < members_[best_].cost) best_ = members_.size() - 1;
+}
+
+void Portfolio::AddKernel(const std::string& start_name, const KernelType type,
+                          const std::vector<Pose2>& start) {
+  SolverOptions options;
+  options.kernel = DefaultKernel(type);
+  options.max_iterations = options_.max_iterations;
+  std::vector<Pose2> poses = start;
+  Count(solver_.Solve(options, &poses));
+  lowest_of_solvers_ =
+      std::min(lowest_of_solvers_, TruncatedCost(edges_, poses));
+  Add(absl::StrCat(start_name, KernelName(type)), std::move(poses));
+}
+
+void Portfolio::AddKernels(const std::string& start_name,
+                           const std::vector<Pose2>& start,
+                           const bool with_full_kernels) {
+  AddKernel(start_name, KernelType::kDcs, start);
+  AddKernel(start_name, KernelType::kGemanMcClure, start);
+  AddKernel(start_name, KernelType::kAcs, start);
+  if (with_full_kernels) {
+    AddKernel(start_name, KernelType::kHuber, start);
+    AddKernel(start_name, KernelType::kNone, start);
+  }
+}
+
+void Portfolio::AddGnc(const std::string& start_name,
+                       const std::vector<Pose2>& start) {
+  std::vector<Pose2> poses = start;
+  Count(SolveGnc(GncOptions(), &solver_, &poses, nullptr));
+  lowest_of_solvers_ =
+      std::min(lowest_of_solvers_, TruncatedCost(edges_, poses));
+  Add(absl::StrCat(start_name, "gnc_tls"), std::move(poses));
+}
+
+double Portfolio::FullWork() {
+  if (full_work_.has_value()) return *full_work_;
+  std::vector<std::pair<int, int>> pairs;
+  for (const WhitenedEdge& edge : edges_) {
+    if (edge.from > 0 && edge.to > 0) {
+      pairs.push_back({edge.from - 1, edge.to - 1});
+    }
+  }
+  double work = 0.;
+  if (graph_.poses.size() > 1) {
+    BlockLdlt factor;
+    factor.Analyze(graph_.poses.size() - 1, pairs, {});
+    for (int c = 0; c != factor.size(); ++c) {
+      const double rows = factor.start(c + 1) - factor.start(c);
+      work += 27. * (0.5 * rows * rows + rows + 1.);
+    }
+  }
+  full_work_ = work;
+  return work;
+}
+
+int Portfolio::CountRejected() const {
+  int result = 0;
+  for (const WhitenedEdge& edge : edges_) {
+    result += edge.is_loop && Chi2(edge, best().poses[edge.from],
+                                   best().poses[edge.to]) >= kChi2Gate;
+  }
+  return result;
+}
+
+const LoopSupport& Portfolio::support() {
+  if (!support_.has_value()) {
+    support_ = FindLoopSupport(graph_, LoopSupportOptions());
+  }
+  return *support_;
+}
+
+void Portfolio::RunQuick() {
+  AddKernels("", graph_.poses, false);
+  // With few wrong loops the solvers that keep all of them cost little more.
+  if (CountRejected() <= 0.1 * num_loops_ && FullWork() <= kLittleWork) {
+    AddKernel("", KernelType::kHuber, graph_.poses);
+    AddKernel("", KernelType::kNone, graph_.poses);
+  }
+}
+
+bool Portfolio::IsSettled() {
+  double highest = 0.;
+  for (size_t i = 0; i != std::min<size_t>(3, members_.size()); ++i) {
+    highest = std::max(highest, members_[i].cost);
+  }
+  if (highest > best().cost * (1. + kSame) + kNearlySame * kChi2Gate) {
+    return false;
+  }
+  std::vector<Pose2> poses = best().poses;
+  if (FlipLoops(flip_options(), &solver_, &poses) > 0) {
+    Add(absl::StrCat(best().name, ", moved"), poses);
+  }
+  return RejectedContradict();
+}
+
+bool Portfolio::RejectedContradict() {
+  const std::vector<Pose2>& poses = best().poses;
+  std::vector<double> weights(edges_.size(), 1.);
+  std::vector<int> rejected;
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (edges_[i].is_loop && Chi2(edges_[i], poses[edges_[i].from],
+                                  poses[edges_[i].to]) >= kChi2Gate) {
+      weights[i] = 0.;
+      rejected.push_back(i);
+    }
+  }
+  if (rejected.empty()) return true;
+  // A map without loops explains nothing.
+  if (rejected.size() == num_loops_) return false;
+  const std::vector<Innovation> innovations = PredictLoops(
+      Thinned(rejected, kMaxInnovations), weights, poses, &solver_);
+  if (innovations.empty()) return false;
+  int possible = 0;
+  for (const Innovation& innovation : innovations) {
+    possible += innovation.chi2 < kChi2Gate;
+  }
+  return possible <= kMaxPossible;
+}
+
+void Portfolio::AddReplays() {
+  ReplayResult replay;
+  if (Replay(graph_, options_.smoother, &replay).ok()) {
+    lowest_of_solvers_ =
+        std::min(lowest_of_solvers_, TruncatedCost(edges_, replay.poses));
+    Add("r_isam", replay.poses);
+    AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
+    if (graph_.poses.size() > kLargeGraph) return;
+    // The failures of a softer and of a harder epoch kernel differ.
+    SmootherOptions softer = options_.smoother;
+    softer.epoch_kernel.parameter *= 4.;
+    if (Replay(graph_, softer, &replay).ok()) Add("r_isam, soft", replay.poses);
+  } else if (JoinTrajectories(graph_, options_.smoother, &replay.poses)) {
+    Add("joined", replay.poses);
+  }
+}
+
+void Portfolio::AddGrowth(const std::vector<Pose2>& start) {
+  std::vector<Pose2> poses = start;
+  std::vector<double> weights;
+  if (!GrowLoops(support(), GrowthOptions(), &solver_, &poses, &weights)) {
+    return;
+  }
+  Add("growth", poses);
+  AddKernel("growth, ", KernelType::kDcs, poses);
+}
+
+void Portfolio::AddSupported(const size_t min_support) {
+  std::vector<double> weights(edges_.size(), 1.);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (edges_[i].is_loop) {
+      weights[i] = support().agreeing[i].size() >= min_support ? 1. : 0.;
+    }
+  }
+  std::vector<Pose2> poses = graph_.poses;
+  if (ChordalPoses(edges_, weights, &poses)) {
+    AddKernel("supported, ", KernelType::kDcs, poses);
+  }
+}
+
+void Portfolio::Run() {
+  // On a large graph the loops that agree with their neighbours settle most.
+  if (graph_.poses.size() > kLargeGraph) {
+    AddSupported(1);
+    if (!members_.empty() && RejectedContradict()) return;
+  }
+  RunQuick();
+  const bool settled = IsSettled();
+  const double size = static_cast<double>(graph_.poses.size()) * num_loops_;
+  if (settled && size > kSmallGraph) return;
+  // Where many loops contradict a map that the robust kernels agree on, the
+  // solvers that keep them all are far off.
+  RunStarts(FullWork() <= kAffordableWork &&
+            (!settled || CountRejected() <= 0.25 * num_loops_));
+  if (!settled && size <= kMaxGrowthWork) RunGroups();
+  Improve();
+}
+
+void Portfolio::Improve() {
+  std::vector<Pose2> poses = best().poses;
+  if (FlipLoops(flip_options(), &solver_, &poses) > 0) {
+    Add(absl::StrCat(best().name, ", moved"), std::move(poses));
+  }
+}
+
+void Portfolio::RunStarts(const bool with_full_kernels) {
+  const bool affordable = FullWork() <= kAffordableWork;
+  if (with_full_kernels && members_.size() <= 4) {
+    AddKernel("", KernelType::kHuber, graph_.poses);
+    AddKernel("", KernelType::kNone, graph_.poses);
+  }
+  AddReplays();
+  const std::vector<Pose2> chained = ChainOdometry(graph_);
+  const bool same = SamePoses(chained, graph_.poses);
+  if (!same) AddKernels("odometry, ", chained, with_full_kernels);
+  if (!affordable) return;
+  AddGnc("", graph_.poses);
+  if (!same) AddGnc("odometry, ", chained);
+  std::vector<Pose2> chordal = chained;
+  if (RobustChordalPoses(edges_, &chordal)) {
+    AddKernels("chordal, ", chordal, with_full_kernels);
+  }
+}
+
+void Portfolio::RunGroups() {
+  AddGrowth(ChainOdometry(graph_));
+  std::vector<double> in_force = Chi2OfEdges(edges_, best().poses);
+  std::vector<double> supported(edges_.size(), 1.);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    in_force[i] = !edges_[i].is_loop || in_force[i] < kChi2Gate ? 1. : 0.;
+    if (edges_[i].is_loop) {
+      supported[i] = support().agreeing[i].size() >= kSupported ? 1. : 0.;
+    }
+  }
+  AddKernel("tree, ", KernelType::kGemanMcClure,
+            SpanningTree(graph_, in_force));
+  for (const std::vector<double>* const weights : {&in_force, &supported}) {
+    std::vector<Pose2> poses = best().poses;
+    if (ChordalPoses(edges_, *weights, &poses)) {
+      AddKernel("relaxed, ", KernelType::kDcs, poses);
+    }
+  }
+  std::vector<Pose2> poses = best().poses;
+  if (ForceGroups(support(), ForceOptions(), &edges_, &solver_, &poses,
+                  &alternatives_) > 0) {
+    Add(absl::StrCat(best().name, ", groups"), std::move(poses));
+  }
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

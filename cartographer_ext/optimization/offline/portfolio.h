@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The search behind `auto`: many solvers from many starts, each solution
+// polished by deciding and solving in turn, and the lowest truncated cost wins.
+// As a polish never raises that cost, the winner is never above any solver that
+// took part.
+//
+//   Quick   dcs, gm and acs from the given poses, none and huber where few
+//           loops are wrong. Where these agree up to decisions near the gate,
+//           no single decision can be improved and the rejected loops
+//           contradict the map beyond its uncertainty, the search of a large
+//           graph ends here: other starts end in the same optimum.
+//   Starts  chained odometry, chordal relaxation and an incremental replay
+//           (R-iSAM) as starts of the same kernels; graduated non-convexity.
+//   Groups  where the rejected loops are within the uncertainty of the map or
+//           the kernels disagree: growth by groups of loops (loop_growth.h), a
+//           spanning tree over the loops in force, groups forced in one by one
+//           (decision_moves.h).
+//
+// Solvers that keep all loops in their equations are left to graphs where that
+// is affordable: the fill of thousands of wrong loops is not.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_PORTFOLIO_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_PORTFOLIO_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/types/optional.h"
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/decision_moves.h"
+#include "cartographer_ext/optimization/offline/loop_support.h"
+#include "cartographer_ext/optimization/solvers/incremental_smoother.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct PortfolioOptions {
+  int max_iterations = 200;  // of one solution
+  SmootherOptions smoother;
+};
+
+class Portfolio {
+ public:
+  struct Member {
+    std::string name;
+    std::vector<Pose2> poses;
+    double cost = 0.;  // truncated, after the polish
+  };
+
+  Portfolio(const PoseGraph& graph, const PortfolioOptions& options);
+
+  // Adds poses found elsewhere.
+  void Add(const std::string& name, std::vector<Pose2> poses);
+
+  void Run();
+  // Single decisions of the best member, changed where that lowers its cost.
+  void Improve();
+
+  const std::vector<Member>& members() const { return members_; }
+  const Member& best() const { return members_[best_]; }
+  // What groups that were forced in and given up led to.
+  const std::vector<Alternative>& alternatives() const { return alternatives_; }
+  // The lowest truncated cost of a solver before any polish.
+  double lowest_of_solvers() const { return lowest_of_solvers_; }
+  const std::vector<WhitenedEdge>& edges() const { return edges_; }
+  RobustSolver* solver() { return &solver_; }
+  int iterations() const { return iterations_; }
+  bool converged() const { return converged_; }
+  const LoopSupport& support();
+
+ private:
+  void RunQuick();
+  bool IsSettled();
+  // Whether the rejected loops lie beyond the uncertainty of the best map.
+  bool RejectedContradict();
+  void RunStarts(bool with_full_kernels);
+  void RunGroups();
+  FlipOptions flip_options() const;
+  void Count(const SolverSummary& summary);
+  void AddKernel(const std::string& start_name, KernelType type,
+                 const std::vector<Pose2>& start);
+  void AddKernels(const std::string& start_name,
+                  const std::vector<Pose2>& start, bool with_full_kernels);
+  void AddGnc(const std::string& start_name, const std::vector<Pose2>& start);
+  void AddReplays();
+  // From a chordal relaxation of odometry and the loops with so many agreeing
+  // neighbours.
+  void AddSupported(size_t min_support);
+  void AddGrowth(const std::vector<Pose2>& start);
+  // Work of one factorisation with all loops, in multiplications.
+  double FullWork();
+  int CountRejected() const;
+
+  const PoseGraph& graph_;
+  const PortfolioOptions options_;
+  std::vector<WhitenedEdge> edges_;
+  RobustSolver solver_;
+  size_t num_loops_ = 0;
+  std::vector<Member> members_;
+  size_t best_ = 0;
+  double lowest_of_solvers_;
+  std::vector<Alternative> alternatives_;
+  absl::optional<double> full_work_;
+  absl::optional<LoopSupport> support_;
+  int iterations_ = 0;
+  bool converged_ = true;
+};
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_PORTFOLIO_H_

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the data leave undecided: another set of loops that explains the graph
+// about as well as the one in force, but cannot be true together with it. The
+// truncated costs then differ by less than one loop's worth, and no estimator
+// that has only the graph can tell which set is right.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_
+
+#include <vector>
+
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/decision_moves.h"
+#include "cartographer_ext/optimization/solvers/kernels.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+// Edges are given by their index.
+struct RivalSets {
+  std::vector<int> only_in_force;  // loops in force that the rival rejects
+  std::vector<int> only_in_rival;
+  double cost_difference = 0.;  // truncated cost of the rival minus ours
+  double largest_shift = 0.;    // metres, between the poses of the two maps
+};
+
+struct RivalOptions {
+  double gate = kChi2Gate;
+  // Sets that differ by fewer loops, on either side, are one set with loops
+  // near the gate. Where fewer than ten times as many are in force, one less
+  // is enough.
+  int min_loops = 2;
+  size_t max_rivals = 5;
+};
+
+// Rivals of the map `poses` with truncated cost `cost`, the closest first; of
+// several with the same loops only one.
+std::vector<RivalSets> FindRivalSets(
+    const std::vector<WhitenedEdge>& edges, const std::vector<Pose2>& poses,
+    double cost, const std::vector<Alternative>& alternatives,
+    const RivalOptions& options);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_

@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "Eigen/Cholesky"
+#include "Eigen/LU"
+#include "cartographer_ext/common/squared.h"
+#include "cartographer_ext/optimization/solvers/block_ldlt.h"
+#include "cartographer_ext/optimization/solvers/kernels.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+constexpr int kRobustRounds = 6;
+// Width of the kernel in the first round; it narrows to the gate in the last.
+constexpr double kFirstWidth = 1e4;
+
+// Edges at each pose.
+std::vector<std::vector<int>> EdgesAtPoses(const PoseGraph& graph) {
+  std::vector<std::vector<int>> result(graph.poses.size());
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    result[graph.edges[i].from].push_back(i);
+    result[graph.edges[i].to].push_back(i);
+  }
+  return result;
+}
+
+Pose2 Neighbour(const PoseGraphEdge& edge, const int pose,
+                const std::vector<Pose2>& poses) {
+  return edge.from == pose ? poses[pose] * edge.measurement
+                           : poses[pose] * edge.measurement.Inverse();
+}
+
+double PositionVariance(const PoseGraphEdge& edge) {
+  return 2. / (edge.information(0, 0) + edge.information(1, 1));
+}
+
+// Typical variances of one odometry edge, to compare positions with angles.
+struct Unit {
+  double position = 1.;
+  double angle = 1.;
+};
+
+Unit OdometryUnit(const PoseGraph& graph) {
+  std::vector<double> positions, angles;
+  for (const PoseGraphEdge& edge : graph.edges) {
+    if (edge.is_loop) continue;
+    positions.push_back(PositionVariance(edge));
+    angles.push_back(1. / edge.information(2, 2));
+  }
+  Unit unit;
+  if (positions.empty()) return unit;
+  const size_t middle = positions.size() / 2;
+  std::nth_element(positions.begin(), positions.begin() + middle,
+                   positions.end());
+  std::nth_element(angles.begin(), angles.begin() + middle, angles.end());
+  unit.position = positions[middle];
+  unit.angle = angles[middle];
+  return unit;
+}
+
+// Pairs of free poses (from 0, the first is held) that share an edge in force.
+std::vector<std::pair<int, int>> PairsInForce(
+    const std::vector<WhitenedEdge>& edges,
+    const std::vector<double>& weights) {
+  std::vector<std::pair<int, int>> pairs;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (weights[i] > 0. && edges[i].from > 0 && edges[i].to > 0) {
+      pairs.push_back({edges[i].from - 1, edges[i].to - 1});
+    }
+  }
+  return pairs;
+}
+
+// Blocks of three hold two unknowns; the third is pinned.
+void PinThird(const int size, BlockLdlt* const factor) {
+  Eigen::Matrix3d pin = Eigen::Matrix3d::Zero();
+  pin(2, 2) = 1.;
+  for (int i = 0; i != size; ++i) factor->AddDiagonal(i, pin);
+}
+
+// Adds the residual M_to u_to - M_from u_from = target of two planar unknowns,
+// the first of which is held at `held`.
+struct PlanarTerm {
+  Eigen::Matrix2d of_from, of_to;
+  Eigen::Vector2d target;
+};
+
+void AddTerm(const PlanarTerm& term, const WhitenedEdge& edge,
+             const Eigen::Vector2d& held, int* const pair,
+             BlockLdlt* const factor, Eigen::VectorXd* const rhs) {
+  const int a = edge.from - 1, b = edge.to - 1;
+  const auto embed = [](const Eigen::Matrix2d& block) {
+    Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+    result.topLeftCorner<2, 2>() = block;
+    return result;
+  };
+  Eigen::Vector2d target = term.target;
+  if (a < 0) target += term.of_from * held;
+  if (b < 0) target -= term.of_to * held;
+  if (b >= 0) {
+    factor->AddDiagonal(b, embed(term.of_to.transpose() * term.of_to));
+    rhs->segment<2>(3 * b) += term.of_to.transpose() * target;
+  }
+  if (a >= 0) {
+    factor->AddDiagonal(a, embed(term.of_from.transpose() * term.of_from));
+    rhs->segment<2>(3 * a) -= term.of_from.transpose() * target;
+  }
+  if (a >= 0 && b >= 0) {
+    factor->AddOffDiagonal((*pair)++,
+                           embed(-term.of_from.transpose() * term.of_to));
+  }
+}
+
+Eigen::Matrix2d Rotation(const double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return (Eigen::Matrix2d() << c, -s, s, c).finished();
+}
+
+// Solves for the angles; `factor` has been analysed.
+bool SolveRotations(const std::vector<WhitenedEdge>& edges,
+                    const std::vector<double>& weights, BlockLdlt* const factor,
+                    std::vector<Pose2>* const poses) {
+  const int size = poses->size() - 1;
+  const Eigen::Vector2d held(std::cos((*poses)[0].theta),
+                             std::sin((*poses)[0].theta));
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * size);
+  factor->SetZero();
+  PinThird(size, factor);
+  int pair = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!(weights[i] > 0.)) continue;
+    // The marginal information of the angle.
+    const Eigen::Matrix3d covariance =
+        (edges[i].whitening.transpose() * edges[i].whitening).inverse();
+    const double strength = std::sqrt(weights[i] / covariance(2, 2));
+    PlanarTerm term;
+    term.of_to = strength * Eigen::Matrix2d::Identity();
+    term.of_from = strength * Rotation(edges[i].measurement.z());
+    term.target.setZero();
+    AddTerm(term, edges[i], held, &pair, factor, &rhs);
+  }
+  if (!factor->Factorize(0.)) return false;
+  factor->Solve(&rhs);
+  if (!rhs.allFinite()) return false;
+  for (int i = 0; i != size; ++i) {
+    (*poses)[i + 1].theta = std::atan2(rhs[3 * i + 1], rhs[3 * i]);
+  }
+  return true;
+}
+
+bool SolvePositions(const std::vector<WhitenedEdge>& edges,
+                    const std::vector<double>& weights, BlockLdlt* const factor,
+                    std::vector<Pose2>* const poses) {
+  const int size = poses->size() - 1;
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * size);
+  factor->SetZero();
+  PinThird(size, factor);
+  int pair = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!(weights[i] > 0.)) continue;
+    const Eigen::Matrix3d covariance =
+        (edges[i].whitening.transpose() * edges[i].whitening).inverse();
+    const Eigen::LLT<Eigen::Matrix2d> root(
+        covariance.topLeftCorner<2, 2>().inverse());
+    const Eigen::Matrix2d upper =
+        std::sqrt(weights[i]) * Eigen::Matrix2d(root.matrixU());
+    PlanarTerm term;
+    term.of_to = upper * Rotation((*poses)[edges[i].from].theta).transpose();
+    term.of_from = term.of_to;
+    term.target = upper * edges[i].measurement.head<2>();
+    AddTerm(term, edges[i], (*poses)[0].translation(), &pair, factor, &rhs);
+  }
+  if (!factor->Factorize(0.)) return false;
+  factor->Solve(&rhs);
+  if (!rhs.allFinite()) return false;
+  for (int i = 0; i != size; ++i) {
+    (*poses)[i + 1].x = rhs[3 * i];
+    (*poses)[i + 1].y = rhs[3 * i + 1];
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Pose2> ChainOdometry(const PoseGraph& graph) {
+  std::vector<Pose2> poses = graph.poses;
+  const std::vector<std::vector<int>> edges_at = EdgesAtPoses(graph);
+  std::vector<bool> reached(poses.size(), false);
+  const auto chain = [&](const int start) {
+    std::vector<int> queue = {start};
+    reached[start] = true;
+    for (size_t next = 0; next != queue.size(); ++next) {
+      const int pose = queue[next];
+      for (const int i : edges_at[pose]) {
+        const PoseGraphEdge& edge = graph.edges[i];
+        const int other = edge.from == pose ? edge.to : edge.from;
+        if (edge.is_loop || reached[other]) continue;
+        poses[other] = Neighbour(edge, pose, poses);
+        reached[other] = true;
+        queue.push_back(other);
+      }
+    }
+  };
+  if (poses.empty()) return poses;
+  chain(0);
+  for (bool attached = true; attached;) {
+    attached = false;
+    for (const PoseGraphEdge& edge : graph.edges) {
+      if (reached[edge.from] == reached[edge.to]) continue;
+      const int known = reached[edge.from] ? edge.from : edge.to;
+      const int other = edge.from == known ? edge.to : edge.from;
+      poses[other] = Neighbour(edge, known, poses);
+      chain(other);
+      attached = true;
+    }
+  }
+  return poses;
+}
+
+std::vector<Pose2> SpanningTree(const PoseGraph& graph,
+                                const std::vector<double>& weights) {
+  std::vector<Pose2> poses = graph.poses;
+  if (poses.empty()) return poses;
+  const Unit unit = OdometryUnit(graph);
+  const std::vector<std::vector<int>> edges_at = EdgesAtPoses(graph);
+  std::vector<double> costs(poses.size(),
+                            std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  costs[0] = 0.;
+  queue.push({0., 0});
+  while (!queue.empty()) {
+    const Entry entry = queue.top();
+    queue.pop();
+    const int pose = entry.second;
+    if (entry.first > costs[pose]) continue;
+    for (const int i : edges_at[pose]) {
+      const PoseGraphEdge& edge = graph.edges[i];
+      if (edge.is_loop && weights[i] <= 0.5) continue;
+      const int other = edge.from == pose ? edge.to : edge.from;
+      const double cost = entry.first + PositionVariance(edge) / unit.position +
+                          1. / (edge.information(2, 2) * unit.angle);
+      if (cost >= costs[other]) continue;
+      costs[other] = cost;
+      poses[other] = Neighbour(edge, pose, poses);
+      queue.push({cost, other});
+    }
+  }
+  return poses;
+}
+
+bool ChordalPoses(const std::vector<WhitenedEdge>& edges,
+                  const std::vector<double>& weights,
+                  std::vector<Pose2>* const poses) {
+  if (poses->size() < 2) return true;
+  BlockLdlt factor;
+  factor.Analyze(poses->size() - 1, PairsInForce(edges, weights), {});
+  std::vector<Pose2> result = *poses;
+  if (!SolveRotations(edges, weights, &factor, &result) ||
+      !SolvePositions(edges, weights, &factor, &result)) {
+    return false;
+  }
+  *poses = std::move(result);
+  return true;
+}
+
+bool RobustChordalPoses(const std::vector<WhitenedEdge>& edges,
+                        std::vector<Pose2>* const poses) {
+  std::vector<double> weights(edges.size(), 1.);
+  std::vector<Pose2> result = *poses;
+  const double narrowing =
+      std::pow(kChi2Gate / kFirstWidth, 1. / (kRobustRounds - 1));
+  double width = kFirstWidth;
+  for (int round = 0; round != kRobustRounds; ++round, width *= narrowing) {
+    if (!ChordalPoses(edges, weights, &result)) return false;
+    for (size_t i = 0; i != edges.size(); ++i) {
+      if (!edges[i].is_loop) continue;
+      const double chi2 =
+          Chi2(edges[i], result[edges[i].from], result[edges[i].to]);
+      weights[i] = Squared(width / (width + chi2));
+      // What hardly counts would only fill the factor.
+      if (weights[i] < 1e-6) weights[i] = 0.;
+    }
+  }
+  *poses = std::move(result);
+  return true;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which loops the robust optimization problem of a pose graph switched off, for
+// reports. The problem records them in the context of the pose graph
+// (common/pose_graph_context.h).
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SELECTION_SWITCHED_LOOPS_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_SELECTION_SWITCHED_LOOPS_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "absl/synchronization/mutex.h"
+#include "cartographer_ext/common/loop_id.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct SwitchedLoop : LoopId {
+  double chi2 = 0.;
+  bool by_odometry_check = false;
+};
+
+struct SwitchedLoops {
+  int64_t optimizations = 0;      // of the pose graph so far
+  int64_t loops = 0;              // in the last one
+  std::vector<SwitchedLoop> off;  // in the last one, in order of constraints
+  double selection_cpu_seconds = 0.;  // of all
+  double solution_cpu_seconds = 0.;   // of all, in the stock problem
+};
+
+// A part of PoseGraphContext: counts over all optimizations, the loops of the
+// last one. Thread-safe.
+class SwitchedLoopRecorder {
+ public:
+  void Record(int64_t loops, std::vector<SwitchedLoop> off,
+              double selection_cpu_seconds, double solution_cpu_seconds)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  SwitchedLoops Get() const ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  mutable absl::Mutex mutex_;
+  SwitchedLoops loops_ ABSL_GUARDED_BY(mutex_);
+};
+
+// One line per loop switched off, with a heading.
+std::string SwitchedLoopsTable(const SwitchedLoops& loops);
+
+// The loops of such a table; an error which names the first bad line.
+absl::StatusOr<std::vector<SwitchedLoop>> ParseSwitchedLoopsTable(
+    absl::string_view table);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_SELECTION_SWITCHED_LOOPS_H_

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Sparse L D L' factorisation of a symmetric positive definite matrix made of
+// 3 x 3 blocks, one block row per pose. L has identity blocks on its diagonal,
+// D is block diagonal. The ordering comes from CAMD (BSD licence); the rest is
+// our own, because the update routines of CHOLMOD are GPL and because whole
+// blocks are faster than scalars at this size.
+//
+// Usage: Analyze once per pattern; then, as often as wanted, SetZero,
+// AddDiagonal, AddOffDiagonal, Factorize, Solve.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_
+
+#include <utility>
+#include <vector>
+
+#include "Eigen/Core"
+
+namespace cartographer_ext {
+namespace optimization {
+
+// y -= a * b, y += a * b for column-major 3 x 3 blocks.
+inline void SubtractProduct(const double* a, const double* b, double* y) {
+  for (int c = 0; c != 3; ++c) {
+    for (int r = 0; r != 3; ++r) {
+      y[3 * c + r] -=
+          a[r] * b[3 * c] + a[3 + r] * b[3 * c + 1] + a[6 + r] * b[3 * c + 2];
+    }
+  }
+}
+inline void AddProduct(const double* a, const double* b, double* y) {
+  for (int c = 0; c != 3; ++c) {
+    for (int r = 0; r != 3; ++r) {
+      y[3 * c + r] +=
+          a[r] * b[3 * c] + a[3 + r] * b[3 * c + 1] + a[6 + r] * b[3 * c + 2];
+    }
+  }
+}
+
+// Makes a block symmetric by what is below its diagonal, all that InvertSpd
+// reads.
+void CopyLowerTriangle(Eigen::Matrix3d* block);
+
+// Inverse of a symmetric positive definite block; false when it is not.
+bool InvertSpd(const Eigen::Matrix3d& block, Eigen::Matrix3d* inverse);
+
+// A fill-reducing order of `size` variables for the pattern of `pairs` (pairs
+// of different variables, repetition allowed): result[position] = variable.
+// `groups`, empty or one value in [0, size) per variable, forces variables of a
+// higher group behind all of a lower one.
+std::vector<int> FillReducingOrder(
+    int size, const std::vector<std::pair<int, int>>& pairs,
+    const std::vector<int>& groups);
+
+class BlockLdlt {
+ public:
+  void Analyze(int size, const std::vector<std::pair<int, int>>& pairs,
+               const std::vector<int>& groups);
+  // The same for other pairs of as many variables in the order of before, which
+  // saves most of the time and costs some fill.
+  void AnalyzeInOrder(const std::vector<std::pair<int, int>>& pairs);
+  // Appends pairs if the fill has room for all of them; false, and nothing has
+  // changed, if it has not.
+  bool Extend(const std::vector<std::pair<int, int>>& pairs);
+
+  void SetZero();
+  void AddDiagonal(int variable, const Eigen::Matrix3d& block);
+  // `block` is H(pairs[pair].first, pairs[pair].second).
+  void AddOffDiagonal(int pair, const Eigen::Matrix3d& block);
+
+  // Factors H + lambda * diag(H). False when that is not positive definite.
+  bool Factorize(double lambda);
+
+  // Replaces the right hand side, 3 * size values in the order of the
+  // variables, by the solution.
+  void Solve(Eigen::VectorXd* rhs) const;
+  // The same for three right hand sides, the columns.
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  void Solve(Columns* rhs) const;
+
+  int size() const { return order_.size(); }
+  // Blocks below the diagonal of L.
+  size_t num_blocks() const { return rows_.size(); }
+  const std::vector<int>& order() const { return order_; }
+  const std::vector<int>& position() const { return position_; }
+  // Column structure by position: rows [start(c), start(c + 1)), ascending.
+  int start(int column) const { return starts_[column]; }
+  int row(int index) const { return rows_[index]; }
+  const Eigen::Matrix3d& block(int index) const { return blocks_[index]; }
+  const Eigen::Matrix3d& pivot(int column) const { return pivots_[column]; }
+  const Eigen::Matrix3d& pivot_inverse(int column) const {
+    return pivot_inverses_[column];
+  }
+
+ private:
+  struct Slot {
+    int index = 0;  // into blocks_
+    bool transpose = false;
+  };
+
+  // `Row` holds the three rows of one variable.
+  template <typename Row, typename Rhs>
+  void SolveRows(Rhs* rhs) const;
+
+  std::vector<int> order_;     // position -> variable
+  std::vector<int> position_;  // variable -> position
+  std::vector<int> starts_;
+  std::vector<int> rows_;
+  std::vector<Eigen::Matrix3d> blocks_;  // H before, L after factorising
+  std::vector<Eigen::Matrix3d> pivots_;
+  std::vector<Eigen::Matrix3d> pivot_inverses_;
+  std::vector<Slot> slots_;              // per pair
+  std::vector<int> slot_of_matrix_;      // slots of H, repeated by Extend
+  std::vector<Eigen::Matrix3d> matrix_;  // their values
+  std::vector<int> matrix_of_pair_;
+  std::vector<Eigen::Matrix3d> diagonal_;  // by position
+};
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_

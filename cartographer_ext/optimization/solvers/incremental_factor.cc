@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+constexpr int kEnd = std::numeric_limits<int>::max();
+
+}  // namespace
+
+void IncrementalFactor::Reset(const BlockLdlt& factor,
+                              const Eigen::VectorXd& rhs) {
+  const int n = factor.size();
+  CHECK_EQ(rhs.size(), 3 * n);
+  position_ = factor.position();
+  variable_ = factor.order();
+  columns_.resize(n);
+  work_.assign(n, Eigen::Matrix3d::Zero());
+  work_solution_.assign(n, Eigen::Vector3d::Zero());
+  solution_version_.assign(n, -1);
+  ++version_;
+  std::vector<Eigen::Vector3d> y(n);
+  for (int j = 0; j != n; ++j) y[j] = rhs.segment<3>(3 * variable_[j]);
+  for (int j = 0; j != n; ++j) {
+    Column& column = columns_[j];
+    const int start = factor.start(j), end = factor.start(j + 1);
+    column.rows.resize(end - start);
+    column.blocks.resize(end - start);
+    column.pivot = factor.pivot(j);
+    column.pivot_inverse = factor.pivot_inverse(j);
+    column.rhs = column.pivot_inverse * y[j];
+    for (int p = start; p != end; ++p) {
+      column.rows[p - start] = factor.row(p);
+      column.blocks[p - start] = factor.block(p);
+      y[factor.row(p)].noalias() -= factor.block(p) * y[j];
+    }
+  }
+}
+
+int IncrementalFactor::Append() {
+  Column column;
+  column.pivot.setZero();
+  column.pivot_inverse.setZero();
+  column.rhs.setZero();
+  columns_.push_back(std::move(column));
+  work_.push_back(Eigen::Matrix3d::Zero());
+  work_solution_.push_back(Eigen::Vector3d::Zero());
+  solution_version_.push_back(-1);
+  const int variable = position_.size();
+  position_.push_back(columns_.size() - 1);
+  variable_.push_back(variable);
+  return variable;
+}
+
+bool IncrementalFactor::Update(const LinearFactor& factor,
+                               const double weight) {
+  last_update_blocks_ = 0;
+  if (weight == 0. || (factor.a < 0 && factor.b < 0)) return true;
+  ++version_;
+  // W holds J' by blocks; the pattern of W below the current column is kept
+  // sorted in `pattern`.
+  std::vector<int> pattern;
+  if (factor.a >= 0) {
+    pattern.push_back(position_[factor.a]);
+    work_[pattern.back()] = factor.jacobian_a.transpose();
+  }
+  if (factor.b >= 0) {
+    pattern.push_back(position_[factor.b]);
+    work_[pattern.back()] = factor.jacobian_b.transpose();
+  }
+  std::sort(pattern.begin(), pattern.end());
+  Eigen::RowVector3d work_rhs = factor.target.transpose();
+  Eigen::Matrix3d middle = weight * Eigen::Matrix3d::Identity();
+  bool ok = true;
+  bool grown = true;  // `pattern` may hold rows the next column lacks
+  std::vector<int> merged;
+  int j = pattern.front();
+  while (true) {
+    Column& column = columns_[j];
+    if (grown) {
+      // Fill: rows of W below j which the column does not have yet.
+      merged.clear();
+      std::set_union(column.rows.begin(), column.rows.end(),
+                     pattern.begin() + 1, pattern.end(),
+                     std::back_inserter(merged));
+      grown = merged.size() != column.rows.size();
+      if (grown) {
+        std::vector<Eigen::Matrix3d> blocks(merged.size());
+        size_t old = 0;
+        for (size_t k = 0; k != merged.size(); ++k) {
+          if (old != column.rows.size() && column.rows[old] == merged[k]) {
+            blocks[k] = column.blocks[old++];
+          } else {
+            blocks[k].setZero();
+          }
+        }
+        column.blocks.swap(blocks);
+        column.rows = merged;
+      }
+      // From here on the pattern of W is that of the column.
+      pattern = column.rows;
+    }
+    const Eigen::Matrix3d head = work_[j];
+    work_[j].setZero();
+    const Eigen::Matrix3d middle_head = middle * head.transpose();
+    column.pivot.noalias() += head * middle_head;
+    CopyLowerTriangle(&column.pivot);
+    if (!InvertSpd(column.pivot, &column.pivot_inverse)) {
+      ok = false;
+      for (const int row : column.rows) work_[row].setZero();
+      break;
+    }
+    const Eigen::Matrix3d gain = middle_head * column.pivot_inverse;
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      double* const below = work_[column.rows[k]].data();
+      double* const block = column.blocks[k].data();
+      SubtractProduct(block, head.data(), below);
+      AddProduct(below, gain.data(), block);
+    }
+    work_rhs.noalias() -= column.rhs.transpose() * head;
+    column.rhs.noalias() += gain.transpose() * work_rhs.transpose();
+    middle.noalias() -= gain * middle_head.transpose();
+    CopyLowerTriangle(&middle);
+    last_update_blocks_ += column.rows.size();
+    if (column.rows.empty()) break;
+    j = column.rows.front();
+  }
+  return ok;
+}
+
+Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
+    const LinearFactor& factor) const {
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  // Two paths to the root, walked together in ascending order.
+  int a = kEnd, b = kEnd;
+  if (factor.a >= 0) {
+    a = position_[factor.a];
+    work_[a] = factor.jacobian_a.transpose();
+  }
+  if (factor.b >= 0) {
+    b = position_[factor.b];
+    work_[b] = factor.jacobian_b.transpose();
+  }
+  while (a != kEnd || b != kEnd) {
+    const int j = std::min(a, b);
+    const Column& column = columns_[j];
+    const Eigen::Matrix3d head = work_[j];
+    work_[j].setZero();
+    result.noalias() += head.transpose() * column.pivot_inverse * head;
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      SubtractProduct(column.blocks[k].data(), head.data(),
+                      work_[column.rows[k]].data());
+    }
+    const int parent = column.rows.empty() ? kEnd : column.rows.front();
+    if (a == j) a = parent;
+    if (b == j) b = parent;
+    if (a == b) b = kEnd;
+  }
+  return result;
+}
+
+Eigen::Vector3d IncrementalFactor::SolveFor(const int variable) const {
+  if (variable < 0) return Eigen::Vector3d::Zero();
+  // The path to the root holds all rows of its columns, and so does the part of
+  // it that is known already.
+  std::vector<int> path;
+  for (int j = position_[variable]; solution_version_[j] != version_;) {
+    path.push_back(j);
+    if (columns_[j].rows.empty()) break;
+    j = columns_[j].rows.front();
+  }
+  for (auto it = path.rbegin(); it != path.rend(); ++it) {
+    const Column& column = columns_[*it];
+    Eigen::Vector3d value = column.rhs;
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      value.noalias() -=
+          column.blocks[k].transpose() * work_solution_[column.rows[k]];
+    }
+    work_solution_[*it] = value;
+    solution_version_[*it] = version_;
+  }
+  return work_solution_[position_[variable]];
+}
+
+void IncrementalFactor::Solve(Eigen::VectorXd* const solution) const {
+  solution->resize(3 * columns_.size());
+  for (int j = static_cast<int>(columns_.size()) - 1; j >= 0; --j) {
+    const Column& column = columns_[j];
+    Eigen::Vector3d value = column.rhs;
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      value.noalias() -=
+          column.blocks[k].transpose() * work_solution_[column.rows[k]];
+    }
+    work_solution_[j] = value;
+    solution->segment<3>(3 * variable_[j]) = value;
+  }
+}
+
+void IncrementalFactor::SolveSystem(Eigen::VectorXd* const rhs) const {
+  const int n = columns_.size();
+  std::vector<Eigen::Vector3d> x(n);
+  for (int j = 0; j != n; ++j) x[j] = rhs->segment<3>(3 * variable_[j]);
+  for (int j = 0; j != n; ++j) {
+    const Column& column = columns_[j];
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      x[column.rows[k]].noalias() -= column.blocks[k] * x[j];
+    }
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    const Column& column = columns_[j];
+    Eigen::Vector3d value = column.pivot_inverse * x[j];
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      value.noalias() -= column.blocks[k].transpose() * x[column.rows[k]];
+    }
+    x[j] = value;
+    rhs->segment<3>(3 * variable_[j]) = value;
+  }
+}
+
+size_t IncrementalFactor::num_blocks() const {
+  size_t result = 0;
+  for (const Column& column : columns_) result += column.rows.size();
+  return result;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

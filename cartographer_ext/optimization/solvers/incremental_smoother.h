@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// R-iSAM: incremental smoothing which survives wrong loops (Zhang, Yao, Yue,
+// Sun 2015). Poses arrive one at a time with their odometry and with the loops
+// that end in them.
+//
+//   Each step (eq. 14-16): the new measurements update the factor. For a loop
+//   the switch alone is estimated together with the poses,
+//     min over X, s   (all else)  +  s^2 chi2(X) + w (1 - s)^2,
+//   which for the linearised rest is a search in one dimension: with r the
+//   whitened innovation and Q = J H^-1 J' the covariance of its prediction,
+//     g(s) = sum_i u_i^2 s^2 / (1 + s^2 q_i) + w (1 - s)^2,  Q = V diag(q) V',
+//   u = V' r. The loop enters with weight s^2.
+//
+//   Every `epoch_poses` poses (eq. 17-19): relinearise, reorder and solve the
+//   whole graph with a robust kernel, then decide each loop by the gate
+//   chi2 < 11.345: accepted loops count in full, others not at all.
+//
+// A loop which closes after a long drift has a huge chi2 and would stay out for
+// ever. So at the end of an epoch the rejected loops that are compatible with
+// the uncertainty of the poses (innovation chi2 inside the gate) are tried: the
+// most supported ones, at most `max_hypotheses`, are each forced in, the graph
+// is solved and the loop released again. The truncated cost decides, and must
+// fall by more than one loop's worth.
+//
+// The paper decides each loop once and for ever. Here every epoch weighs all
+// loops again, so that a wrong loop accepted early is put out late (late
+// rejection) and a true one comes back (re-admission); both can be switched
+// off.
+//
+// A step is bounded: at most `max_loops_per_step` loops are tested, the rest
+// wait for the next steps.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
+
+#include <deque>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+enum class SwitchEstimate {
+  kJoint,      // the minimum of g(s), with the uncertainty of the poses
+  kPointwise,  // s = w / (w + chi2) at the current poses
+};
+
+struct SmootherOptions {
+  int epoch_poses = 100;
+  // With more poses than this an epoch is as long as a tenth of them.
+  int large_map = 12000;
+  // Pointwise is the default: the joint estimate closes larger gaps at once,
+  // but lets in whatever the uncertainty allows, and fails when nine loops in
+  // ten are wrong.
+  SwitchEstimate switch_estimate = SwitchEstimate::kPointwise;
+  // w of the switch penalty. Pointwise: the papers' 1. For the joint estimate
+  // kChi2Gate is the sensible value: 1 would refuse most true loops, whose chi2
+  // has mean 3.
+  double switch_penalty = 1.;
+  // Loops with s^2 below this are not added before the next epoch.
+  double skip_weight = 1e-3;
+  double gate = kChi2Gate;
+  KernelOptions epoch_kernel = DefaultKernel(KernelType::kGemanMcClure);
+  int max_epoch_iterations = 10;
+  double epoch_cost_tolerance = 1e-3;
+  bool late_rejection = true;
+  bool readmission = true;
+  // At the end, narrow the gate where the data call for it (AdaptiveGate).
+  bool adaptive_gate = true;
+  int max_loops_per_step = 50;
+  // Rounds of deciding and solving (PolishTruncated) after the kernel.
+  int polish_rounds = 3;
+  int max_hypotheses = 3;  // at the end of an epoch; 0: as in the paper
+};
+
+struct StepReport {
+  double cpu_seconds = 0.;
+  int loops_tested = 0;
+  int loops_entered = 0;
+  bool epoch = false;
+};
+
+class IncrementalSmoother {
+ public:
+  // The first pose is held at `origin`.
+  IncrementalSmoother(const SmootherOptions& options, const Pose2& origin);
+
+  // Adds pose number num_poses(). `edges` end in it: `from` or `to` is the new
+  // number and the other end exists. At least one is not a loop; the first such
+  // gives the pose's initial estimate. An invalid argument leaves the smoother
+  // unchanged. Where information matrices are so uneven that the factor is lost
+  // to rounding, this and all later calls return an internal error.
+  absl::Status AddPose(const std::vector<PoseGraphEdge>& edges,
+                       StepReport* report);
+
+  // Ends the current epoch now.
+  void EndEpoch();
+  // Call at the end of the data: ends the epoch, then decides and solves in
+  // turn until the decisions stand (PolishTruncated). With late rejection and
+  // re-admission both off, as in the paper, only ends the epoch.
+  void Finish();
+
+  int num_poses() const { return poses_.size(); }
+  // Current estimate of all poses. Worked out when asked for; the steps
+  // themselves only need the newest pose and the ends of its loops.
+  const std::vector<Pose2>& poses() const;
+  // All edges in order of arrival, and which loops are in force.
+  const std::vector<WhitenedEdge>& edges() const { return edges_; }
+  const std::vector<bool>& accepted() const { return accepted_; }
+  // Loops that changed from accepted to rejected, and back, at an epoch's end.
+  int num_late_rejections() const { return num_late_rejections_; }
+  int num_readmissions() const { return num_readmissions_; }
+  // Not OK once the factor is lost.
+  const absl::Status& status() const { return status_; }
+  size_t factor_blocks() const { return factor_.num_blocks(); }
+  const IncrementalFactor& factor() const { return factor_; }
+
+ private:
+  // A rejected loop that the uncertainty of the poses would allow.
+  struct Candidate {
+    int edge = 0;
+    LinearFactor factor;
+    Eigen::Vector3d gain;    // (I + Q)^-1 r
+    double innovation = 0.;  // r' (I + Q)^-1 r
+  };
+
+  void UpdateFactor(const LinearFactor& factor, double weight);
+  LinearFactor LinearizeEdge(const WhitenedEdge& edge) const;
+  Eigen::Vector3d Offset(int pose) const;
+  // Estimates the switch of a loop and adds it. True when it entered.
+  bool TestLoop(int edge_index);
+  double EstimateSwitch(const LinearFactor& factor,
+                        const Eigen::Vector3d& residual) const;
+  void UpdateEstimate() const;
+  // Brings one pose up to date.
+  void RefreshPose(int pose);
+  SolverOptions EpochSolverOptions() const;
+  void DecideLoops();
+  void RebuildFactor(RobustSolver* batch);
+  std::vector<Candidate> FindCandidates(int first_edge, double majority) const;
+  std::vector<int> ChooseSeeds(std::vector<Candidate> candidates) const;
+  // Where the information is honest, true loops have chi2 around 3: the epochs'
+  // kernel then weakens them and leaves some behind. True when most loops agree
+  // and count for less than half on average.
+  bool KernelIsNarrow() const;
+  // At the end, where rejected loops are within reach.
+  void TryWiderKernels(RobustSolver* solver);
+  // Whether enough loops, `majority` of all or more, back `poses` as a
+  // hypothesis.
+  bool IsSupported(const std::vector<Pose2>& poses, double majority) const;
+  // True when a hypothesis was taken over into the poses.
+  bool TryHypotheses(int first_edge, double majority, RobustSolver* solver);
+
+  const SmootherOptions options_;
+  std::vector<WhitenedEdge> edges_;
+  std::vector<bool> accepted_;
+  std::vector<bool> decided_;  // loops that went through an epoch
+  std::deque<int> waiting_;    // loops not yet tested
+  mutable std::vector<Pose2> poses_;
+  std::vector<Pose2> linearization_poses_;
+  IncrementalFactor factor_;
+  mutable bool estimate_outdated_ = false;
+  absl::Status status_;
+  int poses_in_epoch_ = 0;
+  int first_edge_of_epoch_ = 0;
+  int num_late_rejections_ = 0;
+  int num_readmissions_ = 0;
+};
+
+struct ReplayResult {
+  std::vector<Pose2> poses;
+  std::vector<double> step_seconds;  // processor time of every AddPose
+  std::vector<bool> accepted;        // per edge of the graph; true for odometry
+  double cpu_seconds = 0.;
+};
+
+// Feeds a whole graph pose by pose, as if it were recorded now: pose k comes
+// with all edges to poses before it. Starts from nothing but the first pose. An
+// error when a pose has no odometry edge to an earlier one.
+absl::Status Replay(const PoseGraph& graph, const SmootherOptions& options,
+                    ReplayResult* result);
+
+// Quantile (nearest rank) of a set of values; 0 when empty.
+double Quantile(std::vector<double> values, double fraction);
+
+// argmin over s in [0, 1] of sum u_i^2 s^2/(1 + s^2 q_i) + w (1 - s)^2.
+double MinimizeSwitch(const Eigen::Vector3d& squared_innovation,
+                      const Eigen::Vector3d& predicted_variance,
+                      double penalty);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_

@@ -1,0 +1,350 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cartographer_ext/common/thread_time.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+constexpr double kMaxLambda = 1e12;
+// A step that lowers the cost by less than this fraction is one of the last.
+constexpr double kSettling = 1e-3;
+// Such a step and all after it are small enough for the linearised graph to
+// tell where the weights will end.
+constexpr double kNearing = 1e-2;
+// Where a step gains so many times what the quadratic model promised, a loop is
+// being let go, and would be for many more such steps.
+constexpr double kShedding = 1.5;
+constexpr int kMaxProlongations = 5;
+// Loops with so many times the weight that counts may count soon; if they are
+// few, a new pattern has room for them.
+constexpr double kRoom = 1e-2;
+// Edges that may leave or enter before the order of elimination is worked out
+// anew, besides one loop in fifty, and by how much the factor may grow until
+// then.
+constexpr size_t kFewChanges = 5;
+constexpr double kMaxGrowth = 1.1;
+
+std::vector<Pose2> Stepped(const std::vector<Pose2>& poses,
+                           const Eigen::VectorXd& step) {
+  std::vector<Pose2> result = poses;
+  for (size_t i = 1; i != result.size(); ++i) {
+    result[i].x += step[3 * i - 3];
+    result[i].y += step[3 * i - 2];
+    result[i].theta = NormalizeAngle(result[i].theta + step[3 * i - 1]);
+  }
+  return result;
+}
+
+}  // namespace
+
+SolverSummary RobustSolver::Solve(const SolverOptions& options,
+                                  std::vector<Pose2>* const poses) {
+  CHECK(options.edge_weights.empty() ||
+        options.edge_weights.size() == edges_.size());
+  SolverSummary summary;
+  const double start = ThreadCpuSeconds();
+  options_ = options;
+  if (options.kernel.type == KernelType::kAcsPaper) {
+    covariance_norms_.assign(edges_.size(), 1.);
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (!edges_[i].is_loop) continue;
+      const Eigen::Matrix3d information =
+          edges_[i].whitening.transpose() * edges_[i].whitening;
+      covariance_norms_[i] = NormOfCovariance(information, options.kernel.norm);
+    }
+  }
+  SetPoses(*poses);
+  Evaluation now, next;
+  Evaluate(nullptr, &now);
+  summary.initial_cost = now.cost;
+  double lambda = options.initial_lambda;
+  bool done = poses_.size() < 2 || edges_.empty();
+  bool settling = false;
+  std::vector<int> undecided;
+  summary.converged = done;
+  Eigen::VectorXd step;
+  while (!done && summary.iterations < options.max_iterations) {
+    const bool analysed = UpdatePattern(now.weights);
+    summary.analyses += analysed;
+    Assemble(now.weights);
+    if (settling && !analysed) {
+      // What the next step would gain, by the factor of the last one.
+      step = -gradient_;
+      factor_.Solve(&step);
+      if (-gradient_.dot(step) <= options.cost_tolerance * now.cost) {
+        summary.converged = true;
+        break;
+      }
+    }
+    const std::vector<Pose2> from = poses_;
+    bool accepted = false;
+    while (!accepted && !done && summary.iterations < options.max_iterations) {
+      ++summary.iterations;
+      if (!factor_.Factorize(lambda)) {
+        lambda = std::max(10. * lambda, 1e-8);
+        done = lambda > kMaxLambda;
+        continue;
+      }
+      step = -gradient_;
+      factor_.Solve(&step);
+      const double predicted = PredictedDecrease(step, lambda);
+      const bool carried = CarryToTheLimit(undecided, now, &step);
+      undecided.clear();
+      const double largest = step.cwiseAbs().maxCoeff();
+      SetPoses(Stepped(from, step));
+      // The shape of the literal ACS kernel is held during the step, so that
+      // both costs are those of one function.
+      Evaluate(&now.shapes, &next);
+      const double decrease = now.cost - next.cost;
+      if (decrease >= 0. && std::isfinite(next.cost)) {
+        accepted = true;
+        const double ratio = predicted > 0. ? decrease / predicted : 1.;
+        if (ratio > 0.75) {
+          lambda = lambda * 0.1 < 1e-10 ? 1e-10 : lambda * 0.1;
+        } else if (ratio < 0.25) {
+          lambda = std::min(4. * lambda, kMaxLambda);
+        }
+        done = decrease <= options.cost_tolerance * now.cost ||
+               largest < options.step_tolerance;
+        summary.converged = done;
+        settling = decrease <= kSettling * now.cost;
+        if (settling && !done && !carried && ratio > kShedding) {
+          Prolong(from, step, now.shapes, &next);
+        }
+        // A kernel with a moving shape is weighed anew; the cost reported
+        // belongs to the last shapes.
+        if (options.kernel.type == KernelType::kAcsPaper) {
+          Evaluate(nullptr, &next);
+        }
+        std::swap(now, next);
+        if (decrease <= kNearing * next.cost) {
+          undecided = UndecidedLoops(next.weights, now.weights);
+        }
+      } else {
+        lambda = std::max(10. * lambda, 1e-8);
+        if (largest < options.step_tolerance || lambda > kMaxLambda) {
+          done = true;
+          summary.converged = true;
+        }
+      }
+    }
+    if (!accepted) SetPoses(from);
+  }
+  summary.final_cost = now.cost;
+  summary.factor_blocks = factor_.num_blocks();
+  summary.cpu_seconds = ThreadCpuSeconds() - start;
+  *poses = poses_;
+  weights_ = std::move(now.weights);
+  return summary;
+}
+
+// Doubles an accepted step as long as that lowers the cost.
+void RobustSolver::Prolong(const std::vector<Pose2>& from, Eigen::VectorXd step,
+                           const std::vector<double>& held_shapes,
+                           Evaluation* const reached) {
+  Evaluation next;
+  for (int i = 0; i != kMaxProlongations; ++i) {
+    const std::vector<Pose2> last = poses_;
+    step *= 2.;
+    SetPoses(Stepped(from, step));
+    Evaluate(&held_shapes, &next);
+    if (!(next.cost < reached->cost)) {
+      SetPoses(last);
+      return;
+    }
+    std::swap(next, *reached);
+  }
+}
+
+const BlockLdlt* RobustSolver::Factor(const std::vector<Pose2>& poses,
+                                      const std::vector<double>& weights,
+                                      Eigen::VectorXd* const rhs) {
+  CHECK_EQ(weights.size(), edges_.size());
+  SetPoses(poses);
+  UpdatePattern(weights);
+  Assemble(weights);
+  *rhs = -gradient_;
+  return factor_.Factorize(0.) ? &factor_ : nullptr;
+}
+
+void RobustSolver::SetPoses(const std::vector<Pose2>& poses) {
+  poses_ = poses;
+  rotations_.resize(poses.size());
+  for (size_t i = 0; i != poses.size(); ++i) {
+    rotations_[i] << std::cos(poses[i].theta), std::sin(poses[i].theta);
+  }
+}
+
+void RobustSolver::Evaluate(const std::vector<double>* const held_shapes,
+                            Evaluation* const result) {
+  const KernelOptions& kernel = options_.kernel;
+  const bool is_literal = kernel.type == KernelType::kAcsPaper;
+  const double shape = is_literal ? 0. : AcsShape(kernel);
+  result->cost = 0.;
+  result->weights.resize(edges_.size());
+  if (is_literal) result->shapes.resize(edges_.size());
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    const WhitenedEdge& edge = edges_[i];
+    const Eigen::Vector2d& rotation = rotations_[edge.from];
+    const Eigen::Vector3d residual = Residual(
+        edge, poses_[edge.from], poses_[edge.to], rotation.x(), rotation.y());
+    const double chi2 = residual.squaredNorm();
+    KernelValue value{chi2, 1.};
+    if (edge.is_loop && is_literal) {
+      result->shapes[i] =
+          held_shapes != nullptr
+              ? (*held_shapes)[i]
+              : AcsPaperShape(chi2, UnwhitenedSquaredNorm(edge, residual),
+                              covariance_norms_[i]);
+      value = EvaluateKernel(kernel, chi2, result->shapes[i]);
+    } else if (edge.is_loop) {
+      value = EvaluateKernel(kernel, chi2, shape);
+    }
+    const double factor =
+        options_.edge_weights.empty() ? 1. : options_.edge_weights[i];
+    result->cost += factor * value.rho;
+    result->weights[i] = factor * value.weight;
+  }
+}
+
+// Chooses the edges of the linear systems; true when they were analysed anew.
+bool RobustSolver::UpdatePattern(const std::vector<double>& weights) {
+  if (!analysed_) in_pattern_.assign(edges_.size(), false);
+  std::vector<int> wanted, entering, near;
+  size_t dead = 0, near_inside = 0, loops = 0;
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (!edges_[i].is_loop || !options_.prune ||
+        weights[i] >= options_.prune_weight) {
+      wanted.push_back(i);
+      loops += edges_[i].is_loop;
+      if (!in_pattern_[i]) entering.push_back(i);
+    } else if (weights[i] >= kRoom * options_.prune_weight) {
+      near.push_back(i);
+      near_inside += in_pattern_[i];
+    } else {
+      dead += in_pattern_[i];
+    }
+  }
+  const size_t few = kFewChanges + loops / 50;
+  if (near.size() > few) {
+    near.clear();
+    dead += near_inside;
+  }
+  // A few dead edges cost less than a new analysis, and so does a new edge that
+  // needs no more fill.
+  if (analysed_ && dead <= few) {
+    if (entering.empty()) return false;
+    std::vector<std::pair<int, int>> pairs;
+    for (const int i : entering) {
+      if (edges_[i].from > 0 && edges_[i].to > 0) {
+        pairs.push_back({edges_[i].from - 1, edges_[i].to - 1});
+      }
+    }
+    if (factor_.Extend(pairs)) {
+      AddToPattern(entering, nullptr);
+      return false;
+    }
+  }
+  // Much the same pattern has much the same best order.
+  const bool reorder = !analysed_ || dead + entering.size() > few;
+  analysed_ = true;
+  in_pattern_.assign(edges_.size(), false);
+  pattern_.clear();
+  num_pairs_ = 0;
+  wanted.insert(wanted.end(), near.begin(), near.end());
+  std::vector<std::pair<int, int>> pairs;
+  AddToPattern(wanted, &pairs);
+  std::vector<int> groups;
+  if (last_pose_last_ && poses_.size() > 2) {
+    groups.assign(poses_.size() - 1, 0);
+    groups.back() = 1;
+  }
+  if (reorder) {
+    factor_.Analyze(poses_.size() - 1, pairs, groups);
+    ordered_blocks_ = factor_.num_blocks();
+  } else {
+    factor_.AnalyzeInOrder(pairs);
+    if (factor_.num_blocks() > kMaxGrowth * ordered_blocks_) {
+      factor_.Analyze(poses_.size() - 1, pairs, groups);
+      ordered_blocks_ = factor_.num_blocks();
+    }
+  }
+  return true;
+}
+
+void RobustSolver::AddToPattern(const std::vector<int>& edges,
+                                std::vector<std::pair<int, int>>* const pairs) {
+  for (const int i : edges) {
+    in_pattern_[i] = true;
+    const int a = edges_[i].from - 1, b = edges_[i].to - 1;
+    if (a >= 0 && b >= 0) {
+      pattern_.push_back({i, num_pairs_++});
+      if (pairs != nullptr) pairs->push_back({a, b});
+    } else {
+      pattern_.push_back({i, -1});
+    }
+  }
+}
+
+void RobustSolver::Assemble(const std::vector<double>& weights) {
+  const int size = poses_.size() - 1;
+  gradient_.setZero(3 * size);
+  diagonal_.setZero(3 * size);
+  factor_.SetZero();
+  for (const std::pair<int, int>& entry : pattern_) {
+    const WhitenedEdge& edge = edges_[entry.first];
+    const double weight = weights[entry.first];
+    if (weight == 0.) continue;
+    const Pose2 &from = poses_[edge.from], &to = poses_[edge.to];
+    const double c = rotations_[edge.from].x(), s = rotations_[edge.from].y();
+    const double dx = to.x - from.x, dy = to.y - from.y;
+    // J_to, and J_from = -J_to T with T = [1 0 -dy; 0 1 dx; 0 0 1].
+    Eigen::Matrix3d jacobian;
+    jacobian.col(0) = c * edge.whitening.col(0) - s * edge.whitening.col(1);
+    jacobian.col(1) = s * edge.whitening.col(0) + c * edge.whitening.col(1);
+    jacobian.col(2) = edge.whitening.col(2);
+    const Eigen::Vector3d gradient =
+        weight * (jacobian.transpose() * Residual(edge, from, to, c, s));
+    const Eigen::Matrix3d to_to = weight * (jacobian.transpose() * jacobian);
+    const int a = edge.from - 1, b = edge.to - 1;
+    if (b >= 0) {
+      factor_.AddDiagonal(b, to_to);
+      diagonal_.segment<3>(3 * b) += to_to.diagonal();
+      gradient_.segment<3>(3 * b) += gradient;
+    }
+    if (a < 0) continue;
+    Eigen::Matrix3d from_to = to_to;  // T' J_to' J_to, of the other sign
+    from_to.row(2) += dx * to_to.row(1) - dy * to_to.row(0);
+    Eigen::Matrix3d from_from = from_to;
+    from_from.col(2) += dx * from_to.col(1) - dy * from_to.col(0);
+    factor_.AddDiagonal(a, from_from);
+    diagonal_.segment<3>(3 * a) += from_from.diagonal();
+    gradient_.segment<3>(3 * a) -=
+        Eigen::Vector3d(gradient.x(), gradient.y(),
+                        gradient.z() + dx * gradient.y() - dy * gradient.x());
+    if (entry.second >= 0) factor_.AddOffDiagonal(entry.second, -from_to);
+  }
+}
+
+// Decrease of the quadratic model; costs are sums of squares without 1/2.
+double RobustSolver::PredictedDecrease(const Eigen::VectorXd& step,
+                                       const double lambda) const {
+  return step.dot(lambda * diagonal_.cwiseProduct(step) - gradient_);
+}
+
+SolverSummary SolveRobust(const std::vector<WhitenedEdge>& edges,
+                          const SolverOptions& options,
+                          std::vector<Pose2>* const poses) {
+  return RobustSolver(edges).Solve(options, poses);
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

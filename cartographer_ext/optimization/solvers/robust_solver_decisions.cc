@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What decides about loops: graduated non-convexity, the truncated cost and the
+// polish by it.
+#include <algorithm>
+#include <limits>
+
+#include "cartographer_ext/common/thread_time.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
+                       const GncOptions& options,
+                       std::vector<Pose2>* const poses,
+                       std::vector<double>* const weights) {
+  RobustSolver solver(edges);
+  return SolveGnc(options, &solver, poses, weights);
+}
+
+SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
+                       std::vector<Pose2>* const poses,
+                       std::vector<double>* const weights) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  const double start = ThreadCpuSeconds();
+  SolverOptions inner;
+  inner.max_iterations = options.inner_iterations;
+  inner.cost_tolerance = 1e-4;
+  inner.edge_weights.assign(edges.size(), 1.);
+  const std::vector<Pose2> given = *poses;
+  SolverSummary total = solver->Solve(inner, poses);
+  const double c = options.truncation;
+  double mu = -1.;
+  const auto in_time = [&] {
+    return ThreadCpuSeconds() - start <= options.max_seconds;
+  };
+  for (int outer = 0; outer != options.max_outer_iterations && in_time();
+       ++outer) {
+    const std::vector<double> chi2 = Chi2OfEdges(edges, *poses);
+    if (mu < 0.) {
+      double largest = 0.;
+      for (size_t i = 0; i != edges.size(); ++i) {
+        if (edges[i].is_loop) largest = std::max(largest, chi2[i]);
+      }
+      if (2. * largest <= c) break;  // nothing looks wrong
+      mu = c / (2. * largest - c);
+    }
+    bool binary = true;
+    for (size_t i = 0; i != edges.size(); ++i) {
+      if (!edges[i].is_loop) continue;
+      const double weight = GncTlsWeight(chi2[i], c, mu);
+      inner.edge_weights[i] = weight;
+      binary = binary && (weight < 1e-4 || weight > 1. - 1e-4);
+    }
+    if (options.restart) *poses = given;
+    const SolverSummary summary = solver->Solve(inner, poses);
+    total.iterations += summary.iterations;
+    total.analyses += summary.analyses;
+    total.final_cost = summary.final_cost;
+    total.factor_blocks = summary.factor_blocks;
+    total.converged = binary && mu > 1.;
+    if (total.converged) break;
+    mu *= options.mu_step;
+  }
+  if (in_time()) {
+    inner.max_iterations = 20;
+    inner.cost_tolerance = 1e-12;
+    const SolverSummary last = solver->Solve(inner, poses);
+    total.iterations += last.iterations;
+    total.analyses += last.analyses;
+    total.final_cost = last.final_cost;
+  } else {
+    total.converged = false;
+  }
+  if (weights != nullptr) *weights = inner.edge_weights;
+  total.cpu_seconds = ThreadCpuSeconds() - start;
+  return total;
+}
+
+SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
+                              const double gate, const int max_rounds,
+                              std::vector<Pose2>* const poses,
+                              std::vector<double>* const weights) {
+  RobustSolver solver(edges);
+  return PolishTruncated(gate, max_rounds, &solver, poses, weights);
+}
+
+SolverSummary PolishTruncated(const double gate, const int max_rounds,
+                              RobustSolver* const solver,
+                              std::vector<Pose2>* const poses,
+                              std::vector<double>* const weights) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  const double start = ThreadCpuSeconds();
+  SolverSummary total;
+  SolverOptions options;
+  options.initial_lambda = 1e-8;
+  options.max_iterations = 20;
+  for (int round = 0; round < max_rounds; ++round) {
+    std::vector<double> decisions = Chi2OfEdges(edges, *poses);
+    for (size_t i = 0; i != edges.size(); ++i) {
+      decisions[i] = !edges[i].is_loop || decisions[i] < gate ? 1. : 0.;
+    }
+    if (decisions == options.edge_weights) {
+      total.converged = true;
+      break;
+    }
+    options.edge_weights = decisions;
+    const SolverSummary summary = solver->Solve(options, poses);
+    total.iterations += summary.iterations;
+    total.analyses += summary.analyses;
+    total.factor_blocks = summary.factor_blocks;
+  }
+  if (weights != nullptr) *weights = options.edge_weights;
+  total.final_cost = TruncatedCost(edges, *poses);
+  total.cpu_seconds = ThreadCpuSeconds() - start;
+  return total;
+}
+
+double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
+                    const std::vector<Pose2>& poses) {
+  // Quantiles of chi2 with 3 degrees of freedom.
+  constexpr double kMedian = 2.365973884375338;
+  constexpr double k98th = 9.837409311192957;
+  constexpr double kSafety = 4.;
+  std::vector<double> inside;
+  for (const WhitenedEdge& edge : edges) {
+    if (!edge.is_loop) continue;
+    const double chi2 = Chi2(edge, poses[edge.from], poses[edge.to]);
+    if (chi2 < kChi2Gate) inside.push_back(chi2);
+  }
+  // Too few loops say nothing about their scale.
+  if (inside.size() < 20) return kChi2Gate;
+  std::sort(inside.begin(), inside.end());
+  const double scale = std::max(inside[inside.size() / 2] / kMedian,
+                                inside[inside.size() * 98 / 100] / k98th);
+  return kChi2Gate * std::min(1., kSafety * scale);
+}
+
+SolverSummary PolishAdapted(const std::vector<WhitenedEdge>& edges,
+                            const int max_rounds,
+                            std::vector<Pose2>* const poses,
+                            std::vector<double>* const weights) {
+  RobustSolver solver(edges);
+  return PolishAdapted(max_rounds, &solver, poses, weights);
+}
+
+SolverSummary PolishAdapted(const int max_rounds, RobustSolver* const solver,
+                            std::vector<Pose2>* const poses,
+                            std::vector<double>* const weights) {
+  constexpr int kMaxGates = 5;
+  const double start = ThreadCpuSeconds();
+  SolverSummary total;
+  double gate = std::numeric_limits<double>::infinity();
+  for (int k = 0; k != kMaxGates; ++k) {
+    const double next = AdaptiveGate(solver->edges(), *poses);
+    if (next >= 0.99 * gate) break;
+    gate = next;
+    const SolverSummary summary =
+        PolishTruncated(gate, max_rounds, solver, poses, weights);
+    total.iterations += summary.iterations;
+    total.analyses += summary.analyses;
+    total.factor_blocks = summary.factor_blocks;
+    total.converged = summary.converged;
+    total.final_cost = summary.final_cost;
+  }
+  total.cpu_seconds = ThreadCpuSeconds() - start;
+  return total;
+}
+
+double TruncatedCost(const std::vector<WhitenedEdge>& edges,
+                     const std::vector<Pose2>& poses, const double gate) {
+  double cost = 0.;
+  for (const WhitenedEdge& edge : edges) {
+    const double chi2 = Chi2(edge, poses[edge.from], poses[edge.to]);
+    cost += edge.is_loop ? std::min(chi2, gate) : chi2;
+  }
+  return cost;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,509 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "cartographer/common/port.h"
+#include "cartographer_ext/io/pbstream/pbstream_records.h"
+#include "cartographer_ext/io/pbstream/pbstream_validation.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/io/pbstream/pbstream_example.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Data = cartographer::mapping::proto::SerializedData;
+
+absl::Status Read(const std::string& content,
+                  const PbstreamReaderOptions& options = {}) {
+  return ParsePbstream(content, "x.pbstream", options).status();
+}
+
+void ExpectError(const absl::Status& status, const absl::StatusCode code,
+                 const std::string& text) {
+  EXPECT_EQ(status.code(), code) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr(text));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("x.pbstream: "));
+}
+
+// A file of these records, each a serialized message.
+std::string FileOf(const std::vector<std::string>& records) {
+  std::string content(PbstreamMagic());
+  for (const std::string& record : records) {
+    AppendPbstreamRecord(record, &content);
+  }
+  return content;
+}
+
+std::string HeaderRecord(const int version) {
+  cartographer::mapping::proto::SerializationHeader header;
+  header.set_format_version(version);
+  return header.SerializeAsString();
+}
+
+std::string EmptyPoseGraph() {
+  Data data;
+  data.mutable_pose_graph();
+  return data.SerializeAsString();
+}
+
+std::string EmptyOptions() {
+  Data data;
+  data.mutable_all_trajectory_builder_options();
+  return data.SerializeAsString();
+}
+
+TEST(PbstreamReaderTest, RoundTrip) {
+  const Pbstream example = ExamplePbstream();
+  EXPECT_THAT(FindPbstreamProblems(example), IsEmpty());
+  const std::string content = SerializePbstream(example);
+  const auto loaded = ParsePbstream(content, "x.pbstream");
+  ASSERT_TRUE(loaded.ok()) << loaded.status();
+  EXPECT_EQ(loaded->nodes.size(), 3);
+  EXPECT_EQ(loaded->submaps.size(), 2);
+  EXPECT_EQ(loaded->odometry_data.size(), 2);
+  EXPECT_EQ(loaded->imu_data.size(), 2);
+  EXPECT_EQ(loaded->fixed_frame_pose_data.size(), 1);
+  EXPECT_EQ(loaded->landmark_data.size(), 1);
+  EXPECT_EQ(loaded->trajectory_data.size(), 1);
+  EXPECT_EQ(SerializePbstream(*loaded), content);
+}
+
+TEST(PbstreamReaderTest, FilesOnDisk) {
+  const std::string path = ::testing::TempDir() + "/pbstream_test.pbstream";
+  ASSERT_TRUE(WritePbstream(ExamplePbstream(), path).ok());
+  const auto loaded = ReadPbstream(path);
+  ASSERT_TRUE(loaded.ok()) << loaded.status();
+  EXPECT_EQ(SerializePbstream(*loaded), SerializePbstream(ExamplePbstream()));
+  PbstreamReaderOptions options;
+  options.limits.max_file_size = 100;
+  EXPECT_EQ(ReadPbstream(path, options).status().code(),
+            absl::StatusCode::kResourceExhausted);
+  std::remove(path.c_str());
+
+  const auto missing = ReadPbstream("/nonexistent/file.pbstream");
+  EXPECT_EQ(missing.status().code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(missing.status().message()),
+              HasSubstr("/nonexistent/file.pbstream"));
+  EXPECT_FALSE(ReadPbstream(::testing::TempDir()).ok());
+  EXPECT_FALSE(WritePbstream(ExamplePbstream(), "/nonexistent/file").ok());
+}
+
+TEST(PbstreamReaderTest, RecordsAreSerializedDataToOthers) {
+  const std::string content = SerializePbstream(ExamplePbstream());
+  PbstreamRecords records(content, "x");
+  class NoLimit : public ContentLimit {
+    int64_t For(absl::string_view, int64_t) const override {
+      return int64_t{1} << 40;
+    }
+  };
+  std::vector<int> kinds;
+  std::string record;
+  while (*records.Next(NoLimit(), &record)) {
+    if (records.index() == 0) continue;
+    Data data;
+    ASSERT_TRUE(data.ParseFromString(record));
+    kinds.push_back(data.data_case());
+    EXPECT_EQ(data.SerializeAsString(), record);
+  }
+  EXPECT_THAT(kinds, ElementsAre(1, 2, 3, 3, 4, 4, 4, 5, 6, 6, 7, 7, 8, 9));
+}
+
+TEST(PbstreamReaderTest, Version1IsReadAndKept) {
+  Pbstream example = ExamplePbstream();
+  example.header.set_format_version(1);
+  const auto loaded = ParsePbstream(SerializePbstream(example), "x");
+  ASSERT_TRUE(loaded.ok()) << loaded.status();
+  EXPECT_EQ(loaded->header.format_version(), 1);
+}
+
+TEST(PbstreamReaderTest, UnknownRecordsAreCounted) {
+  std::string content = SerializePbstream(ExamplePbstream());
+  AppendPbstreamRecord("", &content);
+  AppendPbstreamRecord("\xaa\x06\x01x", &content);  // field 101
+  const auto loaded = ParsePbstream(content, "x");
+  ASSERT_TRUE(loaded.ok()) << loaded.status();
+  EXPECT_EQ(loaded->num_unknown_records, 2);
+}
+
+TEST(PbstreamReaderTest, UnknownFieldsSurvive) {
+  Pbstream example = ExamplePbstream();
+  auto* const options = example.options.mutable_options_with_sensor_ids(0)
+                            ->mutable_trajectory_builder_options();
+  options->GetReflection()->MutableUnknownFields(options)->AddLengthDelimited(
+      51966, "ours");
+  const auto loaded = ParsePbstream(SerializePbstream(example), "x");
+  ASSERT_TRUE(loaded.ok());
+  const auto& again =
+      loaded->options.options_with_sensor_ids(0).trajectory_builder_options();
+  const auto& fields = again.GetReflection()->GetUnknownFields(again);
+  ASSERT_EQ(fields.field_count(), 1);
+  EXPECT_EQ(fields.field(0).length_delimited(), "ours");
+}
+
+TEST(PbstreamReaderTest, WhatIsNoPbstream) {
+  ExpectError(Read(""), absl::StatusCode::kInvalidArgument, "is empty");
+  ExpectError(Read("FLASER 180 1.0"), absl::StatusCode::kInvalidArgument,
+              "is not a pbstream");
+  ExpectError(Read("\xdb\x01\xf5"), absl::StatusCode::kInvalidArgument,
+              "is not a pbstream");
+}
+
+TEST(PbstreamReaderTest, MissingParts) {
+  ExpectError(Read(FileOf({})), absl::StatusCode::kDataLoss,
+              "before its header");
+  ExpectError(Read(FileOf({HeaderRecord(2)})), absl::StatusCode::kDataLoss,
+              "before the pose graph");
+  ExpectError(Read(FileOf({HeaderRecord(2), EmptyPoseGraph()})),
+              absl::StatusCode::kDataLoss, "before the options");
+  EXPECT_TRUE(
+      Read(FileOf({HeaderRecord(2), EmptyPoseGraph(), EmptyOptions()})).ok());
+}
+
+TEST(PbstreamReaderTest, PartsOutOfOrder) {
+  ExpectError(Read(FileOf({HeaderRecord(2), EmptyOptions(), EmptyPoseGraph()})),
+              absl::StatusCode::kInvalidArgument,
+              "record 1 at byte " +
+                  std::to_string(FileOf({HeaderRecord(2)}).size()) +
+                  ": the pose graph should be here");
+  ExpectError(Read(FileOf({HeaderRecord(2), EmptyPoseGraph(), EmptyOptions(),
+                           EmptyPoseGraph()})),
+              absl::StatusCode::kInvalidArgument, "a second pose graph");
+  ExpectError(Read(FileOf({HeaderRecord(2), EmptyPoseGraph(), EmptyOptions(),
+                           EmptyOptions()})),
+              absl::StatusCode::kInvalidArgument, "for a second time");
+}
+
+TEST(PbstreamReaderTest, Versions) {
+  ExpectError(Read(FileOf({HeaderRecord(3)})), absl::StatusCode::kUnimplemented,
+              "record 0 at byte 8: format version 3 is not supported");
+  ExpectError(Read(FileOf({HeaderRecord(0)})), absl::StatusCode::kUnimplemented,
+              "before Cartographer 1.0");
+  // What older streams start with: field 1 is a message.
+  ExpectError(Read(FileOf({EmptyPoseGraph() + "\x12\x01x"})),
+              absl::StatusCode::kUnimplemented, "before Cartographer 1.0");
+}
+
+TEST(PbstreamReaderTest, ThreeDimensionalSubmaps) {
+  Pbstream example = ExamplePbstream();
+  example.submaps[1].clear_submap_2d();
+  example.submaps[1].mutable_submap_3d()->set_finished(true);
+  ExpectError(Read(SerializePbstream(example)),
+              absl::StatusCode::kUnimplemented, "3D submap");
+}
+
+TEST(PbstreamReaderTest, EveryTruncationIsNoticed) {
+  const std::string content = SerializePbstream(ExamplePbstream());
+  // Where records end a shorter file is whole, up to what the graph promises.
+  int whole = 0;
+  for (size_t size = 0; size != content.size(); ++size) {
+    const absl::Status status = Read(content.substr(0, size));
+    if (status.ok()) ++whole;
+  }
+  // Nodes and submaps are missed by constraints; readings are not missed.
+  EXPECT_EQ(whole, 7);
+  ExpectError(Read(content.substr(0, content.size() - 5)),
+              absl::StatusCode::kDataLoss, "the file ends after");
+  ExpectError(Read(content.substr(0, 11)), absl::StatusCode::kDataLoss,
+              "ends inside the size");
+}
+
+TEST(PbstreamReaderTest, CorruptCompression) {
+  std::string content = FileOf({HeaderRecord(2), EmptyPoseGraph()});
+  const size_t checksum = content.size() - 6;
+  content[checksum] ^= 0x10;
+  ExpectError(Read(content), absl::StatusCode::kDataLoss,
+              "the compressed data is corrupt");
+
+  std::string cut;
+  cartographer::common::FastGzipString(HeaderRecord(2), &cut);
+  const auto file_of = [](const std::string& compressed) {
+    return std::string(PbstreamMagic()) + static_cast<char>(compressed.size()) +
+           std::string(7, '\0') + compressed;
+  };
+  ExpectError(Read(file_of(cut.substr(0, cut.size() - 3))),
+              absl::StatusCode::kDataLoss, "ends early");
+  ExpectError(Read(file_of(cut + "more")), absl::StatusCode::kDataLoss,
+              "followed by more");
+  ExpectError(Read(file_of("")), absl::StatusCode::kDataLoss, "ends early");
+}
+
+TEST(PbstreamReaderTest, CorruptMessages) {
+  const std::vector<std::string> start = {HeaderRecord(2), EmptyPoseGraph(),
+                                          EmptyOptions()};
+  const auto with = [&start](const std::string& record) {
+    std::vector<std::string> records = start;
+    records.push_back(record);
+    return Read(FileOf(records));
+  };
+  ExpectError(with("\x22\x02\x0a\x05"), absl::StatusCode::kDataLoss,
+              "the node in this record is corrupt");
+  ExpectError(with("garbage"), absl::StatusCode::kDataLoss,
+              "not a message of a serialized state");
+  // Two messages in one record, a number in place of a message.
+  Data node;
+  node.mutable_node();
+  ExpectError(with(node.SerializeAsString() + node.SerializeAsString()),
+              absl::StatusCode::kDataLoss, "not a message");
+  ExpectError(with("\x20\x01"), absl::StatusCode::kDataLoss, "not a message");
+}
+
+TEST(PbstreamReaderTest, ZipBombs) {
+  // 8 MiB of zeros, 36 KiB compressed.
+  std::string content = FileOf({HeaderRecord(2), EmptyPoseGraph(),
+                                EmptyOptions(), std::string(8 << 20, '\0')});
+  EXPECT_LT(content.size(), 40000);
+  ExpectError(Read(content), absl::StatusCode::kResourceExhausted,
+              "expands to more than the");
+
+  // Submaps may be that empty, one by one but not all together.
+  Pbstream example = ExamplePbstream();
+  auto* const grid = example.submaps[0].mutable_submap_2d()->mutable_grid();
+  grid->mutable_limits()->mutable_cell_limits()->set_num_x_cells(2000);
+  grid->mutable_limits()->mutable_cell_limits()->set_num_y_cells(2000);
+  grid->mutable_cells()->Resize(4000000, 0);
+  content = SerializePbstream(example);
+  EXPECT_TRUE(Read(content).ok()) << Read(content);
+  PbstreamReaderOptions options;
+  options.limits.total_floor = 1 << 20;
+  ExpectError(Read(content, options), absl::StatusCode::kResourceExhausted,
+              "the file expands to more than the");
+  options = PbstreamReaderOptions();
+  options.limits.max_record_size = 1 << 20;
+  ExpectError(Read(content, options), absl::StatusCode::kResourceExhausted,
+              "expands to more than the 1048576 bytes");
+}
+
+TEST(PbstreamReaderTest, ValidationCanBeLeftOut) {
+  Pbstream example = ExamplePbstream();
+  example.nodes.clear();
+  const std::string content = SerializePbstream(example);
+  ExpectError(Read(content), absl::StatusCode::kInvalidArgument,
+              "constraint 0 refers to node (0, 0), which does not exist (and");
+  PbstreamReaderOptions options;
+  options.validate = false;
+  EXPECT_TRUE(Read(content, options).ok());
+}
+
+TEST(PbstreamReaderTest, AtMostSoManyProblems) {
+  Pbstream example = ExamplePbstream();
+  example.nodes.clear();
+  example.submaps.clear();
+  EXPECT_EQ(FindPbstreamProblems(example, 2).size(), 2);
+  EXPECT_GT(FindPbstreamProblems(example).size(), 2);
+}
+
+// Each change to the example makes just this problem.
+TEST(PbstreamReaderTest, Problems) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto expect = [](const std::function<void(Pbstream*)>& change,
+                         const std::string& problem) {
+    Pbstream example = ExamplePbstream();
+    change(&example);
+    EXPECT_THAT(FindPbstreamProblems(example), ElementsAre(problem));
+  };
+  const auto graph = [](Pbstream* p) { return &p->pose_graph; };
+  const auto trajectory = [](Pbstream* p) {
+    return p->pose_graph.mutable_trajectory(0);
+  };
+  const auto submap = [](Pbstream* p) {
+    return p->submaps[1].mutable_submap_2d();
+  };
+  const auto node = [](Pbstream* p) { return p->nodes[1].mutable_node_data(); };
+
+  expect([](Pbstream* p) { p->options.add_options_with_sensor_ids(); },
+         "the pose graph has 1 trajectories, but there are options for 2");
+  expect(
+      [&](Pbstream* p) {
+        graph(p)->add_trajectory();
+        p->options.add_options_with_sensor_ids();
+      },
+      "trajectory 0 is there twice");
+  expect(
+      [&](Pbstream* p) {
+        graph(p)->add_trajectory()->set_trajectory_id(-4);
+        p->options.add_options_with_sensor_ids();
+      },
+      "a trajectory has the negative id -4");
+  expect(
+      [&](Pbstream* p) { trajectory(p)->mutable_submap()->SwapElements(0, 1); },
+      "submap (0, 0) of the pose graph is out of order");
+  expect(
+      [&](Pbstream* p) {
+        trajectory(p)
+            ->mutable_submap(0)
+            ->mutable_pose()
+            ->mutable_translation()
+            ->set_z(nan);
+      },
+      "submap (0, 0) has no valid global pose");
+  expect([&](Pbstream* p) { trajectory(p)->mutable_node(2)->clear_pose(); },
+         "node (0, 2) has no valid global pose");
+  expect(
+      [&](Pbstream* p) {
+        trajectory(p)->mutable_node(1)->set_timestamp(50);
+        node(p)->set_timestamp(50);
+      },
+      "node (0, 1) is older than the node before it");
+  expect(
+      [&](Pbstream* p) {
+        graph(p)->mutable_constraint(0)->mutable_node_id()->set_node_index(9);
+      },
+      "constraint 0 refers to node (0, 9), which does not exist");
+  expect(
+      [&](Pbstream* p) {
+        graph(p)->mutable_constraint(1)->mutable_submap_id()->set_trajectory_id(
+            1);
+      },
+      "constraint 1 refers to submap (1, 0), which does not exist");
+  expect(
+      [&](Pbstream* p) {
+        graph(p)
+            ->mutable_constraint(0)
+            ->mutable_relative_pose()
+            ->mutable_rotation()
+            ->set_x(1.);
+      },
+      "constraint 0 has no valid pose");
+  expect(
+      [&](Pbstream* p) {
+        graph(p)->mutable_constraint(2)->set_rotation_weight(-1.);
+      },
+      "constraint 2 has no valid weights");
+  expect(
+      [&](Pbstream* p) {
+        graph(p)->mutable_constraint(0)->set_tag(
+            static_cast<
+                cartographer::mapping::proto::PoseGraph::Constraint::Tag>(5));
+      },
+      "constraint 0 has the unknown tag 5");
+  expect([](Pbstream* p) { p->submaps.push_back(p->submaps[0]); },
+         "submap (0, 0) is there twice");
+  expect(
+      [](Pbstream* p) {
+        p->submaps.push_back(p->submaps[0]);
+        p->submaps.back().mutable_submap_id()->set_submap_index(7);
+      },
+      "submap (0, 7) is not in the pose graph");
+  expect([](Pbstream* p) { p->submaps[0].clear_submap_2d(); },
+         "submap (0, 0) is not a 2D submap");
+  expect([&](Pbstream* p) { submap(p)->clear_local_pose(); },
+         "submap (0, 1) has no valid local pose");
+  expect([&](Pbstream* p) { submap(p)->set_num_range_data(-1); },
+         "submap (0, 1) has a negative number of scans");
+  expect([&](Pbstream* p) { submap(p)->mutable_grid()->add_cells(1); },
+         "submap (0, 1) has 7 cells instead of 2 x 3");
+  expect([&](Pbstream* p) { submap(p)->mutable_grid()->set_cells(0, 32768); },
+         "submap (0, 1) has a cell with the value 32768");
+  expect(
+      [&](Pbstream* p) {
+        submap(p)->mutable_grid()->mutable_limits()->set_resolution(0.);
+      },
+      "submap (0, 1) has cells of 0 m");
+  expect(
+      [&](Pbstream* p) {
+        auto* const limits = submap(p)->mutable_grid()->mutable_limits();
+        limits->mutable_cell_limits()->set_num_x_cells(1 << 20);
+        limits->mutable_cell_limits()->set_num_y_cells(1 << 20);
+      },
+      "submap (0, 1) has the size 1048576 x 1048576");
+  expect(
+      [&](Pbstream* p) {
+        submap(p)->mutable_grid()->mutable_known_cells_box()->set_max_x(2);
+      },
+      "submap (0, 1) has a box of known cells beyond its limits");
+  expect(
+      [&](Pbstream* p) {
+        submap(p)->mutable_grid()->clear_probability_grid_2d();
+      },
+      "submap (0, 1) has a grid of unknown type");
+  expect(
+      [&](Pbstream* p) {
+        submap(p)->mutable_grid()->set_min_correspondence_cost(0.95f);
+      },
+      "submap (0, 1) has correspondence costs between 0.95 and 0.9");
+  expect(
+      [&](Pbstream* p) {
+        auto* const tsdf = submap(p)->mutable_grid()->mutable_tsdf_2d();
+        tsdf->set_truncation_distance(0.3f);
+        tsdf->set_max_weight(10.f);
+      },
+      "submap (0, 1) has 0 weights for 6 cells");
+  expect([](Pbstream* p) { p->nodes.push_back(p->nodes[0]); },
+         "node (0, 0) is there twice");
+  expect([&](Pbstream* p) { node(p)->set_timestamp(7); },
+         "node (0, 1) has another time in the pose graph");
+  expect([&](Pbstream* p) { node(p)->mutable_gravity_alignment()->set_w(nan); },
+         "node (0, 1) has no valid gravity alignment");
+  expect([&](Pbstream* p) { node(p)->clear_local_pose(); },
+         "node (0, 1) has no valid local pose");
+  for (int broken = 0; broken != 4; ++broken) {
+    expect(
+        [&](Pbstream* p) {
+          auto* cloud = node(p)->mutable_filtered_gravity_aligned_point_cloud();
+          if (broken == 0) cloud->set_num_points(3);
+          if (broken == 1) cloud->set_point_data(0, 1000);
+          if (broken == 2) cloud->set_point_data(1, 1 << 20);
+          if (broken == 3) cloud->set_point_data(0, -1);
+        },
+        "node (0, 1) has a corrupt point cloud");
+  }
+  expect([](Pbstream* p) { p->pose_graph.add_landmark_poses(); },
+         "landmark '' has no valid pose");
+  expect([](Pbstream* p) { p->trajectory_data[0].set_trajectory_id(3); },
+         "the data of trajectory 3 is of a trajectory that does not exist");
+  expect([&](Pbstream* p) { p->trajectory_data[0].set_gravity_constant(nan); },
+         "the data of trajectory 0 has no finite gravity");
+  expect(
+      [](Pbstream* p) {
+        p->odometry_data[1].mutable_odometry_data()->set_timestamp(90);
+      },
+      "the odometry reading of trajectory 0 at 90 is out of order");
+  expect([](Pbstream* p) { p->odometry_data[1].set_trajectory_id(2); },
+         "the odometry reading of trajectory 2 at 110 is of a trajectory that "
+         "does not exist");
+  expect(
+      [](Pbstream* p) {
+        p->odometry_data[0].mutable_odometry_data()->clear_pose();
+      },
+      "the odometry reading of trajectory 0 at 90 has no valid pose");
+  expect(
+      [&](Pbstream* p) {
+        p->imu_data[0].mutable_imu_data()->mutable_linear_acceleration()->set_x(
+            nan);
+      },
+      "the IMU reading of trajectory 0 at 90 is not finite");
+  expect(
+      [&](Pbstream* p) {
+        p->fixed_frame_pose_data[0]
+            .mutable_fixed_frame_pose_data()
+            ->mutable_pose();
+      },
+      "the fixed frame reading of trajectory 0 at 95 has no valid pose");
+  expect(
+      [&](Pbstream* p) {
+        p->landmark_data[0]
+            .mutable_landmark_data()
+            ->mutable_landmark_observations(0)
+            ->set_rotation_weight(nan);
+      },
+      "the landmark reading of trajectory 0 at 96 has no valid pose or "
+      "weights");
+}
+
+}  // namespace
+}  // namespace io
+}  // namespace cartographer_ext

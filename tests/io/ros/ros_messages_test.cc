@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/io/ros/ros_messages.h"
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "tests/mutation.h"
+
+namespace cartographer_ext {
+namespace io {
+namespace {
+
+// Serializes messages field by field, as their definitions say.
+class Bytes {
+ public:
+  template <typename T>
+  Bytes& Add(T value) {
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    data_.append(raw, sizeof(T));
+    return *this;
+  }
+  Bytes& Text(const std::string& text) {
+    Add(static_cast<uint32_t>(text.size()));
+    data_ += text;
+    return *this;
+  }
+  Bytes& Header(uint32_t seconds, uint32_t nanoseconds,
+                const std::string& frame) {
+    return Add(uint32_t{7}).Add(seconds).Add(nanoseconds).Text(frame);
+  }
+  Bytes& Doubles(const std::vector<double>& values) {
+    for (const double value : values) Add(value);
+    return *this;
+  }
+  Bytes& Floats(const std::vector<float>& values) {
+    for (const float value : values) Add(value);
+    return *this;
+  }
+  const std::string& data() const { return data_; }
+
+ private:
+  std::string data_;
+};
+
+std::string LaserScanBytes(const std::vector<float>& ranges) {
+  return Bytes()
+      .Header(10, 500000000, "/laser")
+      // angle_min, _max, _increment, time_increment, scan_time, range_min, _max
+      .Floats({-1.f, 1.f, 0.5f, 0.25f, 0.1f, 0.1f, 30.f})
+      .Add(static_cast<uint32_t>(ranges.size()))
+      .Floats(ranges)
+      .Add(uint32_t{1})
+      .Add(99.f)
+      .data();
+}
+
+TEST(RosMessagesTest, LaserScan) {
+  RosHeader header;
+  LaserScan scan;
+  ASSERT_TRUE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes({1.f, 2.f, 3.f}), &header, &scan));
+  EXPECT_EQ(header.time, 10500000000);
+  EXPECT_EQ(header.frame, "laser");
+  EXPECT_EQ(scan.time, 11000000000);  // of the last beam
+  EXPECT_EQ(scan.angle_min, -1.);
+  EXPECT_EQ(scan.angle_increment, 0.5);
+  EXPECT_EQ(scan.time_increment, 0.25);
+  EXPECT_EQ(scan.range_max, 30.);
+  EXPECT_EQ(scan.ranges, (std::vector<float>{1.f, 2.f, 3.f}));
+  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes({}), &header, &scan));
+  // More than a full turn.
+  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes(std::vector<float>(20, 1.f)),
+                               &header, &scan));
+}
+
+TEST(RosMessagesTest, MultiEchoLaserScan) {
+  const std::string data = Bytes()
+                               .Header(10, 0, "laser")
+                               .Floats({-1.f, 1.f, 0.5f, 0.f, 0.f, 0.1f, 30.f})
+                               .Add(uint32_t{2})
+                               .Add(uint32_t{2})
+                               .Floats({4.f, 5.f})
+                               .Add(uint32_t{0})
+                               .Add(uint32_t{1})
+                               .Add(uint32_t{1})
+                               .Add(7.f)
+                               .data();
+  RosHeader header;
+  LaserScan scan;
+  ASSERT_TRUE(DecodeMultiEchoLaserScan(RosEncoding::kRos1, data, &header, &scan));
+  ASSERT_EQ(scan.ranges.size(), 2u);
+  EXPECT_EQ(scan.ranges[0], 4.f);
+  EXPECT_TRUE(std::isnan(scan.ranges[1]));
+  EXPECT_EQ(scan.echoes[0], (std::vector<float>{4.f, 5.f}));
+}
+
+std::string OdometryBytes(const std::vector<double>& pose) {
+  return Bytes()
+      .Header(1, 2, "odom")
+      .Text("base_link")
+      .Doubles(pose)
+      .Doubles(std::vector<double>(36 + 6 + 36, 0.))
+      .data();
+}
+
+TEST(RosMessagesTest, Odometry) {
+  RosHeader header;
+  std::string child;
+  Eigen::Isometry3d pose;
+  ASSERT_TRUE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0.6, 0.8}),
+                             &header, &child, &pose));
+  EXPECT_EQ(header.time, 1000000002);
+  EXPECT_EQ(child, "base_link");
+  EXPECT_TRUE(pose.translation().isApprox(Eigen::Vector3d(1., 2., 3.)));
+  EXPECT_NEAR(std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)),
+              2. * std::atan2(0.6, 0.8), 1e-12);
+  // All zero stands for no rotation.
+  ASSERT_TRUE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0., 0.}),
+                             &header, &child, &pose));
+  EXPECT_TRUE(pose.linear().isIdentity());
+  EXPECT_FALSE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0., 0.5}),
+                              &header, &child, &pose));
+  EXPECT_FALSE(
+      DecodeOdometry(RosEncoding::kRos1, OdometryBytes({std::nan(""), 2., 3., 0., 0., 0., 1.}),
+                     &header, &child, &pose));
+}
+
+TEST(RosMessagesTest, Imu) {
+  const auto bytes = [](double rate) {
+    return Bytes()
+        .Header(3, 0, "imu")
+        .Doubles({0., 0., 0., 1.})
+        .Doubles(std::vector<double>(9, 0.))
+        .Doubles({0.1, 0.2, rate})
+        .Doubles(std::vector<double>(9, 0.))
+        .Doubles({1., 2., 9.8})
+        .Doubles(std::vector<double>(9, 0.))
+        .data();
+  };
+  RosHeader header;
+  ImuReading reading;
+  ASSERT_TRUE(DecodeImu(RosEncoding::kRos1, bytes(0.3), &header, &reading));
+  EXPECT_EQ(reading.time, 3000000000);
+  EXPECT_EQ(reading.angular_velocity, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(reading.linear_acceleration, Eigen::Vector3d(1., 2., 9.8));
+  EXPECT_FALSE(DecodeImu(RosEncoding::kRos1, bytes(std::nan("")), &header, &reading));
+}
+
+TEST(RosMessagesTest, Transforms) {
+  const std::string data = Bytes()
+                               .Add(uint32_t{2})
+                               .Header(1, 0, "/odom")
+                               .Text("/base")
+                               .Doubles({1., 0., 0., 0., 0., 0., 1.})
+                               .Header(1, 0, "base")
+                               .Text("laser")
+                               .Doubles({2., 0., 0., 0., 0., 0., 1.})
+                               .data();
+  std::vector<RosTransform> transforms;
+  ASSERT_TRUE(DecodeTransforms(RosEncoding::kRos1, data, &transforms));
+  ASSERT_EQ(transforms.size(), 2u);
+  EXPECT_EQ(transforms[0].header.frame, "odom");
+  EXPECT_EQ(transforms[0].child_frame, "base");
+  EXPECT_EQ(transforms[1].pose.translation().x(), 2.);
+  // A count that the message cannot hold.
+  std::string lying = data;
+  lying[3] = '\x7f';
+  EXPECT_FALSE(DecodeTransforms(RosEncoding::kRos1, lying, &transforms));
+}
+
+TEST(RosMessagesTest, TooShortOrTooLongIsRefused) {
+  const std::string scan = LaserScanBytes({1.f, 2.f, 3.f});
+  RosHeader header;
+  LaserScan decoded;
+  for (size_t size = 0; size < scan.size(); ++size) {
+    EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, scan.substr(0, size), &header, &decoded));
+  }
+  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, scan + "x", &header, &decoded));
+}
+
+TEST(RosMessagesTest, SurvivesMutations) {
+  const std::string samples[] = {LaserScanBytes({1.f, 2.f, 3.f}),
+                                 OdometryBytes({1., 2., 3., 0., 0., 0.6, 0.8})};
+  for (const std::string& sample : samples) {
+    test::ForEachMutation(sample, [](const std::string& damaged) {
+      RosHeader header;
+      LaserScan scan;
+      ImuReading imu;
+      std::string child;
+      Eigen::Isometry3d pose;
+      std::vector<RosTransform> transforms;
+      DecodeLaserScan(RosEncoding::kRos1, damaged, &header, &scan);
+      DecodeMultiEchoLaserScan(RosEncoding::kRos1, damaged, &header, &scan);
+      DecodeImu(RosEncoding::kRos1, damaged, &header, &imu);
+      DecodeOdometry(RosEncoding::kRos1, damaged, &header, &child, &pose);
+      DecodeTransforms(RosEncoding::kRos1, damaged, &transforms);
+    });
+  }
+}
+
+}  // namespace
+}  // namespace io
+}  // namespace cartographer_ext

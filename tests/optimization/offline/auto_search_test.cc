@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/auto_search.h"
+
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "gmock/gmock.h"
+#include "tests/optimization/test_graphs.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+int CountAccepted(const PoseGraph& graph, const AutoResult& result) {
+  int count = 0;
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    count += graph.edges[i].is_loop && result.accepted[i];
+  }
+  return count;
+}
+
+TEST(AutoSearchTest, OverconfidentMatricesKeepTheirLoops) {
+  const test::GridWorld world = test::MakeGridWorld(300, 5, 3);
+  const PoseGraph graph = WithNoiseScale(world.graph, 0.25, 0.25);
+  int loops = 0;
+  for (const PoseGraphEdge& edge : graph.edges) loops += edge.is_loop;
+  const AutoResult result = SearchAutomatically(graph, AutoOptions());
+  EXPECT_GE(CountAccepted(graph, result), 0.99 * loops);
+  EXPECT_NEAR(result.noise.odometry.factor, 4., 0.6);
+  EXPECT_NEAR(result.noise.loops.factor, 4., 0.6);
+  EXPECT_GT(result.applied_loop_scale, 3.);
+  AutoOptions at_their_word;
+  at_their_word.estimate_noise = false;
+  EXPECT_LT(CountAccepted(graph, SearchAutomatically(graph, at_their_word)),
+            0.9 * loops);
+}
+
+TEST(AutoSearchTest, HonestMatricesAreTakenAtTheirWord) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    test::GridWorld world = test::MakeGridWorld(250, 5, seed);
+    OutlierOptions outliers;
+    outliers.type = seed == 1 ? OutlierType::kLocal : OutlierType::kRandom;
+    outliers.count = 150;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    const AutoResult result = SearchAutomatically(world.graph, AutoOptions());
+    EXPECT_EQ(result.applied_odometry_scale, 1.);
+    EXPECT_EQ(result.applied_loop_scale, 1.);
+    EXPECT_LT(result.noise.odometry.low, 1.05);
+    EXPECT_GT(result.noise.odometry.high, 0.95);
+    EXPECT_LT(AbsoluteTrajectoryError(result.poses, world.truth), 0.3);
+  }
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/decision_moves.h"
+
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "gmock/gmock.h"
+#include "tests/optimization/weak_ring.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+TEST(DecisionMovesTest, FlipsNeverRaiseTheCost) {
+  for (const uint64_t seed : {1, 2, 3, 4}) {
+    test::GridWorld world = test::MakeGridWorld(150, 5, seed);
+    const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+    RobustSolver solver(edges);
+    std::vector<Pose2> poses = world.graph.poses;
+    PolishTruncated(kChi2Gate, 30, &solver, &poses, nullptr);
+    const double before = TruncatedCost(edges, poses);
+    const int kept = FlipLoops(FlipOptions(), &solver, &poses);
+    const double after = TruncatedCost(edges, poses);
+    if (kept > 0) {
+      EXPECT_LT(after, before);
+    } else {
+      EXPECT_EQ(after, before);
+    }
+  }
+}
+
+TEST(DecisionMovesTest, FlipBringsInALoopThatTheMapAllows) {
+  // Odometry alone: the only loop is far off but within the uncertainty.
+  std::vector<PoseGraphEdge> list;
+  std::vector<Pose2> poses = {Pose2()};
+  for (int i = 0; i != 20; ++i) {
+    PoseGraphEdge edge;
+    edge.from = i;
+    edge.to = i + 1;
+    edge.measurement = Pose2(1., 0., 0.);
+    edge.information = 25. * Eigen::Matrix3d::Identity();
+    list.push_back(edge);
+    poses.push_back(poses.back() * edge.measurement);
+  }
+  PoseGraphEdge loop;
+  loop.from = 0;
+  loop.to = 20;
+  loop.measurement = Pose2(20., 3., 0.1);
+  loop.information = 400. * Eigen::Matrix3d::Identity();
+  loop.is_loop = true;
+  list.push_back(loop);
+  const std::vector<WhitenedEdge> edges = Whiten(list);
+  RobustSolver solver(edges);
+  ASSERT_GT(Chi2(edges[20], poses[0], poses[20]), 50. * kChi2Gate);
+  FlipOptions options;
+  EXPECT_EQ(FlipLoops(options, &solver, &poses), 0);  // beyond what is near
+  poses[20].y = 2.;
+  solver.Solve(SolverOptions(), &poses);
+  EXPECT_LT(Chi2(edges[20], poses[0], poses[20]), kChi2Gate);
+}
+
+TEST(DecisionMovesTest, RightGroupsPushOutAWrongOne) {
+  test::GridWorld world = test::MakeWeakRing(2);
+  // One wrong group of four that agrees with itself.
+  const size_t clean = world.graph.edges.size();
+  for (int j = 0; j != 4; ++j) {
+    PoseGraphEdge edge = world.graph.edges[clean - 1];
+    edge.from = 20 + j;
+    edge.to = 60 + j;
+    edge.measurement = Pose2(0.3, 0., 0.);
+    world.graph.edges.push_back(edge);
+  }
+  std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  // Start with the wrong group alone.
+  SolverOptions wrong;
+  wrong.edge_weights.assign(edges.size(), 1.);
+  for (size_t i = 0; i != clean; ++i) {
+    if (edges[i].is_loop) wrong.edge_weights[i] = 0.;
+  }
+  std::vector<Pose2> poses = world.graph.poses;
+  solver.Solve(wrong, &poses);
+  PolishTruncated(kChi2Gate, 30, &solver, &poses, nullptr);
+  const double before = TruncatedCost(edges, poses);
+  std::vector<Alternative> alternatives;
+  EXPECT_GT(ForceGroups(FindLoopSupport(world.graph, LoopSupportOptions()),
+                        ForceOptions(), &edges, &solver, &poses, &alternatives),
+            0);
+  EXPECT_LT(TruncatedCost(edges, poses), before);
+  int wrong_in_force = 0;
+  for (size_t i = clean; i != edges.size(); ++i) {
+    EXPECT_TRUE(edges[i].is_loop);
+    wrong_in_force +=
+        Chi2(edges[i], poses[edges[i].from], poses[edges[i].to]) < kChi2Gate;
+  }
+  EXPECT_EQ(wrong_in_force, 0);
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext

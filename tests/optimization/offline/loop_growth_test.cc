@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/loop_growth.h"
+
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "gmock/gmock.h"
+#include "tests/optimization/weak_ring.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+TEST(LoopGrowthTest, FindsRightLoopsWhereOdometrySaysLittle) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    test::GridWorld world = test::MakeWeakRing(seed);
+    const size_t clean = world.graph.edges.size();
+    OutlierOptions outliers;
+    outliers.count = 40;
+    outliers.seed = seed;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+    RobustSolver solver(edges);
+    std::vector<Pose2> poses = world.graph.poses;
+    std::vector<double> weights;
+    ASSERT_TRUE(GrowLoops(FindLoopSupport(world.graph, LoopSupportOptions()),
+                          GrowthOptions(), &solver, &poses, &weights));
+    int right = 0, right_in_force = 0, wrong_in_force = 0;
+    for (size_t i = 0; i != edges.size(); ++i) {
+      if (!edges[i].is_loop) {
+        EXPECT_EQ(weights[i], 1.);
+      } else if (i < clean) {
+        ++right;
+        right_in_force += weights[i] > 0.;
+      } else {
+        wrong_in_force += weights[i] > 0.;
+      }
+    }
+    EXPECT_GE(right_in_force, 0.9 * right) << seed;
+    EXPECT_LE(wrong_in_force, 3) << seed;
+  }
+}
+
+TEST(LoopGrowthTest, InnovationsAreHonest) {
+  // Of one loop that closes a chain: its chi2 over the noise of all.
+  double sum = 0.;
+  constexpr int kTrials = 300;
+  Random random(5);
+  for (int trial = 0; trial != kTrials; ++trial) {
+    PoseGraph graph;
+    Pose2 pose;
+    std::vector<PoseGraphEdge> edges;
+    for (int i = 0; i != 12; ++i) {
+      PoseGraphEdge edge;
+      edge.from = i == 11 ? 0 : i;
+      edge.to = i == 11 ? 11 : i + 1;
+      edge.is_loop = i == 11;
+      edge.measurement = Pose2(i == 11 ? 11. : 1., 0., 0.) *
+                         Pose2(random.Normal(0., 0.02), random.Normal(0., 0.02),
+                               random.Normal(0., 0.005));
+      edge.information = Eigen::Vector3d(2500., 2500., 40000.).asDiagonal();
+      edges.push_back(edge);
+    }
+    std::vector<Pose2> poses = {Pose2()};
+    for (int i = 0; i != 11; ++i) {
+      poses.push_back(poses.back() * edges[i].measurement);
+    }
+    const std::vector<WhitenedEdge> whitened = Whiten(edges);
+    RobustSolver solver(whitened);
+    std::vector<double> weights(12, 1.);
+    weights[11] = 0.;
+    const std::vector<Innovation> innovations =
+        PredictLoops({11}, weights, poses, &solver);
+    ASSERT_EQ(innovations.size(), 1u);
+    sum += innovations[0].chi2;
+    EXPECT_GT(innovations[0].log_determinant, 0.);
+  }
+  EXPECT_NEAR(sum / kTrials, 3., 0.45);
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/noise_scale.h"
+
+#include <algorithm>
+
+#include "gmock/gmock.h"
+#include "tests/optimization/test_graphs.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+TEST(NoiseScaleTest, FindsTheFactorsOfBothKinds) {
+  const test::GridWorld world = test::MakeGridWorld(500, 5, 9);
+  for (const double odometry : {0.2, 1., 3.}) {
+    for (const double loops : {0.5, 1., 4.}) {
+      // Matrices that claim less noise by these factors.
+      const PoseGraph graph =
+          WithNoiseScale(world.graph, 1. / odometry, 1. / loops);
+      // Solved with the right weights, which are those of the noise found.
+      const PoseGraph right = WithNoiseScale(graph, odometry, loops);
+      const std::vector<WhitenedEdge> edges = Whiten(right.edges);
+      RobustSolver solver(edges);
+      std::vector<Pose2> poses = graph.poses;
+      solver.Solve(SolverOptions(), &poses);
+      const std::vector<double> weights(edges.size(), 1.);
+      const NoiseScale scale = EstimateNoiseScale(poses, weights, &solver);
+      EXPECT_NEAR(scale.odometry.factor, 1., 0.1);
+      EXPECT_NEAR(scale.loops.factor, 1., 0.1);
+      EXPECT_LT(scale.loops.low, 1.);
+      EXPECT_GT(scale.loops.high, 1.);
+      const std::vector<WhitenedEdge> as_given = Whiten(graph.edges);
+      for (size_t i = 0; i < edges.size(); i += 50) {
+        const double factor = edges[i].is_loop ? loops : odometry;
+        EXPECT_NEAR(
+            Chi2(as_given[i], poses[edges[i].from], poses[edges[i].to]),
+            factor * factor *
+                Chi2(edges[i], poses[edges[i].from], poses[edges[i].to]),
+            1e-6);
+      }
+    }
+  }
+}
+
+TEST(NoiseScaleTest, SaysSoWhereTheDataAreSilent) {
+  test::GridWorld world = test::MakeGridWorld(60, 5, 2);
+  std::vector<PoseGraphEdge>& list = world.graph.edges;
+  list.erase(
+      std::remove_if(list.begin(), list.end(),
+                     [](const PoseGraphEdge& edge) { return edge.is_loop; }),
+      list.end());
+  const std::vector<WhitenedEdge> edges = Whiten(list);
+  RobustSolver solver(edges);
+  const NoiseScale scale = EstimateNoiseScale(
+      world.graph.poses, std::vector<double>(edges.size(), 1.), &solver);
+  EXPECT_NEAR(scale.odometry.factor, 1., 1e-6);
+  EXPECT_LT(scale.odometry.degrees_of_freedom, 1e-6);
+  EXPECT_GT(scale.odometry.high, 3.);
+  EXPECT_LT(scale.odometry.low, 0.6);
+}
+
+TEST(NoiseScaleTest, InnovationsAreChi2ForHonestMatricesOnly) {
+  const test::GridWorld world = test::MakeGridWorld(500, 5, 9);
+  for (const double factor : {1., 0.4}) {
+    const std::vector<WhitenedEdge> edges =
+        Whiten(WithNoiseScale(world.graph, factor, factor).edges);
+    RobustSolver solver(edges);
+    std::vector<Pose2> poses = world.graph.poses;
+    solver.Solve(SolverOptions(), &poses);
+    const std::vector<double> values = LeaveOneOutInnovations(
+        poses, std::vector<double>(edges.size(), 1.), 300, &solver);
+    EXPECT_GT(values.size(), 100u);
+    EXPECT_EQ(IsLikeChi2(values), factor == 1.);
+    EXPECT_EQ(IsCutByGate(values, kChi2Gate), factor != 1.);
+  }
+  EXPECT_FALSE(IsLikeChi2({1., 2., 3.}));
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/optimize.h"
+
+#include "cartographer_ext/experiments/outliers/outlier_generator.h"
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+#include "gmock/gmock.h"
+#include "tests/optimization/test_graphs.h"
+#include "tests/test_data.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(OptimizeTest, EveryMethodRuns) {
+  test::GridWorld world = test::MakeGridWorld(120, 6, 2);
+  OutlierOptions outliers;
+  outliers.count = 20;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  for (const std::string& method : MethodNames()) {
+    OptimizeOptions options;
+    options.method = method;
+    const auto result = Optimize(world.graph, options);
+    ASSERT_TRUE(result.ok()) << method << ": " << result.status();
+    EXPECT_EQ(result->poses.size(), world.graph.poses.size());
+    EXPECT_EQ(result->weights.size(), world.graph.edges.size());
+    EXPECT_EQ(result->accepted.size(), world.graph.edges.size());
+    EXPECT_EQ(result->chi2.size(), world.graph.edges.size());
+    for (size_t i = 0; i != world.graph.edges.size(); ++i) {
+      EXPECT_GE(result->weights[i], 0.);
+      EXPECT_LE(result->weights[i], 1.);
+      if (!world.graph.edges[i].is_loop) {
+        EXPECT_TRUE(result->accepted[i]);
+      }
+    }
+    EXPECT_NEAR(result->truncated_chi2,
+                TruncatedCost(Whiten(world.graph.edges), result->poses), 1e-6);
+  }
+}
+
+TEST(OptimizeTest, AutoIsRightAndChoosesTheLowestTruncatedCost) {
+  for (const OutlierType type :
+       {OutlierType::kRandom, OutlierType::kLocal, OutlierType::kRandomGrouped,
+        OutlierType::kLocalGrouped}) {
+    test::GridWorld world = test::MakeGridWorld(250, 8, 5);
+    std::vector<Pose2> optimum = world.graph.poses;
+    SolveRobust(Whiten(world.graph.edges), SolverOptions(), &optimum);
+    OutlierOptions outliers;
+    outliers.type = type;
+    outliers.count = 200;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    OptimizeOptions options;
+    const auto result = Optimize(world.graph, options);
+    ASSERT_TRUE(result.ok());
+    EXPECT_LT(AbsoluteTrajectoryError(result->poses, optimum), 0.05)
+        << OutlierTypeName(type);
+    for (const char* method : {"dcs", "gm", "acs", "r_isam"}) {
+      options.method = method;
+      const auto single = Optimize(world.graph, options);
+      EXPECT_LE(result->member_truncated_chi2, single->truncated_chi2 + 1e-6)
+          << method;
+    }
+  }
+}
+
+TEST(OptimizeTest, FixedPosesStay) {
+  test::GridWorld world = test::MakeGridWorld(120, 6, 2);
+  // True poses in another frame; the rest of the file is dead reckoning.
+  const Pose2 frame(30., -12., 2.);
+  PoseGraph& graph = world.graph;
+  graph.fixed = {40, 90};
+  for (const int pose : graph.fixed) {
+    graph.poses[pose] = frame * world.truth[pose];
+  }
+  for (const char* method : {"auto", "r_isam"}) {
+    OptimizeOptions options;
+    options.method = method;
+    const auto result = Optimize(graph, options);
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(result->weights.size(), graph.edges.size());
+    EXPECT_EQ(result->chi2.size(), graph.edges.size());
+    for (const int pose : graph.fixed) {
+      EXPECT_EQ(result->poses[pose].x, graph.poses[pose].x);
+      EXPECT_EQ(result->poses[pose].theta, graph.poses[pose].theta);
+    }
+    for (size_t i = 0; i != graph.poses.size(); ++i) {
+      const Pose2 expected = frame * world.truth[i];
+      EXPECT_NEAR(result->poses[i].x, expected.x, 0.3) << method;
+      EXPECT_NEAR(result->poses[i].y, expected.y, 0.3) << method;
+    }
+  }
+}
+
+TEST(OptimizeTest, Errors) {
+  const test::GridWorld world = test::MakeGridWorld(30, 4, 1);
+  OptimizeOptions options;
+  options.method = "magic";
+  EXPECT_THAT(std::string(Optimize(world.graph, options).status().message()),
+              HasSubstr("unknown kernel 'magic'"));
+  options.method = "auto";
+  PoseGraph broken = world.graph;
+  broken.edges[3].information.setZero();
+  EXPECT_FALSE(Optimize(broken, options).ok());
+  // A replay needs odometry to earlier poses.
+  PoseGraph loops_only = world.graph;
+  for (PoseGraphEdge& edge : loops_only.edges) edge.is_loop = true;
+  options.method = "r_isam";
+  EXPECT_FALSE(Optimize(loops_only, options).ok());
+  options.method = "auto";  // does without
+  EXPECT_TRUE(Optimize(loops_only, options).ok());
+}
+
+TEST(OptimizeDataTest, IntelWithAThousandOutliers) {
+  const std::string file =
+      cartographer_ext::test::SharedData("g2o/intel.g2o.xz");
+  CARTOGRAPHER_EXT_SKIP_WITHOUT(file);
+  PoseGraph graph = test::ReadGraph(file);
+  std::vector<Pose2> optimum = graph.poses;
+  SolveRobust(Whiten(graph.edges), SolverOptions(), &optimum);
+  const size_t clean = graph.edges.size();
+  test::AppendOutliers(graph, OutlierOptions(), &graph.edges);
+  for (const char* method : {"auto", "r_isam", "dcs", "acs"}) {
+    OptimizeOptions options;
+    options.method = method;
+    const auto result = Optimize(graph, options);
+    ASSERT_TRUE(result.ok());
+    EXPECT_LT(AbsoluteTrajectoryError(result->poses, optimum), 0.01) << method;
+    const LoopScore score =
+        ScoreLoops(Whiten(graph.edges), clean, result->poses, optimum);
+    EXPECT_GE(score.recall, 0.99) << method;
+    EXPECT_GE(score.precision, 0.98) << method;
+  }
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext

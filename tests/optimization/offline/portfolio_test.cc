@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/portfolio.h"
+
+#include "cartographer_ext/optimization/offline/optimize.h"
+#include "gmock/gmock.h"
+#include "tests/optimization/weak_ring.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+double TruncatedCostOf(const PoseGraph& graph, const std::string& method) {
+  OptimizeOptions options;
+  options.method = method;
+  const auto result = Optimize(graph, options);
+  return result.ok() ? result->truncated_chi2_as_given : 1e300;
+}
+
+TEST(PortfolioTest, IsNeverAboveAnySolver) {
+  for (const uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    test::GridWorld world = seed % 2 == 0 ? test::MakeGridWorld(120, 5, seed)
+                                          : test::MakeWeakRing(seed);
+    OutlierOptions outliers;
+    outliers.count = seed * 5;
+    outliers.seed = seed;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    Portfolio portfolio(world.graph, PortfolioOptions());
+    portfolio.Run();
+    for (const char* method :
+         {"none", "huber", "gm", "dcs", "acs", "gnc_tls", "r_isam"}) {
+      EXPECT_LE(portfolio.best().cost,
+                TruncatedCostOf(world.graph, method) * (1. + 1e-6))
+          << method << " " << seed;
+    }
+    EXPECT_NEAR(portfolio.best().cost,
+                TruncatedCost(portfolio.edges(), portfolio.best().poses), 1e-9);
+  }
+}
+
+TEST(PortfolioTest, KeepsAllLoopsOfACleanGraphFromAPoorStart) {
+  test::GridWorld world = test::MakeWeakRing(3);
+  Portfolio portfolio(world.graph, PortfolioOptions());
+  portfolio.Run();
+  int loops = 0, in_force = 0;
+  for (const WhitenedEdge& edge : portfolio.edges()) {
+    loops += edge.is_loop;
+    in_force +=
+        edge.is_loop && Chi2(edge, portfolio.best().poses[edge.from],
+                             portfolio.best().poses[edge.to]) < kChi2Gate;
+  }
+  EXPECT_GE(in_force, loops - 1);
+}
+
+TEST(PortfolioTest, TakesWhatIsAdded) {
+  test::GridWorld world = test::MakeGridWorld(100, 5, 1);
+  Portfolio portfolio(world.graph, PortfolioOptions());
+  portfolio.Add("truth", world.truth);
+  ASSERT_EQ(portfolio.members().size(), 1u);
+  EXPECT_EQ(portfolio.best().name, "truth");
+  portfolio.Run();
+  EXPECT_LE(portfolio.best().cost, portfolio.members()[0].cost);
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/solvers/incremental_smoother.h"
+
+#include <cmath>
+
+#include "cartographer_ext/experiments/outliers/outlier_generator.h"
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "gmock/gmock.h"
+#include "tests/optimization/test_graphs.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<std::vector<PoseGraphEdge>> ByPose(const PoseGraph& graph) {
+  std::vector<std::vector<PoseGraphEdge>> result(graph.poses.size());
+  for (const PoseGraphEdge& edge : graph.edges) {
+    result[std::max(edge.from, edge.to)].push_back(edge);
+  }
+  return result;
+}
+
+TEST(IncrementalSmootherTest, SwitchOfACertainPose) {
+  // Q = 0: s = w / (w + chi2), equation (8) of the ACS paper.
+  const double s =
+      MinimizeSwitch(Eigen::Vector3d(2., 0., 1.), Eigen::Vector3d::Zero(), 1.5);
+  EXPECT_NEAR(s, 1.5 / (1.5 + 3.), 1e-6);
+}
+
+TEST(IncrementalSmootherTest, SwitchGrowsWithTheUncertainty) {
+  const Eigen::Vector3d innovation(400., 0., 0.);
+  double last = 0.;
+  for (const double variance : {0., 10., 100., 1000.}) {
+    const double s = MinimizeSwitch(
+        innovation, Eigen::Vector3d::Constant(variance), kChi2Gate);
+    EXPECT_GE(s, last - 1e-9);
+    EXPECT_LE(s, 1.);
+    last = s;
+  }
+  // 20 sigma of the loop but within one of the prediction: believed.
+  EXPECT_GT(last, 0.9);
+}
+
+TEST(IncrementalSmootherTest, SwitchIsTheMinimum) {
+  const Eigen::Vector3d u(30., 3., 0.5), q(5., 20., 0.1);
+  const double s = MinimizeSwitch(u, q, 4.);
+  const auto cost = [&](const double t) {
+    double sum = 4. * (1. - t) * (1. - t);
+    for (int i = 0; i != 3; ++i) sum += u[i] * t * t / (1. + t * t * q[i]);
+    return sum;
+  };
+  for (double t = 0.; t <= 1.; t += 1e-3) {
+    EXPECT_LE(cost(s), cost(t) + 1e-6);
+  }
+}
+
+TEST(IncrementalSmootherTest, CleanGraphEndsAtTheBatchOptimum) {
+  const test::GridWorld world = test::MakeGridWorld(330, 8, 4);
+  ReplayResult result;
+  ASSERT_TRUE(Replay(world.graph, SmootherOptions(), &result).ok());
+  std::vector<Pose2> optimum = world.graph.poses;
+  SolveRobust(Whiten(world.graph.edges), SolverOptions(), &optimum);
+  EXPECT_LT(AbsoluteTrajectoryError(result.poses, optimum), 0.02);
+  EXPECT_EQ(result.step_seconds.size(), 329u);
+  int accepted = 0, total = 0;
+  for (size_t i = 0; i != world.graph.edges.size(); ++i) {
+    if (!world.graph.edges[i].is_loop) continue;
+    ++total;
+    accepted += result.accepted[i];
+  }
+  EXPECT_GT(accepted, 0.97 * total);
+}
+
+TEST(IncrementalSmootherTest, SurvivesOutliers) {
+  test::GridWorld world = test::MakeGridWorld(330, 8, 4);
+  std::vector<Pose2> optimum = world.graph.poses;
+  SolveRobust(Whiten(world.graph.edges), SolverOptions(), &optimum);
+  const size_t clean = world.graph.edges.size();
+  OutlierOptions outliers;
+  outliers.count = 100;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  for (const SwitchEstimate estimate :
+       {SwitchEstimate::kPointwise, SwitchEstimate::kJoint}) {
+    SmootherOptions options;
+    options.switch_estimate = estimate;
+    if (estimate == SwitchEstimate::kJoint) {
+      options.switch_penalty = kChi2Gate;
+    }
+    ReplayResult result;
+    ASSERT_TRUE(Replay(world.graph, options, &result).ok());
+    EXPECT_LT(AbsoluteTrajectoryError(result.poses, optimum), 0.05);
+    const LoopScore score =
+        ScoreLoops(Whiten(world.graph.edges), clean, result.poses, optimum);
+    EXPECT_GT(score.recall, 0.9);
+    EXPECT_GT(score.precision, 0.97);
+  }
+}
+
+// On a linear problem (all angles zero and certain) the increments must give
+// the batch solution to rounding, in each step and across epochs.
+TEST(IncrementalSmootherTest, LinearProblemMatchesBatchExactly) {
+  Random random(8);
+  PoseGraph graph;
+  for (int i = 0; i != 60; ++i) {
+    graph.ids.push_back(i);
+    graph.poses.push_back(Pose2(i, 0., 0.));
+    if (i == 0) continue;
+    PoseGraphEdge edge;
+    edge.from = i - 1;
+    edge.to = i;
+    edge.measurement =
+        Pose2(1. + random.Normal(0., 0.01), random.Normal(0., 0.01), 0.);
+    edge.information.diagonal() << 100., 100., 1e12;
+    graph.edges.push_back(edge);
+    if (i > 5) {
+      edge.from = i - 5;
+      edge.measurement =
+          Pose2(5. + random.Normal(0., 0.01), random.Normal(0., 0.01), 0.);
+      graph.edges.push_back(edge);
+    }
+  }
+  SmootherOptions options;
+  options.epoch_poses = 20;
+  IncrementalSmoother smoother(options, graph.poses[0]);
+  const auto edges = ByPose(graph);
+  for (size_t k = 1; k != edges.size(); ++k) {
+    ASSERT_TRUE(smoother.AddPose(edges[k], nullptr).ok());
+    if (k % 7 != 0 && k % 20 != 0) continue;
+    std::vector<Pose2> batch = smoother.poses();
+    SolverOptions solver;
+    solver.cost_tolerance = 0.;
+    solver.initial_lambda = 0.;
+    SolveRobust(smoother.edges(), solver, &batch);
+    for (size_t i = 0; i != batch.size(); ++i) {
+      EXPECT_NEAR(smoother.poses()[i].x, batch[i].x, 1e-8);
+      EXPECT_NEAR(smoother.poses()[i].y, batch[i].y, 1e-8);
+    }
+  }
+}
+
+TEST(IncrementalSmootherTest, LateRejectionAndReadmission) {
+  // A wrong loop comes before the true ones which contradict it.
+  test::GridWorld world = test::MakeGridWorld(300, 6, 12);
+  PoseGraphEdge wrong;
+  wrong.from = 2;
+  wrong.to = 18;
+  wrong.is_loop = true;
+  wrong.information = world.graph.edges[0].information;
+  // Close enough to dead reckoning to be believed at first, yet not true.
+  wrong.measurement = Between(world.graph.poses[2], world.graph.poses[18]) *
+                      Pose2(0.05, 0.04, 0.02);
+  world.graph.edges.push_back(wrong);
+  SmootherOptions options;
+  options.epoch_poses = 20;
+  ReplayResult free, fixed;
+  ASSERT_TRUE(Replay(world.graph, options, &free).ok());
+  options.late_rejection = false;
+  options.readmission = false;
+  ASSERT_TRUE(Replay(world.graph, options, &fixed).ok());
+  const double chi2 = Chi2(Whiten(wrong), free.poses[2], free.poses[18]);
+  EXPECT_EQ(free.accepted.back(), chi2 < kChi2Gate);
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  EXPECT_LE(TruncatedCost(edges, free.poses),
+            TruncatedCost(edges, fixed.poses) + 1e-6);
+}
+
+TEST(IncrementalSmootherTest, TheCapDelaysLoopsOnly) {
+  const test::GridWorld world = test::MakeGridWorld(230, 6, 3);
+  SmootherOptions options;
+  options.max_loops_per_step = 1;
+  IncrementalSmoother smoother(options, world.graph.poses[0]);
+  const auto edges = ByPose(world.graph);
+  for (size_t k = 1; k != edges.size(); ++k) {
+    StepReport report;
+    ASSERT_TRUE(smoother.AddPose(edges[k], &report).ok());
+    EXPECT_LE(report.loops_tested, 1);
+  }
+  smoother.Finish();
+  int accepted = 0, total = 0;
+  for (size_t i = 0; i != smoother.edges().size(); ++i) {
+    if (!smoother.edges()[i].is_loop) continue;
+    ++total;
+    accepted += smoother.accepted()[i];
+  }
+  EXPECT_GT(accepted, 0.95 * total);
+}
+
+TEST(IncrementalSmootherTest, Errors) {
+  const SmootherOptions options;
+  IncrementalSmoother smoother(options, Pose2(0., 0., 0.));
+  PoseGraphEdge edge;
+  edge.from = 0;
+  edge.to = 1;
+  edge.is_loop = true;
+  EXPECT_THAT(std::string(smoother.AddPose({edge}, nullptr).message()),
+              HasSubstr("without odometry"));
+  edge.is_loop = false;
+  edge.to = 2;
+  EXPECT_THAT(std::string(smoother.AddPose({edge}, nullptr).message()),
+              HasSubstr("does not join"));
+  EXPECT_EQ(smoother.num_poses(), 1);
+  edge.to = 1;
+  EXPECT_TRUE(smoother.AddPose({edge}, nullptr).ok());
+  EXPECT_EQ(smoother.num_poses(), 2);
+  smoother.Finish();
+}
+
+TEST(IncrementalSmootherTest, Quantiles) {
+  EXPECT_DOUBLE_EQ(Quantile({}, 0.5), 0.);
+  EXPECT_DOUBLE_EQ(Quantile({3., 1., 2.}, 0.5), 2.);
+  EXPECT_DOUBLE_EQ(Quantile({3., 1., 2.}, 1.), 3.);
+  EXPECT_DOUBLE_EQ(Quantile({3., 1., 2.}, 0.), 1.);
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext
