@@ -8,11 +8,6 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-DecisionRecorder* DecisionRecorder::Global() {
-  static DecisionRecorder* const recorder = new DecisionRecorder;
-  return recorder;
-}
-
 void DecisionRecorder::Start(const size_t capacity) {
   absl::MutexLock lock(&mutex_);
   started_ = true;

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Collects the records of loop decisions. The constraint builder is deep inside
-// the host, out of reach of the program that runs it, so there is one recorder
-// for the process, like the host's metrics. It keeps nothing until it is
-// started. Thread-safe.
+// Collects the records of loop decisions: a part of PoseGraphContext, by which
+// a program reaches what the constraint builder deep inside the host decides.
+// It keeps nothing until it is started. Thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 
@@ -24,8 +23,6 @@ namespace loop_closure {
 class DecisionRecorder {
  public:
   using Decisions = std::vector<proto::LoopDecision>;
-
-  static DecisionRecorder* Global();
 
   // Forgets everything and keeps up to `capacity` records from now on; later
   // ones are only counted.

@@ -14,6 +14,7 @@
 #include "cartographer/sensor/imu_data.h"
 #include "cartographer/sensor/landmark_data.h"
 #include "cartographer/sensor/odometry_data.h"
+#include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/map/host_map.h"
 #include "cartographer_ext/map/host_types.h"
@@ -257,7 +258,9 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   const LoopCpu loop_cpu_before = MeasureLoopCpu(*metrics);
   const double searched = CountPairs(*metrics, "searched");
   const double found = CountPairs(*metrics, "found");
-  auto* const recorder = loop_closure::DecisionRecorder::Global();
+  const auto context = std::make_shared<PoseGraphContext>();
+  const ScopedPoseGraphContext scope(context);
+  auto* const recorder = context->Get<loop_closure::DecisionRecorder>();
   recorder->Start(kMaxDecisions);
   const int64_t memory_before = ResetPeakMemory();
   const double cpu_before = ProcessCpuSeconds();

@@ -217,7 +217,7 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
   const double found_before = CountPairs(*metrics, "found");
   const LoopCpu loop_cpu_before = MeasureLoopCpu(*metrics);
   loop_closure::DecisionRecorder* const recorder =
-      loop_closure::DecisionRecorder::Global();
+      context->Get<loop_closure::DecisionRecorder>();
   recorder->Start(kMaxDecisions);
   front_end::MatchRecorder* const match_recorder =
       context->Get<front_end::MatchRecorder>();

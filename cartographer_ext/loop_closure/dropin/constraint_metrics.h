@@ -8,6 +8,10 @@
 //   cartographer_ext_loop_scores{score=}                  histogram
 //   cartographer_ext_loop_undecided, cartographer_ext_loop_submap_matchers
 //                                                         gauges
+//
+// They belong to the process, not to a pose graph: that is how Cartographer
+// declares metrics. Its RegisterMetrics is a static function, called once for
+// all pose graphs and before the first of them is built.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_CONSTRAINT_METRICS_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_CONSTRAINT_METRICS_H_
 

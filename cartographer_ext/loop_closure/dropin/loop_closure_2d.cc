@@ -49,6 +49,7 @@ LoopClosure2D::LoopClosure2D(
       extension_(extension),
       thread_pool_(thread_pool),
       context_(PoseGraphContext::CurrentOrNew()),
+      recorder_(context_->Get<DecisionRecorder>()),
       searcher_(options),
       pipeline_(extension, StockWeights(options)),
       planner_(options, extension, &pipeline_.paths()),
@@ -195,7 +196,7 @@ void LoopClosure2D::MarkDue() {
   num_queries_due_ = queries_.size();
 }
 
-LoopClosure2D::Outcome LoopClosure2D::Verify() {
+std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   const ConstraintMetrics& metrics = *ConstraintMetrics::Global();
   const StageMeter meter(metrics.verification_cpu);
   for (size_t i = 0; i < num_jobs_due_; ++i) {
@@ -208,15 +209,14 @@ LoopClosure2D::Outcome LoopClosure2D::Verify() {
   jobs_.erase(jobs_.begin(), jobs_.begin() + num_jobs_due_);
   num_jobs_due_ = 0;
   num_queries_due_ = 0;
-  Outcome outcome;
-  for (const LoopCandidate& candidate : pipeline_.Decide()) {
-    outcome.decisions.push_back(Record(candidate));
-    metrics.CountDecision(outcome.decisions.back());
-    if (!candidate.is_accepted()) continue;
-    Close(candidate, &outcome.constraints);
+  const std::vector<LoopCandidate> decided = pipeline_.Decide();
+  Record(decided);
+  std::vector<Constraint> constraints;
+  for (const LoopCandidate& candidate : decided) {
+    if (candidate.is_accepted()) Close(candidate, &constraints);
   }
   metrics.undecided->Set(pipeline_.num_undecided());
-  return outcome;
+  return constraints;
 }
 
 void LoopClosure2D::ProcessQuery(const PlaceQuery& query) {
@@ -281,14 +281,7 @@ void LoopClosure2D::Close(const LoopCandidate& accepted,
   constraints->push_back(constraint);
 }
 
-std::vector<LoopDecision> LoopClosure2D::Flush() {
-  std::vector<LoopDecision> decisions;
-  for (const LoopCandidate& candidate : pipeline_.Flush()) {
-    decisions.push_back(Record(candidate));
-    ConstraintMetrics::Global()->CountDecision(decisions.back());
-  }
-  return decisions;
-}
+void LoopClosure2D::Flush() { Record(pipeline_.Flush()); }
 
 void LoopClosure2D::DeleteSubmap(const SubmapId& submap_id) {
   const uncertainty::SubmapId id = ToKey(submap_id);
@@ -328,13 +321,23 @@ void LoopClosure2D::FreeDormantTrajectories() {
 std::vector<LoopDecision> LoopClosure2D::Undecided() const {
   std::vector<LoopDecision> decisions;
   for (const LoopCandidate& candidate : pipeline_.Undecided()) {
-    decisions.push_back(Record(candidate));
+    decisions.push_back(Describe(candidate));
   }
   return decisions;
 }
 
-LoopDecision LoopClosure2D::Record(const LoopCandidate& candidate) const {
+LoopDecision LoopClosure2D::Describe(const LoopCandidate& candidate) const {
   return MakeDecisionRecord(candidate, extension_.log().times());
+}
+
+void LoopClosure2D::Record(const std::vector<LoopCandidate>& decided) {
+  std::vector<LoopDecision> decisions;
+  decisions.reserve(decided.size());
+  for (const LoopCandidate& candidate : decided) {
+    decisions.push_back(Describe(candidate));
+    ConstraintMetrics::Global()->CountDecision(decisions.back());
+  }
+  recorder_->Record(decisions);
 }
 
 }  // namespace loop_closure

@@ -48,6 +48,7 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
+#include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/loop_closure/dropin/inter_trajectory_loops.h"
 #include "cartographer_ext/loop_closure/dropin/pair_planner.h"
 #include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
@@ -75,11 +76,6 @@ class LoopClosure2D {
     // (submap <- node); none where the whole submap is to be searched.
     absl::optional<cartographer::transform::Rigid2d> initial_relative_pose;
   };
-  struct Outcome {
-    std::vector<Constraint> constraints;
-    std::vector<proto::LoopDecision> decisions;  // of all that were decided
-  };
-
   LoopClosure2D(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
@@ -94,15 +90,18 @@ class LoopClosure2D {
                cartographer::common::Task* end_of_node);
   // The next `Verify` is for the nodes added so far.
   void MarkDue();
-  // Takes the candidates that are due through the stages after the search. The
-  // tasks of their nodes have to have run.
-  Outcome Verify();
-  // Leaves nothing undecided.
-  std::vector<proto::LoopDecision> Flush();
+  // Takes the candidates that are due through the stages after the search, and
+  // returns the constraints of those that are certain now. The tasks of their
+  // nodes have to have run.
+  std::vector<Constraint> Verify();
+  // Rejects what is undecided.
+  void Flush();
   bool has_candidates() const { return !jobs_.empty(); }
 
   void DeleteSubmap(const cartographer::mapping::SubmapId& submap_id);
 
+  // Where every decision is recorded; that of the pose graph.
+  DecisionRecorder* recorder() const { return recorder_; }
   // Records of what waits for other loops, as UNDECIDED.
   std::vector<proto::LoopDecision> Undecided() const;
 
@@ -122,13 +121,15 @@ class LoopClosure2D {
              std::vector<Constraint>* constraints);
   // Frees trajectories that the pose graph has deleted, as it seems.
   void FreeDormantTrajectories();
-  proto::LoopDecision Record(const LoopCandidate& candidate) const;
+  proto::LoopDecision Describe(const LoopCandidate& candidate) const;
+  void Record(const std::vector<LoopCandidate>& decided);
 
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
       options_;
   const proto::LoopClosureOptions extension_;
   cartographer::common::ThreadPoolInterface* const thread_pool_;
   const std::shared_ptr<PoseGraphContext> context_;
+  DecisionRecorder* const recorder_;  // of the context
   const PairSearcher searcher_;
   LoopPipeline pipeline_;
   PairPlanner planner_;

@@ -6,40 +6,36 @@
 #include <utility>
 
 #include "absl/memory/memory.h"
-#include "absl/types/optional.h"
-#include "cartographer_ext/loop_closure/decision_recorder.h"
-#include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
 using cartographer::common::Task;
-using cartographer::transform::Rigid2d;
 using Proposal = LoopClosure2D::Proposal;
 
 VerifiedConstraintBuilder2D::VerifiedConstraintBuilder2D(
-    const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
-        options,
+    const ConstraintBuilderOptions& options,
     const proto::LoopClosureOptions& extension,
     cartographer::common::ThreadPoolInterface* const thread_pool)
     : thread_pool_(thread_pool),
       loop_closure_(options, extension, thread_pool),
+      recorder_(loop_closure_.recorder()),
       callback_task_(absl::make_unique<Task>()) {
-  pending_id_ = DecisionRecorder::Global()->AddPending([this]() {
+  pending_id_ = recorder_->AddPending([this]() {
     absl::MutexLock work_lock(&work_mutex_);
     return loop_closure_.Undecided();
   });
 }
 
 VerifiedConstraintBuilder2D::~VerifiedConstraintBuilder2D() {
-  DecisionRecorder::Global()->RemovePending(pending_id_);
+  recorder_->RemovePending(pending_id_);
   absl::MutexLock work_lock(&work_mutex_);
   absl::MutexLock lock(&mutex_);
   CHECK(callback_ == nullptr) << "the last callback has not run yet";
   CHECK(!loop_closure_.has_candidates()) << "WhenDone was not called";
   CHECK_EQ(num_started_nodes_, num_finished_nodes_);
-  DecisionRecorder::Global()->Record(loop_closure_.Flush());
+  loop_closure_.Flush();
 }
 
 void VerifiedConstraintBuilder2D::Propose(const Proposal& proposal) {
@@ -47,19 +43,6 @@ void VerifiedConstraintBuilder2D::Propose(const Proposal& proposal) {
   LOG_IF(WARNING, callback_ != nullptr)
       << "node " << proposal.node_id << " is added before the last callback";
   proposals_.push_back(proposal);
-}
-
-void VerifiedConstraintBuilder2D::MaybeAddConstraint(
-    const SubmapId& submap_id, const Submap2D* const submap,
-    const NodeId& node_id, const NodeData* const node,
-    const Rigid2d& initial_relative_pose) {
-  Propose(Proposal{submap_id, submap, node_id, node, initial_relative_pose});
-}
-
-void VerifiedConstraintBuilder2D::MaybeAddGlobalConstraint(
-    const SubmapId& submap_id, const Submap2D* const submap,
-    const NodeId& node_id, const NodeData* const node) {
-  Propose(Proposal{submap_id, submap, node_id, node, absl::nullopt});
 }
 
 void VerifiedConstraintBuilder2D::NotifyEndOfNode() {
@@ -97,19 +80,17 @@ void VerifiedConstraintBuilder2D::WhenDone(
 }
 
 void VerifiedConstraintBuilder2D::CallBack() {
-  LoopClosure2D::Outcome outcome;
+  Result result;
   {
     absl::MutexLock work_lock(&work_mutex_);
-    outcome = loop_closure_.Verify();
+    result = loop_closure_.Verify();
   }
-  DecisionRecorder::Global()->Record(outcome.decisions);
   std::function<void(const Result&)> callback;
   {
     absl::MutexLock lock(&mutex_);
-    callback = std::move(callback_);
-    callback_ = nullptr;
+    callback.swap(callback_);
   }
-  callback(outcome.constraints);
+  callback(result);
 }
 
 int VerifiedConstraintBuilder2D::GetNumFinishedNodes() {
@@ -131,11 +112,6 @@ void VerifiedConstraintBuilder2D::DeleteScanMatcher(const SubmapId& submap_id) {
                      proposals_.end());
   }
   loop_closure_.DeleteSubmap(submap_id);
-}
-
-void VerifiedConstraintBuilder2D::RegisterMetrics(
-    cartographer::metrics::FamilyFactory* const family_factory) {
-  ConstraintMetrics::Register(family_factory);
 }
 
 }  // namespace loop_closure

@@ -2,20 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // ConstraintBuilder2D for options with our block: the same calls on the same
-// threads. It adapts LoopClosure2D, which does the work, to the host's tasks
-// and callbacks:
+// threads, thread-safe. It adapts LoopClosure2D, which does the work, to the
+// host's tasks and callbacks:
 //
 //   MaybeAdd(Global)Constraint   queue pairs of one node
 //   NotifyEndOfNode              plans the queued pairs and schedules searches
 //   searches (pool)              each on its own, without any lock
 //   WhenDone -> callback (pool)  verifies in the order of the pairs, calls back
 //
-// Two mutexes. `mutex_` guards the queue, the counters and the tasks; it is
-// held for moments only, never while something is planned, searched or
-// verified. `work_mutex_` is held while LoopClosure2D plans or verifies, which
-// keeps both in one sequence and so makes the results the same for any number
-// of threads. Only the calls that need this sequence wait for it, as said at
-// each of them.
+// Two mutexes. `mutex_` guards queue, counters and tasks; it is held for moments
+// only, never while something is planned, searched or verified. `work_mutex_`
+// is held while LoopClosure2D plans or verifies: one sequence, so that results
+// are the same for any number of threads. The calls that wait for it say so.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 
@@ -26,6 +24,7 @@
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
+#include "absl/types/optional.h"
 #include "cartographer/common/task.h"
 #include "cartographer/common/thread_pool.h"
 #include "cartographer/mapping/2d/submap_2d.h"
@@ -33,7 +32,6 @@
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/proto/pose_graph/constraint_builder_options.pb.h"
 #include "cartographer/mapping/trajectory_node.h"
-#include "cartographer/metrics/family_factory.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/loop_closure/dropin/loop_closure_2d.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
@@ -41,20 +39,21 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// Thread-safe.
 class VerifiedConstraintBuilder2D {
  public:
+  using ConstraintBuilderOptions =
+      cartographer::mapping::constraints::proto::ConstraintBuilderOptions;
   using Constraint = cartographer::mapping::PoseGraphInterface::Constraint;
   using Result = std::vector<Constraint>;
   using SubmapId = cartographer::mapping::SubmapId;
   using NodeId = cartographer::mapping::NodeId;
   using Submap2D = cartographer::mapping::Submap2D;
   using NodeData = cartographer::mapping::TrajectoryNode::Data;
+  using Rigid2d = cartographer::transform::Rigid2d;
 
   // `extension` is our block of `options`. The pool has to outlive this.
   VerifiedConstraintBuilder2D(
-      const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
-          options,
+      const ConstraintBuilderOptions& options,
       const proto::LoopClosureOptions& extension,
       cartographer::common::ThreadPoolInterface* thread_pool);
   // WhenDone must have been called, and have called back, since the last node.
@@ -67,17 +66,20 @@ class VerifiedConstraintBuilder2D {
   // Proposes a pair around (submap <- node) = `initial_relative_pose`, which
   // may or may not be searched. The submap has to be finished. Submap and node
   // data must live until WhenDone has called back. Never waits.
-  void MaybeAddConstraint(
-      const SubmapId& submap_id, const Submap2D* submap, const NodeId& node_id,
-      const NodeData* node,
-      const cartographer::transform::Rigid2d& initial_relative_pose)
-      ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
+  void MaybeAddConstraint(const SubmapId& submap_id, const Submap2D* submap,
+                          const NodeId& node_id, const NodeData* node,
+                          const Rigid2d& initial_relative_pose)
+      ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_) {
+    Propose({submap_id, submap, node_id, node, initial_relative_pose});
+  }
 
   // The same without a prediction: somewhere in the whole submap.
   void MaybeAddGlobalConstraint(const SubmapId& submap_id,
                                 const Submap2D* submap, const NodeId& node_id,
                                 const NodeData* node)
-      ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
+      ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_) {
+    Propose({submap_id, submap, node_id, node, absl::nullopt});
+  }
 
   // The pairs since the last call were proposed when one node was added. Plans
   // them together and schedules their searches. Waits for verification, if that
@@ -102,19 +104,16 @@ class VerifiedConstraintBuilder2D {
   void DeleteScanMatcher(const SubmapId& submap_id)
       ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
 
-  static void RegisterMetrics(
-      cartographer::metrics::FamilyFactory* family_factory);
-
  private:
   void Propose(const LoopClosure2D::Proposal& proposal)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void CallBack() ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
 
   cartographer::common::ThreadPoolInterface* const thread_pool_;
-  int64_t pending_id_ = 0;  // at the decision recorder
-
   absl::Mutex work_mutex_ ABSL_ACQUIRED_BEFORE(mutex_);
   LoopClosure2D loop_closure_ ABSL_GUARDED_BY(work_mutex_);
+  DecisionRecorder* const recorder_;  // lives as long as loop_closure_
+  int64_t pending_id_ = 0;            // at recorder_
 
   absl::Mutex mutex_;
   // Of the node that is not complete yet.

@@ -4,6 +4,7 @@
 
 #include "absl/memory/memory.h"
 #include "cartographer_ext/common/pose_graph_context.h"
+#include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/verified_constraint_builder_2d.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/options/extension_field.h"
@@ -126,7 +127,7 @@ void ConstraintBuilder2D::DeleteScanMatcher(const SubmapId& submap_id) {
 void ConstraintBuilder2D::RegisterMetrics(
     metrics::FamilyFactory* const family_factory) {
   Stock::RegisterMetrics(family_factory);
-  VerifiedConstraintBuilder2D::RegisterMetrics(family_factory);
+  ::cartographer_ext::loop_closure::ConstraintMetrics::Register(family_factory);
 }
 
 }  // namespace constraints
