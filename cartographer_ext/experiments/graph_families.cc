@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/random.h"
+#include "cartographer_ext/experiments/family_paths.h"
 
 namespace cartographer_ext {
 namespace experiments {
@@ -33,134 +34,8 @@ struct LoopPlan {
   int max_loops_per_pose = 1;
 };
 
-// True poses, the part of the world (floor) and the trajectory of each.
-struct Path {
-  std::vector<Pose2> poses;
-  std::vector<int> floors;
-  std::vector<int> robots;
-
-  void Add(const Pose2& pose, const int floor, const int robot) {
-    poses.push_back(pose);
-    floors.push_back(floor);
-    robots.push_back(robot);
-  }
-};
-
 double LogUniform(Random* const random, const double low, const double high) {
   return std::exp(random->Uniform(std::log(low), std::log(high)));
-}
-
-// Walks `length` metres along a circular arc (curvature 0: straight on).
-void Drive(const double length, const double curvature, const double step,
-           const int floor, const int robot, Path* const path) {
-  const int steps = std::max(1, static_cast<int>(std::lround(length / step)));
-  const double distance = length / steps, turn = distance * curvature;
-  for (int i = 0; i != steps; ++i) {
-    const Pose2 chord(distance * std::cos(0.5 * turn),
-                      distance * std::sin(0.5 * turn), turn);
-    path->Add(path->poses.back() * chord, floor, robot);
-  }
-}
-
-// Laps over `rings` circles in a row, out along one half of each and back along
-// the other.
-Path Rings(const int rings, const double radius, const double step,
-           const double laps, Random* const random) {
-  Path path;
-  path.Add(Pose2(0., 0., kPi / 2.), 0, 0);
-  const double half = kPi * radius;
-  const int halves = std::lround(2 * rings * laps);
-  for (int k = 0; k != halves; ++k) {
-    const int leg = k % (2 * rings);
-    const int ring = leg < rings ? leg : 2 * rings - 1 - leg;
-    const double sign = ring % 2 == 0 ? -1. : 1.;
-    Drive(half, sign / radius, step, 0, 0, &path);
-  }
-  // End somewhere on the way.
-  Drive(random->Uniform(0.2, 0.9) * half, -1. / radius, step, 0, 0, &path);
-  return path;
-}
-
-// Moves along the streets of a grid with blocks of `block` metres, within
-// `size` blocks; turns on the spot take one pose.
-class StreetWalker {
- public:
-  StreetWalker(const int size, const double block, const double step,
-               Random* const random, Path* const path)
-      : size_(size), block_(block), step_(step), random_(random), path_(path) {}
-
-  void Begin(const int x, const int y, const int floor, const int robot) {
-    x_ = x;
-    y_ = y;
-    direction_ = 0;
-    floor_ = floor;
-    robot_ = robot;
-    path_->Add(Pose2(block_ * x, block_ * y, 0.), floor, robot);
-  }
-
-  void Walk(const int blocks) {
-    for (int i = 0; i != blocks; ++i) {
-      int direction = direction_;
-      const double choice = random_->Uniform();
-      if (choice < 0.25) direction = (direction_ + 1) % 4;
-      if (choice >= 0.75) direction = (direction_ + 3) % 4;
-      while (!IsFree(direction)) direction = (direction + 1) % 4;
-      Go(direction);
-    }
-  }
-
-  void WalkHome() {
-    while (x_ != 0) Go(x_ > 0 ? 2 : 0);
-    while (y_ != 0) Go(y_ > 0 ? 3 : 1);
-  }
-
-  void ChangeFloor(const int floor) { floor_ = floor; }
-
- private:
-  bool IsFree(const int direction) const {
-    const int x = x_ + kDx[direction], y = y_ + kDy[direction];
-    return x >= 0 && y >= 0 && x <= size_ && y <= size_;
-  }
-
-  void Go(const int direction) {
-    const double turn = NormalizeAngle((direction - direction_) * kPi / 2.);
-    if (direction != direction_) {
-      path_->Add(path_->poses.back() * Pose2(0., 0., turn), floor_, robot_);
-    }
-    direction_ = direction;
-    Drive(block_, 0., step_, floor_, robot_, path_);
-    x_ += kDx[direction];
-    y_ += kDy[direction];
-  }
-
-  static constexpr int kDx[4] = {1, 0, -1, 0};
-  static constexpr int kDy[4] = {0, 1, 0, -1};
-  const int size_;
-  const double block_;
-  const double step_;
-  Random* const random_;
-  Path* const path_;
-  int x_ = 0, y_ = 0, direction_ = 0, floor_ = 0, robot_ = 0;
-};
-
-constexpr int StreetWalker::kDx[4];
-constexpr int StreetWalker::kDy[4];
-
-Path Star(const int arms, const double length, const double step,
-          Random* const random) {
-  Path path;
-  path.Add(Pose2(), 0, 0);
-  for (int k = 0; k != arms; ++k) {
-    const double arm = length * random->Uniform(0.6, 1.4);
-    const double curvature = random->Normal(0., 0.5 / length);
-    Drive(arm, curvature, step, 0, 0, &path);
-    path.Add(path.poses.back() * Pose2(0., 0., kPi), 0, 0);
-    Drive(arm, -curvature, step, 0, 0, &path);
-    const double turn = 2. * kPi / arms + random->Normal(0., 0.1);
-    path.Add(path.poses.back() * Pose2(0., 0., NormalizeAngle(turn - kPi)), 0,
-             0);
-  }
-  return path;
 }
 
 // Makes the graph of a path.
@@ -342,16 +217,8 @@ FamilyGraph MakeStar(Random* const random, const int max_loops) {
   return builder.Finish();
 }
 
-FamilyGraph MakeFloors(Random* const random) {
-  Path path;
-  StreetWalker walker(random->UniformInt(3, 5), 4., 1., random, &path);
-  walker.Begin(0, 0, 0, 0);
-  const int stairs = random->UniformInt(0, 1) == 0 ? 1 : 3;
-  for (int visit = 0; visit <= stairs; ++visit) {
-    walker.ChangeFloor(visit % 2);
-    walker.Walk(random->UniformInt(30, 60));
-    walker.WalkHome();
-  }
+// Odometry and loops as they are within a building.
+FamilyGraph MakeIndoorGraph(Path path, Random* const random) {
   Builder builder(std::move(path), random);
   builder.AddOdometry(
       {random->Uniform(0.02, 0.06), LogUniform(random, 0.01, 0.04)});
@@ -362,6 +229,19 @@ FamilyGraph MakeFloors(Random* const random) {
   return builder.Finish();
 }
 
+FamilyGraph MakeFloors(Random* const random) {
+  Path path;
+  StreetWalker walker(random->UniformInt(3, 5), 4., 1., random, &path);
+  walker.Begin(0, 0, 0, 0);
+  const int stairs = random->UniformInt(0, 1) == 0 ? 1 : 3;
+  for (int visit = 0; visit <= stairs; ++visit) {
+    walker.ChangeFloor(visit % 2);
+    walker.Walk(random->UniformInt(30, 60));
+    walker.WalkHome();
+  }
+  return MakeIndoorGraph(std::move(path), random);
+}
+
 FamilyGraph MakeRobots(Random* const random) {
   Path path;
   StreetWalker walker(random->UniformInt(3, 6), 4., 1., random, &path);
@@ -370,14 +250,7 @@ FamilyGraph MakeRobots(Random* const random) {
     walker.Begin(random->UniformInt(0, 3), random->UniformInt(0, 3), 0, k);
     walker.Walk(random->UniformInt(30, 60));
   }
-  Builder builder(std::move(path), random);
-  builder.AddOdometry(
-      {random->Uniform(0.02, 0.06), LogUniform(random, 0.01, 0.04)});
-  LoopPlan plan;
-  plan.radius = 1.05;
-  plan.probability = random->Uniform(0.2, 0.8);
-  builder.AddLoops(plan, {random->Uniform(0.03, 0.1), 0.02});
-  return builder.Finish();
+  return MakeIndoorGraph(std::move(path), random);
 }
 
 int CountLoops(const FamilyGraph& family) {

@@ -212,6 +212,100 @@ nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs) {
   return json;
 }
 
+namespace {
+
+// The range of all panels, which are unit squares, four to a row.
+constexpr double kPitch = 1.3;
+constexpr double kLow = -4., kHigh = 2.;  // log10 of metres
+
+struct SweepAxes {
+  std::vector<std::string> panels;
+  std::vector<std::string> kernels;
+  int least = 1 << 30;  // outliers
+  int most = 1;
+};
+
+SweepAxes MakeSweepAxes(const std::vector<SweepCell>& cells) {
+  SweepAxes axes;
+  const auto add = [](const std::string& name,
+                      std::vector<std::string>* const names) {
+    if (std::find(names->begin(), names->end(), name) == names->end()) {
+      names->push_back(name);
+    }
+  };
+  for (const SweepCell& cell : cells) {
+    add(cell.dataset + " " + cell.type, &axes.panels);
+    add(cell.kernel, &axes.kernels);
+    axes.least = std::min(axes.least, std::max(cell.count, 1));
+    axes.most = std::max(axes.most, cell.count);
+  }
+  return axes;
+}
+
+// Where a panel has `count` outliers and the error `ate`, both logarithmic.
+class PanelScale {
+ public:
+  PanelScale(const SweepAxes& axes, const size_t panel)
+      : corner_(kPitch * (panel % 4), -kPitch * (panel / 4)),
+        least_(axes.least),
+        span_(std::log(std::max(1.001, 1. * axes.most / axes.least))) {}
+
+  const Eigen::Vector2d& corner() const { return corner_; }
+  Eigen::Vector2d At(const int count, const double ate) const {
+    const double y = (std::log10(std::max(ate, 1e-4)) - kLow) / (kHigh - kLow);
+    return corner_ +
+           Eigen::Vector2d(std::log(std::max(count, 1) * 1. / least_) / span_,
+                           std::min(1., y));
+  }
+
+ private:
+  const Eigen::Vector2d corner_;
+  const int least_;
+  const double span_;
+};
+
+void DrawPanelFrame(const SweepAxes& axes, const std::string& panel,
+                    const PanelScale& scale, io::Picture* const picture) {
+  const Eigen::Vector2d& corner = scale.corner();
+  picture->DrawPolygon(
+      {corner, corner + Eigen::Vector2d(1., 0.),
+       corner + Eigen::Vector2d(1., 1.), corner + Eigen::Vector2d(0., 1.)},
+      {io::palette::kGrey, 1.}, {1., 1., 1., 0.});
+  for (int decade = -4; decade <= 2; decade += 2) {
+    const Eigen::Vector2d left = scale.At(axes.least, std::pow(10., decade));
+    picture->DrawLine(left, left + Eigen::Vector2d(1., 0.),
+                      {io::palette::kGrey, 0.5, true});
+    picture->DrawText(left - Eigen::Vector2d(0.16, 0.01),
+                      absl::StrFormat("1e%d m", decade), 14.,
+                      io::palette::kBlack);
+  }
+  picture->DrawText(corner + Eigen::Vector2d(0., 1.03),
+                    absl::StrCat("ATE, ", panel, ", ", axes.least, " to ",
+                                 axes.most, " outliers"),
+                    16., io::palette::kBlack);
+}
+
+// The errors of one kernel in one panel.
+void DrawCurve(const std::vector<SweepCell>& cells, const std::string& panel,
+               const std::string& kernel, const PanelScale& scale,
+               const io::Color& color, io::Picture* const picture) {
+  std::vector<std::pair<int, double>> values;
+  for (const SweepCell& cell : cells) {
+    if (cell.dataset + " " + cell.type == panel && cell.kernel == kernel) {
+      values.push_back({cell.count, cell.ate});
+    }
+  }
+  std::sort(values.begin(), values.end());
+  std::vector<Eigen::Vector2d> points;
+  for (const auto& value : values) {
+    points.push_back(scale.At(value.first, value.second));
+    picture->DrawDot(points.back(), 4., color);
+  }
+  picture->DrawPolyline(points, {color, 2.});
+}
+
+}  // namespace
+
 absl::Status WriteSweepPlot(const std::vector<SweepCell>& cells,
                             const std::vector<SweepLimit>& limits,
                             const std::string& filename) {
@@ -219,82 +313,31 @@ absl::Status WriteSweepPlot(const std::vector<SweepCell>& cells,
       io::palette::kVermilion, io::palette::kBlue,   io::palette::kGreen,
       io::palette::kOrange,    io::palette::kPurple, io::palette::kSkyBlue,
       io::palette::kYellow,    io::palette::kGrey,   io::palette::kBlack};
-  std::vector<std::string> panels, kernels;
-  int least = 1 << 30, most = 1;
-  for (const SweepCell& cell : cells) {
-    const std::string panel = cell.dataset + " " + cell.type;
-    if (std::find(panels.begin(), panels.end(), panel) == panels.end()) {
-      panels.push_back(panel);
-    }
-    if (std::find(kernels.begin(), kernels.end(), cell.kernel) ==
-        kernels.end()) {
-      kernels.push_back(cell.kernel);
-    }
-    least = std::min(least, std::max(cell.count, 1));
-    most = std::max(most, cell.count);
-  }
-  // A panel is a unit square; four of them to a row.
-  constexpr double kPitch = 1.3, kLow = -4., kHigh = 2.;  // log10 of metres
-  const int rows = (static_cast<int>(panels.size()) + 3) / 4;
+  const SweepAxes axes = MakeSweepAxes(cells);
+  const int rows = (static_cast<int>(axes.panels.size()) + 3) / 4;
   io::PictureBounds bounds;
   bounds.Add(Eigen::Vector2d(-0.2, -kPitch * rows + 0.2));
   bounds.Add(Eigen::Vector2d(4. * kPitch, 1.2));
   io::Picture picture(bounds, 2000);
-  const double span = std::log(std::max(1.001, 1. * most / least));
-  for (size_t p = 0; p != panels.size(); ++p) {
-    const Eigen::Vector2d corner(kPitch * (p % 4), -kPitch * (p / 4));
-    const auto place = [&](const int count, const double ate) {
-      const double y =
-          (std::log10(std::max(ate, 1e-4)) - kLow) / (kHigh - kLow);
-      return Eigen::Vector2d(
-          corner +
-          Eigen::Vector2d(std::log(std::max(count, 1) * 1. / least) / span,
-                          std::min(1., y)));
-    };
-    picture.DrawPolygon(
-        {corner, corner + Eigen::Vector2d(1., 0.),
-         corner + Eigen::Vector2d(1., 1.), corner + Eigen::Vector2d(0., 1.)},
-        {io::palette::kGrey, 1.}, {1., 1., 1., 0.});
-    for (int decade = -4; decade <= 2; decade += 2) {
-      const Eigen::Vector2d left = place(least, std::pow(10., decade));
-      picture.DrawLine(left, left + Eigen::Vector2d(1., 0.),
-                       {io::palette::kGrey, 0.5, true});
-      picture.DrawText(left - Eigen::Vector2d(0.16, 0.01),
-                       absl::StrFormat("1e%d m", decade), 14.,
-                       io::palette::kBlack);
-    }
-    picture.DrawText(corner + Eigen::Vector2d(0., 1.03),
-                     absl::StrCat("ATE, ", panels[p], ", ", least, " to ", most,
-                                  " outliers"),
-                     16., io::palette::kBlack);
+  for (size_t p = 0; p != axes.panels.size(); ++p) {
+    const std::string& panel = axes.panels[p];
+    const PanelScale scale(axes, p);
+    DrawPanelFrame(axes, panel, scale, &picture);
     for (const SweepLimit& limit : limits) {
-      if (limit.dataset + " " + limit.type != panels[p] || limit.count == 0) {
+      if (limit.dataset + " " + limit.type != panel || limit.count == 0) {
         continue;
       }
-      picture.DrawLine(place(limit.count, 1e-4), place(limit.count, 1e2),
+      picture.DrawLine(scale.At(limit.count, 1e-4), scale.At(limit.count, 1e2),
                        {io::palette::kBlack, 1.5, true});
-      picture.DrawText(place(limit.count, 60.), "undecidable", 12.,
+      picture.DrawText(scale.At(limit.count, 60.), "undecidable", 12.,
                        io::palette::kBlack);
     }
-    for (size_t k = 0; k != kernels.size(); ++k) {
-      std::vector<std::pair<int, double>> values;
-      for (const SweepCell& cell : cells) {
-        if (cell.dataset + " " + cell.type == panels[p] &&
-            cell.kernel == kernels[k]) {
-          values.push_back({cell.count, cell.ate});
-        }
-      }
-      std::sort(values.begin(), values.end());
-      std::vector<Eigen::Vector2d> points;
-      for (const auto& value : values) {
-        points.push_back(place(value.first, value.second));
-        picture.DrawDot(points.back(), 4., kColors[k % 9]);
-      }
-      picture.DrawPolyline(points, {kColors[k % 9], 2.});
+    for (size_t k = 0; k != axes.kernels.size(); ++k) {
+      DrawCurve(cells, panel, axes.kernels[k], scale, kColors[k % 9], &picture);
     }
   }
-  for (size_t k = 0; k != kernels.size(); ++k) {
-    picture.AddLegend(kernels[k], kColors[k % 9]);
+  for (size_t k = 0; k != axes.kernels.size(); ++k) {
+    picture.AddLegend(axes.kernels[k], kColors[k % 9]);
   }
   return picture.Write(filename);
 }

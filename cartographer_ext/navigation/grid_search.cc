@@ -33,16 +33,9 @@ uint32_t Heuristic(const int x, const int y, const Cell& goal) {
 
 }  // namespace
 
-GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
-                            const Cell& goal) {
-  GridPath path;
-  if (!grid.Contains(start) || !grid.Contains(goal) ||
-      grid.at(start) == kBlocked || grid.at(goal) == kBlocked) {
-    return path;
-  }
-  const int width = grid.width, height = grid.height;
+void GridSearch::Reset(const WeightGrid& grid) {
   const size_t size = grid.weights.size();
-  CHECK_EQ(size, static_cast<size_t>(width) * height);
+  CHECK_EQ(size, static_cast<size_t>(grid.width) * grid.height);
   CHECK_LT(size, size_t{kUnreached});
   cost_.assign(size, kUnreached);
   state_.resize(size);
@@ -51,6 +44,17 @@ GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
   }
   buckets_.resize(kNumBuckets);
   for (auto& bucket : buckets_) bucket.clear();
+}
+
+GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
+                            const Cell& goal) {
+  GridPath path;
+  if (!grid.Contains(start) || !grid.Contains(goal) ||
+      grid.at(start) == kBlocked || grid.at(goal) == kBlocked) {
+    return path;
+  }
+  const int width = grid.width, height = grid.height;
+  Reset(grid);
   int offsets[8];
   for (int step = 0; step != 8; ++step) {
     offsets[step] = kDy[step] * width + kDx[step];
@@ -111,16 +115,21 @@ GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
   }
   if (!path.found) return path;
   path.cost = cost_[goal_index];
-  Cell cell = goal;
-  path.cells.push_back(cell);
-  while (cell != start) {
+  path.cells = PathTo(goal, start, width);
+  return path;
+}
+
+std::vector<Cell> GridSearch::PathTo(const Cell& goal, const Cell& start,
+                                     const int width) const {
+  std::vector<Cell> cells = {goal};
+  while (cells.back() != start) {
+    const Cell& cell = cells.back();
     const int step =
         state_[static_cast<size_t>(cell.y) * width + cell.x] & kStepMask;
-    cell = {cell.x - kDx[step], cell.y - kDy[step]};
-    path.cells.push_back(cell);
+    cells.push_back({cell.x - kDx[step], cell.y - kDy[step]});
   }
-  std::reverse(path.cells.begin(), path.cells.end());
-  return path;
+  std::reverse(cells.begin(), cells.end());
+  return cells;
 }
 
 }  // namespace navigation

@@ -62,6 +62,11 @@ class GridSearch {
   GridPath Search(const WeightGrid& grid, const Cell& start, const Cell& goal);
 
  private:
+  void Reset(const WeightGrid& grid);
+  // Follows the steps back from an expanded goal.
+  std::vector<Cell> PathTo(const Cell& goal, const Cell& start,
+                           int width) const;
+
   std::vector<uint32_t> cost_;  // g, from the start
   // The step that led here, whether expanded, whether blocked.
   std::vector<uint8_t> state_;

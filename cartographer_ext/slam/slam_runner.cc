@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -23,8 +22,8 @@
 #include "cartographer_ext/slam/metrics_collector.h"
 #include "cartographer_ext/slam/online_poses.h"
 #include "cartographer_ext/slam/resource_usage.h"
-#include "cartographer_ext/slam/scan_conversion.h"
 #include "cartographer_ext/slam/scan_trajectory.h"
+#include "cartographer_ext/slam/sensor_feeder.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -34,11 +33,6 @@ using cartographer::mapping::MapBuilderInterface;
 using cartographer::mapping::PoseGraphInterface;
 using cartographer::mapping::TrajectoryBuilderInterface;
 using cartographer::mapping::proto::TrajectoryBuilderOptions;
-using SensorId = TrajectoryBuilderInterface::SensorId;
-
-constexpr char kScanId[] = "scan";
-constexpr char kOdometryId[] = "odom";
-constexpr char kImuId[] = "imu";
 
 // Decision records kept, about 400 bytes each.
 constexpr size_t kMaxDecisions = 2000000;
@@ -51,83 +45,6 @@ double SecondsSince(const std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
       .count();
 }
-
-cartographer::transform::Rigid3d ToHostPose(const Pose2& pose) {
-  return cartographer::transform::Rigid3d(
-      Eigen::Vector3d(pose.x, pose.y, 0.),
-      Eigen::Quaterniond(
-          Eigen::AngleAxisd(pose.theta, Eigen::Vector3d::UnitZ())));
-}
-
-// Gives one trajectory builder the events of a source.
-class Feeder {
- public:
-  Feeder(const SensorSettings& settings, const bool use_odometry,
-         const bool use_imu, TrajectoryBuilderInterface* const builder,
-         SlamRun* const run)
-      : settings_(settings),
-        use_odometry_(use_odometry),
-        use_imu_(use_imu),
-        builder_(builder),
-        run_(run) {}
-
-  void operator()(const io::LaserScan& scan) {
-    const auto data =
-        ToTimedPointCloudData(scan, settings_.min_range, settings_.max_range);
-    if (data.ranges.empty() || !Later(scan.time, &last_scan_)) {
-      ++run_->scans_left_out;
-      return;
-    }
-    if (run_->scans == 0) first_scan_ = scan.time;
-    ++run_->scans;
-    run_->sensor_seconds = io::ToSeconds(scan.time - first_scan_);
-    builder_->AddSensorData(kScanId, data);
-  }
-
-  void operator()(const io::OdometryReading& reading) {
-    if (!use_odometry_) return;
-    if (!Later(reading.time, &last_odometry_)) {
-      ++run_->other_readings_left_out;
-      return;
-    }
-    ++run_->odometry_readings;
-    builder_->AddSensorData(
-        kOdometryId, cartographer::sensor::OdometryData{
-                         ToHostTime(reading.time), ToHostPose(reading.pose)});
-  }
-
-  void operator()(const io::ImuReading& reading) {
-    if (!use_imu_) return;
-    if (!Later(reading.time, &last_imu_)) {
-      ++run_->other_readings_left_out;
-      return;
-    }
-    ++run_->imu_readings;
-    builder_->AddSensorData(
-        kImuId, cartographer::sensor::ImuData{ToHostTime(reading.time),
-                                              reading.linear_acceleration,
-                                              reading.angular_velocity});
-  }
-
- private:
-  // By the host's clock, which has coarser ticks than the source.
-  static bool Later(const io::TimeNs time, cartographer::common::Time* last) {
-    const cartographer::common::Time host_time = ToHostTime(time);
-    if (host_time <= *last) return false;
-    *last = host_time;
-    return true;
-  }
-
-  const SensorSettings settings_;
-  const bool use_odometry_;
-  const bool use_imu_;
-  TrajectoryBuilderInterface* const builder_;
-  SlamRun* const run_;
-  io::TimeNs first_scan_ = 0;
-  cartographer::common::Time last_scan_ = cartographer::common::Time::min();
-  cartographer::common::Time last_odometry_ = cartographer::common::Time::min();
-  cartographer::common::Time last_imu_ = cartographer::common::Time::min();
-};
 
 std::vector<NodePoses> CollectNodePoses(const PoseGraphInterface& pose_graph,
                                         const int trajectory_id) {
@@ -187,184 +104,255 @@ std::map<std::string, double> Difference(
   return after;
 }
 
+// One run from a recording to an optimised map.
+class Runner {
+ public:
+  Runner(const SlamConfiguration& configuration, io::SensorSource* const source,
+         const SlamRunOptions& options)
+      : configuration_(configuration),
+        source_(source),
+        info_(source->info()),
+        options_(options),
+        use_odometry_(configuration.sensors.use_odometry &&
+                      info_.num_odometry > 0),
+        use_imu_(configuration.trajectory_builder_options
+                     .trajectory_builder_2d_options()
+                     .use_imu_data()) {}
+
+  absl::StatusOr<SlamRun> Run() {
+    const absl::Status suitable = CheckRecording();
+    if (!suitable.ok()) return suitable;
+    StartMeasuring();
+    const absl::Status started = StartTrajectory();
+    if (!started.ok()) return started;
+    const absl::Status fed = Feed();
+    // After an error, too: the host does not bear being destroyed while it waits
+    // for data.
+    run_.map_builder->FinishTrajectory(run_.trajectory_id);
+    if (!fed.ok()) return fed;
+    if (run_.scans == 0) {
+      return absl::InvalidArgumentError(
+          "no scan of the recording has a range within the limits");
+    }
+    Optimize();
+    CollectRecords();
+    CollectPoses();
+    Measure();
+    if (run_.skipped_scans > 0) {
+      run_.warnings.push_back(absl::StrCat(
+          run_.skipped_scans,
+          " scans left out: without a valid range or not later than the one "
+          "before"));
+    }
+    if (run_.skipped_readings > 0) {
+      run_.warnings.push_back(absl::StrCat(
+          run_.skipped_readings,
+          " odometry and IMU readings left out: not later than the one "
+          "before"));
+    }
+    return std::move(run_);
+  }
+
+ private:
+  absl::Status CheckRecording() const {
+    if (info_.num_scans == 0) {
+      return absl::InvalidArgumentError("the recording has no laser scans");
+    }
+    if (use_imu_ && info_.num_imu == 0) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "configuration ", configuration_.name,
+          ": TRAJECTORY_BUILDER_2D.use_imu_data is true but the recording has "
+          "no IMU readings; set it to false"));
+    }
+    return absl::OkStatus();
+  }
+
+  void StartMeasuring() {
+    metrics_before_ = metrics_->Values();
+    searched_before_ = CountPairs(*metrics_, "searched");
+    found_before_ = CountPairs(*metrics_, "found");
+    loop_cpu_before_ = MeasureLoopCpu(*metrics_);
+    decision_recorder_->Start(kMaxDecisions);
+    match_recorder_->Start(kMaxMatches);
+    wall_start_ = std::chrono::steady_clock::now();
+    cpu_start_ = ProcessCpuSeconds();
+    thread_cpu_start_ = ThreadCpuSeconds();
+  }
+
+  // Makes the map builder, with what is loaded into it, and the trajectory.
+  absl::Status StartTrajectory() {
+    auto map_builder_options = configuration_.map_builder_options;
+    if (options_.num_background_threads > 0) {
+      map_builder_options.set_num_background_threads(
+          options_.num_background_threads);
+    }
+    run_.map_builder =
+        cartographer::mapping::CreateMapBuilder(map_builder_options);
+    TrajectoryBuilderOptions trajectory_options =
+        configuration_.trajectory_builder_options;
+    if (!options_.state.filename.empty()) {
+      const absl::Status started =
+          StartFrom(options_.state, &run_, &trajectory_options);
+      if (!started.ok()) return started;
+    }
+    // Called from within AddSensorData, that is in this thread.
+    auto* const local_scan_poses = &run_.local_scan_poses;
+    const auto online = online_;
+    run_.trajectory_id = run_.map_builder->AddTrajectoryBuilder(
+        SensorFeeder::Sensors(use_odometry_, use_imu_), trajectory_options,
+        [local_scan_poses, online](
+            int /*trajectory_id*/, const cartographer::common::Time time,
+            const cartographer::transform::Rigid3d& local_pose,
+            const cartographer::sensor::RangeData& /*range_data_in_local*/,
+            std::unique_ptr<const TrajectoryBuilderInterface::InsertionResult>
+                inserted) {
+          local_scan_poses->push_back(
+              {FromHostTime(time), FromHostPose(local_pose)});
+          if (inserted != nullptr) {
+            online->AddNode(inserted->node_id.node_index, FromHostTime(time));
+          }
+        });
+    FollowOptimizations();
+    return absl::OkStatus();
+  }
+
+  // Notes where each optimization puts the robot.
+  void FollowOptimizations() {
+    PoseGraphInterface* const pose_graph = run_.map_builder->pose_graph();
+    const int trajectory_id = run_.trajectory_id;
+    const auto online = online_;
+    online->Start(
+        FromHostPose(pose_graph->GetLocalToGlobalTransform(trajectory_id)));
+    pose_graph->SetGlobalSlamOptimizationCallback(
+        [online, pose_graph, trajectory_id](
+            const std::map<int, cartographer::mapping::SubmapId>& /*submaps*/,
+            const std::map<int, cartographer::mapping::NodeId>& nodes) {
+          const auto newest = nodes.find(trajectory_id);
+          if (newest == nodes.end()) return;
+          online->AddOptimization(
+              newest->second.node_index,
+              FromHostPose(
+                  pose_graph->GetLocalToGlobalTransform(trajectory_id)));
+        });
+  }
+
+  absl::Status Feed() {
+    SensorFeeder feeder(
+        configuration_.sensors, use_odometry_, use_imu_,
+        run_.map_builder->GetTrajectoryBuilder(run_.trajectory_id), &run_);
+    progress_.total_scans = info_.num_scans;
+    io::SensorEvent event;
+    while (true) {
+      const absl::StatusOr<bool> more = source_->Next(&event);
+      if (!more.ok()) return more.status();
+      if (!*more) return absl::OkStatus();
+      absl::visit(feeder, event);
+      if (!absl::holds_alternative<io::LaserScan>(event)) continue;
+      if (options_.after_scan) {
+        options_.after_scan(run_.scans + run_.skipped_scans, info_.num_scans,
+                            run_.map_builder.get());
+      }
+      WaitForBackEnd(*metrics_, options_.max_queue_length, kPatience);
+      if (options_.on_progress) {
+        progress_.scans = run_.scans + run_.skipped_scans;
+        progress_.queue_length =
+            static_cast<int64_t>(metrics_->Sum(kQueueMetric));
+        options_.on_progress(progress_);
+      }
+    }
+  }
+
+  void Optimize() {
+    progress_.stage = SlamProgress::Stage::kOptimizing;
+    if (options_.on_progress) options_.on_progress(progress_);
+    run_.front_end_cpu_seconds = ThreadCpuSeconds() - thread_cpu_start_;
+    const auto start = std::chrono::steady_clock::now();
+    run_.map_builder->pose_graph()->RunFinalOptimization();
+    run_.final_optimization_wall_seconds = SecondsSince(start);
+  }
+
+  void CollectRecords() {
+    run_.switched_loops =
+        context_->Get<optimization::SwitchedLoopRecorder>()->Get();
+    run_.matches = match_recorder_->All();
+    match_recorder_->Stop();
+    if (match_recorder_->num_dropped() > 0) {
+      run_.warnings.push_back(absl::StrCat(match_recorder_->num_dropped(),
+                                           " records of scans dropped"));
+    }
+    run_.decisions = decision_recorder_->All();
+    decision_recorder_->Stop();
+    if (decision_recorder_->num_dropped() > 0) {
+      run_.warnings.push_back(absl::StrCat(decision_recorder_->num_dropped(),
+                                           " decision records dropped"));
+    }
+  }
+
+  void CollectPoses() {
+    const PoseGraphInterface& pose_graph = *run_.map_builder->pose_graph();
+    CountResults(pose_graph, &run_);
+    run_.online_scan_poses = online_->At(run_.local_scan_poses);
+    run_.global_scan_poses =
+        GlobalScanPoses(run_.local_scan_poses,
+                        CollectNodePoses(pose_graph, run_.trajectory_id));
+    if (run_.global_scan_poses.empty()) {
+      run_.global_scan_poses = run_.online_scan_poses;
+    }
+  }
+
+  void Measure() {
+    run_.wall_seconds = SecondsSince(wall_start_);
+    run_.cpu_seconds = ProcessCpuSeconds() - cpu_start_;
+    run_.peak_memory_bytes = PeakMemoryBytes();
+    run_.metrics = Difference(metrics_->Values(), metrics_before_);
+    run_.loop_searches = static_cast<int64_t>(
+        CountPairs(*metrics_, "searched") - searched_before_);
+    run_.loops_found =
+        static_cast<int64_t>(CountPairs(*metrics_, "found") - found_before_);
+    run_.loop_search_cpu_is_measured = metrics_->Has(kSearchCpuMetric);
+    run_.loop_cpu = MeasureLoopCpu(*metrics_) - loop_cpu_before_;
+    run_.loop_search_cpu_seconds =
+        run_.loop_search_cpu_is_measured
+            ? run_.loop_cpu.total()
+            : run_.cpu_seconds - (ThreadCpuSeconds() - thread_cpu_start_);
+  }
+
+  const SlamConfiguration& configuration_;
+  io::SensorSource* const source_;
+  const io::SensorSourceInfo& info_;
+  const SlamRunOptions& options_;
+  const bool use_odometry_;
+  const bool use_imu_;
+
+  const std::shared_ptr<PoseGraphContext> context_ =
+      std::make_shared<PoseGraphContext>();
+  const ScopedPoseGraphContext scope_{context_};
+  loop_closure::DecisionRecorder* const decision_recorder_ =
+      context_->Get<loop_closure::DecisionRecorder>();
+  front_end::MatchRecorder* const match_recorder_ =
+      context_->Get<front_end::MatchRecorder>();
+  // Outlives the run in the callbacks.
+  const std::shared_ptr<OnlinePoses> online_ = std::make_shared<OnlinePoses>();
+
+  MetricsCollector* const metrics_ = MetricsCollector::Global();
+  std::map<std::string, double> metrics_before_;
+  double searched_before_ = 0.;
+  double found_before_ = 0.;
+  LoopCpu loop_cpu_before_;
+  std::chrono::steady_clock::time_point wall_start_;
+  double cpu_start_ = 0.;
+  double thread_cpu_start_ = 0.;
+
+  SlamProgress progress_;
+  SlamRun run_;
+};
+
 }  // namespace
 
 absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
                                 io::SensorSource* const source,
                                 const SlamRunOptions& options) {
-  const io::SensorSourceInfo& info = source->info();
-  SlamRun run;
-  if (info.num_scans == 0) {
-    return absl::InvalidArgumentError("the recording has no laser scans");
-  }
-  const bool use_imu =
-      configuration.trajectory_builder_options.trajectory_builder_2d_options()
-          .use_imu_data();
-  if (use_imu && info.num_imu == 0) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "configuration ", configuration.name,
-        ": TRAJECTORY_BUILDER_2D.use_imu_data is true but the recording has "
-        "no IMU readings; set it to false"));
-  }
-  const bool use_odometry =
-      configuration.sensors.use_odometry && info.num_odometry > 0;
-
-  const auto context = std::make_shared<PoseGraphContext>();
-  const ScopedPoseGraphContext scope(context);
-  MetricsCollector* const metrics = MetricsCollector::Global();
-  const auto metrics_before = metrics->Values();
-  const double searched_before = CountPairs(*metrics, "searched");
-  const double found_before = CountPairs(*metrics, "found");
-  const LoopCpu loop_cpu_before = MeasureLoopCpu(*metrics);
-  loop_closure::DecisionRecorder* const recorder =
-      context->Get<loop_closure::DecisionRecorder>();
-  recorder->Start(kMaxDecisions);
-  front_end::MatchRecorder* const match_recorder =
-      context->Get<front_end::MatchRecorder>();
-  match_recorder->Start(kMaxMatches);
-  const auto wall_start = std::chrono::steady_clock::now();
-  const double cpu_start = ProcessCpuSeconds();
-  const double thread_cpu_start = ThreadCpuSeconds();
-
-  auto map_builder_options = configuration.map_builder_options;
-  if (options.num_background_threads > 0) {
-    map_builder_options.set_num_background_threads(
-        options.num_background_threads);
-  }
-  run.map_builder =
-      cartographer::mapping::CreateMapBuilder(map_builder_options);
-  TrajectoryBuilderOptions trajectory_options =
-      configuration.trajectory_builder_options;
-  if (!options.state.filename.empty()) {
-    const absl::Status started =
-        StartFrom(options.state, &run, &trajectory_options);
-    if (!started.ok()) return started;
-  }
-  std::set<SensorId> sensor_ids = {{SensorId::SensorType::RANGE, kScanId}};
-  if (use_odometry) {
-    sensor_ids.insert({SensorId::SensorType::ODOMETRY, kOdometryId});
-  }
-  if (use_imu) sensor_ids.insert({SensorId::SensorType::IMU, kImuId});
-  // Called from within AddSensorData, that is in this thread.
-  auto* const local_scan_poses = &run.local_scan_poses;
-  // Outlives the run in the callbacks.
-  const auto online = std::make_shared<OnlinePoses>();
-  run.trajectory_id = run.map_builder->AddTrajectoryBuilder(
-      sensor_ids, trajectory_options,
-      [local_scan_poses, online](
-          int /*trajectory_id*/, const cartographer::common::Time time,
-          const cartographer::transform::Rigid3d& local_pose,
-          const cartographer::sensor::RangeData& /*range_data_in_local*/,
-          std::unique_ptr<const TrajectoryBuilderInterface::InsertionResult>
-              inserted) {
-        local_scan_poses->push_back(
-            {FromHostTime(time), FromHostPose(local_pose)});
-        if (inserted != nullptr) {
-          online->AddNode(inserted->node_id.node_index, FromHostTime(time));
-        }
-      });
-  PoseGraphInterface* const pose_graph = run.map_builder->pose_graph();
-  const int trajectory_id = run.trajectory_id;
-  online->Start(
-      FromHostPose(pose_graph->GetLocalToGlobalTransform(trajectory_id)));
-  pose_graph->SetGlobalSlamOptimizationCallback(
-      [online, pose_graph, trajectory_id](
-          const std::map<int, cartographer::mapping::SubmapId>& /*submaps*/,
-          const std::map<int, cartographer::mapping::NodeId>& nodes) {
-        const auto newest = nodes.find(trajectory_id);
-        if (newest == nodes.end()) return;
-        online->AddOptimization(
-            newest->second.node_index,
-            FromHostPose(pose_graph->GetLocalToGlobalTransform(trajectory_id)));
-      });
-  Feeder feeder(configuration.sensors, use_odometry, use_imu,
-                run.map_builder->GetTrajectoryBuilder(run.trajectory_id), &run);
-
-  SlamProgress progress;
-  progress.total_scans = info.num_scans;
-  io::SensorEvent event;
-  while (true) {
-    const absl::StatusOr<bool> more = source->Next(&event);
-    if (!more.ok()) {
-      // The host does not stand being destroyed while it waits for data.
-      run.map_builder->FinishTrajectory(run.trajectory_id);
-      return more.status();
-    }
-    if (!*more) break;
-    absl::visit(feeder, event);
-    if (!absl::holds_alternative<io::LaserScan>(event)) continue;
-    if (options.after_scan) {
-      options.after_scan(run.scans + run.scans_left_out, info.num_scans,
-                         run.map_builder.get());
-    }
-    WaitForBackEnd(*metrics, options.max_queue_length, kPatience);
-    if (options.on_progress) {
-      progress.scans = run.scans + run.scans_left_out;
-      progress.queue_length = static_cast<int64_t>(metrics->Sum(kQueueMetric));
-      options.on_progress(progress);
-    }
-  }
-  run.map_builder->FinishTrajectory(run.trajectory_id);
-  if (run.scans == 0) {
-    return absl::InvalidArgumentError(
-        "no scan of the recording has a range within the limits");
-  }
-  progress.stage = SlamProgress::Stage::kOptimizing;
-  if (options.on_progress) options.on_progress(progress);
-  run.front_end_cpu_seconds = ThreadCpuSeconds() - thread_cpu_start;
-  const auto optimization_start = std::chrono::steady_clock::now();
-  pose_graph->RunFinalOptimization();
-  run.final_optimization_wall_seconds = SecondsSince(optimization_start);
-
-  run.switched_loops =
-      context->Get<optimization::SwitchedLoopRecorder>()->Get();
-
-  run.matches = match_recorder->All();
-  match_recorder->Stop();
-  if (match_recorder->num_dropped() > 0) {
-    run.warnings.push_back(absl::StrCat(match_recorder->num_dropped(),
-                                        " records of scans dropped"));
-  }
-  run.decisions = recorder->All();
-  recorder->Stop();
-  if (recorder->num_dropped() > 0) {
-    run.warnings.push_back(
-        absl::StrCat(recorder->num_dropped(), " decision records dropped"));
-  }
-  CountResults(*pose_graph, &run);
-  run.online_scan_poses = online->At(run.local_scan_poses);
-  run.global_scan_poses = GlobalScanPoses(
-      run.local_scan_poses, CollectNodePoses(*pose_graph, run.trajectory_id));
-  if (run.global_scan_poses.empty()) {
-    run.global_scan_poses = run.online_scan_poses;
-  }
-
-  run.wall_seconds = SecondsSince(wall_start);
-  run.cpu_seconds = ProcessCpuSeconds() - cpu_start;
-  run.peak_memory_bytes = PeakMemoryBytes();
-  run.metrics = Difference(metrics->Values(), metrics_before);
-  run.loop_searches =
-      static_cast<int64_t>(CountPairs(*metrics, "searched") - searched_before);
-  run.loops_found =
-      static_cast<int64_t>(CountPairs(*metrics, "found") - found_before);
-  run.loop_search_cpu_is_measured = metrics->Has(kSearchCpuMetric);
-  run.loop_cpu = MeasureLoopCpu(*metrics) - loop_cpu_before;
-  run.loop_search_cpu_seconds =
-      run.loop_search_cpu_is_measured
-          ? run.loop_cpu.total()
-          : run.cpu_seconds - (ThreadCpuSeconds() - thread_cpu_start);
-  if (run.scans_left_out > 0) {
-    run.warnings.push_back(absl::StrCat(
-        run.scans_left_out,
-        " scans left out: without a valid range or not later than the one "
-        "before"));
-  }
-  if (run.other_readings_left_out > 0) {
-    run.warnings.push_back(absl::StrCat(
-        run.other_readings_left_out,
-        " odometry and IMU readings left out: not later than the one before"));
-  }
-  return run;
+  return Runner(configuration, source, options).Run();
 }
 
 absl::Status WritePbstream(MapBuilderInterface* const map_builder,

@@ -34,6 +34,7 @@
 #include "cartographer_ext/metrics/trajectory.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "cartographer_ext/slam/back_end_metrics.h"
+#include "cartographer_ext/slam/sensor_feeder.h"
 #include "cartographer_ext/slam/starting_state.h"
 
 namespace cartographer_ext {
@@ -64,18 +65,11 @@ struct SlamRunOptions {
   std::function<void(const SlamProgress&)> on_progress;
 };
 
-struct SlamRun {
+// A run, with what was fed to it.
+struct SlamRun : FedReadings {
   // Finished and optimised; holds the map.
   std::unique_ptr<cartographer::mapping::MapBuilderInterface> map_builder;
   int trajectory_id = 0;
-
-  // What was fed.
-  int64_t scans = 0;
-  int64_t odometry_readings = 0;
-  int64_t imu_readings = 0;
-  int64_t scans_left_out = 0;
-  int64_t other_readings_left_out = 0;
-  double sensor_seconds = 0.;  // first to last scan
 
   // What it started from.
   int64_t loaded_nodes = 0;

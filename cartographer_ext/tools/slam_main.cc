@@ -205,7 +205,7 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
   json["configuration"] = FLAGS_configuration_basename;
   json["scans"] = run.scans;
   json["matched_scans"] = run.local_scan_poses.size();
-  json["scans_left_out"] = run.scans_left_out;
+  json["scans_left_out"] = run.skipped_scans;
   json["odometry_readings"] = run.odometry_readings;
   json["imu_readings"] = run.imu_readings;
   json["sensor_seconds"] = run.sensor_seconds;
@@ -338,7 +338,7 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
   return absl::OkStatus();
 }
 
-absl::Status Run() {
+absl::Status CheckOutputs() {
   std::vector<std::string> outputs = {
       FLAGS_pbstream_filename,          FLAGS_picture_filename,
       FLAGS_trajectory_filename,        FLAGS_local_trajectory_filename,
@@ -348,7 +348,11 @@ absl::Status Run() {
     outputs.push_back(FLAGS_map_filestem + ".pgm");
     outputs.push_back(FLAGS_map_filestem + ".yaml");
   }
-  const absl::Status writable = tools::CheckWritable(outputs);
+  return tools::CheckWritable(outputs);
+}
+
+absl::Status Run() {
+  const absl::Status writable = CheckOutputs();
   if (!writable.ok()) return writable;
 
   const std::vector<std::string> directories =

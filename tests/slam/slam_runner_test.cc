@@ -74,7 +74,7 @@ TEST(SlamRunnerTest, FollowsTheRobotRoundTheRoom) {
   EXPECT_EQ(run->scans, kNumScans);
   EXPECT_EQ(run->odometry_readings, kNumScans);
   EXPECT_EQ(run->imu_readings, 0);
-  EXPECT_EQ(run->scans_left_out, 0);
+  EXPECT_EQ(run->skipped_scans, 0);
   EXPECT_NEAR(run->sensor_seconds, 44.9, 1e-9);
   EXPECT_EQ(last_scan, kNumScans);
   EXPECT_TRUE(optimized);
@@ -105,8 +105,12 @@ TEST(SlamRunnerTest, FollowsTheRobotRoundTheRoom) {
             static_cast<int64_t>(run->global_scan_poses.size()));
   EXPECT_LT(errors->ate.max, 0.1);
   EXPECT_LT(errors->ate_rotation_degrees.max, 2.);
+}
 
-  // The same map in memory and in a file.
+TEST(SlamRunnerTest, TheMapInAFileIsTheOneInMemory) {
+  test::RoomSource source(200);
+  const auto run = RunSlam(Stock(), &source, SlamRunOptions());
+  ASSERT_TRUE(run.ok()) << run.status();
   const MapGraph graph = MakeMapGraph(*run->map_builder->pose_graph());
   EXPECT_EQ(static_cast<int64_t>(graph.nodes.size()), run->nodes);
   EXPECT_EQ(static_cast<int64_t>(graph.submaps.size()), run->submaps);
@@ -166,9 +170,9 @@ TEST(SlamRunnerTest, LeavesOutWhatTheHostWouldNotStand) {
   const auto run = RunSlam(Stock(), &source, SlamRunOptions());
   ASSERT_TRUE(run.ok()) << run.status();
   EXPECT_EQ(run->scans, 11);
-  EXPECT_EQ(run->scans_left_out, 2);
+  EXPECT_EQ(run->skipped_scans, 2);
   EXPECT_EQ(run->odometry_readings, 10);
-  EXPECT_EQ(run->other_readings_left_out, 10);
+  EXPECT_EQ(run->skipped_readings, 10);
   EXPECT_EQ(run->warnings.size(), 2u);
 }
 

@@ -14,6 +14,7 @@
 #include "cartographer_ext/navigation/closed_loop/contact_counter.h"
 #include "cartographer_ext/navigation/closed_loop/goals.h"
 #include "cartographer_ext/navigation/closed_loop/localization_error.h"
+#include "cartographer_ext/navigation/closed_loop/navigator_input.h"
 #include "cartographer_ext/navigation/closed_loop/online_localizer.h"
 #include "cartographer_ext/navigation/closed_loop/true_plan.h"
 #include "cartographer_ext/simulation/obstacle_motion.h"
@@ -49,30 +50,6 @@ CostmapOptions MakeCostmapOptions(const simulation::World& world) {
   CostmapOptions options;
   options.inscribed_radius = world.robot.radius;
   return options;
-}
-
-// Points of a scan in the robot frame.
-NavigatorScan ToNavigatorScan(const io::LaserScan& scan) {
-  NavigatorScan result;
-  result.laser = scan.laser_pose.translation();
-  for (size_t i = 0; i != scan.ranges.size(); ++i) {
-    const double angle = scan.angle_min + i * scan.angle_increment;
-    const bool echo =
-        scan.ranges[i] >= scan.range_min && scan.ranges[i] <= scan.range_max;
-    const double range = echo ? scan.ranges[i] : scan.range_max;
-    const Eigen::Vector2d point =
-        scan.laser_pose *
-        Eigen::Vector2d(range * std::cos(angle), range * std::sin(angle));
-    // A surface that is black or made of glass gives no echo either: only the
-    // near part of such a beam is taken as free.
-    if (echo) {
-      result.echoes.push_back(point);
-    } else {
-      result.free_ends.push_back(result.laser +
-                                 (point - result.laser) * (2. / range));
-    }
-  }
-  return result;
 }
 
 class ClosedLoop {

@@ -49,101 +49,112 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
                                   std::vector<Pose2>* const poses) {
   CHECK(options.edge_weights.empty() ||
         options.edge_weights.size() == edges_.size());
-  SolverSummary summary;
   const double start = ThreadCpuSeconds();
   options_ = options;
-  if (options.kernel.type == KernelType::kAcsPaper) {
-    covariance_norms_.assign(edges_.size(), 1.);
-    for (size_t i = 0; i != edges_.size(); ++i) {
-      if (!edges_[i].is_loop) continue;
-      const Eigen::Matrix3d information =
-          edges_[i].whitening.transpose() * edges_[i].whitening;
-      covariance_norms_[i] = NormOfCovariance(information, options.kernel.norm);
-    }
-  }
+  if (options.kernel.type == KernelType::kAcsPaper) ComputeCovarianceNorms();
   SetPoses(*poses);
-  Evaluation now, next;
-  Evaluate(nullptr, &now);
-  summary.initial_cost = now.cost;
-  double lambda = options.initial_lambda;
-  bool done = poses_.size() < 2 || edges_.empty();
-  bool settling = false;
-  std::vector<int> undecided;
-  summary.converged = done;
-  Eigen::VectorXd step;
-  while (!done && summary.iterations < options.max_iterations) {
-    const bool analysed = UpdatePattern(now.weights);
+  Descent descent;
+  SolverSummary& summary = descent.summary;
+  Evaluate(nullptr, &descent.now);
+  summary.initial_cost = descent.now.cost;
+  descent.lambda = options.initial_lambda;
+  descent.done = poses_.size() < 2 || edges_.empty();
+  summary.converged = descent.done;
+  while (!descent.done && summary.iterations < options.max_iterations) {
+    const bool analysed = UpdatePattern(descent.now.weights);
     summary.analyses += analysed;
-    Assemble(now.weights);
-    if (settling && !analysed) {
+    Assemble(descent.now.weights);
+    if (descent.settling && !analysed) {
       // What the next step would gain, by the factor of the last one.
-      step = -gradient_;
-      factor_.Solve(&step);
-      if (-gradient_.dot(step) <= options.cost_tolerance * now.cost) {
+      descent.step = -gradient_;
+      factor_.Solve(&descent.step);
+      if (-gradient_.dot(descent.step) <=
+          options.cost_tolerance * descent.now.cost) {
         summary.converged = true;
         break;
       }
     }
     const std::vector<Pose2> from = poses_;
     bool accepted = false;
-    while (!accepted && !done && summary.iterations < options.max_iterations) {
+    while (!accepted && !descent.done &&
+           summary.iterations < options.max_iterations) {
       ++summary.iterations;
-      if (!factor_.Factorize(lambda)) {
-        lambda = std::max(10. * lambda, 1e-8);
-        done = lambda > kMaxLambda;
-        continue;
-      }
-      step = -gradient_;
-      factor_.Solve(&step);
-      const double predicted = PredictedDecrease(step, lambda);
-      const bool carried = CarryToTheLimit(undecided, now, &step);
-      undecided.clear();
-      const double largest = step.cwiseAbs().maxCoeff();
-      SetPoses(Stepped(from, step));
-      // The shape of the literal ACS kernel is held during the step, so that
-      // both costs are those of one function.
-      Evaluate(&now.shapes, &next);
-      const double decrease = now.cost - next.cost;
-      if (decrease >= 0. && std::isfinite(next.cost)) {
-        accepted = true;
-        const double ratio = predicted > 0. ? decrease / predicted : 1.;
-        if (ratio > 0.75) {
-          lambda = lambda * 0.1 < 1e-10 ? 1e-10 : lambda * 0.1;
-        } else if (ratio < 0.25) {
-          lambda = std::min(4. * lambda, kMaxLambda);
-        }
-        done = decrease <= options.cost_tolerance * now.cost ||
-               largest < options.step_tolerance;
-        summary.converged = done;
-        settling = decrease <= kSettling * now.cost;
-        if (settling && !done && !carried && ratio > kShedding) {
-          Prolong(from, step, now.shapes, &next);
-        }
-        // A kernel with a moving shape is weighed anew; the cost reported
-        // belongs to the last shapes.
-        if (options.kernel.type == KernelType::kAcsPaper) {
-          Evaluate(nullptr, &next);
-        }
-        std::swap(now, next);
-        if (decrease <= kNearing * next.cost) {
-          undecided = UndecidedLoops(next.weights, now.weights);
-        }
-      } else {
-        lambda = std::max(10. * lambda, 1e-8);
-        if (largest < options.step_tolerance || lambda > kMaxLambda) {
-          done = true;
-          summary.converged = true;
-        }
-      }
+      accepted = TryStep(from, &descent);
     }
     if (!accepted) SetPoses(from);
   }
-  summary.final_cost = now.cost;
+  summary.final_cost = descent.now.cost;
   summary.factor_blocks = factor_.num_blocks();
   summary.cpu_seconds = ThreadCpuSeconds() - start;
   *poses = poses_;
-  weights_ = std::move(now.weights);
+  weights_ = std::move(descent.now.weights);
   return summary;
+}
+
+void RobustSolver::ComputeCovarianceNorms() {
+  covariance_norms_.assign(edges_.size(), 1.);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (!edges_[i].is_loop) continue;
+    const Eigen::Matrix3d information =
+        edges_[i].whitening.transpose() * edges_[i].whitening;
+    covariance_norms_[i] = NormOfCovariance(information, options_.kernel.norm);
+  }
+}
+
+// One step of Levenberg-Marquardt from the poses `from`, at which the system is
+// assembled. Returns whether it lowers the cost; if not, the next one is
+// shorter.
+bool RobustSolver::TryStep(const std::vector<Pose2>& from,
+                           Descent* const descent) {
+  double& lambda = descent->lambda;
+  Eigen::VectorXd& step = descent->step;
+  Evaluation& now = descent->now;
+  Evaluation& next = descent->next;
+  if (!factor_.Factorize(lambda)) {
+    lambda = std::max(10. * lambda, 1e-8);
+    descent->done = lambda > kMaxLambda;
+    return false;
+  }
+  step = -gradient_;
+  factor_.Solve(&step);
+  const double predicted = PredictedDecrease(step, lambda);
+  const bool carried = CarryToTheLimit(descent->undecided, now, &step);
+  descent->undecided.clear();
+  const double largest = step.cwiseAbs().maxCoeff();
+  SetPoses(Stepped(from, step));
+  // The shape of the literal ACS kernel is held during the step, so that both
+  // costs are those of one function.
+  Evaluate(&now.shapes, &next);
+  const double decrease = now.cost - next.cost;
+  if (!(decrease >= 0. && std::isfinite(next.cost))) {
+    lambda = std::max(10. * lambda, 1e-8);
+    if (largest < options_.step_tolerance || lambda > kMaxLambda) {
+      descent->done = true;
+      descent->summary.converged = true;
+    }
+    return false;
+  }
+  const double ratio = predicted > 0. ? decrease / predicted : 1.;
+  if (ratio > 0.75) {
+    lambda = lambda * 0.1 < 1e-10 ? 1e-10 : lambda * 0.1;
+  } else if (ratio < 0.25) {
+    lambda = std::min(4. * lambda, kMaxLambda);
+  }
+  descent->done = decrease <= options_.cost_tolerance * now.cost ||
+                  largest < options_.step_tolerance;
+  descent->summary.converged = descent->done;
+  descent->settling = decrease <= kSettling * now.cost;
+  if (descent->settling && !descent->done && !carried && ratio > kShedding) {
+    Prolong(from, step, now.shapes, &next);
+  }
+  // A kernel with a moving shape is weighed anew; the cost reported belongs to
+  // the last shapes.
+  if (options_.kernel.type == KernelType::kAcsPaper) Evaluate(nullptr, &next);
+  std::swap(now, next);
+  if (decrease <= kNearing * next.cost) {
+    descent->undecided = UndecidedLoops(next.weights, now.weights);
+  }
+  return true;
 }
 
 // Doubles an accepted step as long as that lowers the cost.

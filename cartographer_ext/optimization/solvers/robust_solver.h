@@ -101,6 +101,20 @@ class RobustSolver {
     std::vector<double> shapes;  // of the literal ACS kernel only
   };
 
+  // What one call of Solve() carries from step to step.
+  struct Descent {
+    Evaluation now;
+    Evaluation next;
+    Eigen::VectorXd step;
+    double lambda = 0.;
+    bool settling = false;
+    std::vector<int> undecided;  // loops about to be let go or brought in
+    bool done = false;
+    SolverSummary summary;
+  };
+
+  void ComputeCovarianceNorms();
+  bool TryStep(const std::vector<Pose2>& from, Descent* descent);
   void SetPoses(const std::vector<Pose2>& poses);
   void Evaluate(const std::vector<double>* held_shapes, Evaluation* result);
   void Prolong(const std::vector<Pose2>& from, Eigen::VectorXd step,

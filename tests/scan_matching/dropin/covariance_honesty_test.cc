@@ -90,6 +90,35 @@ sensor::RangeData ToRangeData(const io::LaserScan& scan) {
   return data;
 }
 
+// Matches a scan taken at (grid <- robot) = `truth` from a prediction beside it.
+Sample MatchBeside(const DegeneracyAwareScanMatcher2D& matcher,
+                   const Pose2& truth, const double grid_heading,
+                   const sensor::PointCloud& points,
+                   const mapping::Grid2D& grid, Random* const random) {
+  Prediction prediction;
+  prediction.pose = Pose2(truth.x + kTranslationSigma * random->Normal(),
+                          truth.y + kTranslationSigma * random->Normal(),
+                          truth.theta + kRotationSigma * random->Normal());
+  prediction.covariance.diagonal() << kTranslationSigma * kTranslationSigma,
+      kTranslationSigma * kTranslationSigma, kRotationSigma * kRotationSigma;
+  Sample sample;
+  transform::Rigid2d pose;
+  matcher.MatchWithPrediction(
+      prediction,
+      transform::Rigid2d({prediction.pose.x, prediction.pose.y},
+                         prediction.pose.theta),
+      points, grid, &pose, &sample.report);
+  const Eigen::Vector3d error(
+      pose.translation().x() - truth.x, pose.translation().y() - truth.y,
+      NormalizeAngle(pose.rotation().angle() - truth.theta));
+  sample.nees = error.dot(sample.report.information * error);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
+      Eigen::Matrix2d(sample.report.covariance.topLeftCorner<2, 2>()));
+  const Eigen::Vector2d longest = solver.eigenvectors().col(1);
+  sample.longest = std::atan2(longest.y(), longest.x()) - grid_heading;
+  return sample;
+}
+
 // Every `stride`-th scan of the first `seconds` of a run. The grid lies in the
 // world at random.
 std::vector<Sample> MatchRun(const std::string& world, const uint64_t seed,
@@ -136,32 +165,11 @@ std::vector<Sample> MatchRun(const std::string& world, const uint64_t seed,
     const sensor::RangeData data = ToRangeData(*scan);
     if (data.returns.empty()) continue;
     if (inserted > 20 && i % stride == 0) {
-      Prediction prediction;
-      prediction.pose = Pose2(truth.x + kTranslationSigma * random.Normal(),
-                              truth.y + kTranslationSigma * random.Normal(),
-                              truth.theta + kRotationSigma * random.Normal());
-      prediction.covariance.diagonal() << kTranslationSigma * kTranslationSigma,
-          kTranslationSigma * kTranslationSigma,
-          kRotationSigma * kRotationSigma;
-      Sample sample;
-      sample.x = in_world.x;
-      transform::Rigid2d pose;
-      matcher.MatchWithPrediction(
-          prediction,
-          transform::Rigid2d({prediction.pose.x, prediction.pose.y},
-                             prediction.pose.theta),
-          sensor::AdaptiveVoxelFilter(data.returns, voxels),
-          *submaps.submaps().front()->grid(), &pose, &sample.report);
-      const Eigen::Vector3d error(
-          pose.translation().x() - truth.x, pose.translation().y() - truth.y,
-          NormalizeAngle(pose.rotation().angle() - truth.theta));
-      sample.nees = error.dot(sample.report.information * error);
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
-          Eigen::Matrix2d(sample.report.covariance.topLeftCorner<2, 2>()));
-      const Eigen::Vector2d longest = solver.eigenvectors().col(1);
-      sample.longest =
-          std::atan2(longest.y(), longest.x()) - grid_from_world.theta;
-      samples.push_back(sample);
+      samples.push_back(
+          MatchBeside(matcher, truth, grid_from_world.theta,
+                      sensor::AdaptiveVoxelFilter(data.returns, voxels),
+                      *submaps.submaps().front()->grid(), &random));
+      samples.back().x = in_world.x;
     }
     const transform::Rigid3d inserted_at =
         transform::Embed3D(transform::Rigid2d({truth.x, truth.y}, truth.theta));

@@ -31,11 +31,6 @@ std::unique_ptr<PoseGraphTrimmer> MakeTrimmer(
 
 }  // namespace
 
-PoseGraph2DMetrics& GetPoseGraph2DMetrics() {
-  static PoseGraph2DMetrics* const metrics = new PoseGraph2DMetrics;
-  return *metrics;
-}
-
 PoseGraph2D::PoseGraph2D(
     const proto::PoseGraphOptions& options,
     std::unique_ptr<optimization::OptimizationProblem2D> optimization_problem,
@@ -405,20 +400,6 @@ void PoseGraph2D::Trim() {
   trimmers_.erase(end_of_unfinished, trimmers_.end());
 }
 
-void PoseGraph2D::CountConstraints() const {
-  int num_same = 0;
-  int num_different = 0;
-  for (const Constraint& constraint : data_.constraints) {
-    if (constraint.tag == Constraint::INTER_SUBMAP) {
-      const bool same = constraint.node_id.trajectory_id ==
-                        constraint.submap_id.trajectory_id;
-      ++(same ? num_same : num_different);
-    }
-  }
-  GetPoseGraph2DMetrics().constraints_same_trajectory->Set(num_same);
-  GetPoseGraph2DMetrics().constraints_different_trajectory->Set(num_different);
-}
-
 void PoseGraph2D::RunFinalOptimization() {
   const int usual_num_iterations = options_.optimization_problem_options()
                                        .ceres_solver_options()
@@ -447,32 +428,6 @@ void PoseGraph2D::WaitForAllComputations() {
   AddWorkItem([]() { return WorkItem::Result::kCollectConstraints; });
   work_queue_.WaitUntilIdle();
   CHECK_GE(constraint_builder_.GetNumFinishedNodes(), num_added_nodes);
-}
-
-void PoseGraph2D::RegisterMetrics(
-    metrics::FamilyFactory* const family_factory) {
-  PoseGraph2DMetrics& metrics = GetPoseGraph2DMetrics();
-  metrics.work_queue_delay =
-      family_factory
-          ->NewGaugeFamily("mapping_2d_pose_graph_work_queue_delay",
-                           "Seconds that the oldest waiting item has waited")
-          ->Add({});
-  metrics.work_queue_size =
-      family_factory
-          ->NewGaugeFamily("mapping_2d_pose_graph_work_queue_size",
-                           "Items that wait in the work queue")
-          ->Add({});
-  auto* const constraints = family_factory->NewGaugeFamily(
-      "mapping_2d_pose_graph_constraints", "Constraints in the pose graph");
-  metrics.constraints_same_trajectory =
-      constraints->Add({{"tag", "inter_submap"}, {"trajectory", "same"}});
-  metrics.constraints_different_trajectory =
-      constraints->Add({{"tag", "inter_submap"}, {"trajectory", "different"}});
-  auto* const submaps = family_factory->NewGaugeFamily(
-      "mapping_2d_pose_graph_submaps", "Submaps in the pose graph");
-  metrics.active_submaps = submaps->Add({{"state", "active"}});
-  metrics.frozen_submaps = submaps->Add({{"state", "frozen"}});
-  metrics.deleted_submaps = submaps->Add({{"state", "deleted"}});
 }
 
 }  // namespace mapping

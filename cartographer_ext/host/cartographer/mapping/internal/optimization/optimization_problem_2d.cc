@@ -10,6 +10,7 @@
 #include "cartographer/mapping/internal/optimization/cost_functions/landmark_cost_function_2d.h"
 #include "cartographer/mapping/internal/optimization/cost_functions/pose_error.h"
 #include "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d.h"
+#include "cartographer/mapping/internal/optimization/sensor_readings.h"
 #include "cartographer/transform/transform.h"
 #include "ceres/ceres.h"
 #include "glog/logging.h"
@@ -54,58 +55,6 @@ LandmarkValues ToValues(const transform::Rigid3d& pose) {
 
 transform::Rigid3d ToPose(const LandmarkValues& values) {
   return transform::Rigid3d::FromArrays(values.rotation, values.translation);
-}
-
-// The poses of fixed frame data may be missing, those of odometry never are.
-absl::optional<transform::Rigid3d> PoseOf(const sensor::OdometryData& data) {
-  return data.pose;
-}
-absl::optional<transform::Rigid3d> PoseOf(
-    const sensor::FixedFramePoseData& data) {
-  return data.pose;
-}
-
-// The pose at `time` between the readings before and after it. Nothing outside
-// of the readings, or beside one without a pose.
-template <typename DataType>
-absl::optional<transform::Rigid3d> PoseAt(
-    const sensor::MapByTime<DataType>& readings, const int trajectory_id,
-    const common::Time time) {
-  if (!readings.HasTrajectory(trajectory_id)) {
-    return absl::nullopt;
-  }
-  const auto after = readings.lower_bound(trajectory_id, time);
-  if (after == readings.EndOfTrajectory(trajectory_id)) {
-    return absl::nullopt;
-  }
-  const auto pose_after = PoseOf(*after);
-  if (!pose_after.has_value()) {
-    return absl::nullopt;
-  }
-  if (after == readings.BeginOfTrajectory(trajectory_id)) {
-    return after->time == time ? pose_after : absl::nullopt;
-  }
-  const auto before = std::prev(after);
-  const auto pose_before = PoseOf(*before);
-  if (!pose_before.has_value()) {
-    return absl::nullopt;
-  }
-  return transform::Interpolate(
-             transform::TimestampedTransform{before->time, *pose_before},
-             transform::TimestampedTransform{after->time, *pose_after}, time)
-      .transform;
-}
-
-// Whether a reading of `time` continues the trajectory.
-template <typename DataType>
-bool IsNewer(const sensor::MapByTime<DataType>& readings,
-             const int trajectory_id, const common::Time time) {
-  if (!readings.HasTrajectory(trajectory_id)) {
-    return true;
-  }
-  const auto end = readings.EndOfTrajectory(trajectory_id);
-  return end == readings.BeginOfTrajectory(trajectory_id) ||
-         std::prev(end)->time < time;
 }
 
 }  // namespace

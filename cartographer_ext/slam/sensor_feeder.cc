@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/slam/sensor_feeder.h"
+
+#include "cartographer/sensor/imu_data.h"
+#include "cartographer/sensor/odometry_data.h"
+#include "cartographer_ext/map/host_types.h"
+#include "cartographer_ext/slam/scan_conversion.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using SensorId = SensorFeeder::TrajectoryBuilder::SensorId;
+
+constexpr char kScanId[] = "scan";
+constexpr char kOdometryId[] = "odom";
+constexpr char kImuId[] = "imu";
+
+cartographer::transform::Rigid3d ToHostPose(const Pose2& pose) {
+  return cartographer::transform::Rigid3d(
+      Eigen::Vector3d(pose.x, pose.y, 0.),
+      Eigen::Quaterniond(
+          Eigen::AngleAxisd(pose.theta, Eigen::Vector3d::UnitZ())));
+}
+
+// By the host's clock, which has coarser ticks than the source.
+bool IsLater(const io::TimeNs time, cartographer::common::Time* const last) {
+  const cartographer::common::Time host_time = ToHostTime(time);
+  if (host_time <= *last) return false;
+  *last = host_time;
+  return true;
+}
+
+}  // namespace
+
+std::set<SensorId> SensorFeeder::Sensors(const bool use_odometry,
+                                         const bool use_imu) {
+  std::set<SensorId> sensors = {{SensorId::SensorType::RANGE, kScanId}};
+  if (use_odometry) {
+    sensors.insert({SensorId::SensorType::ODOMETRY, kOdometryId});
+  }
+  if (use_imu) sensors.insert({SensorId::SensorType::IMU, kImuId});
+  return sensors;
+}
+
+SensorFeeder::SensorFeeder(const SensorSettings& settings,
+                           const bool use_odometry, const bool use_imu,
+                           TrajectoryBuilder* const builder,
+                           FedReadings* const fed)
+    : settings_(settings),
+      use_odometry_(use_odometry),
+      use_imu_(use_imu),
+      builder_(builder),
+      fed_(fed) {}
+
+void SensorFeeder::operator()(const io::LaserScan& scan) {
+  const auto data =
+      ToTimedPointCloudData(scan, settings_.min_range, settings_.max_range);
+  if (data.ranges.empty() || !IsLater(scan.time, &last_scan_)) {
+    ++fed_->skipped_scans;
+    return;
+  }
+  if (fed_->scans == 0) first_scan_ = scan.time;
+  ++fed_->scans;
+  fed_->sensor_seconds = io::ToSeconds(scan.time - first_scan_);
+  builder_->AddSensorData(kScanId, data);
+}
+
+void SensorFeeder::operator()(const io::OdometryReading& reading) {
+  if (!use_odometry_) return;
+  if (!IsLater(reading.time, &last_odometry_)) {
+    ++fed_->skipped_readings;
+    return;
+  }
+  ++fed_->odometry_readings;
+  builder_->AddSensorData(
+      kOdometryId, cartographer::sensor::OdometryData{
+                       ToHostTime(reading.time), ToHostPose(reading.pose)});
+}
+
+void SensorFeeder::operator()(const io::ImuReading& reading) {
+  if (!use_imu_) return;
+  if (!IsLater(reading.time, &last_imu_)) {
+    ++fed_->skipped_readings;
+    return;
+  }
+  ++fed_->imu_readings;
+  builder_->AddSensorData(
+      kImuId, cartographer::sensor::ImuData{ToHostTime(reading.time),
+                                            reading.linear_acceleration,
+                                            reading.angular_velocity});
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext

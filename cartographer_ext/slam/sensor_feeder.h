@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Feeds the readings of a recording to one trajectory builder.
+#ifndef CARTOGRAPHER_EXT_SLAM_SENSOR_FEEDER_H_
+#define CARTOGRAPHER_EXT_SLAM_SENSOR_FEEDER_H_
+
+#include <cstdint>
+#include <set>
+
+#include "cartographer/common/time.h"
+#include "cartographer/mapping/trajectory_builder_interface.h"
+#include "cartographer_ext/configuration/slam_configuration.h"
+#include "cartographer_ext/io/sensor_source.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// What was fed and what was not.
+struct FedReadings {
+  int64_t scans = 0;
+  int64_t odometry_readings = 0;
+  int64_t imu_readings = 0;
+  // Without a valid range, or not later than the scan before.
+  int64_t skipped_scans = 0;
+  // Odometry and IMU readings not later than the one before.
+  int64_t skipped_readings = 0;
+  double sensor_seconds = 0.;  // first to last scan
+};
+
+// A visitor of sensor events.
+class SensorFeeder {
+ public:
+  using TrajectoryBuilder = cartographer::mapping::TrajectoryBuilderInterface;
+
+  // What the builder has to be made for.
+  static std::set<TrajectoryBuilder::SensorId> Sensors(bool use_odometry,
+                                                       bool use_imu);
+
+  // `settings` limits the ranges. Counts into `fed`.
+  SensorFeeder(const SensorSettings& settings, bool use_odometry, bool use_imu,
+               TrajectoryBuilder* builder, FedReadings* fed);
+
+  void operator()(const io::LaserScan& scan);
+  void operator()(const io::OdometryReading& reading);
+  void operator()(const io::ImuReading& reading);
+
+ private:
+  const SensorSettings settings_;
+  const bool use_odometry_;
+  const bool use_imu_;
+  TrajectoryBuilder* const builder_;
+  FedReadings* const fed_;
+  io::TimeNs first_scan_ = 0;
+  cartographer::common::Time last_scan_ = cartographer::common::Time::min();
+  cartographer::common::Time last_odometry_ = cartographer::common::Time::min();
+  cartographer::common::Time last_imu_ = cartographer::common::Time::min();
+};
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_SLAM_SENSOR_FEEDER_H_
