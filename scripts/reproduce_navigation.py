@@ -3,7 +3,7 @@
 """Section 3.5 of paper C for scripts/reproduce: four goals on the finished map, the last one is the start, in closed loop.
 
 One map is made of each world by default.lua from one drive. Every run then has its own seed for goals, noise, slip, people
-and what comes in the way. Stock's localisation gets the very same readings of the runs without obstacles.
+and what the map does not show. Stock's localisation gets the very same readings of the runs without obstacles.
 """
 import json
 import statistics
@@ -73,7 +73,7 @@ def c_navigation(commands, options):
             poses.append(localization(world, "ours, " + case, [run["localization"] for run in runs]))
             if case == "free":
                 poses.append(localization(world, "stock, " + case, [run["other_localization"] for run in runs]))
-    text = common.table(["world", "case", "runs", "goals reached", "largest true error at a goal m", "collisions with what stands",
+    text = common.table(["world", "case", "runs", "goals reached", "largest true error at a goal m", "collisions with stationary things",
                          "with people, moving", "run into standing still", "path ratio median, worst", "CPU of a core",
                          "control cycle p99 ms"], lines)
     text += "\nLocalisation on these drives:\n\n" + common.table(

@@ -31,7 +31,7 @@ Path Rings(const int rings, const double radius, const double step,
     const double sign = ring % 2 == 0 ? -1. : 1.;
     Drive(half, sign / radius, step, 0, 0, &path);
   }
-  // End somewhere on the way.
+  // End somewhere on the path.
   Drive(random->Uniform(0.2, 0.9) * half, -1. / radius, step, 0, 0, &path);
   return path;
 }

@@ -42,7 +42,7 @@ struct MapPoseGraph {
   std::vector<int> constraint_of_edge;
 };
 
-// Vertices stand in the order in which mapping made them (a submap follows the
+// Vertices are in the order in which mapping made them (a submap follows the
 // first node inserted in it), so that the graph can be replayed. Constraints of
 // missing submaps or nodes, or without weight, are left out. Ids are those of
 // SubmapVertexId and NodeVertexId. The graph is checked.

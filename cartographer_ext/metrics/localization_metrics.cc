@@ -26,7 +26,7 @@ PoseError ErrorOf(const PosePair& pair) {
   return error;
 }
 
-double Way(const PosePair& from, const PosePair& to) {
+double Distance(const PosePair& from, const PosePair& to) {
   return (to.reference.translation() - from.reference.translation()).norm();
 }
 
@@ -61,7 +61,7 @@ LocalizationStretch ComputeStretch(const std::vector<PosePair>& pairs,
   if (stretch.localized) {
     stretch.seconds = io::ToSeconds(pairs[localized].time - stretch.begin);
     for (size_t i = first; i < localized; ++i) {
-      stretch.metres += Way(pairs[i], pairs[i + 1]);
+      stretch.metres += Distance(pairs[i], pairs[i + 1]);
     }
   }
   for (size_t i = first + 1; i < last; ++i) {
@@ -129,7 +129,7 @@ absl::StatusOr<LocalizationMetrics> ComputeLocalizationMetrics(
   size_t first = 0;
   for (size_t i = 1; i <= pairs.size(); ++i) {
     if (i < pairs.size() &&
-        Way(pairs[i - 1], pairs[i]) <= options.carried_distance) {
+        Distance(pairs[i - 1], pairs[i]) <= options.carried_distance) {
       continue;
     }
     metrics.stretches.push_back(ComputeStretch(pairs, first, i, options));

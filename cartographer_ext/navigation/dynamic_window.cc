@@ -112,7 +112,7 @@ EvaluatedVelocity DynamicWindow::Evaluate(const DynamicWindowInput& input,
       static_cast<int>(std::ceil(horizon * std::max(std::abs(v) / kMaxStride,
                                                     std::abs(w) / kMaxTurn))));
   const double step = horizon / steps;
-  double free_seconds = horizon;   // of what stands
+  double free_seconds = horizon;   // of stationary obstacles
   double unmet_seconds = horizon;  // of what moves, too
   double path_sum = 0.;
   int path_count = 0;

@@ -13,14 +13,16 @@
 // with dist(v, w) the free length of the arc. Here a reaction time t comes on
 // top: v t + v^2 / (2 b) <= dist. Among these the objective (eq. 13, each term
 // in [0, 1]) is greatest:
-//   G = alpha heading + beta dist + gamma velocity + delta path + epsilon
-//   margin
+//
+//   G = alpha heading + beta dist + gamma velocity + delta path
+//       + epsilon margin
+//
 // with two terms that the paper does not have: how near the arc stays to the
 // planned path, and how far it stays from obstacles beside it.
 //
 // Moving obstacles are predicted with their velocity. An arc is not admissible
 // either if the robot, braking after the reaction time, would touch one before
-// it stands still.
+// it is stationary.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_DYNAMIC_WINDOW_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_DYNAMIC_WINDOW_H_
 
@@ -46,7 +48,8 @@ struct DynamicWindowOptions {
   double velocity_weight = 1.;   // gamma
   double path_weight = 1.2;      // delta
   double margin_weight = 0.3;    // epsilon
-  // Kept free around the footprint, metres: from what stands and what moves.
+  // Kept free around the footprint, metres: from stationary and moving
+  // obstacles.
   double margin = 0.04;
   double moving_margin = 0.2;
   // Distances at which the terms saturate, metres.

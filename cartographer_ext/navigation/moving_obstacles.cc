@@ -92,7 +92,7 @@ void MovingObstacles::Update(const std::vector<Echo>& echoes,
     track.disc.radius = std::max(cluster.radius, 0.9 * track.disc.radius);
     track.seen = time;
     ++track.updates;
-    track.stands = cluster.old_share > options_.max_old_share;
+    track.is_stationary = cluster.old_share > options_.max_old_share;
   }
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
                                [&](const Track& track) {
@@ -116,7 +116,7 @@ void MovingObstacles::Update(const std::vector<Echo>& echoes,
 std::vector<MovingDisc> MovingObstacles::Moving(const double time) const {
   std::vector<MovingDisc> moving;
   for (const Track& track : tracks_) {
-    if (track.stands || track.updates < options_.min_updates ||
+    if (track.is_stationary || track.updates < options_.min_updates ||
         track.disc.velocity.norm() < options_.moving_speed) {
       continue;
     }

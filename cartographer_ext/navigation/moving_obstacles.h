@@ -66,7 +66,7 @@ class MovingObstacles {
     MovingDisc disc;
     double seen = 0.;  // time of the last cluster
     int updates = 1;
-    bool stands = false;
+    bool is_stationary = false;
   };
 
   std::vector<Cluster> FindClusters(const std::vector<Echo>& echoes) const;

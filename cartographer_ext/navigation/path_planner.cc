@@ -35,7 +35,7 @@ std::string ToString(const PlanOutcome outcome) {
     case PlanOutcome::kGoalTooNear:
       return "the goal is too near to a wall for the robot";
     case PlanOutcome::kGoalObstructed:
-      return "an obstacle stands at the goal";
+      return "there is an obstacle at the goal";
     case PlanOutcome::kStartBlocked:
       return "there is no free space around the start";
     case PlanOutcome::kUnreachable:

@@ -28,7 +28,7 @@ enum class PlanOutcome {
   kGoalObstructed,  // by something the map does not have
   kStartBlocked,    // no free cell near the start
   kUnreachable,     // the map does not join start and goal
-  kObstructed,      // it does, but something stands in between
+  kObstructed,      // it does, but an obstacle is in between
 };
 
 // A sentence for the user.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where the option factory that is being called stands in the user's Lua file.
+// Where the option factory that is being called is in the user's Lua file.
 // Cartographer hands a factory its own table only, and one factory serves
 // several tables (ceres_scan_matcher is in both the pose graph and the
 // trajectory builder), so the factories further out leave their name here for

@@ -15,7 +15,7 @@
 namespace cartographer_ext {
 namespace options {
 
-// One place where a block of ours may stand.
+// One place where a block of ours is allowed.
 struct OptionBlock {
   // The stock table it extends: "POSE_GRAPH.constraint_builder".
   std::string stock_path;

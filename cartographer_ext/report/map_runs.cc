@@ -88,7 +88,7 @@ absl::Status AddReruns(const RunInputs& inputs,
     data->assumptions.push_back(absl::StrCat(
         stock->rerun->placeholders,
         " unfinished submaps are not in the file; empty ones that are never "
-        "searched stand for them"));
+        "searched represent them"));
   }
   if (stock->rerun->guessed_insertions > 0) {
     data->assumptions.push_back(absl::StrCat(

@@ -126,8 +126,8 @@ class Runner {
     const absl::Status started = StartTrajectory();
     if (!started.ok()) return started;
     const absl::Status fed = Feed();
-    // After an error, too: the host does not bear being destroyed while it waits
-    // for data.
+    // After an error, too: the host does not bear being destroyed while it
+    // waits for data.
     run_.map_builder->FinishTrajectory(run_.trajectory_id);
     if (!fed.ok()) return fed;
     if (run_.scans == 0) {

@@ -221,7 +221,7 @@ TEST_F(RobustOptimizationProblem2DTest, JudgementsChangeWithTheEvidence) {
   EXPECT_LT(LargestError(problem), 0.5);
 }
 
-TEST_F(RobustOptimizationProblem2DTest, OdometryCheckBlamesTheLoop) {
+TEST_F(RobustOptimizationProblem2DTest, OdometryCheckDisablesTheLoop) {
   OptimizationProblem2D stock = MakeProblem("");
   OptimizationProblem2D checked = MakeProblem(kOdometryCheckAlone);
   for (OptimizationProblem2D* const problem : {&stock, &checked}) {

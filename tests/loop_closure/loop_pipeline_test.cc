@@ -340,7 +340,7 @@ TEST_F(LoopPipelineTest, TimesAndFullMatrixOnlyWhereAskedFor) {
           Candidate(submap, submap == 5 ? 100 : 120, 0., &world_);
       candidate.times.search = 0.5;
       candidate.times.refinement = 0.25;
-      // Nothing is known of the way along the corridor.
+      // Nothing is known of the translation along the corridor.
       candidate.match.information = Eigen::Vector3d(0., 1e6, 1e6).asDiagonal();
       pipeline_->Process(candidate);
     }
@@ -355,7 +355,7 @@ TEST_F(LoopPipelineTest, TimesAndFullMatrixOnlyWhereAskedFor) {
       EXPECT_GT(Record(outcome).times().temporal_seconds(), 0.);
       const double whole =
           outcome.weights->translation * outcome.weights->translation;
-      // A loop has 0.05 m, the way along the corridor 0.3 m.
+      // A loop has 0.05 m, the translation along the corridor 0.3 m.
       EXPECT_NEAR(outcome.full_information(0, 0),
                   whole * 0.0025 / (0.0025 + 0.09), 1e-3 * whole);
       EXPECT_NEAR(outcome.full_information(1, 1), whole, 0.02 * whole);
@@ -366,7 +366,7 @@ TEST_F(LoopPipelineTest, TimesAndFullMatrixOnlyWhereAskedFor) {
 TEST_F(LoopPipelineTest, UnpredictedLoopsOfAnotherRunNeedMorePlaces) {
   options_.mutable_compatible_subset()->set_single_strong(true);
   MakePipeline();
-  // Run 1 repeats the way of run 0, in whose submaps it is found.
+  // Run 1 repeats the path of run 0, in whose submaps it is found.
   for (int i = 0; i <= 60; ++i) {
     HistoryNode node;
     node.node_index = i;

@@ -33,7 +33,7 @@ TEST(MovingObstaclesTest, MeasuresTheVelocityOfAPerson) {
     const double time = 0.1 * i;
     std::vector<MovingObstacles::Echo> echoes;
     AddDisc(Eigen::Vector2d(3., -1.) + time * velocity, 0.2, &random, &echoes);
-    AddDisc({4., 2.}, 0.3, &random, &echoes);  // stands
+    AddDisc({4., 2.}, 0.3, &random, &echoes);  // stationary
     obstacles.Update(echoes, time);
   }
   const std::vector<MovingDisc> moving = obstacles.Moving(0.9);

@@ -89,8 +89,8 @@ TEST(DriveTest, RoundsCornersNearTheWay) {
   EXPECT_GT(worst, 0.02);  // not a sharp corner either
 }
 
-// Pose, heading, speed and way belong together: small steps of the pose add up
-// to what the rates say.
+// Pose, heading, speed and distance belong together: small steps of the pose
+// add up to what the rates say.
 TEST(DriveTest, IsConsistentWithItsRates) {
   const Drive drive =
       Plan("start 0 0 30\ngoto 3 1\ngoto 4 5\ngoto -1 4\nreverse 0 4");

@@ -25,7 +25,7 @@ TEST(OnlinePosesTest, WithoutOptimizationTheStartHolds) {
   for (const StampedPose& pose : poses.At(Scans())) {
     EXPECT_NEAR(pose.pose.translation().x(), pose.time / 100., 1e-12);
   }
-  // A quarter turn: the way along x becomes one along y.
+  // A quarter turn: the translation along x becomes one along y.
   poses.Start(ToIsometry(Pose2(10., 20., kPi / 2.)));
   const auto moved = poses.At(Scans());
   ASSERT_EQ(moved.size(), 6u);

@@ -4,18 +4,22 @@
 // Adds wrong loops to a pose graph, in the four manners in which both papers
 // (after the Vertigo package) test robust back ends:
 //
-//   R   random: both ends anywhere
-//   L   local: the ends 2 to 20 poses apart
-//   RG  random grouped: the same measurement on (a + j, b + j), j = 0 ..
-//   group-1 LG  local grouped
+//   R    random: both ends anywhere
+//   L    local: the ends 2 to 20 poses apart
+//   RG   random grouped: the same measurement on (a + j, b + j),
+//        j = 0 .. group - 1
+//   LG   local grouped
 //
-// Each outlier claims "the same place": x, y ~ N(0, 0.3 m), theta ~ N(0, 10
-// deg), whatever the true geometry, with the information matrix of the graph's
-// first loop. Some are therefore true by chance (the robot turns on the spot or
-// comes back); score precision against the optimum without outliers. Papers
-// state neither the size of groups nor whether counts are groups or edges: here
-// `count` is edges and a group has ten. The generator is portable: the same
-// seed gives the same outliers on every platform.
+// Each outlier claims "the same place", whatever the true geometry:
+//
+//   x, y ~ N(0, 0.3 m),  theta ~ N(0, 10 deg)
+//
+// with the information matrix of the graph's first loop. Some are therefore
+// true by chance (the robot turns on the spot or comes back); score precision
+// against the optimum without outliers. The papers state neither the size of
+// groups nor whether counts are groups or edges: here `count` is edges and a
+// group has ten. The generator is portable: the same seed gives the same
+// outliers on every platform.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_OUTLIERS_OUTLIER_GENERATOR_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_OUTLIERS_OUTLIER_GENERATOR_H_
 

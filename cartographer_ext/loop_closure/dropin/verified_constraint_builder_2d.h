@@ -10,10 +10,10 @@
 //   searches (pool)              each on its own, without any lock
 //   WhenDone -> callback (pool)  verifies in the order of the pairs, calls back
 //
-// Two mutexes. `mutex_` guards queue, counters and tasks; it is held for moments
-// only, never while something is planned, searched or verified. `work_mutex_`
-// is held while LoopClosure2D plans or verifies: one sequence, so that results
-// are the same for any number of threads. The calls that wait for it say so.
+// Two mutexes. `mutex_` guards queue, counters and tasks; it is held for
+// moments only, never while something is planned, searched or verified.
+// `work_mutex_` is held while LoopClosure2D plans or verifies, in one sequence
+// whatever the number of threads. The calls that wait for it say so.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 

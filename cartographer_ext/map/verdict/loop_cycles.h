@@ -8,7 +8,7 @@
 //   (a <- i) * (i <- k by local SLAM) * (b <- k)^-1 * (b <- a by local SLAM),
 //
 // which is the identity when both loops are right. Only stretches short enough
-// for local SLAM to be right are used, so that a residual blames the loops.
+// for local SLAM to be right are used, so that a residual is due to the loops.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_LOOP_CYCLES_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_LOOP_CYCLES_H_
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Counts what the robot touches, by the true shapes. Something that moves may
-// run into a robot that stands still; a contact in which the robot itself moves
+// run into a stationary robot; a contact in which the robot itself moves
 // at any time is a collision.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_CONTACT_COUNTER_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_CONTACT_COUNTER_H_
@@ -36,7 +36,7 @@ class ContactCounter {
   int static_collisions() const { return static_collisions_; }
   int moving_collisions() const { return moving_collisions_; }
   int run_into() const { return run_into_; }
-  // Metres from the outline to what stands, the least so far.
+  // Metres from the outline to stationary things, the least so far.
   double least_clearance() const { return least_clearance_; }
   const std::vector<Contact>& contacts() const { return contacts_; }
 

@@ -62,12 +62,13 @@ PathPlace DrawPlace(const std::vector<std::vector<Eigen::Vector2d>>& legs,
 double FreeWay(const RayCaster& plan, const Eigen::Vector2d& from,
                const Eigen::Vector2d& direction, const double radius,
                const double limit) {
-  double way = 0.;
-  while (way + 0.05 <= limit && plan.Clearance(from + (way + 0.05) * direction,
-                                               radius + 0.1) >= radius) {
-    way += 0.05;
+  double distance = 0.;
+  while (distance + 0.05 <= limit &&
+         plan.Clearance(from + (distance + 0.05) * direction, radius + 0.1) >=
+             radius) {
+    distance += 0.05;
   }
-  return way;
+  return distance;
 }
 
 Eigen::Vector2d Left(const Eigen::Vector2d& direction) {

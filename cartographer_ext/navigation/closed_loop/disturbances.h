@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What happens on the way of a robot that its map does not know: things that
+// What a robot meets that its map does not show: things that
 // are put in its path, people who cross suddenly, doors that close. All of it
 // is round; a closed door is a row of discs.
 //
 // Places are drawn along the shortest paths between the goals, so that the
 // robot meets them; they come to be when it is near, but never nearer than it
-// can react to. Whatever stands leaves a path to every goal.
+// can react to. Stationary things leave a path to every goal.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_DISTURBANCES_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_DISTURBANCES_H_
 

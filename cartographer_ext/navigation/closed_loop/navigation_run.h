@@ -79,7 +79,7 @@ struct NavigationRun {
   int static_collisions = 0;
   int moving_collisions = 0;    // with the robot moving
   int run_into = 0;             // with the robot standing still
-  double least_clearance = 0.;  // metres, to what stands
+  double least_clearance = 0.;  // metres, to stationary things
   std::vector<Disturbance> disturbances;
   std::vector<LocalizationError> localization;
   int jumps = 0;  // above half a metre

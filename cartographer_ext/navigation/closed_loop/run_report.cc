@@ -109,12 +109,13 @@ std::string ToText(const NavigationRun& run) {
     absl::StrAppendFormat(&text, "              goal %d not reached: %s\n",
                           i + 1, run.goals[i].reason);
   }
-  absl::StrAppendFormat(&text,
-                        "Collisions    %d with what stands (least clearance "
-                        "%.2f m), %d with what "
-                        "moves; run into %d times while standing\n",
-                        run.static_collisions, run.least_clearance,
-                        run.moving_collisions, run.run_into);
+  absl::StrAppendFormat(
+      &text,
+      "Collisions    %d with stationary things (least clearance "
+      "%.2f m), %d with what "
+      "moves; run into %d times while standing\n",
+      run.static_collisions, run.least_clearance, run.moving_collisions,
+      run.run_into);
   absl::StrAppendFormat(
       &text,
       "Localisation  median %.3f m, largest %.3f m, %d jumps above 0.5 m\n",
@@ -165,7 +166,7 @@ absl::Status WriteRunPicture(const NavigationRun& run, const std::string& title,
   picture.SetTitle(title);
   picture.AddLegend("path driven", io::palette::kBlue);
   picture.AddLegend("goal reached", io::palette::kGreen);
-  picture.AddLegend("obstacle put in the way, goal missed",
+  picture.AddLegend("obstacle put in the path, goal missed",
                     io::palette::kVermilion);
   picture.AddLegend("sudden crossing", io::palette::kPurple);
   return picture.Write(filename);

@@ -21,7 +21,7 @@ nlohmann::ordered_json ToJson(const ShadowLocalization& shadow, double seconds);
 // A few lines for the terminal.
 std::string ToText(const NavigationRun& run);
 
-// PNG of the map, the path driven, the goals and what stood in the way.
+// PNG of the map, the path driven, the goals and the obstacles put in it.
 absl::Status WriteRunPicture(const NavigationRun& run, const std::string& title,
                              const std::string& filename);
 

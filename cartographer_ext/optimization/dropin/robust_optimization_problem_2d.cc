@@ -151,8 +151,8 @@ RobustOptimizationProblem2D::Select(
     switched_off_.insert(loop);
     loop.chi2 = selection.chi2[i];
     loop.by_odometry_check =
-        std::find(selection.blamed.begin(), selection.blamed.end(),
-                  static_cast<int>(i)) != selection.blamed.end();
+        std::find(selection.suspects.begin(), selection.suspects.end(),
+                  static_cast<int>(i)) != selection.suspects.end();
     off->push_back(loop);
   }
   std::vector<Constraint> kept;

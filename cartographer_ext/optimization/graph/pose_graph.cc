@@ -87,7 +87,7 @@ absl::Status ValidateEdge(const PoseGraph& graph, size_t index) {
   return absl::OkStatus();
 }
 
-// The representative of a pose's component, by halving the ways to it.
+// The representative of a pose's component, by halving the paths to it.
 int FindRoot(int pose, std::vector<int>* const parents) {
   while ((*parents)[pose] != pose) {
     (*parents)[pose] = (*parents)[(*parents)[pose]];

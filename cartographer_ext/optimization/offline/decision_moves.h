@@ -11,7 +11,7 @@
 //   ForceGroups  one group of loops at a time is put in force whatever it
 //                costs, all others judged by a robust kernel; then the group is
 //                released and decided like the rest. This is how a wrong group
-//                gives way to several right ones that it keeps out.
+//                is replaced by several right ones that it keeps out.
 //
 // A move is kept only where the truncated cost of the graph has fallen.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_

@@ -83,11 +83,11 @@ bool LeavesOut(const double share, const PoseGraph& graph,
   return left_out > share * loops;
 }
 
-// What the selection finds on the way.
+// What the selection has found so far.
 struct State {
   std::vector<bool> accepted;  // per edge
   std::vector<Pose2> poses;
-  std::vector<int> blamed;
+  std::vector<int> suspects;
   int violations = 0;
 };
 
@@ -216,9 +216,9 @@ class Selector {
   }
 
   // The accepted loop with the largest chi2 that spans the worst violation.
-  int Blame(const std::vector<int>& violations,
-            const std::vector<bool>& accepted,
-            const std::vector<Pose2>& poses) const {
+  int FindSuspect(const std::vector<int>& violations,
+                  const std::vector<bool>& accepted,
+                  const std::vector<Pose2>& poses) const {
     int worst = violations.front();
     double worst_chi2 = -1.;
     for (const int i : violations) {
@@ -230,7 +230,7 @@ class Selector {
       }
     }
     const WhitenedEdge& place = edges_[worst];
-    int blamed = -1;
+    int suspect = -1;
     double largest = -1.;
     for (size_t i = 0; i != edges_.size(); ++i) {
       const WhitenedEdge& edge = edges_[i];
@@ -243,17 +243,18 @@ class Selector {
       const double chi2 = Chi2(edge, poses[edge.from], poses[edge.to]);
       if (chi2 > largest) {
         largest = chi2;
-        blamed = i;
+        suspect = i;
       }
     }
-    return blamed;
+    return suspect;
   }
 
-  // Takes back loops blamed before the culprit was found.
-  void Acquit(const size_t num_violations, State* const state) const {
-    std::vector<int> guilty = state->blamed;
-    for (const int loop : state->blamed) {
-      if (guilty.size() < 2) break;
+  // Reinstates suspects that a later one explains: those that agree with the
+  // graph solved without the others.
+  void Reinstate(const size_t num_violations, State* const state) const {
+    std::vector<int> suspects = state->suspects;
+    for (const int loop : state->suspects) {
+      if (suspects.size() < 2) break;
       std::vector<bool> accepted = state->accepted;
       accepted[loop] = true;
       std::vector<Pose2> poses = graph_.poses;
@@ -265,9 +266,9 @@ class Selector {
       }
       state->accepted = accepted;
       state->poses = poses;
-      guilty.erase(std::find(guilty.begin(), guilty.end(), loop));
+      suspects.erase(std::find(suspects.begin(), suspects.end(), loop));
     }
-    state->blamed = guilty;
+    state->suspects = suspects;
   }
 
   void CheckOdometry(State* const state) const {
@@ -275,13 +276,13 @@ class Selector {
     if (violations.empty()) return;
     std::vector<bool> accepted = state->accepted;
     std::vector<Pose2> bent = state->poses;
-    std::vector<int> blamed;
+    std::vector<int> suspects;
     std::vector<int> remaining = violations;
     for (int k = 0; k < options_.max_rollbacks && !remaining.empty(); ++k) {
-      const int loop = Blame(remaining, accepted, bent);
+      const int loop = FindSuspect(remaining, accepted, bent);
       if (loop < 0) break;
       accepted[loop] = false;
-      blamed.push_back(loop);
+      suspects.push_back(loop);
       bent = graph_.poses;  // rolled back
       SolveAccepted(accepted, kFine, &bent);
       remaining = Violations(bent);
@@ -289,10 +290,10 @@ class Selector {
         violations = remaining;
         state->accepted = accepted;
         state->poses = bent;
-        state->blamed = blamed;
+        state->suspects = suspects;
       }
     }
-    Acquit(violations.size(), state);
+    Reinstate(violations.size(), state);
     state->violations = violations.size();
   }
 
@@ -387,12 +388,12 @@ LoopSelection SelectLoops(const PoseGraph& graph,
   state.accepted = selection.accepted;
   checker.Check(neighbours, &state);
   selection.accepted = state.accepted;
-  for (const int i : state.blamed) {
+  for (const int i : state.suspects) {
     const WhitenedEdge& edge = checker.edges()[i];
     selection.chi2[i] =
         Chi2(edge, state.poses[edge.from], state.poses[edge.to]);
   }
-  selection.blamed = state.blamed;
+  selection.suspects = state.suspects;
   selection.violations = state.violations;
   return selection;
 }

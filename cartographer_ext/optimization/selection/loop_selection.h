@@ -20,10 +20,10 @@
 //   3. Odometry check with rollback (improved graph optimisation 2024, section
 //      3.4): where the winner bends the trajectory between neighbouring poses
 //      beyond the gate (looked at in the whole graph where the condensed one
-//      and the steps within its stretches leave that open), the loop to blame
-//      is the one with the largest chi2 among those which span the place. It is
-//      switched off, the graph is solved again from the poses before, and the
-//      result is kept only if it has fewer such places.
+//      and the steps within its stretches leave that open), the suspect is
+//      the loop with the largest chi2 among those which span the place. It is
+//      disabled, the graph is solved again from the poses before, and the result
+//      is kept only if it has fewer such places.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SELECTION_LOOP_SELECTION_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SELECTION_LOOP_SELECTION_H_
 
@@ -50,7 +50,7 @@ struct LoopSelectionOptions {
 struct LoopSelection {
   std::vector<bool> accepted;  // per edge; true for all that are no loops
   std::vector<double> chi2;    // per loop; 0 for all others
-  std::vector<int> blamed;     // edges switched off by the odometry check
+  std::vector<int> suspects;   // edges disabled by the odometry check
   int violations = 0;          // places beyond the odometry gate that remain
 };
 

@@ -53,7 +53,7 @@ class IncrementalFactor {
   Eigen::Matrix3d PredictedCovariance(const LinearFactor& factor) const;
 
   // Solution of H x = b for the one variable, 0 for -1. What is worked out on
-  // the way serves later calls until the factor changes.
+  // the path serves later calls until the factor changes.
   Eigen::Vector3d SolveFor(int variable) const;
   // For all, 3 values per variable.
   void Solve(Eigen::VectorXd* solution) const;

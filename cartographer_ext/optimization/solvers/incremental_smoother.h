@@ -101,8 +101,8 @@ class IncrementalSmoother {
   // Ends the current epoch now.
   void EndEpoch();
   // Call at the end of the data: ends the epoch, then decides and solves in
-  // turn until the decisions stand (PolishTruncated). With late rejection and
-  // re-admission both off, as in the paper, only ends the epoch.
+  // turn until the decisions no longer change (PolishTruncated). With late
+  // rejection and re-admission both off, as in the paper, only ends the epoch.
   void Finish();
 
   int num_poses() const { return poses_.size(); }

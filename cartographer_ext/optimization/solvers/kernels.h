@@ -4,31 +4,41 @@
 // Robust kernels for loop edges, all seen as iteratively reweighted least
 // squares: an edge with squared Mahalanobis error z = chi2 contributes rho(z)
 // to the objective and enters each linear solve with weight omega = rho'(z).
-// The papers speak of a switch s in [0, 1] which scales the residual, so omega
-// = s^2.
+// The papers speak of a switch s in [0, 1] which scales the residual, so
+// omega = s^2.
 //
-//   none   rho = z
-//   Huber  rho = z, beyond b^2: 2 b sqrt(z) - b^2
-//   SC     Switchable constraints with s eliminated from s^2 z + w (1 - s)^2:
-//          s = w / (w + z), rho = w z / (w + z). This is the kernel of Geman
-//          and McClure, exactly.                                     [ACS eq.
-//          7, 8]
-//   DCS    s = min(1, 2 P / (P + z)); rho = z up to P, then P (3z - P)/(z + P).
-//   ACS    The ACS paper makes w a function of the error, w = 1 / (chi' |L|),
-//          which gives s = 1 / (1 + chi2 chi' |L|)              [ACS eq. 12,
-//          13] with chi' the same error without its metric and |L| a norm of
-//          the covariance. Taken literally s depends on the unit of length. The
-//          dimensionless form replaces chi' |L| by chi2 / c^2:
-//            s = 1 / (1 + (z / c)^2),
-//            rho = z / (2 (1 + k z^2)) + atan(sqrt(k) z) / (2 sqrt(k)), k =
-//            1/c^2
-//          and c is the 99 % quantile of chi2, so s = 1/2 exactly at the gate.
-//          The literal form has the same rho with k = chi' |L| / chi2, which is
-//          constant for an isotropic covariance and is otherwise held during
-//          one iteration. As an objective, eq. (14) of the paper with (12)
-//          inserted would reward breaking every loop; only this reading
-//          descends.
-//   TLS    rho = min(z, c), the target of graduated non-convexity.
+//   none    rho = z
+//
+//   Huber   rho = z                       up to b^2,
+//                 2 b sqrt(z) - b^2       beyond
+//
+//   SC      Switchable constraints with s eliminated from s^2 z + w (1 - s)^2
+//           [ACS eq. 7, 8]:
+//             s   = w / (w + z)
+//             rho = w z / (w + z)
+//           This is the kernel of Geman and McClure, exactly.
+//
+//   DCS     s   = min(1, 2 P / (P + z))
+//           rho = z                       up to P,
+//                 P (3 z - P) / (z + P)   beyond
+//
+//   ACS     The ACS paper makes w a function of the error [ACS eq. 12, 13],
+//             w = 1 / (chi' |L|)
+//             s = 1 / (1 + chi2 chi' |L|)
+//           with chi' the same error without its metric and |L| a norm of the
+//           covariance. Taken literally s depends on the unit of length. The
+//           dimensionless form replaces chi' |L| by chi2 / c^2:
+//             s   = 1 / (1 + (z / c)^2)
+//             rho = z / (2 (1 + k z^2)) + atan(sqrt(k) z) / (2 sqrt(k))
+//             k   = 1 / c^2
+//           and c is the 99 % quantile of chi2, so s = 1/2 exactly at the gate.
+//           The literal form has the same rho with k = chi' |L| / chi2, which
+//           is constant for an isotropic covariance and is otherwise held
+//           during one iteration. As an objective, eq. (14) of the paper with
+//           (12) inserted would reward breaking every loop; only this reading
+//           descends.
+//
+//   TLS     rho = min(z, c), the target of graduated non-convexity.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_KERNELS_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_KERNELS_H_
 

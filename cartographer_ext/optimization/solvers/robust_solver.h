@@ -173,10 +173,10 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* solver,
                        std::vector<Pose2>* poses, std::vector<double>* weights);
 
 // Alternates between deciding each loop by `gate` on chi2 (weight 1 inside, 0
-// outside) and solving with those weights, until the decisions stand. Each half
-// lowers the truncated cost, so this ends; loops judged wrong come back when
-// the poses have moved their way. `weights`, if not null, receives one value
-// per edge.
+// outside) and solving with those weights, until the decisions no longer
+// change. Each half lowers the truncated cost, so this ends; loops judged wrong
+// come back when the poses have moved towards them. `weights`, if not null,
+// receives one value per edge.
 SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
                               double gate, int max_rounds,
                               std::vector<Pose2>* poses,

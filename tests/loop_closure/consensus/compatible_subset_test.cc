@@ -272,7 +272,7 @@ TEST_F(CompatibleSubsetTest, LoopsBetweenTrajectoriesInEitherDirection) {
   subset.Add(back);
   EXPECT_THAT(Accepted(subset.Decide()), ElementsAre(1, 2));
 
-  // Loops without a way between them neither help nor hinder each other.
+  // Loops without a path between them neither help nor hinder each other.
   CompatibleSubset apart(options_, &paths_);
   LoopEvidence elsewhere = Loop(1, 10, 0.);
   elsewhere.edge.a = uncertainty::NodeId{2, elsewhere.edge.a.index()};

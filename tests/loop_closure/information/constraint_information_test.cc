@@ -68,7 +68,7 @@ TEST(ConstraintInformationTest, FullInformationPullsLessAlongWhatIsOpen) {
   const ConstraintWeights weights{100., 200.};
   const Eigen::Matrix3d certain =
       Eigen::Vector3d(0.04, 0.04, 0.01).asDiagonal();
-  // As certain as the weights stand for.
+  // As certain as the weights claim.
   EXPECT_TRUE(FullInformation(weights, certain, certain)
                   .isApprox(Eigen::Matrix3d(
                       Eigen::Vector3d(1e4, 1e4, 4e4).asDiagonal())));

@@ -65,7 +65,7 @@ TEST(DtwTest, BarredCellsAndEmptySequences) {
   EXPECT_FALSE(DynamicTimeWarping(0, 3, {}, -1.).has_value());
   EXPECT_FALSE(DynamicTimeWarping(2, 0, {}, -1.).has_value());
   EXPECT_FALSE(DynamicTimeWarping(1, 1, {kNaN}, -1.).has_value());
-  // The middle column is barred for both rows: no way from corner to corner.
+  // The middle column is barred for both rows: no path from corner to corner.
   const std::vector<double> barred = {0., kNaN, 0., 0., kNaN, 0.};
   EXPECT_FALSE(DynamicTimeWarping(2, 3, barred, -1.).has_value());
 }

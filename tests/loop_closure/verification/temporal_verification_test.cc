@@ -53,7 +53,7 @@ class TemporalVerificationTest : public testing::Test {
     options_.minimum_length = 4;
   }
 
-  // Drives along the corridor; the odometry reads `scale` times the way.
+  // Drives along the corridor; the odometry reads `scale` times the distance.
   void Drive(const OccupancyView& world, double from, double to, double scale) {
     int index = 0;
     for (double x = from; x <= to + 1e-9; x += 0.5) {
@@ -102,7 +102,7 @@ class TemporalVerificationTest : public testing::Test {
 };
 
 TEST_F(TemporalVerificationTest, TrueLoopScoresHigherThanLookAlike) {
-  // The niche at 20 looks like the one at 10, the way to it differs.
+  // The niche at 20 looks like the one at 10, the path to it differs.
   const OccupancyView world =
       Corridor(30., {5.5, 7., 8.5, 10., 11.5, 20., 21.5});
   Drive(world, 4., 10., 1.);
@@ -235,7 +235,7 @@ TEST_F(TemporalVerificationTest, WithoutEvidenceThereIsNoScore) {
             TemporalOutcome::kPathUnknown);
   EXPECT_EQ(VerifySequence(options_, {}, Pose2(), maps).outcome,
             TemporalOutcome::kShortHistory);
-  // Half of the way is beyond the start of the map.
+  // Half of the path is beyond the start of the map.
   const TemporalResult cut = Verify(maps, Pose2(2., 0., 0.));
   EXPECT_LT(cut.num_query, 6);
 }

@@ -44,7 +44,7 @@ TEST(LoopCyclesTest, AgreeingLoopsClose) {
   EXPECT_EQ(cycles.partners[0], 5);
 }
 
-TEST(LoopCyclesTest, TheWrongLoopIsBlamed) {
+TEST(LoopCyclesTest, TheWrongLoopHasTheResidual) {
   MapGraph graph = Revisit(6);
   graph.constraints[2].relative_pose =
       Pose2(1., 0., 0.) * graph.constraints[2].relative_pose;

@@ -24,7 +24,7 @@ PoseGraph TwoPasses() {
     PoseGraphEdge edge;
     edge.from = i - 1;
     edge.to = i;
-    // The way back was driven in one step.
+    // The path back was driven in one step.
     edge.measurement = Pose2(i == 20 ? -19. : 1., 0., 0.);
     edge.information = 100. * Eigen::Matrix3d::Identity();
     graph.edges.push_back(edge);

@@ -38,7 +38,7 @@ TEST(LoopSelectionTest, RightLoopsAreAllAcceptedAfterALongDrift) {
   for (const bool accepted : selection.accepted) rejected += !accepted;
   // The gate refuses one in a hundred.
   EXPECT_LE(rejected, 5);
-  EXPECT_TRUE(selection.blamed.empty());
+  EXPECT_TRUE(selection.suspects.empty());
   EXPECT_LT(
       AbsoluteTrajectoryError(Solution(world.graph, selection), world.truth),
       0.1);
@@ -82,7 +82,7 @@ TEST(LoopSelectionTest, WrongLoopsAreSwitchedOffAndComeBackWithEvidence) {
 
 // A chain with one loop that contradicts it, and the decision by consensus off:
 // only the odometry check can notice.
-TEST(LoopSelectionTest, OdometryCheckBlamesAndRollsBack) {
+TEST(LoopSelectionTest, OdometryCheckSuspectsAndRollsBack) {
   PoseGraph graph;
   for (int i = 0; i != 11; ++i) {
     graph.ids.push_back(i);
@@ -110,8 +110,8 @@ TEST(LoopSelectionTest, OdometryCheckBlamesAndRollsBack) {
   LoopSelectionOptions options;
   options.robust_loops = false;
   LoopSelection selection = SelectLoops(graph, Neighbours(graph), options);
-  ASSERT_EQ(selection.blamed.size(), 1u);
-  EXPECT_EQ(selection.blamed[0], 11);
+  ASSERT_EQ(selection.suspects.size(), 1u);
+  EXPECT_EQ(selection.suspects[0], 11);
   EXPECT_TRUE(selection.accepted[10]);
   EXPECT_FALSE(selection.accepted[11]);
   EXPECT_EQ(selection.violations, 0);

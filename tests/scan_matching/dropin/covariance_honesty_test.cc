@@ -90,7 +90,8 @@ sensor::RangeData ToRangeData(const io::LaserScan& scan) {
   return data;
 }
 
-// Matches a scan taken at (grid <- robot) = `truth` from a prediction beside it.
+// Matches a scan taken at (grid <- robot) = `truth` from a prediction beside
+// it.
 Sample MatchBeside(const DegeneracyAwareScanMatcher2D& matcher,
                    const Pose2& truth, const double grid_heading,
                    const sensor::PointCloud& points,

@@ -74,7 +74,7 @@ TEST(OdometryModelTest, StampsFollowRateAndPhase) {
 }
 
 TEST(OdometryModelTest, SystematicScales) {
-  // Both wheels 3 % too long: the way is 3 % too long.
+  // Both wheels 3 % too long: the distance is 3 % too long.
   const Recording scaled =
       Simulate(std::string(kStraightDrive) +
                "odometry scale_left=0.03 scale_right=0.03");
@@ -103,8 +103,8 @@ TEST(OdometryModelTest, TicksRoundDown) {
   }
 }
 
-// Noise of n per square root of a metre and wheel: over L metres the way has
-// the variance n^2 L / 2 and the heading 2 n^2 L / b^2.
+// Noise of n per square root of a metre and wheel: over L metres the distance
+// has the variance n^2 L / 2 and the heading 2 n^2 L / b^2.
 TEST(OdometryModelTest, NoiseGrowsWithTheRootOfTheWay) {
   const double noise = 0.01, base = 0.4;
   double way_squares = 0., angle_squares = 0.;
@@ -119,7 +119,7 @@ TEST(OdometryModelTest, NoiseGrowsWithTheRootOfTheWay) {
     const OdometryRun run = SimulateOdometry(*world, *drive, {}, seed);
     length = drive->length();
     angle_squares += std::pow(run.readings.back().pose.theta, 2);
-    // To first order the way is what heading errors cannot shorten.
+    // To first order the distance is what heading errors cannot shorten.
     way_squares += std::pow(run.readings.back().pose.x - length +
                                 0.25 * std::pow(noise / base * length, 2),
                             2);

@@ -20,7 +20,8 @@ namespace mapping {
 namespace optimization {
 
 // The poses of fixed frame data may be missing, those of odometry never are.
-inline absl::optional<transform::Rigid3d> PoseOf(const sensor::OdometryData& data) {
+inline absl::optional<transform::Rigid3d> PoseOf(
+    const sensor::OdometryData& data) {
   return data.pose;
 }
 inline absl::optional<transform::Rigid3d> PoseOf(

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Stands in front of Cartographer's header of the same path: the stock factory
+// Comes before Cartographer's header of the same path: the stock factory
 // becomes StockCreateLocalTrajectoryBuilderOptions2D, and the one of the
 // original name also reads our block.
 #pragma GCC system_header

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Stands in front of Cartographer's header of the same path. The class found
+// Comes before Cartographer's header of the same path. The class found
 // there becomes StockConstraintBuilder2D; the class of the original name
 // forwards to it, or, where the options have our block, to ours.
 #pragma GCC system_header

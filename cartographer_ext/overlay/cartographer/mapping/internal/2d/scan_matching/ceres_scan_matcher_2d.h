@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Stands in front of Cartographer's header of the same path. Class and factory
+// Comes before Cartographer's header of the same path. Class and factory
 // found there become StockCeresScanMatcher2D and
 // StockCreateCeresScanMatcherOptions2D; those of the original names forward to
 // them, or, where the options have our block, to ours.

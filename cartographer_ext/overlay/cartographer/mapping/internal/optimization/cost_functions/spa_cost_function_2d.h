@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Stands in front of Cartographer's header of the same path: the factories
+// Comes before Cartographer's header of the same path: the factories
 // found there get the prefix Stock, and those of the original names also know
 // constraints with a full information matrix.
 #pragma GCC system_header
