@@ -45,7 +45,8 @@ TEST(SlamMainTest, WritesMapTrajectoriesAndNumbers) {
   EXPECT_GT(json["cpu_seconds"], 0.);
   EXPECT_GT(json["peak_memory_bytes"], 1000000);
   EXPECT_EQ(json["loop_search"]["count"], 0);
-  EXPECT_GE(json["loop_search"]["cpu_seconds"], 0.);
+  EXPECT_LT(json["loop_search"]["cpu_seconds"].get<double>(),
+            0.5 * json["cpu_seconds"].get<double>());
   // A pose at every scan but those before the first one could be matched.
   const std::string trajectory = ReadFile(folder / "global.tum");
   EXPECT_GE(std::count(trajectory.begin(), trajectory.end(), '\n'), 249);
