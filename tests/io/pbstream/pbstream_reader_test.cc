@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
 
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "cartographer/common/port.h"
 #include "cartographer_ext/io/pbstream/pbstream_records.h"
+#include "cartographer_ext/io/pbstream/pbstream_validation.h"
 #include "cartographer_ext/io/pbstream/pbstream_writer.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
