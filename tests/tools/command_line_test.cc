@@ -20,11 +20,14 @@ namespace cartographer_ext {
 namespace tools {
 namespace {
 
-void Parse(std::vector<std::string> arguments) {
+void Parse(std::vector<std::string> arguments,
+           const std::string& input_flag = "") {
   arguments.insert(arguments.begin(), "/somewhere/command");
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(&argument[0]);
-  CommandLine("Tests.").Parse(static_cast<int>(argv.size()), argv.data());
+  CommandLine command_line("Tests.", input_flag);
+  command_line.Parse(static_cast<int>(argv.size()), argv.data());
+  if (command_line.has_positional_input()) std::exit(7);
 }
 
 // Starting the log is for once a process, so each case has its own.
@@ -68,6 +71,23 @@ TEST(CommandLineTest, RefusesWhatItDoesNotKnow) {
   ParseAndFail({"-"}, "what is \"-\"");
   ParseAndFail({"-test_number", "many"}, "-test_number cannot be \"many\"");
   ParseAndFail({"-test_number"}, "-test_number needs a value");
+}
+
+TEST(CommandLineTest, TakesTheInputWithoutItsFlag) {
+  EXPECT_EXIT(
+      {
+        google::ShutdownGoogleLogging();
+        Parse({"-test_number", "4", "run.bag"}, "test_name");
+      },
+      testing::ExitedWithCode(7), "");
+  const auto fails = [](const std::vector<std::string>& arguments,
+                        const std::string& message) {
+    EXPECT_EXIT(Parse(arguments, "test_name"), testing::ExitedWithCode(2),
+                message);
+  };
+  fails({"run.bag", "other.bag"}, "\"other.bag\" is a second input");
+  fails({"-test_name", "x", "run.bag"}, "\"run.bag\" is a second input");
+  fails({"-"}, "what is \"-\"");
 }
 
 TEST(CommandLineTest, PrintsItsVersion) {
