@@ -40,6 +40,12 @@ constexpr char kScanId[] = "scan";
 constexpr char kOdometryId[] = "odom";
 constexpr char kImuId[] = "imu";
 
+SensorId OdometrySensor() {
+  return {SensorId::SensorType::ODOMETRY, kOdometryId};
+}
+
+SensorId ImuSensor() { return {SensorId::SensorType::IMU, kImuId}; }
+
 // Decision records kept, about 400 bytes each.
 constexpr size_t kMaxDecisions = 2000000;
 // Records of matched scans kept, about 300 bytes each.
@@ -62,26 +68,32 @@ cartographer::transform::Rigid3d ToHostPose(const Pose2& pose) {
 // Gives one trajectory builder the events of a source.
 class Feeder {
  public:
-  Feeder(const SensorSettings& settings, const bool use_odometry,
-         const bool use_imu, TrajectoryBuilderInterface* const builder,
-         SlamRun* const run)
+  Feeder(const SensorSettings& settings, const std::set<SensorId>& sensors,
+         TrajectoryBuilderInterface* const builder, SlamRun* const run)
       : settings_(settings),
-        use_odometry_(use_odometry),
-        use_imu_(use_imu),
+        use_odometry_(sensors.count(OdometrySensor()) > 0),
+        use_imu_(sensors.count(ImuSensor()) > 0),
         builder_(builder),
-        run_(run) {}
+        run_(run) {
+    for (const SensorId& sensor : sensors) {
+      if (sensor.type != SensorId::SensorType::RANGE) continue;
+      last_scans_[sensor.id] = cartographer::common::Time::min();
+    }
+  }
 
   void operator()(const io::LaserScan& scan) {
     const auto data =
         ToTimedPointCloudData(scan, settings_.min_range, settings_.max_range);
-    if (data.ranges.empty() || !Later(scan.time, &last_scan_)) {
+    const std::string id =
+        last_scans_.count(scan.sensor_id) > 0 ? scan.sensor_id : kScanId;
+    if (data.ranges.empty() || !Later(scan.time, &last_scans_.at(id))) {
       ++run_->scans_left_out;
       return;
     }
     if (run_->scans == 0) first_scan_ = scan.time;
     ++run_->scans;
     run_->sensor_seconds = io::ToSeconds(scan.time - first_scan_);
-    builder_->AddSensorData(kScanId, data);
+    builder_->AddSensorData(id, data);
   }
 
   void operator()(const io::OdometryReading& reading) {
@@ -124,7 +136,8 @@ class Feeder {
   TrajectoryBuilderInterface* const builder_;
   SlamRun* const run_;
   io::TimeNs first_scan_ = 0;
-  cartographer::common::Time last_scan_ = cartographer::common::Time::min();
+  // By sensor.
+  std::map<std::string, cartographer::common::Time> last_scans_;
   cartographer::common::Time last_odometry_ = cartographer::common::Time::min();
   cartographer::common::Time last_imu_ = cartographer::common::Time::min();
 };
@@ -240,11 +253,15 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
         StartFrom(options.state, &run, &trajectory_options);
     if (!started.ok()) return started;
   }
-  std::set<SensorId> sensor_ids = {{SensorId::SensorType::RANGE, kScanId}};
-  if (use_odometry) {
-    sensor_ids.insert({SensorId::SensorType::ODOMETRY, kOdometryId});
+  std::set<SensorId> sensor_ids;
+  for (const std::string& laser : info.lasers) {
+    sensor_ids.insert({SensorId::SensorType::RANGE, laser});
   }
-  if (use_imu) sensor_ids.insert({SensorId::SensorType::IMU, kImuId});
+  if (info.lasers.empty()) {
+    sensor_ids.insert({SensorId::SensorType::RANGE, kScanId});
+  }
+  if (use_odometry) sensor_ids.insert(OdometrySensor());
+  if (use_imu) sensor_ids.insert(ImuSensor());
   // Called from within AddSensorData, that is in this thread.
   auto* const local_scan_poses = &run.local_scan_poses;
   // Outlives the run in the callbacks.
@@ -277,7 +294,7 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
             newest->second.node_index,
             FromHostPose(pose_graph->GetLocalToGlobalTransform(trajectory_id)));
       });
-  Feeder feeder(configuration.sensors, use_odometry, use_imu,
+  Feeder feeder(configuration.sensors, sensor_ids,
                 run.map_builder->GetTrajectoryBuilder(run.trajectory_id), &run);
 
   SlamProgress progress;
