@@ -133,6 +133,48 @@ double LargestError(const std::vector<Rigid3d>& poses,
   return largest;
 }
 
+#ifdef CARTOGRAPHER_EXT_SWAP_LOCAL_TRAJECTORY_BUILDER
+// Odometry that comes twice, or again after a later one, would end a stock
+// program. With our local SLAM it changes nothing.
+TEST(MapBuilderOdometryTest, ReadingsThatAreNotLaterAreDropped) {
+  const test::SlamOptions options = test::LoadSlamOptions(
+      std::string(kChanges) + "TRAJECTORY_BUILDER_2D.cartographer_ext = {}\n");
+  std::vector<std::string> poses(2);
+  for (const bool repeated : {false, true}) {
+    const auto builder = mapping::CreateMapBuilder(options.map_builder);
+    std::string* const text = &poses[repeated ? 1 : 0];
+    const int trajectory_id = builder->AddTrajectoryBuilder(
+        {kLaser, kOdometry}, options.trajectory_builder,
+        [text](int, cartographer::common::Time, const Rigid3d local_pose,
+               cartographer::sensor::RangeData,
+               const std::unique_ptr<const mapping::TrajectoryBuilderInterface::
+                                         InsertionResult>) {
+          *text += cartographer::transform::ToProto(local_pose)
+                       .SerializeAsString();
+        });
+    auto* const trajectory = builder->GetTrajectoryBuilder(trajectory_id);
+    for (int i = 0; i != kNumScans / 5; ++i) {
+      const Rigid3d pose = test::Drive(static_cast<double>(i) / kNumScans);
+      const auto time = test::At(0.3 * i);
+      trajectory->AddSensorData(kOdometry.id,
+                                cartographer::sensor::OdometryData{time, pose});
+      if (repeated) {
+        for (const double late : {0., 0.1, 2.}) {
+          trajectory->AddSensorData(
+              kOdometry.id, cartographer::sensor::OdometryData{
+                                test::At(0.3 * i - late), Rigid3d()});
+        }
+      }
+      trajectory->AddSensorData(kLaser.id, test::Scan(pose, time));
+    }
+    builder->FinishTrajectory(trajectory_id);
+    builder->pose_graph()->RunFinalOptimization();
+  }
+  EXPECT_GT(poses[0].size(), 100u);
+  EXPECT_EQ(poses[0], poses[1]);
+}
+#endif
+
 class MapBuilderBlocksTest : public testing::TestWithParam<Blocks> {};
 
 TEST_P(MapBuilderBlocksTest, MapsARoom) {
