@@ -238,7 +238,8 @@ std::string ConfigurationDirectoryOf(const std::string& program) {
   for (int i = 0; i < kMaxParents && parent.has_relative_path(); ++i) {
     parent = parent.parent_path();
     for (const char* name :
-         {"configuration_files", "share/cartographer/configuration_files"}) {
+         {"configuration_files", "share/cartographer_ext/configuration_files",
+          "share/cartographer/configuration_files"}) {
       if (is_ours(parent / name)) return (parent / name).string();
     }
   }
