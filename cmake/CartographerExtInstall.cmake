@@ -8,7 +8,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # In the order in which a linker wants them.
-set(CARTOGRAPHER_EXT_INSTALLED_CORES io loop_closure scan_matching optimization uncertainty common proto)
+set(CARTOGRAPHER_EXT_INSTALLED_CORES io loop_closure scan_matching offline_optimization optimization uncertainty common proto)
 
 function(cartographer_ext_install_tools)
   file(GLOB mains "${PROJECT_SOURCE_DIR}/cartographer_ext/tools/*_main.cc")
@@ -27,7 +27,7 @@ endfunction()
 
 function(cartographer_ext_install_cores)
   set(module_folders ${CARTOGRAPHER_EXT_INSTALLED_CORES})
-  list(REMOVE_ITEM module_folders proto)
+  list(REMOVE_ITEM module_folders proto offline_optimization)
   foreach(module IN LISTS CARTOGRAPHER_EXT_INSTALLED_CORES)
     install(TARGETS cartographer_ext_${module} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT cores)
   endforeach()

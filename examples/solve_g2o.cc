@@ -7,7 +7,7 @@
 #include <map>
 
 #include "cartographer_ext/io/g2o.h"
-#include "cartographer_ext/optimization/optimize.h"
+#include "cartographer_ext/optimization/offline/optimize.h"
 
 namespace io = cartographer_ext::io;
 namespace optimization = cartographer_ext::optimization;
