@@ -105,6 +105,10 @@ TEST(CommandLineTest, FindsTheConfigurationFromTheProgram) {
   const std::string installed =
       make("prefix/share/cartographer/configuration_files");
   EXPECT_EQ(ConfigurationDirectoryOf(folder / "prefix/bin/command"), installed);
+  // Our own package has a folder of its own.
+  const std::string packaged =
+      make("prefix/share/cartographer_ext/configuration_files");
+  EXPECT_EQ(ConfigurationDirectoryOf(folder / "prefix/bin/command"), packaged);
   const std::string sources = make("sources/configuration_files");
   EXPECT_EQ(ConfigurationDirectoryOf(folder / "sources/build/x/bin/command"),
             sources);
