@@ -12,7 +12,7 @@
 #   constraint_builder        ConstraintBuilder2D and its options
 #   ceres_scan_matcher        CeresScanMatcher2D and its options
 #   optimization_problem      OptimizationProblem2D and its options
-#   local_trajectory_builder  LocalTrajectoryBuilder2D and its options
+#   local_trajectory_builder  LocalTrajectoryBuilder2D and its options; CollatedTrajectoryBuilder, for readings that come twice
 #   full_information          the SPA residual, for loops with a full information matrix (no block of its own; the matrix
 #                             comes from constraint_builder by way of optimization_problem, without which it has no effect)
 #
@@ -59,7 +59,8 @@ function(cartographer_ext_swap_renames swap result)
   elseif(swap STREQUAL "local_trajectory_builder")
     set(renames
         "2d/local_trajectory_builder_2d.cc|LocalTrajectoryBuilder2D|2d/local_trajectory_builder_2d.h"
-        "2d/local_trajectory_builder_options_2d.cc|CreateLocalTrajectoryBuilderOptions2D|2d/local_trajectory_builder_options_2d.h")
+        "2d/local_trajectory_builder_options_2d.cc|CreateLocalTrajectoryBuilderOptions2D|2d/local_trajectory_builder_options_2d.h"
+        "collated_trajectory_builder.cc|CollatedTrajectoryBuilder|collated_trajectory_builder.h")
   elseif(swap STREQUAL "full_information")
     set(spa "optimization/cost_functions/spa_cost_function_2d")
     set(renames "${spa}.cc|CreateAutoDiffSpaCostFunction|${spa}.h" "${spa}.cc|CreateAnalyticalSpaCostFunction|${spa}.h")
@@ -264,6 +265,8 @@ endfunction()
 # Tells sources which swaps are selected, in a header: as definitions on the command line they would compile all of the
 # target, and all that links it, again whenever the selection changes.
 function(cartographer_ext_write_swaps_header target swaps)
+  file(STRINGS "${CARTOGRAPHER_EXT_ROOT}/CMakeLists.txt" project_line REGEX "^project\\(cartographer_ext VERSION ")
+  string(REGEX REPLACE ".* VERSION ([0-9.]+).*" "\\1" CARTOGRAPHER_EXT_SWAPPED_VERSION "${project_line}")
   set(SWAP_DEFINES)
   foreach(swap IN LISTS swaps)
     string(TOUPPER "${swap}" upper)

@@ -209,6 +209,12 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- values (of the scales, and in rad/m). [>= 0 and <= 0.4]
     max_deviation = 0.1,
   },
+  log = {
+    -- Folder for the records of all matched scans, written while the program
+    -- runs: nodes-1.csv and .pb, nodes-2.csv for the next trajectory. Empty:
+    -- none. It is made if its parent exists.
+    directory = "",
+  },
 }
 
 -- Scan matching that knows which directions the scan determines.
@@ -551,6 +557,10 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Whether the records tell the CPU time of each stage. Such logs differ
     -- from run to run.
     times = false,
+    -- Folder for the records of all decisions, written while the program
+    -- runs: loops-1.csv and .pb, loops-2.csv for the next run. Empty: none.
+    -- It is made if its parent exists.
+    directory = "",
   },
 }
 

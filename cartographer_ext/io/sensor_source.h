@@ -43,6 +43,8 @@ struct LaserScan {
   double range_max = 0.;        // metres; a range above it is "no return"
   std::vector<float> ranges;    // metres; NaN, inf and "no return" kept as read
   Pose2 laser_pose;             // (robot <- laser)
+  // Instead of ranges, from lasers that deliver points: in the laser frame.
+  std::vector<Eigen::Vector2d> points;
   // Every echo of beam i, for multi-echo lasers; `ranges` has the first.
   std::vector<std::vector<float>> echoes;
   // CARMEN logs carry the robot's odometry pose (odometry <- robot) inside the
@@ -76,6 +78,8 @@ struct SensorSourceInfo {
   int64_t num_imu = 0;
   TimeNs begin = 0;
   TimeNs end = 0;
+  // The lasers, as LaserScan::sensor_id names them, where there are several.
+  std::vector<std::string> lasers;
   int64_t num_out_of_order = 0;       // stamps that went backwards, sorted away
   std::vector<std::string> warnings;  // lines skipped, topics guessed, ...
 };
@@ -90,7 +94,9 @@ class SensorSource {
 };
 
 struct SensorSourceOptions {
-  // Of ROS; empty: the only (or first by name) topic of that type.
+  // Of ROS; empty: the only (or first by name) topic of that type. Scans of
+  // several topics, separated by commas, are read together. For the odometry a
+  // topic of transforms may be named, too.
   std::string scan_topic;
   std::string odometry_topic;
   std::string imu_topic;

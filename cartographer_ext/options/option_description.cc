@@ -7,6 +7,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "glog/logging.h"
 
@@ -53,6 +54,8 @@ std::string ValueText(const pb::Message& options,
     case FieldDescriptor::CPPTYPE_ENUM:
       return absl::AsciiStrToLower(
           reflection->GetEnum(options, &field)->name());
+    case FieldDescriptor::CPPTYPE_STRING:
+      return reflection->GetString(options, &field);
     default:
       LOG(FATAL) << field.full_name() << " has a type that options do not have";
       return "";
@@ -85,6 +88,9 @@ void SetDefault(const FieldDescriptor& field, pb::Message* options) {
       reflection->SetEnum(options, &field, value);
       break;
     }
+    case FieldDescriptor::CPPTYPE_STRING:
+      reflection->SetString(options, &field, text);
+      break;
     default:
       LOG(FATAL) << field.full_name() << " has a type that options do not have";
   }
@@ -98,6 +104,8 @@ std::string TypeText(const FieldDescriptor& field) {
       return "integer";
     case FieldDescriptor::CPPTYPE_BOOL:
       return "boolean";
+    case FieldDescriptor::CPPTYPE_STRING:
+      return "text";
     default:
       return "choice";
   }
@@ -167,8 +175,11 @@ void TableToLua(const std::string& name, const pb::Message& options,
                                             facts.empty() ? "" : " [", facts,
                                             facts.empty() ? "" : "]")));
     std::string value = ValueText(options, field);
-    if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
-      value = absl::StrCat("\"", value, "\"");
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM ||
+        field.cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
+      value = absl::StrCat(
+          "\"", absl::StrReplaceAll(value, {{"\\", "\\\\"}, {"\"", "\\\""}}),
+          "\"");
     }
     absl::StrAppend(result, inner, field.name(), " = ", value, ",\n");
   }

@@ -19,7 +19,7 @@ namespace options {
 // One option, for printing.
 struct OptionDescription {
   std::string key;   // dotted, within the block: "fusion.window"
-  std::string type;  // "number", "integer", "boolean" or "choice"
+  std::string type;  // "number", "integer", "boolean", "choice" or "text"
   std::string default_value;
   std::string range;  // "> 0", "0 ... 1", "one of: a, b", or empty
   std::string unit;

@@ -15,7 +15,8 @@ namespace {
 constexpr char kKey[] = ".cartographer_ext";
 
 std::string Facts(const OptionDescription& option) {
-  std::string facts = absl::StrCat("default ", option.default_value);
+  std::string facts = absl::StrCat(
+      "default ", option.default_value.empty() ? "empty" : option.default_value);
   for (const std::string* fact : {&option.range, &option.unit}) {
     if (!fact->empty()) absl::StrAppend(&facts, "; ", *fact);
   }
@@ -26,16 +27,17 @@ std::string EscapeCell(const std::string& text) {
   return absl::StrReplaceAll(text, {{"|", "\\|"}, {"<", "&lt;"}});
 }
 
-std::unique_ptr<google::protobuf::Message> Defaults(const OptionBlock& block) {
-  std::unique_ptr<google::protobuf::Message> defaults(block.options->New());
+std::unique_ptr<google::protobuf::Message> Defaults(
+    const google::protobuf::Message& options) {
+  std::unique_ptr<google::protobuf::Message> defaults(options.New());
   SetDefaults(defaults.get());
   return defaults;
 }
 
 // Whether the value differs from the default, however that is spelt.
-std::vector<bool> ChangedOptions(const OptionBlock& block) {
-  const std::vector<OptionDescription> defaults = Describe(*Defaults(block));
-  const std::vector<OptionDescription> values = Describe(*block.options);
+std::vector<bool> ChangedOptions(const google::protobuf::Message& options) {
+  const std::vector<OptionDescription> defaults = Describe(*Defaults(options));
+  const std::vector<OptionDescription> values = Describe(options);
   std::vector<bool> changed;
   for (size_t i = 0; i < values.size(); ++i) {
     changed.push_back(values[i].value != defaults[i].value);
@@ -45,6 +47,18 @@ std::vector<bool> ChangedOptions(const OptionBlock& block) {
 
 }  // namespace
 
+std::string ChangesToText(const google::protobuf::Message& options) {
+  const std::vector<bool> changed = ChangedOptions(options);
+  const std::vector<OptionDescription> values = Describe(options);
+  std::string text;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!changed[i]) continue;
+    absl::StrAppend(&text, text.empty() ? "" : ", ", values[i].key, " = ",
+                    values[i].value);
+  }
+  return text.empty() ? "defaults" : text;
+}
+
 std::string ToText(const std::vector<OptionBlock>& blocks) {
   std::string result;
   for (const OptionBlock& block : blocks) {
@@ -52,7 +66,7 @@ std::string ToText(const std::vector<OptionBlock>& blocks) {
                     block.present ? "" : ": absent, stock behaviour", "\n  ",
                     block.summary, "\n");
     if (!block.present) continue;
-    const std::vector<bool> changed = ChangedOptions(block);
+    const std::vector<bool> changed = ChangedOptions(*block.options);
     const std::vector<OptionDescription> values = Describe(*block.options);
     for (size_t i = 0; i < values.size(); ++i) {
       absl::StrAppend(&result, changed[i] ? "* " : "  ", values[i].key, " = ",
@@ -118,7 +132,7 @@ std::string ToLuaFile(const std::vector<OptionBlock>& blocks) {
     if (!written.insert(block.name).second) continue;
     absl::StrAppend(
         &result, "\n-- ", block.summary, "\n",
-        ToLua(absl::StrCat("CARTOGRAPHER_EXT.", block.name), *Defaults(block)));
+        ToLua(absl::StrCat("CARTOGRAPHER_EXT.", block.name), *Defaults(*block.options)));
   }
   return result;
 }

@@ -40,6 +40,10 @@ std::string ToMarkdown(const std::vector<OptionBlock>& blocks);
 // of a configuration.
 std::string ToLua(const std::vector<OptionBlock>& blocks);
 
+// The values that are not the default, for a line of a log: "search.enabled =
+// false, fusion.window = 5"; "defaults" where there are none.
+std::string ChangesToText(const google::protobuf::Message& options);
+
 // The whole of configuration_files/cartographer_ext.lua: every option with its
 // documentation and default, as tables that a configuration may assign. Blocks
 // of the same name are written once.

@@ -36,19 +36,7 @@ absl::StatusOr<std::vector<LoopDecision>> ReadDecisions(
 
 DecisionCounts CountDecisions(const std::vector<LoopDecision>& decisions) {
   DecisionCounts counts;
-  for (const LoopDecision& decision : decisions) {
-    if (decision.verdict() == LoopDecision::ACCEPTED) {
-      ++counts.accepted;
-    } else if (decision.verdict() == LoopDecision::UNDECIDED) {
-      ++counts.undecided;
-    } else if (decision.reason() >= LoopDecision::SKIPPED_REDUNDANT) {
-      ++counts.skipped;
-    } else if (decision.reason() == LoopDecision::LOW_GRID_SCORE) {
-      ++counts.not_found;
-    } else {
-      ++counts.rejected;
-    }
-  }
+  for (const LoopDecision& decision : decisions) counts.Add(decision);
   return counts;
 }
 

@@ -12,6 +12,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "cartographer_ext/loop_closure/decision_counts.h"
 #include "cartographer_ext/loop_decision.pb.h"
 
 namespace cartographer_ext {
@@ -31,13 +32,7 @@ absl::Status WriteDecisionsBeside(
 absl::StatusOr<std::vector<proto::LoopDecision>> ReadDecisions(
     const std::string& records_filename);
 
-struct DecisionCounts {
-  int64_t accepted = 0;
-  int64_t rejected = 0;   // matched, but rejected
-  int64_t not_found = 0;  // searched, nothing good enough there
-  int64_t undecided = 0;
-  int64_t skipped = 0;  // never searched
-};
+using DecisionCounts = loop_closure::DecisionCounts;
 
 DecisionCounts CountDecisions(
     const std::vector<proto::LoopDecision>& decisions);

@@ -16,13 +16,6 @@ namespace {
 
 using proto::MatchRecord;
 
-bool IsFault(const MatchRecord& record) {
-  return record.odometry() == MatchRecord::STALE ||
-         record.odometry() == MatchRecord::JUMPING ||
-         record.odometry() == MatchRecord::WRONG_SIGN ||
-         record.odometry() == MatchRecord::SLIPPING;
-}
-
 bool PositionIsDegenerate(const MatchRecord& record) {
   return record.degeneracy() == MatchRecord::TRANSLATION ||
          record.degeneracy() == MatchRecord::TRANSLATION_AND_ROTATION ||
@@ -75,7 +68,7 @@ void MarkMatches(const std::vector<MatchRecord>& records,
     nodes[entry.first.trajectory_id][entry.second.time] = &entry.second;
   }
   for (const MatchRecord& record : records) {
-    const bool is_fault = IsFault(record);
+    const bool is_fault = front_end::IsOdometryFault(record);
     const bool is_degenerate = record.is_node() && PositionIsDegenerate(record);
     if (!is_fault && !is_degenerate) continue;
     const auto trajectory = nodes.find(record.builder());
@@ -96,21 +89,7 @@ void MarkMatches(const std::vector<MatchRecord>& records,
 
 MatchCounts CountMatches(const std::vector<MatchRecord>& records) {
   MatchCounts counts;
-  for (const MatchRecord& record : records) {
-    ++counts.scans;
-    if (record.degeneracy() != MatchRecord::NONE) ++counts.degenerate;
-    if (record.searched()) ++counts.searched;
-    if (record.source() == MatchRecord::SEARCH) ++counts.relocated;
-    if (IsFault(record)) ++counts.odometry_faults;
-    if (record.odometry() == MatchRecord::SLIP_SUSPECTED) {
-      ++counts.slip_suspected;
-    }
-    counts.time_offset = record.time_offset();
-    counts.way_scale = record.way_scale();
-    counts.way_scale_sigma = record.way_scale_sigma();
-    counts.turn_scale = record.turn_scale();
-    counts.turn_per_metre = record.turn_per_metre();
-  }
+  for (const MatchRecord& record : records) counts.Add(record);
   return counts;
 }
 

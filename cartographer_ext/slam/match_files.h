@@ -13,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "cartographer_ext/front_end/match_counts.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/match_record.pb.h"
 
@@ -37,20 +38,7 @@ absl::StatusOr<std::vector<proto::MatchRecord>> ReadMatches(
 void MarkMatches(const std::vector<proto::MatchRecord>& records,
                  MapGraph* graph);
 
-struct MatchCounts {
-  int64_t scans = 0;
-  int64_t degenerate = 0;
-  int64_t searched = 0;
-  int64_t relocated = 0;
-  int64_t odometry_faults = 0;  // stale, jumping, wrong sign, slipping
-  int64_t slip_suspected = 0;
-  // Of the last scan: seconds, and the calibration of odometry.
-  double time_offset = 0.;
-  double way_scale = 0.;
-  double way_scale_sigma = 0.;
-  double turn_scale = 0.;
-  double turn_per_metre = 0.;  // radians
-};
+using MatchCounts = front_end::MatchCounts;
 
 MatchCounts CountMatches(const std::vector<proto::MatchRecord>& records);
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/io/sensor_source.h"
 
@@ -22,6 +23,10 @@ absl::StatusOr<std::unique_ptr<io::SensorSource>> OpenRecording(
 
 // What the configuration says about reading a recording.
 io::SensorSourceOptions ToSourceOptions(const SensorSettings& settings);
+
+// The name of a recording without folder and ending, for files made from it:
+// "logs/run.clf.gz" and "logs/run/" are "run".
+std::string RecordingStem(absl::string_view filename);
 
 }  // namespace evaluation
 }  // namespace cartographer_ext

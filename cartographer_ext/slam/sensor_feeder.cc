@@ -17,6 +17,12 @@ constexpr char kScanId[] = "scan";
 constexpr char kOdometryId[] = "odom";
 constexpr char kImuId[] = "imu";
 
+SensorId OdometrySensor() {
+  return {SensorId::SensorType::ODOMETRY, kOdometryId};
+}
+
+SensorId ImuSensor() { return {SensorId::SensorType::IMU, kImuId}; }
+
 cartographer::transform::Rigid3d ToHostPose(const Pose2& pose) {
   return cartographer::transform::Rigid3d(
       Eigen::Vector3d(pose.x, pose.y, 0.),
@@ -34,37 +40,47 @@ bool IsLater(const io::TimeNs time, cartographer::common::Time* const last) {
 
 }  // namespace
 
-std::set<SensorId> SensorFeeder::Sensors(const bool use_odometry,
+std::set<SensorId> SensorFeeder::Sensors(const std::vector<std::string>& lasers,
+                                         const bool use_odometry,
                                          const bool use_imu) {
-  std::set<SensorId> sensors = {{SensorId::SensorType::RANGE, kScanId}};
-  if (use_odometry) {
-    sensors.insert({SensorId::SensorType::ODOMETRY, kOdometryId});
+  std::set<SensorId> sensors;
+  for (const std::string& laser : lasers) {
+    sensors.insert({SensorId::SensorType::RANGE, laser});
   }
-  if (use_imu) sensors.insert({SensorId::SensorType::IMU, kImuId});
+  if (lasers.empty()) sensors.insert({SensorId::SensorType::RANGE, kScanId});
+  if (use_odometry) sensors.insert(OdometrySensor());
+  if (use_imu) sensors.insert(ImuSensor());
   return sensors;
 }
 
 SensorFeeder::SensorFeeder(const SensorSettings& settings,
-                           const bool use_odometry, const bool use_imu,
+                           const std::set<SensorId>& sensors,
                            TrajectoryBuilder* const builder,
                            FedReadings* const fed)
     : settings_(settings),
-      use_odometry_(use_odometry),
-      use_imu_(use_imu),
+      use_odometry_(sensors.count(OdometrySensor()) > 0),
+      use_imu_(sensors.count(ImuSensor()) > 0),
       builder_(builder),
-      fed_(fed) {}
+      fed_(fed) {
+  for (const SensorId& sensor : sensors) {
+    if (sensor.type != SensorId::SensorType::RANGE) continue;
+    last_scans_[sensor.id] = cartographer::common::Time::min();
+  }
+}
 
 void SensorFeeder::operator()(const io::LaserScan& scan) {
   const auto data =
       ToTimedPointCloudData(scan, settings_.min_range, settings_.max_range);
-  if (data.ranges.empty() || !IsLater(scan.time, &last_scan_)) {
+  const std::string id =
+      last_scans_.count(scan.sensor_id) > 0 ? scan.sensor_id : kScanId;
+  if (data.ranges.empty() || !IsLater(scan.time, &last_scans_.at(id))) {
     ++fed_->skipped_scans;
     return;
   }
   if (fed_->scans == 0) first_scan_ = scan.time;
   ++fed_->scans;
   fed_->sensor_seconds = io::ToSeconds(scan.time - first_scan_);
-  builder_->AddSensorData(kScanId, data);
+  builder_->AddSensorData(id, data);
 }
 
 void SensorFeeder::operator()(const io::OdometryReading& reading) {

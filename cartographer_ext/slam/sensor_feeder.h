@@ -6,7 +6,10 @@
 #define CARTOGRAPHER_EXT_SLAM_SENSOR_FEEDER_H_
 
 #include <cstdint>
+#include <map>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "cartographer/common/time.h"
 #include "cartographer/mapping/trajectory_builder_interface.h"
@@ -33,12 +36,14 @@ class SensorFeeder {
  public:
   using TrajectoryBuilder = cartographer::mapping::TrajectoryBuilderInterface;
 
-  // What the builder has to be made for.
-  static std::set<TrajectoryBuilder::SensorId> Sensors(bool use_odometry,
-                                                       bool use_imu);
+  // What the builder has to be made for. `lasers`: names of the sensors of
+  // scans; none where the recording does not name them.
+  static std::set<TrajectoryBuilder::SensorId> Sensors(
+      const std::vector<std::string>& lasers, bool use_odometry, bool use_imu);
 
   // `settings` limits the ranges. Counts into `fed`.
-  SensorFeeder(const SensorSettings& settings, bool use_odometry, bool use_imu,
+  SensorFeeder(const SensorSettings& settings,
+               const std::set<TrajectoryBuilder::SensorId>& sensors,
                TrajectoryBuilder* builder, FedReadings* fed);
 
   void operator()(const io::LaserScan& scan);
@@ -52,7 +57,8 @@ class SensorFeeder {
   TrajectoryBuilder* const builder_;
   FedReadings* const fed_;
   io::TimeNs first_scan_ = 0;
-  cartographer::common::Time last_scan_ = cartographer::common::Time::min();
+  // By sensor.
+  std::map<std::string, cartographer::common::Time> last_scans_;
   cartographer::common::Time last_odometry_ = cartographer::common::Time::min();
   cartographer::common::Time last_imu_ = cartographer::common::Time::min();
 };

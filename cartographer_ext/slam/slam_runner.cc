@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -117,7 +118,9 @@ class Runner {
                       info_.num_odometry > 0),
         use_imu_(configuration.trajectory_builder_options
                      .trajectory_builder_2d_options()
-                     .use_imu_data()) {}
+                     .use_imu_data()),
+        sensors_(SensorFeeder::Sensors(info_.lasers, use_odometry_, use_imu_)) {
+  }
 
   absl::StatusOr<SlamRun> Run() {
     const absl::Status suitable = CheckRecording();
@@ -199,7 +202,7 @@ class Runner {
     auto* const local_scan_poses = &run_.local_scan_poses;
     const auto online = online_;
     run_.trajectory_id = run_.map_builder->AddTrajectoryBuilder(
-        SensorFeeder::Sensors(use_odometry_, use_imu_), trajectory_options,
+        sensors_, trajectory_options,
         [local_scan_poses, online](
             int /*trajectory_id*/, const cartographer::common::Time time,
             const cartographer::transform::Rigid3d& local_pose,
@@ -238,7 +241,7 @@ class Runner {
 
   absl::Status Feed() {
     SensorFeeder feeder(
-        configuration_.sensors, use_odometry_, use_imu_,
+        configuration_.sensors, sensors_,
         run_.map_builder->GetTrajectoryBuilder(run_.trajectory_id), &run_);
     progress_.total_scans = info_.num_scans;
     io::SensorEvent event;
@@ -323,6 +326,7 @@ class Runner {
   const SlamRunOptions& options_;
   const bool use_odometry_;
   const bool use_imu_;
+  const std::set<SensorFeeder::TrajectoryBuilder::SensorId> sensors_;
 
   const std::shared_ptr<PoseGraphContext> context_ =
       std::make_shared<PoseGraphContext>();

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/starting_state.h"
 
+#include <cmath>
+#include <vector>
+
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
@@ -13,6 +18,20 @@ namespace evaluation {
 using cartographer::mapping::MapBuilderInterface;
 using cartographer::mapping::PoseGraphInterface;
 using cartographer::transform::Rigid3d;
+
+absl::StatusOr<Pose2> ParsePose(const std::string& text) {
+  const std::vector<std::string> words = absl::StrSplit(text, ',');
+  double values[3] = {};
+  bool valid = words.size() == 3;
+  for (size_t i = 0; valid && i < 3; ++i) {
+    valid = absl::SimpleAtod(words[i], &values[i]) && std::isfinite(values[i]);
+  }
+  if (!valid) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("\"", text, "\" is not X,Y,DEGREES"));
+  }
+  return Pose2(values[0], values[1], NormalizeAngle(DegToRad(values[2])));
+}
 
 absl::StatusOr<std::map<int, int>> LoadStartingState(
     const StartingState& state, MapBuilderInterface* const map_builder) {

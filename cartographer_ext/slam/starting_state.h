@@ -26,6 +26,9 @@ struct StartingState {
   absl::optional<Pose2> initial_pose;
 };
 
+// "X,Y,DEGREES". The error quotes the text.
+absl::StatusOr<Pose2> ParsePose(const std::string& text);
+
 // Loads the file, which is checked before: the host would end the program over
 // a bad one. Returns the ids that the stored trajectories got, by their ids in
 // the file. Errors: those of io::ReadPbstream, a state without nodes.

@@ -156,8 +156,25 @@ bool IsKnown(const std::string& name) {
 
 }  // namespace
 
-CommandLine::CommandLine(const std::string& description)
-    : description_(description) {}
+CommandLine::CommandLine(const std::string& description,
+                         const std::string& input_flag)
+    : description_(description), input_flag_(input_flag) {}
+
+void CommandLine::TakePositional(const std::string& argument) {
+  if (input_flag_.empty() || argument == "-") {
+    ExitWithUsageError(
+        absl::StrCat("what is \"", argument, "\"? All arguments are flags",
+                     input_flag_.empty() ? "" : " but the input"));
+  }
+  gflags::CommandLineFlagInfo info;
+  if (has_positional_input_ ||
+      (gflags::GetCommandLineFlagInfo(input_flag_.c_str(), &info) &&
+       !info.is_default)) {
+    ExitWithUsageError(absl::StrCat("\"", argument, "\" is a second input"));
+  }
+  SetFlag(input_flag_, argument);
+  has_positional_input_ = true;
+}
 
 void CommandLine::Parse(const int argc, char** const argv) {
   *MutableProgramName() = BaseName(argc > 0 ? argv[0] : "");
@@ -166,8 +183,8 @@ void CommandLine::Parse(const int argc, char** const argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument.size() < 2 || argument[0] != '-') {
-      ExitWithUsageError(
-          absl::StrCat("what is \"", argument, "\"? All arguments are flags"));
+      TakePositional(argument);
+      continue;
     }
     const size_t dashes = argument[1] == '-' ? 2 : 1;
     const size_t equals = argument.find('=');
@@ -221,7 +238,8 @@ std::string ConfigurationDirectoryOf(const std::string& program) {
   for (int i = 0; i < kMaxParents && parent.has_relative_path(); ++i) {
     parent = parent.parent_path();
     for (const char* name :
-         {"configuration_files", "share/cartographer/configuration_files"}) {
+         {"configuration_files", "share/cartographer_ext/configuration_files",
+          "share/cartographer/configuration_files"}) {
       if (is_ours(parent / name)) return (parent / name).string();
     }
   }

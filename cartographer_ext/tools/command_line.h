@@ -6,7 +6,8 @@
 //
 //   DEFINE_string(input_filename, "", "what to read");
 //   int main(int argc, char** argv) {
-//     tools::CommandLine command_line("Maps a recording.\n\nExample: ...");
+//     tools::CommandLine command_line("Maps a recording.\n\nExample: ...",
+//                                     "input_filename");
 //     command_line.Parse(argc, argv);
 //     if (FLAGS_input_filename.empty()) {
 //       return tools::UsageError("-input_filename is missing");
@@ -30,7 +31,8 @@ constexpr int kExitBadInput = 1;
 constexpr int kExitUsage = 2;
 
 // Sets the gflags of a command. `-flag value`, `-flag=value` with one or two
-// dashes, `-flag` and `-noflag` for booleans. Unknown flags, bad values and
+// dashes, `-flag` and `-noflag` for booleans. One argument that is no flag is
+// the main input, where the command has one. Unknown flags, bad values and
 // other arguments end the program with exit code 2 and a hint; -help prints the
 // description and the command's own flags and ends it with 0, -version the
 // version. Starts the log,
@@ -38,12 +40,21 @@ constexpr int kExitUsage = 2;
 // but the JSON of WriteJson reaches standard output.
 class CommandLine {
  public:
-  // `description` is what -help prints above the flags.
-  explicit CommandLine(const std::string& description);
+  // `description` is what -help prints above the flags, `input_flag` the flag of
+  // the main input, if any.
+  explicit CommandLine(const std::string& description,
+                       const std::string& input_flag = "");
   void Parse(int argc, char** argv);
 
+  // Whether the main input stood there without its flag.
+  bool has_positional_input() const { return has_positional_input_; }
+
  private:
+  void TakePositional(const std::string& argument);
+
   const std::string description_;
+  const std::string input_flag_;
+  bool has_positional_input_ = false;
 };
 
 // The name the program was called by, without folders.

@@ -388,7 +388,7 @@ absl::Status Run(const std::string& command_line) {
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
   const std::string command_line = absl::StrJoin(argv, argv + argc, " ");
-  tools::CommandLine(kDescription).Parse(argc, argv);
+  tools::CommandLine(kDescription, "pbstream_filename").Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty() && FLAGS_trajectory_filename.empty()) {
     return tools::UsageError(
         "-pbstream_filename or -trajectory_filename is needed");

@@ -181,7 +181,7 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
-  tools::CommandLine(kDescription).Parse(argc, argv);
+  tools::CommandLine(kDescription, "pbstream_filename").Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty()) {
     return tools::UsageError("-pbstream_filename is missing");
   }

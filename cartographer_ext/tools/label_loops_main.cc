@@ -256,7 +256,7 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
-  tools::CommandLine(kDescription).Parse(argc, argv);
+  tools::CommandLine(kDescription, "input_filename").Parse(argc, argv);
   if (FLAGS_input_filename.empty() == FLAGS_pbstream_filename.empty()) {
     return tools::UsageError(
         "one of -input_filename and -pbstream_filename is needed");

@@ -169,7 +169,8 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   namespace tools = cartographer_ext::tools;
-  tools::CommandLine command_line(cartographer_ext::kDescription);
+  tools::CommandLine command_line(cartographer_ext::kDescription,
+                                  "pbstream_filename");
   command_line.Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty()) {
     return tools::UsageError("-pbstream_filename is missing");

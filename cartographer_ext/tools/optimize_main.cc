@@ -330,7 +330,7 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
-  tools::CommandLine(kDescription).Parse(argc, argv);
+  tools::CommandLine(kDescription, "input_filename").Parse(argc, argv);
   if (FLAGS_input_filename.empty()) {
     return tools::UsageError("-input_filename is missing");
   }

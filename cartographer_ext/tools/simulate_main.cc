@@ -178,7 +178,8 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   namespace tools = cartographer_ext::tools;
-  tools::CommandLine command_line(cartographer_ext::kDescription);
+  tools::CommandLine command_line(cartographer_ext::kDescription,
+                                  "world_filename");
   command_line.Parse(argc, argv);
   if (FLAGS_world_filename.empty()) {
     return tools::UsageError("-world_filename is missing");

@@ -1,23 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: experiments
+// LINK: experiments report
 //
 // cartographer_ext_slam: a recording in, a map and numbers out.
 #include <malloc.h>
 
-#include <cmath>
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_split.h"
+#include "absl/strings/str_join.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
@@ -33,9 +34,12 @@
 #include "cartographer_ext/map/pbstream_optimization.h"
 #include "cartographer_ext/map/switched_constraints.h"
 #include "cartographer_ext/map/verdict/decision_table.h"
+#include "cartographer_ext/map/verdict/evaluation_report.h"
+#include "cartographer_ext/report/map_report.h"
 #include "cartographer_ext/slam/decision_files.h"
 #include "cartographer_ext/slam/match_files.h"
 #include "cartographer_ext/slam/open_recording.h"
+#include "cartographer_ext/slam/run_summary.h"
 #include "cartographer_ext/slam/slam_runner.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
@@ -43,7 +47,12 @@
 
 DEFINE_string(input_filename, "",
               "Recording: CARMEN log (.clf .log, also .gz .xz .bz2), ROS 1 bag "
-              "(.bag) or world file (.world).");
+              "(.bag), ROS 2 recording (.mcap, .db3 or the folder of rosbag2) "
+              "or world file (.world).");
+DEFINE_string(output_filestem, "",
+              "Output: <stem>.pbstream, .pgm and .yaml, .png and .html, each "
+              "unless a flag of its own names it. By default the name of an "
+              "input given without -input_filename, in the working folder.");
 DEFINE_string(configuration_directory, "",
               "Where Lua files are searched, comma separated; the first that "
               "has a file wins. Empty: the files that came with this command.");
@@ -55,6 +64,8 @@ DEFINE_string(map_filestem, "",
 DEFINE_double(resolution, 0.05, "Metres a cell of the occupancy map.");
 DEFINE_string(picture_filename, "",
               "Output: PNG of the map with path and loops.");
+DEFINE_string(report_filename, "",
+              "Output: HTML report of the map; needs -pbstream_filename.");
 DEFINE_string(trajectory_filename, "",
               "Output: optimised pose at every scan (TUM: timestamp x y z qx "
               "qy qz qw).");
@@ -111,12 +122,16 @@ namespace {
 constexpr char kDescription[] =
     R"(Makes a 2D map from a recording: local SLAM, loop closure, optimisation.
 
+  cartographer_ext_slam run.bag
+      writes run.pbstream, run.pgm and run.yaml (the map for navigation), run.png
+      and run.html (the report) into the working folder
   cartographer_ext_slam -input_filename=run.clf -pbstream_filename=run.pbstream
       -map_filestem=run -picture_filename=run.png -trajectory_filename=run.tum
 
 The configuration is Cartographer's Lua (-configuration_directory,
 -configuration_basename): default.lua by default, stock.lua has Cartographer's
-own values and no block of ours. Judge the result with cartographer_ext_evaluate.
+own values and no block of ours. cartographer_ext_evaluate judges the result
+by ground truth.
 
 Localise in a map that is finished (the pose of every scan as it was known then,
 judged by cartographer_ext_evaluate_localization):
@@ -124,24 +139,22 @@ judged by cartographer_ext_evaluate_localization):
       -configuration_basename=localization.lua
       -online_trajectory_filename=later.tum [-initial_pose=12.5,3,90])";
 
+bool SameFile(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return !a.empty() && !b.empty() && std::filesystem::equivalent(a, b, error);
+}
+
 absl::StatusOr<evaluation::StartingState> ReadStartingState() {
   evaluation::StartingState state;
   state.filename = FLAGS_load_state_filename;
   state.frozen = FLAGS_load_frozen_state;
   if (FLAGS_initial_pose.empty()) return state;
-  const std::vector<std::string> words =
-      absl::StrSplit(FLAGS_initial_pose, ',');
-  double values[3];
-  bool valid = words.size() == 3;
-  for (size_t i = 0; valid && i < 3; ++i) {
-    valid = absl::SimpleAtod(words[i], &values[i]) && std::isfinite(values[i]);
+  const auto pose = evaluation::ParsePose(FLAGS_initial_pose);
+  if (!pose.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("-initial_pose ", pose.status().message()));
   }
-  if (!valid) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "-initial_pose \"", FLAGS_initial_pose, "\" is not X,Y,DEGREES"));
-  }
-  state.initial_pose =
-      Pose2(values[0], values[1], NormalizeAngle(DegToRad(values[2])));
+  state.initial_pose = *pose;
   return state;
 }
 
@@ -166,20 +179,6 @@ void PrintRecording(const io::SensorSourceInfo& info, std::ostream& out) {
       io::ToSeconds(info.end - info.begin));
 }
 
-std::string ToText(const evaluation::SlamRun& run) {
-  std::string text;
-  absl::StrAppendFormat(
-      &text, "Map        %d nodes, %d submaps, %d loops from %d searches\n",
-      run.nodes, run.submaps, run.inter_constraints, run.loop_searches);
-  absl::StrAppendFormat(
-      &text,
-      "Took       %.1f s for %.1f s of sensor data; CPU %.1f s, of it %.1f s "
-      "local SLAM; %.0f MB\n",
-      run.wall_seconds, run.sensor_seconds, run.cpu_seconds,
-      run.front_end_cpu_seconds, 1e-6 * run.peak_memory_bytes);
-  return text;
-}
-
 // Of the wrong loops that were injected.
 int CountSwitchedOff(const evaluation::SlamRun& run,
                      const std::vector<evaluation::GraphConstraint>& injected) {
@@ -199,16 +198,48 @@ absl::Status RemoveSwitchedLoops(const evaluation::SlamRun& run,
   return io::WritePbstream(*pbstream, filename);
 }
 
+// With a stem, every output that has no name of its own is named after it.
+void NameOutputs(const std::string& stem) {
+  if (stem.empty()) return;
+  const auto name = [&stem](std::string* const flag, const char* const ending) {
+    if (flag->empty()) *flag = stem + ending;
+  };
+  name(&FLAGS_pbstream_filename, ".pbstream");
+  name(&FLAGS_map_filestem, "");
+  name(&FLAGS_picture_filename, ".png");
+  name(&FLAGS_report_filename, ".html");
+}
+
+// Judges the map just written: the report, and the evaluation for JSON.
+absl::Status WriteReport(const std::string& command_line,
+                         nlohmann::ordered_json* const json,
+                         std::ostream& out) {
+  const auto report =
+      report::ReportMap(FLAGS_pbstream_filename,
+                        tools::BaseName(FLAGS_input_filename), command_line);
+  if (!report.ok()) return report.status();
+  out << evaluation::ToText(report->evaluation);
+  (*json)["evaluation"] = evaluation::ToJson(report->evaluation);
+  return WriteFileAtomically(FLAGS_report_filename, report->page);
+}
+
+void PrintOutputs(std::ostream& out) {
+  std::vector<std::string> names = {FLAGS_pbstream_filename,
+                                    FLAGS_picture_filename,
+                                    FLAGS_report_filename};
+  if (!FLAGS_map_filestem.empty()) {
+    names.push_back(FLAGS_map_filestem + ".yaml");
+    names.push_back(FLAGS_map_filestem + ".pgm");
+  }
+  names.erase(std::remove(names.begin(), names.end(), ""), names.end());
+  if (!names.empty()) out << "Written    " << absl::StrJoin(names, ", ") << "\n";
+}
+
 nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
   nlohmann::ordered_json json;
   json["input"] = FLAGS_input_filename;
   json["configuration"] = FLAGS_configuration_basename;
-  json["scans"] = run.scans;
-  json["matched_scans"] = run.local_scan_poses.size();
-  json["scans_left_out"] = run.skipped_scans;
-  json["odometry_readings"] = run.odometry_readings;
-  json["imu_readings"] = run.imu_readings;
-  json["sensor_seconds"] = run.sensor_seconds;
+  json.update(evaluation::ToJson(run));
   if (!FLAGS_load_state_filename.empty()) {
     json["loaded"] = {{"filename", FLAGS_load_state_filename},
                       {"frozen", FLAGS_load_frozen_state},
@@ -216,57 +247,6 @@ nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
                       {"submaps", run.loaded_submaps},
                       {"constraints", run.constraints_to_loaded}};
   }
-  json["nodes"] = run.nodes;
-  json["submaps"] = run.submaps;
-  json["constraints"] = {{"inter", run.inter_constraints},
-                         {"intra", run.intra_constraints}};
-  json["wall_seconds"] = run.wall_seconds;
-  json["cpu_seconds"] = run.cpu_seconds;
-  json["front_end_cpu_seconds"] = run.front_end_cpu_seconds;
-  json["final_optimization_wall_seconds"] = run.final_optimization_wall_seconds;
-  json["peak_memory_bytes"] = run.peak_memory_bytes;
-  json["loop_search"] = {
-      {"count", run.loop_searches},
-      {"found", run.loops_found},
-      {"cpu_seconds", run.loop_search_cpu_seconds},
-      // Otherwise all threads of the back end are counted.
-      {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured},
-      // What these seconds are made of; all 0 if they are not measured.
-      {"stages",
-       {{"search", run.loop_cpu.search},
-        {"build", run.loop_cpu.build},
-        {"verification", run.loop_cpu.verification}}}};
-  if (!run.matches.empty()) {
-    const evaluation::MatchCounts counts =
-        evaluation::CountMatches(run.matches);
-    json["local_slam"] = {{"degenerate_scans", counts.degenerate},
-                          {"searches", counts.searched},
-                          {"relocated", counts.relocated},
-                          {"odometry_faults", counts.odometry_faults},
-                          {"slip_suspected", counts.slip_suspected},
-                          {"time_offset", counts.time_offset},
-                          {"way_scale", counts.way_scale},
-                          {"way_scale_sigma", counts.way_scale_sigma},
-                          {"turn_scale", counts.turn_scale},
-                          {"turn_per_metre", counts.turn_per_metre}};
-  }
-  if (!run.decisions.empty()) {
-    const evaluation::DecisionCounts counts =
-        evaluation::CountDecisions(run.decisions);
-    json["loop_decisions"] = {{"accepted", counts.accepted},
-                              {"rejected", counts.rejected},
-                              {"not_found", counts.not_found},
-                              {"undecided", counts.undecided},
-                              {"skipped", counts.skipped}};
-  }
-  const optimization::SwitchedLoops& switched = run.switched_loops;
-  json["optimizations"] = {
-      {"robust", switched.optimizations},
-      {"loops_switched_off", switched.off.size()},
-      {"selection_cpu_seconds", switched.selection_cpu_seconds},
-      {"solution_cpu_seconds", switched.solution_cpu_seconds}};
-  json["metrics"] = run.metrics;
-  json["warnings"] = run.warnings;
   return json;
 }
 
@@ -341,6 +321,7 @@ absl::Status WriteResults(const evaluation::SlamRun& run) {
 absl::Status CheckOutputs() {
   std::vector<std::string> outputs = {
       FLAGS_pbstream_filename,          FLAGS_picture_filename,
+      FLAGS_report_filename,
       FLAGS_trajectory_filename,        FLAGS_local_trajectory_filename,
       FLAGS_online_trajectory_filename, FLAGS_decisions_filename,
       FLAGS_switched_loops_filename,    FLAGS_json};
@@ -351,7 +332,7 @@ absl::Status CheckOutputs() {
   return tools::CheckWritable(outputs);
 }
 
-absl::Status Run() {
+absl::Status Run(const std::string& command_line) {
   const absl::Status writable = CheckOutputs();
   if (!writable.ok()) return writable;
 
@@ -363,6 +344,12 @@ absl::Status Run() {
   const absl::Status applied = ApplyFlags(&configuration->sensors);
   if (!applied.ok()) return applied;
 
+  if (SameFile(FLAGS_load_state_filename, FLAGS_pbstream_filename)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(FLAGS_load_state_filename,
+                     " is the map to start from and would be overwritten; name "
+                     "another -pbstream_filename or -output_filestem"));
+  }
   auto state = ReadStartingState();
   if (!state.ok()) return state.status();
 
@@ -414,9 +401,14 @@ absl::Status Run() {
   }
   const absl::Status written = WriteResults(*run);
   if (!written.ok()) return written;
-  out << ToText(*run);
-  if (FLAGS_json.empty()) return absl::OkStatus();
+  out << evaluation::ToText(*run);
   nlohmann::ordered_json json = ToJson(*run);
+  if (!FLAGS_report_filename.empty()) {
+    const absl::Status reported = WriteReport(command_line, &json, out);
+    if (!reported.ok()) return reported;
+  }
+  PrintOutputs(out);
+  if (FLAGS_json.empty()) return absl::OkStatus();
   if (FLAGS_wrong_loops > 0) {
     json["wrong_loops"] = {
         {"injected", injector.injected().size()},
@@ -435,9 +427,15 @@ int main(int argc, char** argv) {
   // saves a fifth of the memory at no measurable cost.
   mallopt(M_ARENA_MAX, 1);
 #endif
-  tools::CommandLine(kDescription).Parse(argc, argv);
+  const std::string arguments = absl::StrJoin(argv, argv + argc, " ");
+  tools::CommandLine command_line(kDescription, "input_filename");
+  command_line.Parse(argc, argv);
+  if (FLAGS_output_filestem.empty() && command_line.has_positional_input()) {
+    FLAGS_output_filestem = evaluation::RecordingStem(FLAGS_input_filename);
+  }
+  NameOutputs(FLAGS_output_filestem);
   if (FLAGS_input_filename.empty()) {
-    return tools::UsageError("-input_filename is missing");
+    return tools::UsageError("a recording is missing");
   }
   if (FLAGS_num_background_threads < 0 || FLAGS_wrong_loops < 0) {
     return tools::UsageError(
@@ -446,5 +444,8 @@ int main(int argc, char** argv) {
   if (!FLAGS_initial_pose.empty() && FLAGS_load_state_filename.empty()) {
     return tools::UsageError("-initial_pose needs -load_state_filename");
   }
-  return tools::ExitCode(Run());
+  if (!FLAGS_report_filename.empty() && FLAGS_pbstream_filename.empty()) {
+    return tools::UsageError("-report_filename needs -pbstream_filename");
+  }
+  return tools::ExitCode(Run(arguments));
 }

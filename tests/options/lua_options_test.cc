@@ -39,12 +39,13 @@ TEST(LuaOptionsTest, ReadsEveryKind) {
   test::SampleOptions sample;
   EXPECT_TRUE(
       Read("return { cartographer_ext = { enabled = false, mode = 'as_printed',"
-           " window = { length = 4, gamma = 0.5 } } }",
+           " window = { length = 4, gamma = 0.5 }, folder = '/tmp/x' } }",
            &sample));
   EXPECT_FALSE(sample.enabled());
   EXPECT_EQ(sample.mode(), test::SampleOptions::AS_PRINTED);
   EXPECT_EQ(sample.window().length(), 4);
   EXPECT_EQ(sample.window().gamma(), 0.5);
+  EXPECT_EQ(sample.folder(), "/tmp/x");
 }
 
 TEST(LuaOptionsDeathTest, ErrorsNameKeyValueAndRange) {
@@ -52,7 +53,7 @@ TEST(LuaOptionsDeathTest, ErrorsNameKeyValueAndRange) {
   EXPECT_DEATH(Read("return { cartographer_ext = { windw = {} } }", &sample),
                "POSE_GRAPH.sample.cartographer_ext.windw: unknown key, "
                "allowed: enabled, "
-               "mode, window");
+               "mode, window, folder");
   EXPECT_DEATH(
       Read("return { cartographer_ext = { window = { length = 0 } } }",
            &sample),
@@ -77,6 +78,7 @@ TEST(LuaOptionsDeathTest, WrongTypesNameKeyValueAndRange) {
   expect_error("{ enabled = 'yes' }",
                ".enabled: \"yes\" is not a boolean, allowed: true, false");
   expect_error("{ enabled = 1 }", ".enabled: 1(.000000)? is not a boolean");
+  expect_error("{ folder = 3 }", ".folder: 3(.000000)? is not a string");
   expect_error("{ mode = true }",
                ".mode: true is not a string, one of: as_printed, proper");
   expect_error("{ window = 4 }",

@@ -43,7 +43,7 @@ TEST(OptionDescriptionTest, DescribesEveryOptionInOrder) {
   SetDefaults(&sample);
   sample.mutable_window()->set_gamma(0.125);
   const auto descriptions = Describe(sample);
-  ASSERT_EQ(descriptions.size(), 4u);
+  ASSERT_EQ(descriptions.size(), 5u);
   EXPECT_EQ(descriptions[0].key, "enabled");
   EXPECT_EQ(descriptions[0].type, "boolean");
   EXPECT_EQ(descriptions[1].range, "one of: as_printed, proper");
@@ -51,15 +51,19 @@ TEST(OptionDescriptionTest, DescribesEveryOptionInOrder) {
   EXPECT_EQ(descriptions[3].default_value, "0.3");
   EXPECT_EQ(descriptions[3].value, "0.125");
   EXPECT_EQ(descriptions[3].unit, "1/s");
+  EXPECT_EQ(descriptions[4].type, "text");
+  EXPECT_EQ(descriptions[4].value, "");
 }
 
 TEST(OptionDescriptionTest, PrintsLua) {
   test::SampleOptions sample;
   SetDefaults(&sample);
+  sample.set_folder("a\\\"b");
   const std::string lua = ToLua("cartographer_ext", sample);
   EXPECT_THAT(lua, HasSubstr("cartographer_ext = {\n"));
   EXPECT_THAT(lua, HasSubstr("  mode = \"proper\",\n"));
   EXPECT_THAT(lua, HasSubstr("  window = {\n"));
+  EXPECT_THAT(lua, HasSubstr("  folder = \"a\\\\\\\"b\",\n"));
   EXPECT_THAT(lua,
               HasSubstr("    -- How fast. [> 0, 1/s]\n    gamma = 0.3,\n"));
   size_t begin = 0;

@@ -54,6 +54,17 @@ TEST(OptionPrintingTest, TextMarksChangedValues) {
                               "behaviour\n"));
 }
 
+TEST(OptionPrintingTest, ChangesAreOneLine) {
+  test::SampleOptions sample;
+  SetDefaults(&sample);
+  EXPECT_EQ(ChangesToText(sample), "defaults");
+  sample.set_enabled(false);
+  sample.mutable_window()->set_length(4);
+  sample.set_folder("/tmp/x");
+  EXPECT_EQ(ChangesToText(sample),
+            "enabled = false, window.length = 4, folder = /tmp/x");
+}
+
 TEST(OptionPrintingTest, MarkdownIsATable) {
   const std::string markdown = ToMarkdown(SampleBlocks());
   EXPECT_THAT(markdown, HasSubstr("## `STOCK.first.cartographer_ext`\n"));

@@ -4,8 +4,11 @@
 // A whole MapBuilder with each of our blocks and with all of them, on whichever
 // host is behind the overlay: maps are right, streams carry the options and
 // load where no block is, and the other way round.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
@@ -132,6 +135,77 @@ double LargestError(const std::vector<Rigid3d>& poses,
   }
   return largest;
 }
+
+#ifdef CARTOGRAPHER_EXT_SWAP_LOCAL_TRAJECTORY_BUILDER
+// Odometry that comes twice, or again after a later one, would end a stock
+// program. With our local SLAM it changes nothing.
+TEST(MapBuilderOdometryTest, ReadingsThatAreNotLaterAreDropped) {
+  const test::SlamOptions options = test::LoadSlamOptions(
+      std::string(kChanges) + "TRAJECTORY_BUILDER_2D.cartographer_ext = {}\n");
+  std::vector<std::string> poses(2);
+  for (const bool repeated : {false, true}) {
+    const auto builder = mapping::CreateMapBuilder(options.map_builder);
+    std::string* const text = &poses[repeated ? 1 : 0];
+    const int trajectory_id = builder->AddTrajectoryBuilder(
+        {kLaser, kOdometry}, options.trajectory_builder,
+        [text](int, cartographer::common::Time, const Rigid3d local_pose,
+               cartographer::sensor::RangeData,
+               const std::unique_ptr<const mapping::TrajectoryBuilderInterface::
+                                         InsertionResult>) {
+          *text += cartographer::transform::ToProto(local_pose)
+                       .SerializeAsString();
+        });
+    auto* const trajectory = builder->GetTrajectoryBuilder(trajectory_id);
+    for (int i = 0; i != kNumScans / 5; ++i) {
+      const Rigid3d pose = test::Drive(static_cast<double>(i) / kNumScans);
+      const auto time = test::At(0.3 * i);
+      trajectory->AddSensorData(kOdometry.id,
+                                cartographer::sensor::OdometryData{time, pose});
+      if (repeated) {
+        for (const double late : {0., 0.1, 2.}) {
+          trajectory->AddSensorData(
+              kOdometry.id, cartographer::sensor::OdometryData{
+                                test::At(0.3 * i - late), Rigid3d()});
+        }
+      }
+      trajectory->AddSensorData(kLaser.id, test::Scan(pose, time));
+    }
+    builder->FinishTrajectory(trajectory_id);
+    builder->pose_graph()->RunFinalOptimization();
+  }
+  EXPECT_GT(poses[0].size(), 100u);
+  EXPECT_EQ(poses[0], poses[1]);
+}
+#endif
+
+#if defined(CARTOGRAPHER_EXT_SWAP_LOCAL_TRAJECTORY_BUILDER) && \
+    defined(CARTOGRAPHER_EXT_SWAP_CONSTRAINT_BUILDER)
+int CountLines(const std::string& filename) {
+  std::ifstream file(filename);
+  return static_cast<int>(std::count(std::istreambuf_iterator<char>(file),
+                                     std::istreambuf_iterator<char>(), '\n'));
+}
+
+// Without a program that asks for the records, as in an unedited node.
+TEST(MapBuilderLogTest, RecordsAreWrittenWhileTheProgramRuns) {
+  const std::string folder = testing::TempDir() + "map_builder_log_test";
+  const std::string log = " = { log = { directory = '" + folder + "' } }\n";
+  const test::SlamOptions options = test::LoadSlamOptions(
+      kChanges + ("TRAJECTORY_BUILDER_2D.cartographer_ext" + log) +
+      "POSE_GRAPH.constraint_builder.cartographer_ext" + log);
+  const auto builder = mapping::CreateMapBuilder(options.map_builder);
+  const Travel run = Drive(options.trajectory_builder, builder.get());
+  // A head line, and one for each scan.
+  EXPECT_EQ(CountLines(folder + "/nodes-1.csv"),
+            1 + static_cast<int>(run.local_poses.size()));
+  EXPECT_GT(CountLines(folder + "/loops-1.csv"), 10);
+  for (const char* name :
+       {"/nodes-1.csv", "/nodes-1.pb", "/loops-1.csv", "/loops-1.pb"}) {
+    EXPECT_EQ(std::remove((folder + name).c_str()), 0) << name;
+  }
+  std::remove(folder.c_str());
+}
+#endif
 
 class MapBuilderBlocksTest : public testing::TestWithParam<Blocks> {};
 

@@ -6,6 +6,7 @@
 #   cmake -DSOURCE_DIR=<this project> -DWORK_DIR=<scratch folder> -P swap_install_test.cmake
 file(REMOVE_RECURSE "${WORK_DIR}")
 file(WRITE "${WORK_DIR}/tree/configuration_files/map_builder.lua" "-- the tree's own\n")
+file(WRITE "${WORK_DIR}/tree/configuration_files/trajectory_builder.lua" "-- the tree's own\n")
 file(WRITE "${WORK_DIR}/tree/broken_test.cc" "#error \"does not compile\"\n")
 file(WRITE "${WORK_DIR}/tree/library.cc" "int library() { return 0; }\n")
 file(WRITE "${WORK_DIR}/tree/CMakeLists.txt" "

@@ -25,6 +25,15 @@ TEST(OpenRecordingTest, MissingFilesAreErrors) {
   EXPECT_FALSE(OpenRecording("/nowhere/run.world", {}, 0).ok());
 }
 
+TEST(OpenRecordingTest, FilesAreNamedAfterTheRecording) {
+  EXPECT_EQ(RecordingStem("logs/run.clf.gz"), "run");
+  EXPECT_EQ(RecordingStem("run.1.bag"), "run.1");
+  EXPECT_EQ(RecordingStem("/logs/rosbag2_2024.05.01//"), "rosbag2_2024.05.01");
+  EXPECT_EQ(RecordingStem("aces"), "aces");
+  EXPECT_EQ(RecordingStem("logs/.bag"), "map");
+  EXPECT_EQ(RecordingStem("/"), "map");
+}
+
 TEST(OpenRecordingTest, TakesTheSettingsOfTheConfiguration) {
   SensorSettings settings;
   settings.odometry_source = "scan";

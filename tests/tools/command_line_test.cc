@@ -20,11 +20,14 @@ namespace cartographer_ext {
 namespace tools {
 namespace {
 
-void Parse(std::vector<std::string> arguments) {
+void Parse(std::vector<std::string> arguments,
+           const std::string& input_flag = "") {
   arguments.insert(arguments.begin(), "/somewhere/command");
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(&argument[0]);
-  CommandLine("Tests.").Parse(static_cast<int>(argv.size()), argv.data());
+  CommandLine command_line("Tests.", input_flag);
+  command_line.Parse(static_cast<int>(argv.size()), argv.data());
+  if (command_line.has_positional_input()) std::exit(7);
 }
 
 // Starting the log is for once a process, so each case has its own.
@@ -70,6 +73,23 @@ TEST(CommandLineTest, RefusesWhatItDoesNotKnow) {
   ParseAndFail({"-test_number"}, "-test_number needs a value");
 }
 
+TEST(CommandLineTest, TakesTheInputWithoutItsFlag) {
+  EXPECT_EXIT(
+      {
+        google::ShutdownGoogleLogging();
+        Parse({"-test_number", "4", "run.bag"}, "test_name");
+      },
+      testing::ExitedWithCode(7), "");
+  const auto fails = [](const std::vector<std::string>& arguments,
+                        const std::string& message) {
+    EXPECT_EXIT(Parse(arguments, "test_name"), testing::ExitedWithCode(2),
+                message);
+  };
+  fails({"run.bag", "other.bag"}, "\"other.bag\" is a second input");
+  fails({"-test_name", "x", "run.bag"}, "\"run.bag\" is a second input");
+  fails({"-"}, "what is \"-\"");
+}
+
 TEST(CommandLineTest, PrintsItsVersion) {
   EXPECT_EXIT(Parse({"--version"}), testing::ExitedWithCode(0), "");
 }
@@ -85,6 +105,10 @@ TEST(CommandLineTest, FindsTheConfigurationFromTheProgram) {
   const std::string installed =
       make("prefix/share/cartographer/configuration_files");
   EXPECT_EQ(ConfigurationDirectoryOf(folder / "prefix/bin/command"), installed);
+  // Our own package has a folder of its own.
+  const std::string packaged =
+      make("prefix/share/cartographer_ext/configuration_files");
+  EXPECT_EQ(ConfigurationDirectoryOf(folder / "prefix/bin/command"), packaged);
   const std::string sources = make("sources/configuration_files");
   EXPECT_EQ(ConfigurationDirectoryOf(folder / "sources/build/x/bin/command"),
             sources);

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/test_data.h"
@@ -61,6 +63,43 @@ TEST(SlamMainTest, OursByDefaultFromAnyFolder) {
   ASSERT_EQ(result.exit_code, 0) << result.error;
   // The records of our local SLAM.
   EXPECT_THAT(folder.Names(), testing::Contains("map.nodes.csv"));
+}
+
+TEST(SlamMainTest, ARecordingAloneGivesEverything) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 200);
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const CommandResult result = RunCommand("slam", {"room.clf"});
+  std::filesystem::current_path(before);
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(folder.Names(),
+              UnorderedElementsAre("room.clf", "room.pbstream", "room.pgm",
+                                   "room.yaml", "room.png", "room.html",
+                                   "room.nodes.pb", "room.nodes.csv"));
+  EXPECT_THAT(result.out, HasSubstr("Verdict: "));
+  EXPECT_THAT(result.out, HasSubstr("Written    room.pbstream, room.png, "
+                                    "room.html, room.yaml, room.pgm"));
+  EXPECT_THAT(ReadFile(folder / "room.html"), HasSubstr("<title>"));
+  EXPECT_THAT(ReadFile(folder / "room.yaml"), HasSubstr("room.pgm"));
+
+  // A flag of its own goes before the stem.
+  const CommandResult named = RunCommand(
+      "slam", {folder / "room.clf", "-output_filestem", folder / "a",
+               "-report_filename", folder / "b.html", "-json", "-"});
+  ASSERT_EQ(named.exit_code, 0) << named.error;
+  EXPECT_THAT(folder.Names(), testing::IsSupersetOf({"a.pbstream", "b.html"}));
+  EXPECT_THAT(folder.Names(), testing::Not(testing::Contains("a.html")));
+  EXPECT_TRUE(ParseJson(named.out)["evaluation"]["verdict"].is_string());
+
+  // The map to start from stays.
+  const std::string map = ReadFile(folder / "a.pbstream");
+  const CommandResult same = RunCommand(
+      "slam", {folder / "room.clf", "-output_filestem", folder / "a",
+               "-load_state_filename", folder / "a.pbstream"});
+  EXPECT_EQ(same.exit_code, 1);
+  EXPECT_THAT(same.error, HasSubstr("would be overwritten"));
+  EXPECT_TRUE(map == ReadFile(folder / "a.pbstream"));
 }
 
 TEST(SlamMainTest, LocalizesInAMap) {
@@ -138,7 +177,10 @@ TEST(SlamMainTest, WrongUsageIsExitCodeTwo) {
   const CommandResult unknown = RunCommand("slam", {"-input_filname", "x.clf"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.error, HasSubstr("did you mean -input_filename?"));
-  EXPECT_EQ(RunCommand("slam", {"x.clf"}).exit_code, 2);
+  EXPECT_EQ(RunCommand("slam", {"x.clf", "y.clf"}).exit_code, 2);
+  EXPECT_EQ(RunCommand("slam", {"-input_filename=x.clf", "-report_filename=r"})
+                .exit_code,
+            2);
   const CommandResult bad_value =
       RunCommand("slam", {"-input_filename=x.clf", "-resolution=wide"});
   EXPECT_EQ(bad_value.exit_code, 2);

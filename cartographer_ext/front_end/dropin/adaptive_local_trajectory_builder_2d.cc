@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/memory/memory.h"
+#include "absl/strings/strip.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/transform/transform.h"
@@ -36,6 +37,9 @@ constexpr double kMinObservableWeight = 0.5;
 // The first scans are inserted whether or not the robot moves: a single scan is
 // not enough to match the next one against.
 constexpr int kNumFirstScans = 5;
+
+// Of sensor time, between two lines of the program's log.
+constexpr double kSecondsBetweenLines = 60.;
 
 // Whether the scan determines the translation along the direction of motion.
 bool IsTranslationObservable(const scan_matching::DegeneracyResult& degeneracy,
@@ -104,9 +108,15 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
                      extension,
                      options.submaps_options().grid_options_2d().resolution())),
       predictor_(ToMotionPredictorOptions(extension)),
-      matcher_(extension, options.ceres_scan_matcher_options()) {}
+      matcher_(extension, options.ceres_scan_matcher_options()),
+      log_(extension.log().directory(), "nodes", RecordCsv({})) {
+  LOG_IF(ERROR, !log_.status().ok())
+      << "cartographer_ext: no log of scans: " << log_.status();
+}
 
-AdaptiveLocalTrajectoryBuilder2D::~AdaptiveLocalTrajectoryBuilder2D() {}
+AdaptiveLocalTrajectoryBuilder2D::~AdaptiveLocalTrajectoryBuilder2D() {
+  LOG(INFO) << "cartographer_ext: local SLAM in the end " << ToText(counts_);
+}
 
 double AdaptiveLocalTrajectoryBuilder2D::Seconds(
     const cartographer::common::Time time) {
@@ -303,7 +313,7 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
 void AdaptiveLocalTrajectoryBuilder2D::Record(
     const cartographer::common::Time time, const double interval,
     const MotionPrediction& prediction, const LocalMatch& match,
-    const OdometryState odometry, const bool is_node) const {
+    const OdometryState odometry, const bool is_node) {
   proto::MatchRecord record;
   record.set_builder(builder_number_);
   record.set_time(cartographer::common::ToUniversal(time));
@@ -319,6 +329,22 @@ void AdaptiveLocalTrajectoryBuilder2D::Record(
   record.set_is_node(is_node);
   if (recorder_ != nullptr) recorder_->Record(record);
   CountMatch(record);
+  Count(record);
+}
+
+void AdaptiveLocalTrajectoryBuilder2D::Count(const proto::MatchRecord& record) {
+  counts_.Add(record);
+  if (last_seconds_ - last_line_ >= kSecondsBetweenLines) {
+    last_line_ = last_seconds_;
+    LOG(INFO) << "cartographer_ext: local SLAM " << ToText(counts_);
+  }
+  if (!log_.is_on()) return;
+  std::string bytes;
+  AppendRecord(record, &bytes);
+  const std::string table = RecordCsv({record});
+  log_.Append(absl::StripPrefix(table, RecordCsv({})), bytes);
+  LOG_IF(ERROR, !log_.is_on())
+      << "cartographer_ext: the log of scans ends: " << log_.status();
 }
 
 void AdaptiveLocalTrajectoryBuilder2D::RegisterMetrics(

@@ -39,8 +39,10 @@
 #include "cartographer/sensor/timed_point_cloud_data.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/pose_graph_context.h"
+#include "cartographer_ext/common/record_log.h"
 #include "cartographer_ext/front_end/dropin/local_matcher.h"
 #include "cartographer_ext/front_end/dropin/scan_assembler.h"
+#include "cartographer_ext/front_end/match_counts.h"
 #include "cartographer_ext/front_end/match_recorder.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
 #include "cartographer_ext/front_end_options.pb.h"
@@ -108,7 +110,10 @@ class AdaptiveLocalTrajectoryBuilder2D {
       const Eigen::Quaterniond& alignment);
   void Record(cartographer::common::Time time, double interval,
               const MotionPrediction& prediction, const LocalMatch& match,
-              OdometryState odometry, bool is_node) const;
+              OdometryState odometry, bool is_node);
+  // Into the counts and, where the options say so, into a log; a line about the
+  // counts now and then.
+  void Count(const proto::MatchRecord& record);
 
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
   const proto::FrontEndOptions extension_;
@@ -133,6 +138,10 @@ class AdaptiveLocalTrajectoryBuilder2D {
   // Scans are dropped after a gap until odometry has caught up.
   bool is_waiting_ = false;
   double waiting_since_ = 0.;
+
+  MatchCounts counts_;
+  double last_line_ = 0.;  // seconds, when the counts were logged
+  RecordLog log_;
 };
 
 }  // namespace front_end

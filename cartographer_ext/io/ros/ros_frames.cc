@@ -48,6 +48,14 @@ bool RosFrames::Knows(const std::string& frame) const {
   return false;
 }
 
+bool RosFrames::HasMovingChild(const std::set<std::string>& frames) const {
+  for (const std::string& frame : frames) {
+    const auto link = links_.find(frame);
+    if (link != links_.end() && link->second.moving) return true;
+  }
+  return false;
+}
+
 std::vector<std::pair<std::string, Eigen::Isometry3d>> RosFrames::Ancestors(
     const std::string& frame) const {
   std::vector<std::pair<std::string, Eigen::Isometry3d>> ancestors;

@@ -7,6 +7,7 @@
 #define CARTOGRAPHER_EXT_IO_ROS_ROS_FRAMES_H_
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ class RosFrames {
       std::vector<std::string>* moving = nullptr) const;
 
   bool Knows(const std::string& frame) const;
+
+  // Whether one of these frames moves against its parent.
+  bool HasMovingChild(const std::set<std::string>& frames) const;
 
  private:
   struct Link {

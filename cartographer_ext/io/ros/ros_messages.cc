@@ -15,6 +15,7 @@ namespace {
 constexpr double kMaxCoordinate = 1e7;
 constexpr uint32_t kMaxTransforms = 10000;
 constexpr uint32_t kMaxEchoes = 64;
+constexpr uint64_t kMaxPoints = 1000000;
 
 // Reads fields in their order; once something is missing, `ok` stays false.
 class Decoder {
@@ -75,6 +76,12 @@ class Decoder {
     const size_t size = values->size() * sizeof(float);
     std::memcpy(values->data(), rest_.data(), size);
     rest_.remove_prefix(size);
+  }
+
+  absl::string_view TakeBytes(size_t size) {
+    const absl::string_view bytes = rest_.substr(0, size);
+    Skip(size);
+    return bytes;
   }
 
   void Skip(size_t size) {
@@ -199,6 +206,45 @@ bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosH
     decoder.Skip(decoder.TakeCount(sizeof(float)) * sizeof(float));
   }
   return decoder.AtEnd() && FinishScan(*header, scan);
+}
+
+bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* header,
+                       std::vector<Eigen::Vector3d>* points) {
+  constexpr uint8_t kFloat32 = 7;
+  Decoder decoder(data, encoding);
+  *header = decoder.TakeHeader();
+  const uint64_t height = decoder.Take<uint32_t>(), width = decoder.Take<uint32_t>();
+  const uint32_t num_fields = decoder.TakeCount(13);
+  int64_t offsets[3] = {-1, -1, -1};
+  for (uint32_t i = 0; i < num_fields && decoder.ok(); ++i) {
+    const std::string name = decoder.TakeString();
+    const uint32_t offset = decoder.Take<uint32_t>();
+    const uint8_t type = decoder.Take<uint8_t>();
+    decoder.Take<uint32_t>();  // elements
+    if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z' && type == kFloat32) offsets[name[0] - 'x'] = offset;
+  }
+  const bool big_endian = decoder.Take<uint8_t>() != 0;
+  const uint64_t point_step = decoder.Take<uint32_t>(), row_step = decoder.Take<uint32_t>();
+  const absl::string_view bytes = decoder.TakeBytes(decoder.TakeCount(1));
+  decoder.Take<uint8_t>();  // dense
+  if (!decoder.AtEnd() || big_endian || height * width > kMaxPoints || row_step < width * point_step ||
+      bytes.size() < height * row_step) {
+    return false;
+  }
+  for (const int64_t offset : offsets) {
+    if (offset < 0 || static_cast<uint64_t>(offset) + sizeof(float) > point_step) return false;
+  }
+  points->clear();
+  for (uint64_t row = 0; row < height; ++row) {
+    for (uint64_t column = 0; column < width; ++column) {
+      const char* const point = bytes.data() + row * row_step + column * point_step;
+      float xyz[3];
+      for (int i = 0; i < 3; ++i) std::memcpy(&xyz[i], point + offsets[i], sizeof(float));
+      const Eigen::Vector3d position(xyz[0], xyz[1], xyz[2]);
+      if ((position.array().abs() <= kMaxCoordinate).all()) points->push_back(position);
+    }
+  }
+  return true;
 }
 
 bool DecodeOdometry(RosEncoding encoding, absl::string_view data, RosHeader* header,

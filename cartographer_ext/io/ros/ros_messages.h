@@ -34,6 +34,8 @@ constexpr RosType kRosLaserScan{"sensor_msgs/LaserScan",
                                 "90c7ef2dc6895d81024acba2ac42f369"};
 constexpr RosType kRosMultiEchoLaserScan{"sensor_msgs/MultiEchoLaserScan",
                                          "6fefb0c6da89d7c8abe4b339f5c2f8fb"};
+constexpr RosType kRosPointCloud2{"sensor_msgs/PointCloud2",
+                                  "1158d486dd51d683ce2f1be655c3c181"};
 constexpr RosType kRosOdometry{"nav_msgs/Odometry",
                                "cd5e73d190d741a2f92e81eda573aca7"};
 constexpr RosType kRosImu{"sensor_msgs/Imu",
@@ -64,6 +66,10 @@ bool DecodeLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* he
                      LaserScan* scan);
 bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
                               LaserScan* scan);
+// The points with finite coordinates, in the frame of the sensor; the fields x,
+// y and z have to be float32 and little endian.
+bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* header,
+                       std::vector<Eigen::Vector3d>* points);
 // `pose` is (header.frame <- child_frame).
 bool DecodeOdometry(RosEncoding encoding, absl::string_view data, RosHeader* header,
                     std::string* child_frame, Eigen::Isometry3d* pose);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/memory/memory.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/io/reorder.h"
@@ -41,7 +42,23 @@ struct Decoded {
   SensorEvent event;
   std::string frame;           // of the sensor, or the child of odometry
   Eigen::Isometry3d odometry;  // (odometry <- frame)
+  std::vector<Eigen::Vector3d> points;  // of a scan, in the frame
 };
+
+// The frame of REP 105, maybe within the name space of a robot.
+bool IsOdometryFrame(const std::string& frame) { return frame == "odom" || absl::EndsWith(frame, "/odom"); }
+
+// Whether points lie in a plane of the sensor, as those of a planar laser do.
+bool IsPlanar(const std::vector<Eigen::Vector3d>& points) {
+  constexpr double kMaxHeightSigma = 0.1;
+  double sum = 0., squares = 0.;
+  for (const Eigen::Vector3d& point : points) {
+    sum += point.z();
+    squares += point.z() * point.z();
+  }
+  const double n = static_cast<double>(points.size());
+  return squares * n - sum * sum <= n * n * kMaxHeightSigma * kMaxHeightSigma;
+}
 
 class RosRecording : public SensorSource {
  public:
@@ -73,6 +90,11 @@ class RosRecording : public SensorSource {
   void ChooseTrackingFrame();
   void CheckFrames();
   bool Decode(const RosMessage& message, Decoded* decoded);
+  bool DecodeScan(const RosMessage& message, RosHeader* header, Decoded* decoded);
+  // The odometry among the transforms of a message; false where there is none.
+  bool FindOdometry(const RosMessage& message, Decoded* decoded) const;
+  // Reads all messages once: what there is, and in which order.
+  absl::Status ReadKeys(std::vector<EventKey>* keys);
   // Adds the transforms of a message to the frames.
   bool TakeTransforms(const RosMessage& message);
   // Moves the event into the robot's frame.
@@ -84,17 +106,19 @@ class RosRecording : public SensorSource {
         .value_or(Eigen::Isometry3d::Identity());
   }
   bool IsEventTopic(const std::string& topic) const {
-    return topic == topics_.scan || topic == topics_.odometry ||
+    return topics_.scans.count(topic) > 0 || topic == topics_.odometry ||
            topic == topics_.imu;
   }
   Rank RankOf(const std::string& event_topic) const {
-    return event_topic == topics_.scan  ? kScanRank
-           : event_topic == topics_.imu ? kImuRank
-                                        : kOdometryRank;
+    return topics_.scans.count(event_topic) > 0 ? kScanRank
+           : event_topic == topics_.imu         ? kImuRank
+                                                : kOdometryRank;
   }
 
   std::set<std::string> EventTopics() const {
-    std::set<std::string> topics = {topics_.scan, topics_.odometry, topics_.imu};
+    std::set<std::string> topics = {topics_.odometry, topics_.imu};
+    for (const auto& scan : topics_.scans) topics.insert(scan.first);
+    if (topics_.odometry_from_transforms) topics.insert(topics_.transforms.begin(), topics_.transforms.end());
     topics.erase("");
     return topics;
   }
@@ -106,6 +130,7 @@ class RosRecording : public SensorSource {
   ChosenTopics topics_;
   RosFrames frames_;
   std::set<std::string> seen_frames_[kNumRanks];
+  int64_t num_clouds_ = 0, num_planar_clouds_ = 0;
 
   ReorderPlan reordering_;
   ReorderBuffer<SensorEvent> waiting_;
@@ -138,13 +163,11 @@ bool RosRecording::Decode(const RosMessage& message, Decoded* decoded) {
   const RosEncoding encoding = container_->encoding();
   RosHeader header;
   bool valid;
+  decoded->points.clear();
+  if (topics_.transforms.count(message.topic) > 0) return FindOdometry(message, decoded);
   decoded->rank = RankOf(message.topic);
   if (decoded->rank == kScanRank) {
-    LaserScan scan;
-    valid = topics_.multi_echo ? DecodeMultiEchoLaserScan(encoding, message.data, &header, &scan)
-                               : DecodeLaserScan(encoding, message.data, &header, &scan);
-    decoded->frame = header.frame;
-    decoded->event = std::move(scan);
+    valid = DecodeScan(message, &header, decoded);
   } else if (decoded->rank == kOdometryRank) {
     OdometryReading reading;
     valid = DecodeOdometry(encoding, message.data, &header, &decoded->frame, &decoded->odometry);
@@ -163,6 +186,45 @@ bool RosRecording::Decode(const RosMessage& message, Decoded* decoded) {
   return valid;
 }
 
+bool RosRecording::DecodeScan(const RosMessage& message, RosHeader* header, Decoded* decoded) {
+  const RosEncoding encoding = container_->encoding();
+  LaserScan scan;
+  bool valid = false;
+  switch (topics_.scans.at(message.topic)) {
+    case RosScanType::kLaserScan:
+      valid = DecodeLaserScan(encoding, message.data, header, &scan);
+      break;
+    case RosScanType::kMultiEchoLaserScan:
+      valid = DecodeMultiEchoLaserScan(encoding, message.data, header, &scan);
+      break;
+    case RosScanType::kPointCloud2:
+      valid = DecodePointCloud2(encoding, message.data, header, &decoded->points);
+      scan.time = header->time;
+      scan.range_max = std::numeric_limits<double>::infinity();
+      break;
+  }
+  if (topics_.scans.size() > 1) scan.sensor_id = message.topic;
+  decoded->frame = header->frame;
+  decoded->event = std::move(scan);
+  return valid;
+}
+
+bool RosRecording::FindOdometry(const RosMessage& message, Decoded* decoded) const {
+  std::vector<RosTransform> transforms;
+  if (!DecodeTransforms(container_->encoding(), message.data, &transforms)) return false;
+  for (const RosTransform& transform : transforms) {
+    if (!IsOdometryFrame(transform.header.frame)) continue;
+    OdometryReading reading;
+    reading.time = transform.header.time == 0 ? message.received : transform.header.time;
+    decoded->rank = kOdometryRank;
+    decoded->event = reading;
+    decoded->frame = transform.child_frame;
+    decoded->odometry = transform.pose;
+    return true;
+  }
+  return false;
+}
+
 bool RosRecording::TakeTransforms(const RosMessage& message) {
   std::vector<RosTransform> transforms;
   if (!DecodeTransforms(container_->encoding(), message.data, &transforms)) return false;
@@ -170,37 +232,40 @@ bool RosRecording::TakeTransforms(const RosMessage& message) {
   return true;
 }
 
-absl::Status RosRecording::Survey() {
+absl::Status RosRecording::ReadKeys(std::vector<EventKey>* keys) {
   std::set<std::string> topics = EventTopics();
   topics.insert(topics_.transforms.begin(), topics_.transforms.end());
   const absl::Status rewound = container_->Rewind(topics);
   if (!rewound.ok()) return rewound;
-  std::vector<EventKey> keys;
   std::map<std::string, int64_t> damaged;
   std::map<std::string, TimeNs> last;
-  int64_t ordinal = 0;
   Decoded decoded;
   RosMessage message;
   while (true) {
     const absl::StatusOr<bool> more = container_->Next(&message);
     if (!more.ok()) return more.status();
     if (!*more) break;
-    if (!IsEventTopic(message.topic)) {
+    const bool is_event = IsEventTopic(message.topic);
+    if (!is_event) {
       if (!TakeTransforms(message)) ++damaged[message.topic];
-      continue;
+      if (!topics_.odometry_from_transforms) continue;
     }
     if (!Decode(message, &decoded)) {
-      ++damaged[message.topic];
+      if (is_event) ++damaged[message.topic];
       continue;
     }
     std::set<std::string>& frames = seen_frames_[decoded.rank];
     if (frames.size() < kMaxSensorFrames) frames.insert(decoded.frame);
+    if (!decoded.points.empty()) {
+      ++num_clouds_;
+      if (IsPlanar(decoded.points)) ++num_planar_clouds_;
+    }
     const TimeNs time = EventTime(decoded.event);
     const auto known = last.emplace(message.topic, time);
     if (time < known.first->second) ++info_.num_out_of_order;
     known.first->second = time;
-    keys.push_back(EventKey{time, decoded.rank, ordinal++});
-    if (keys.size() > kMaxEvents) {
+    keys->push_back(EventKey{time, decoded.rank, static_cast<int64_t>(keys->size())});
+    if (keys->size() > kMaxEvents) {
       return absl::OutOfRangeError(absl::StrCat(filename_, ": more than ", kMaxEvents, " messages"));
     }
   }
@@ -208,9 +273,40 @@ absl::Status RosRecording::Survey() {
     info_.warnings.push_back(
         absl::StrCat(filename_, ": ", topic.second, " messages on ", topic.first, " cannot be decoded; skipped"));
   }
+  return absl::OkStatus();
+}
+
+absl::Status RosRecording::Survey() {
+  std::vector<EventKey> keys;
+  absl::Status status = ReadKeys(&keys);
+  if (!status.ok()) return status;
+  if (topics_.odometry_from_transforms) {
+    if (frames_.HasMovingChild(seen_frames_[kOdometryRank])) {
+      info_.warnings.push_back(absl::StrCat(filename_, ": no odometry messages; taking the transforms from \"",
+                                            *seen_frames_[kOdometryRank].begin(), "\" to \"odom\""));
+    } else {
+      // None, or of a robot that only says so.
+      topics_.odometry_from_transforms = false;
+      seen_frames_[kOdometryRank].clear();
+      keys.erase(std::remove_if(keys.begin(), keys.end(),
+                                [](const EventKey& key) { return key.rank == kOdometryRank; }),
+                 keys.end());
+      int64_t ordinal = 0;
+      for (EventKey& key : keys) key.ordinal = ordinal++;
+    }
+  }
   CountEvents(keys);
+  std::vector<std::string> scans;
+  for (const auto& scan : topics_.scans) scans.push_back(scan.first);
+  const std::string names = absl::StrJoin(scans, ", ");
   if (info_.num_scans == 0) {
-    return absl::InvalidArgumentError(absl::StrCat(filename_, ": no valid scan on ", topics_.scan));
+    return absl::InvalidArgumentError(absl::StrCat(filename_, ": no valid scan on ", names));
+  }
+  if (scans.size() > 1) info_.lasers = std::move(scans);
+  if (2 * num_planar_clouds_ < num_clouds_) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(filename_, ": the points on ", names,
+                     " do not lie in one plane; only lasers that measure in a plane are read"));
   }
   return absl::OkStatus();
 }
@@ -288,6 +384,10 @@ void RosRecording::Place(Decoded* decoded) {
       scan.angle_min = -scan.angle_min;
       scan.angle_increment = -scan.angle_increment;
     }
+    const Pose2 laser_from_robot = scan.laser_pose.Inverse();
+    for (const Eigen::Vector3d& point : decoded->points) {
+      scan.points.push_back(laser_from_robot * Eigen::Vector2d((sensor * point).head<2>()));
+    }
   } else if (decoded->rank == kOdometryRank) {
     absl::get<OdometryReading>(decoded->event).pose =
         Planar(decoded->odometry * sensor.inverse());
@@ -326,7 +426,7 @@ RosTopicType TypeOfRos2(const std::string& name) {
   const size_t at = name.find("/msg/");
   if (at == std::string::npos) return type;
   const std::string ros1 = absl::StrCat(name.substr(0, at), "/", name.substr(at + 5));
-  for (const RosType& known : {kRosLaserScan, kRosMultiEchoLaserScan, kRosOdometry, kRosImu, kRosTransforms}) {
+  for (const RosType& known : {kRosLaserScan, kRosMultiEchoLaserScan, kRosPointCloud2, kRosOdometry, kRosImu, kRosTransforms}) {
     if (ros1 == known.name) type.md5sum = known.md5sum;
   }
   return type;

@@ -7,14 +7,17 @@
 #include <utility>
 
 #include "absl/memory/memory.h"
+#include "absl/strings/strip.h"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/loop_information.h"
+#include "cartographer_ext/loop_closure/decision_log.h"
 #include "cartographer_ext/loop_closure/decision_record.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
+#include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -50,13 +53,17 @@ LoopClosure2D::LoopClosure2D(
       thread_pool_(thread_pool),
       context_(PoseGraphContext::CurrentOrNew()),
       recorder_(context_->Get<DecisionRecorder>()),
+      log_(extension.log().directory(), "loops", DecisionCsv({})),
       searcher_(options),
       pipeline_(extension, StockWeights(options)),
       planner_(options, extension, &pipeline_.paths()),
       submaps_(options, extension, thread_pool),
       relocalizer_(extension.localization(),
                    options.global_localization_min_score()),
-      typical_fit_(ToTypicalFitOptions(extension)) {}
+      typical_fit_(ToTypicalFitOptions(extension)) {
+  LOG_IF(ERROR, !log_.status().ok())
+      << "cartographer_ext: no log of loop decisions: " << log_.status();
+}
 
 void LoopClosure2D::AddNode(const std::vector<Proposal>& proposals,
                             Task* const end_of_node) {
@@ -318,6 +325,12 @@ void LoopClosure2D::FreeDormantTrajectories() {
   }
 }
 
+DecisionCounts LoopClosure2D::counts() const {
+  DecisionCounts counts = counts_;
+  counts.undecided = pipeline_.num_undecided();
+  return counts;
+}
+
 std::vector<LoopDecision> LoopClosure2D::Undecided() const {
   std::vector<LoopDecision> decisions;
   for (const LoopCandidate& candidate : pipeline_.Undecided()) {
@@ -338,6 +351,16 @@ void LoopClosure2D::Record(const std::vector<LoopCandidate>& decided) {
     ConstraintMetrics::Global()->CountDecision(decisions.back());
   }
   recorder_->Record(decisions);
+  for (const LoopDecision& decision : decisions) counts_.Add(decision);
+  if (!log_.is_on()) return;
+  std::string bytes;
+  for (const LoopDecision& decision : decisions) {
+    AppendDecision(decision, &bytes);
+  }
+  const std::string table = DecisionCsv(decisions);
+  log_.Append(absl::StripPrefix(table, DecisionCsv({})), bytes);
+  LOG_IF(ERROR, !log_.is_on())
+      << "cartographer_ext: the log of loop decisions ends: " << log_.status();
 }
 
 }  // namespace loop_closure

@@ -48,6 +48,8 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
+#include "cartographer_ext/common/record_log.h"
+#include "cartographer_ext/loop_closure/decision_counts.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/loop_closure/dropin/inter_trajectory_loops.h"
 #include "cartographer_ext/loop_closure/dropin/pair_planner.h"
@@ -104,6 +106,8 @@ class LoopClosure2D {
   DecisionRecorder* recorder() const { return recorder_; }
   // Records of what waits for other loops, as UNDECIDED.
   std::vector<proto::LoopDecision> Undecided() const;
+  // Of all decisions so far, and what is undecided.
+  DecisionCounts counts() const;
 
  private:
   LoopCandidate Propose(const Proposal& proposal);
@@ -122,6 +126,7 @@ class LoopClosure2D {
   // Frees trajectories that the pose graph has deleted, as it seems.
   void FreeDormantTrajectories();
   proto::LoopDecision Describe(const LoopCandidate& candidate) const;
+  // To the recorder, the counts and, where the options say so, a log.
   void Record(const std::vector<LoopCandidate>& decided);
 
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
@@ -130,6 +135,8 @@ class LoopClosure2D {
   cartographer::common::ThreadPoolInterface* const thread_pool_;
   const std::shared_ptr<PoseGraphContext> context_;
   DecisionRecorder* const recorder_;  // of the context
+  DecisionCounts counts_;
+  RecordLog log_;
   const PairSearcher searcher_;
   LoopPipeline pipeline_;
   PairPlanner planner_;

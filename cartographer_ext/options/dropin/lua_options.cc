@@ -56,6 +56,10 @@ void CheckType(const std::string& path, const FieldDescriptor& field,
           << path << ": " << literal.text << " is not a string, "
           << RangeText(field);
       return;
+    case FieldDescriptor::CPPTYPE_STRING:
+      CHECK(literal.kind == LuaKind::STRING)
+          << path << ": " << literal.text << " is not a string";
+      return;
     default:
       CHECK(literal.kind == LuaKind::NUMBER)
           << path << ": " << literal.text
@@ -99,6 +103,9 @@ void ReadField(const std::string& path, const FieldDescriptor& field,
     }
     case FieldDescriptor::CPPTYPE_BOOL:
       reflection->SetBool(options, &field, table->GetBool(key));
+      return;
+    case FieldDescriptor::CPPTYPE_STRING:
+      reflection->SetString(options, &field, table->GetString(key));
       return;
     case FieldDescriptor::CPPTYPE_ENUM: {
       const std::string name = table->GetString(key);

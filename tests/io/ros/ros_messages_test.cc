@@ -3,49 +3,19 @@
 #include "cartographer_ext/io/ros/ros_messages.h"
 
 #include <cmath>
-#include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "tests/io/ros/message_bytes.h"
 #include "tests/mutation.h"
 
 namespace cartographer_ext {
 namespace io {
 namespace {
 
-// Serializes messages field by field, as their definitions say.
-class Bytes {
- public:
-  template <typename T>
-  Bytes& Add(T value) {
-    char raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));
-    data_.append(raw, sizeof(T));
-    return *this;
-  }
-  Bytes& Text(const std::string& text) {
-    Add(static_cast<uint32_t>(text.size()));
-    data_ += text;
-    return *this;
-  }
-  Bytes& Header(uint32_t seconds, uint32_t nanoseconds,
-                const std::string& frame) {
-    return Add(uint32_t{7}).Add(seconds).Add(nanoseconds).Text(frame);
-  }
-  Bytes& Doubles(const std::vector<double>& values) {
-    for (const double value : values) Add(value);
-    return *this;
-  }
-  Bytes& Floats(const std::vector<float>& values) {
-    for (const float value : values) Add(value);
-    return *this;
-  }
-  const std::string& data() const { return data_; }
-
- private:
-  std::string data_;
-};
+using test::Bytes;
 
 std::string LaserScanBytes(const std::vector<float>& ranges) {
   return Bytes()
@@ -170,6 +140,31 @@ TEST(RosMessagesTest, Transforms) {
   std::string lying = data;
   lying[3] = '\x7f';
   EXPECT_FALSE(DecodeTransforms(RosEncoding::kRos1, lying, &transforms));
+}
+
+TEST(RosMessagesTest, PointCloud2) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const RosEncoding encoding : {RosEncoding::kRos1, RosEncoding::kCdr}) {
+    const std::string data = test::PointCloud2Bytes(
+        encoding, 10, "/lidar", {{1.f, 2.f, 0.5f}, {nan, nan, nan}, {-3.f, 0.f, 0.5f}});
+    RosHeader header;
+    std::vector<Eigen::Vector3d> points;
+    ASSERT_TRUE(DecodePointCloud2(encoding, data, &header, &points));
+    EXPECT_EQ(header.time, 10000000000);
+    EXPECT_EQ(header.frame, "lidar");
+    // Points without a return are left out.
+    ASSERT_EQ(points.size(), 2u);
+    EXPECT_EQ(points[0], Eigen::Vector3d(1., 2., 0.5));
+    EXPECT_EQ(points[1], Eigen::Vector3d(-3., 0., 0.5));
+    for (size_t size = 0; size + 8 < data.size(); ++size) {
+      EXPECT_FALSE(DecodePointCloud2(encoding, data.substr(0, size), &header, &points));
+    }
+    test::ForEachMutation(data, [encoding](const std::string& damaged) {
+      RosHeader damaged_header;
+      std::vector<Eigen::Vector3d> damaged_points;
+      DecodePointCloud2(encoding, damaged, &damaged_header, &damaged_points);
+    });
+  }
 }
 
 TEST(RosMessagesTest, TooShortOrTooLongIsRefused) {

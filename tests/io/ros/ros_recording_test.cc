@@ -10,6 +10,7 @@
 #include "cartographer_ext/io/ros/ros_container.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/io/ros/message_bytes.h"
 #include "tests/io/ros/ros2_sample.h"
 
 namespace cartographer_ext {
@@ -95,6 +96,84 @@ TEST(RosRecordingTest, ErrorsOfTheContainerArePassedOn) {
   EXPECT_THAT(std::string(
                   OpenRosRecording("memory", absl::make_unique<MemoryContainer>(), {}).status().message()),
               HasSubstr("memory: no topic of type sensor_msgs/LaserScan"));
+}
+
+std::vector<SensorEvent> ReadAll(SensorSource* const source) {
+  std::vector<SensorEvent> events;
+  SensorEvent event;
+  while (source->Next(&event).value()) events.push_back(event);
+  return events;
+}
+
+TEST(RosRecordingTest, SeveralLasersAreReadTogether) {
+  auto container = absl::make_unique<MemoryContainer>();
+  container->Add("/front", kRos2LaserScan, EncodeLaserScan(test::SampleScan(2000000000, 5), "base_link"));
+  container->Add("/rear", kRos2LaserScan, EncodeLaserScan(test::SampleScan(3000000000, 5), "base_link"));
+  SensorSourceOptions options;
+  options.scan_topic = "front,rear";
+  auto source = OpenRosRecording("memory", std::move(container), options);
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_EQ((*source)->info().num_scans, 2);
+  EXPECT_THAT((*source)->info().lasers, ElementsAre("/front", "/rear"));
+  const auto events = ReadAll(source->get());
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(absl::get<LaserScan>(events[0]).sensor_id, "/front");
+  EXPECT_EQ(absl::get<LaserScan>(events[1]).sensor_id, "/rear");
+}
+
+// Transforms from a robot to "odom" at 1 s and 2 s, and a scan between.
+std::unique_ptr<MemoryContainer> OdometryInTransforms(const Pose2& first, const Pose2& second) {
+  auto container = absl::make_unique<MemoryContainer>();
+  container->Add("/tf", kRos2Transforms, EncodeTransform(1000000000, "odom", "base_link", first));
+  container->Add("/scan", kRos2LaserScan, EncodeLaserScan(test::SampleScan(1500000000, 5), "base_link"));
+  container->Add("/tf", kRos2Transforms, EncodeTransform(2000000000, "odom", "base_link", second));
+  container->Add("/tf", kRos2Transforms, EncodeTransform(2000000000, "map", "odom", Pose2(9., 9., 0.)));
+  return container;
+}
+
+TEST(RosRecordingTest, OdometryFromTransforms) {
+  auto source = OpenRosRecording("memory", OdometryInTransforms(Pose2(1., 2., 0.5), Pose2(2., 2., 0.6)), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_EQ((*source)->info().num_odometry, 2);
+  EXPECT_THAT((*source)->info().warnings,
+              testing::Contains(HasSubstr("taking the transforms from \"base_link\" to \"odom\"")));
+  const auto events = ReadAll(source->get());
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(EventTime(events[0]), 1000000000);
+  EXPECT_NEAR(absl::get<OdometryReading>(events[0]).pose.x, 1., 1e-12);
+  EXPECT_NEAR(absl::get<OdometryReading>(events[2]).pose.theta, 0.6, 1e-12);
+}
+
+TEST(RosRecordingTest, TransformsThatNeverChangeAreNoOdometry) {
+  auto source = OpenRosRecording("memory", OdometryInTransforms(Pose2(), Pose2()), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_EQ((*source)->info().num_odometry, 0);
+  EXPECT_EQ(ReadAll(source->get()).size(), 1u);
+}
+
+TEST(RosRecordingTest, PointsOfAPlanarLaser) {
+  auto container = absl::make_unique<MemoryContainer>();
+  container->Add("/points", "sensor_msgs/msg/PointCloud2",
+                 test::PointCloud2Bytes(RosEncoding::kCdr, 2, "laser", {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.01f}}));
+  container->Add("/tf", kRos2Transforms, EncodeTransform(1000000000, "base_link", "laser", Pose2(0.5, 0., kPi / 2.)));
+  auto source = OpenRosRecording("memory", std::move(container), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_EQ((*source)->info().num_scans, 1);
+  const auto events = ReadAll(source->get());
+  const auto& scan = absl::get<LaserScan>(events.at(0));
+  EXPECT_EQ(scan.time, 2000000000);
+  EXPECT_TRUE(scan.ranges.empty());
+  ASSERT_EQ(scan.points.size(), 2u);
+  EXPECT_NEAR((scan.points[1] - Eigen::Vector2d(0., 2.)).norm(), 0., 1e-9);
+  EXPECT_NEAR((scan.laser_pose * scan.points[0] - Eigen::Vector2d(0.5, 1.)).norm(), 0., 1e-9);
+}
+
+TEST(RosRecordingTest, PointsInSpaceAreRefused) {
+  auto container = absl::make_unique<MemoryContainer>();
+  container->Add("/points", "sensor_msgs/msg/PointCloud2",
+                 test::PointCloud2Bytes(RosEncoding::kCdr, 2, "base_link", {{1.f, 0.f, 0.f}, {0.f, 2.f, 1.f}}));
+  EXPECT_THAT(std::string(OpenRosRecording("memory", std::move(container), {}).status().message()),
+              HasSubstr("do not lie in one plane"));
 }
 
 }  // namespace

@@ -1,14 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// ROS 1 bags (format 2.0; chunks plain, bz2 or lz4) as a SensorSource, through
-// librosbag-storage where that is found at build time.
+// ROS 1 bags (format 2.0; chunks plain, bz2 or lz4) as a SensorSource. They are
+// read from the beginning to the end; the index is not used, so that bags
+// without one (of a recorder that was killed) or with a wrong one are read, too,
+// with a warning. The rest holds for ROS 2 recordings as well.
 //
-// Topics. sensor_msgs/LaserScan or MultiEchoLaserScan, nav_msgs/Odometry and
-// sensor_msgs/Imu, named by the options; else the only one of the type or the
-// first by name, with a warning (LaserScan before MultiEchoLaserScan). A scan
-// topic is needed, the others are not. Errors about topics list all topics of
-// the bag with their types.
+// Topics. Scans: sensor_msgs/LaserScan, MultiEchoLaserScan, or PointCloud2 of a
+// laser that measures in one plane; nav_msgs/Odometry and sensor_msgs/Imu. They
+// are named by the options, with or without the first slash; else the only one
+// of the type or the first by name is taken, with a warning (LaserScan before
+// MultiEchoLaserScan before PointCloud2). Several scan topics, separated by
+// commas, are read together. Without odometry messages the transforms between
+// "odom" (REP 105) and its child are the odometry, if they change. A scan topic
+// is needed, the others are not. Errors about topics list all topics of the
+// recording with their types.
 //
 // Frames. Sensor poses come from the transforms on topics of type
 // tf2_msgs/TFMessage (/tf_static, /tf), as far as they do not move; a frame
@@ -31,8 +37,7 @@
 namespace cartographer_ext {
 namespace io {
 
-// Damaged bags, bags without scans and builds without librosbag-storage
-// (kUnimplemented) are errors. Single messages that cannot be decoded are
+// Damaged bags and bags without scans are errors. Single messages that cannot be decoded are
 // skipped and counted in a warning.
 absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosbag(
     const std::string& filename, const SensorSourceOptions& options);

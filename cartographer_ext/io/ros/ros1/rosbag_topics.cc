@@ -4,6 +4,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
 #include "cartographer_ext/io/ros/ros_messages.h"
 
 namespace cartographer_ext {
@@ -16,10 +18,14 @@ absl::StatusOr<std::string> Choose(const RosTopics& topics,
                                    const std::vector<RosType>& types,
                                    const std::string& asked_for,
                                    const std::string& what,
+                                   const std::string& hint,
                                    std::vector<std::string>* warnings) {
   if (!asked_for.empty()) {
     auto it = topics.find(asked_for);
-    if (it == topics.end()) it = topics.find(absl::StrCat("/", asked_for));
+    if (it == topics.end()) {
+      it = topics.find(asked_for[0] == '/' ? asked_for.substr(1)
+                                           : absl::StrCat("/", asked_for));
+    }
     if (it == topics.end()) {
       return absl::NotFoundError(
           absl::StrCat("no topic \"", asked_for, "\" for ", what,
@@ -40,7 +46,7 @@ absl::StatusOr<std::string> Choose(const RosTopics& topics,
     if (found.size() > 1) {
       warnings->push_back(absl::StrCat("several topics for ", what, " (",
                                        absl::StrJoin(found, ", "), "); taking ",
-                                       found.front()));
+                                       found.front(), hint));
     }
     if (!found.empty()) return found.front();
   }
@@ -57,27 +63,50 @@ std::string ListTopics(const RosTopics& topics) {
       });
 }
 
+namespace {
+
+absl::Status ChooseScans(const RosTopics& topics, const std::string& asked_for,
+                         ChosenTopics* chosen) {
+  for (const absl::string_view name : absl::StrSplit(asked_for, ',')) {
+    const auto scan = Choose(
+        topics, {kRosLaserScan, kRosMultiEchoLaserScan, kRosPointCloud2},
+        std::string(name), "laser scans", "; -scan_topic names others, or several",
+        &chosen->warnings);
+    if (!scan.ok()) return scan.status();
+    if (scan->empty()) {
+      return absl::NotFoundError(absl::StrCat(
+          "no topic of type sensor_msgs/LaserScan, MultiEchoLaserScan or "
+          "PointCloud2; topics: ",
+          ListTopics(topics)));
+    }
+    const std::string& md5sum = topics.at(*scan).md5sum;
+    chosen->scans[*scan] = md5sum == kRosLaserScan.md5sum
+                               ? RosScanType::kLaserScan
+                           : md5sum == kRosPointCloud2.md5sum
+                               ? RosScanType::kPointCloud2
+                               : RosScanType::kMultiEchoLaserScan;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
 absl::StatusOr<ChosenTopics> ChooseTopics(const RosTopics& topics,
                                           const SensorSourceOptions& options) {
   ChosenTopics chosen;
-  auto scan = Choose(topics, {kRosLaserScan, kRosMultiEchoLaserScan},
-                     options.scan_topic, "laser scans", &chosen.warnings);
-  if (!scan.ok()) return scan.status();
-  if (scan->empty()) {
-    return absl::NotFoundError(absl::StrCat(
-        "no topic of type sensor_msgs/LaserScan or MultiEchoLaserScan; "
-        "topics: ",
-        ListTopics(topics)));
+  const absl::Status scans = ChooseScans(topics, options.scan_topic, &chosen);
+  if (!scans.ok()) return scans;
+  std::vector<RosType> odometry_types = {kRosOdometry};
+  if (!options.odometry_topic.empty()) {
+    odometry_types.push_back(kRosTransforms);
   }
-  chosen.scan = *scan;
-  chosen.multi_echo =
-      topics.at(chosen.scan).md5sum == kRosMultiEchoLaserScan.md5sum;
-  auto odometry = Choose(topics, {kRosOdometry}, options.odometry_topic,
-                         "odometry", &chosen.warnings);
+  auto odometry = Choose(topics, odometry_types, options.odometry_topic,
+                         "odometry", "; -odometry_topic names another",
+                         &chosen.warnings);
   if (!odometry.ok()) return odometry.status();
   chosen.odometry = *odometry;
-  auto imu =
-      Choose(topics, {kRosImu}, options.imu_topic, "an IMU", &chosen.warnings);
+  auto imu = Choose(topics, {kRosImu}, options.imu_topic, "an IMU",
+                    "; -imu_topic names another", &chosen.warnings);
   if (!imu.ok()) return imu.status();
   chosen.imu = *imu;
   for (const auto& topic : topics) {
@@ -85,6 +114,9 @@ absl::StatusOr<ChosenTopics> ChooseTopics(const RosTopics& topics,
       chosen.transforms.insert(topic.first);
     }
   }
+  if (chosen.transforms.count(chosen.odometry) > 0) chosen.odometry.clear();
+  chosen.odometry_from_transforms =
+      chosen.odometry.empty() && !chosen.transforms.empty();
   return chosen;
 }
 

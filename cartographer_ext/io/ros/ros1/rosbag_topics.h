@@ -24,10 +24,13 @@ struct RosTopicType {
 // The types of a bag's topics.
 using RosTopics = std::map<std::string, RosTopicType>;
 
+enum class RosScanType { kLaserScan, kMultiEchoLaserScan, kPointCloud2 };
+
 struct ChosenTopics {
-  std::string scan;
-  bool multi_echo = false;
+  std::map<std::string, RosScanType> scans;  // by topic
   std::string odometry;  // empty: none
+  // Without such messages: the transforms may tell it.
+  bool odometry_from_transforms = false;
   std::string imu;       // empty: none
   std::set<std::string> transforms;
   std::vector<std::string> warnings;

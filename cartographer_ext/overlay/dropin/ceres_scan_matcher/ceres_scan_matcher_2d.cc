@@ -7,6 +7,7 @@
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/options/lua_path.h"
 #include "cartographer_ext/overlay/signature.h"
+#include "cartographer_ext/overlay/start_line.h"
 #include "cartographer_ext/scan_matcher_options.pb.h"
 #include "cartographer_ext/scan_matching/dropin/degeneracy_aware_scan_matcher_2d.h"
 
@@ -51,6 +52,9 @@ CeresScanMatcher2D::CeresScanMatcher2D(
     const proto::CeresScanMatcherOptions2D& options) {
   ::cartographer_ext::proto::ScanMatcherOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
+    ::cartographer_ext::LogStart(
+        "CeresScanMatcher2D",
+        "ceres_scan_matcher.cartographer_ext", extension);
     degeneracy_aware_ = absl::make_unique<
         ::cartographer_ext::scan_matching::DegeneracyAwareScanMatcher2D>(
         options, extension);

@@ -9,6 +9,7 @@
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/overlay/signature.h"
+#include "cartographer_ext/overlay/start_line.h"
 
 #ifndef CARTOGRAPHER_EXT_OVERLAY_CONSTRAINT_BUILDER_2D_H_
 #error \
@@ -56,6 +57,9 @@ ConstraintBuilder2D::ConstraintBuilder2D(
   const ScopedPoseGraphContext scope(context_);
   ::cartographer_ext::proto::LoopClosureOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
+    ::cartographer_ext::LogStart(
+        "ConstraintBuilder2D",
+        "POSE_GRAPH.constraint_builder.cartographer_ext", extension);
     verified_ = absl::make_unique<VerifiedConstraintBuilder2D>(
         options, extension, thread_pool);
   } else {

@@ -7,6 +7,7 @@
 #include "cartographer_ext/front_end_options.pb.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/overlay/signature.h"
+#include "cartographer_ext/overlay/start_line.h"
 
 #ifndef CARTOGRAPHER_EXT_OVERLAY_LOCAL_TRAJECTORY_BUILDER_2D_H_
 #error \
@@ -38,6 +39,9 @@ LocalTrajectoryBuilder2D::LocalTrajectoryBuilder2D(
     const std::vector<std::string>& expected_range_sensor_ids) {
   ::cartographer_ext::proto::FrontEndOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
+    ::cartographer_ext::LogStart(
+        "LocalTrajectoryBuilder2D",
+        "TRAJECTORY_BUILDER_2D.cartographer_ext", extension);
     adaptive_ = absl::make_unique<AdaptiveLocalTrajectoryBuilder2D>(
         options, extension, expected_range_sensor_ids);
   } else {

@@ -8,6 +8,7 @@
 #include "cartographer_ext/optimization/dropin/stock_solve.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/overlay/signature.h"
+#include "cartographer_ext/overlay/start_line.h"
 #include "cartographer_ext/robust_optimization_options.pb.h"
 
 #ifndef CARTOGRAPHER_EXT_OVERLAY_OPTIMIZATION_PROBLEM_2D_H_
@@ -47,6 +48,9 @@ OptimizationProblem2D::OptimizationProblem2D(
     : context_(PoseGraphContext::Current()) {
   ::cartographer_ext::proto::RobustOptimizationOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
+    ::cartographer_ext::LogStart(
+        "OptimizationProblem2D",
+        "POSE_GRAPH.optimization_problem.cartographer_ext", extension);
     robust_ =
         absl::make_unique<RobustOptimizationProblem2D>(options, extension);
     problem_ = robust_.get();

@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Pair;
 
 RosTopicType Type(const RosType& type) {
   return RosTopicType{type.name, type.md5sum};
@@ -31,8 +32,7 @@ TEST(RosbagTopicsTest, Defaults) {
   const auto chosen = ChooseTopics(topics, {});
   ASSERT_TRUE(chosen.ok()) << chosen.status();
   // Plain scans before echoes, then by name.
-  EXPECT_EQ(chosen->scan, "/scan_front");
-  EXPECT_FALSE(chosen->multi_echo);
+  EXPECT_THAT(chosen->scans, ElementsAre(Pair("/scan_front", RosScanType::kLaserScan)));
   EXPECT_EQ(chosen->odometry, "/odom");
   EXPECT_EQ(chosen->imu, "");
   EXPECT_THAT(chosen->transforms, ElementsAre("/tf", "/tf_static"));
@@ -51,8 +51,8 @@ TEST(RosbagTopicsTest, AskedFor) {
   options.imu_topic = "/imu";
   const auto chosen = ChooseTopics(topics, options);
   ASSERT_TRUE(chosen.ok()) << chosen.status();
-  EXPECT_EQ(chosen->scan, "/echoes");
-  EXPECT_TRUE(chosen->multi_echo);
+  EXPECT_THAT(chosen->scans, ElementsAre(Pair("/echoes", RosScanType::kMultiEchoLaserScan)));
+  EXPECT_FALSE(chosen->odometry_from_transforms);
   EXPECT_EQ(chosen->imu, "/imu");
   EXPECT_TRUE(chosen->warnings.empty());
   options.odometry_topic = "/scan";
@@ -61,6 +61,44 @@ TEST(RosbagTopicsTest, AskedFor) {
   options.odometry_topic = "/wheels";
   EXPECT_THAT(std::string(ChooseTopics(topics, options).status().message()),
               HasSubstr("no topic \"/wheels\" for odometry; topics: /echoes"));
+}
+
+TEST(RosbagTopicsTest, SeveralLasersWithAndWithoutSlash) {
+  RosTopics topics;
+  topics["front"] = Type(kRosLaserScan);
+  topics["/rear"] = Type(kRosPointCloud2);
+  topics["/tf"] = Type(kRosTransforms);
+  SensorSourceOptions options;
+  options.scan_topic = "/front,rear";
+  auto chosen = ChooseTopics(topics, options);
+  ASSERT_TRUE(chosen.ok()) << chosen.status();
+  EXPECT_THAT(chosen->scans, ElementsAre(Pair("/rear", RosScanType::kPointCloud2),
+                                         Pair("front", RosScanType::kLaserScan)));
+  EXPECT_TRUE(chosen->warnings.empty());
+  EXPECT_TRUE(chosen->odometry_from_transforms);
+  options.scan_topic = "front,side";
+  EXPECT_THAT(std::string(ChooseTopics(topics, options).status().message()), HasSubstr("no topic \"side\""));
+  // Points only where there is no scan.
+  chosen = ChooseTopics(topics, {});
+  EXPECT_THAT(chosen->scans, ElementsAre(Pair("front", RosScanType::kLaserScan)));
+  topics.erase("front");
+  chosen = ChooseTopics(topics, {});
+  EXPECT_THAT(chosen->scans, ElementsAre(Pair("/rear", RosScanType::kPointCloud2)));
+}
+
+TEST(RosbagTopicsTest, OdometryOfTransformsOnDemandOrWithoutMessages) {
+  RosTopics topics;
+  topics["/scan"] = Type(kRosLaserScan);
+  topics["/odom"] = Type(kRosOdometry);
+  topics["/tf"] = Type(kRosTransforms);
+  EXPECT_EQ(ChooseTopics(topics, {})->odometry, "/odom");
+  EXPECT_FALSE(ChooseTopics(topics, {})->odometry_from_transforms);
+  SensorSourceOptions options;
+  options.odometry_topic = "tf";
+  const auto chosen = ChooseTopics(topics, options);
+  ASSERT_TRUE(chosen.ok()) << chosen.status();
+  EXPECT_EQ(chosen->odometry, "");
+  EXPECT_TRUE(chosen->odometry_from_transforms);
 }
 
 TEST(RosbagTopicsTest, NoScans) {

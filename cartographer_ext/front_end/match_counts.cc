@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/match_counts.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_format.h"
+
+namespace cartographer_ext {
+namespace front_end {
+
+using proto::MatchRecord;
+
+bool IsOdometryFault(const MatchRecord& record) {
+  return record.odometry() == MatchRecord::STALE ||
+         record.odometry() == MatchRecord::JUMPING ||
+         record.odometry() == MatchRecord::WRONG_SIGN ||
+         record.odometry() == MatchRecord::SLIPPING;
+}
+
+void MatchCounts::Add(const MatchRecord& record) {
+  ++scans;
+  if (record.degeneracy() != MatchRecord::NONE) ++degenerate;
+  if (record.searched()) ++searched;
+  if (record.source() == MatchRecord::SEARCH) ++relocated;
+  if (IsOdometryFault(record)) ++odometry_faults;
+  if (record.odometry() == MatchRecord::SLIP_SUSPECTED) ++slip_suspected;
+  time_offset = record.time_offset();
+  way_scale = record.way_scale();
+  way_scale_sigma = record.way_scale_sigma();
+  turn_scale = record.turn_scale();
+  turn_per_metre = record.turn_per_metre();
+}
+
+std::string ToText(const MatchCounts& counts) {
+  return absl::StrFormat(
+      "%d scans, %.1f %% of them degenerate, %d searches, %d odometry faults; "
+      "odometry scale %.4f +- %.4f, scans stamped %.3f s later than odometry",
+      counts.scans,
+      100. * static_cast<double>(counts.degenerate) /
+          static_cast<double>(std::max<int64_t>(1, counts.scans)),
+      counts.searched, counts.odometry_faults, counts.way_scale,
+      counts.way_scale_sigma, counts.time_offset);
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext

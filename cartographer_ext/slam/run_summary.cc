@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/slam/run_summary.h"
+
+#include "absl/strings/str_format.h"
+#include "cartographer_ext/slam/decision_files.h"
+#include "cartographer_ext/slam/match_files.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+nlohmann::ordered_json ToJson(const SlamRun& run) {
+  nlohmann::ordered_json json;
+  json["scans"] = run.scans;
+  json["matched_scans"] = run.local_scan_poses.size();
+  json["scans_left_out"] = run.skipped_scans;
+  json["odometry_readings"] = run.odometry_readings;
+  json["imu_readings"] = run.imu_readings;
+  json["sensor_seconds"] = run.sensor_seconds;
+  json["nodes"] = run.nodes;
+  json["submaps"] = run.submaps;
+  json["constraints"] = {{"inter", run.inter_constraints},
+                         {"intra", run.intra_constraints}};
+  json["wall_seconds"] = run.wall_seconds;
+  json["cpu_seconds"] = run.cpu_seconds;
+  json["front_end_cpu_seconds"] = run.front_end_cpu_seconds;
+  json["final_optimization_wall_seconds"] = run.final_optimization_wall_seconds;
+  json["peak_memory_bytes"] = run.peak_memory_bytes;
+  json["loop_search"] = {
+      {"count", run.loop_searches},
+      {"found", run.loops_found},
+      {"cpu_seconds", run.loop_search_cpu_seconds},
+      // Otherwise all threads of the back end are counted.
+      {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured},
+      // What these seconds are made of; all 0 if they are not measured.
+      {"stages",
+       {{"search", run.loop_cpu.search},
+        {"build", run.loop_cpu.build},
+        {"verification", run.loop_cpu.verification}}}};
+  if (!run.matches.empty()) {
+    const MatchCounts counts =
+        CountMatches(run.matches);
+    json["local_slam"] = {{"degenerate_scans", counts.degenerate},
+                          {"searches", counts.searched},
+                          {"relocated", counts.relocated},
+                          {"odometry_faults", counts.odometry_faults},
+                          {"slip_suspected", counts.slip_suspected},
+                          {"time_offset", counts.time_offset},
+                          {"way_scale", counts.way_scale},
+                          {"way_scale_sigma", counts.way_scale_sigma},
+                          {"turn_scale", counts.turn_scale},
+                          {"turn_per_metre", counts.turn_per_metre}};
+  }
+  if (!run.decisions.empty()) {
+    const DecisionCounts counts =
+        CountDecisions(run.decisions);
+    json["loop_decisions"] = {{"accepted", counts.accepted},
+                              {"rejected", counts.rejected},
+                              {"not_found", counts.not_found},
+                              {"undecided", counts.undecided},
+                              {"skipped", counts.skipped}};
+  }
+  const optimization::SwitchedLoops& switched = run.switched_loops;
+  json["optimizations"] = {
+      {"robust", switched.optimizations},
+      {"loops_switched_off", switched.off.size()},
+      {"selection_cpu_seconds", switched.selection_cpu_seconds},
+      {"solution_cpu_seconds", switched.solution_cpu_seconds}};
+  json["metrics"] = run.metrics;
+  json["warnings"] = run.warnings;
+  return json;
+}
+
+std::string ToText(const SlamRun& run) {
+  std::string text;
+  absl::StrAppendFormat(
+      &text, "Map        %d nodes, %d submaps, %d loops from %d searches\n",
+      run.nodes, run.submaps, run.inter_constraints, run.loop_searches);
+  absl::StrAppendFormat(
+      &text,
+      "Took       %.1f s for %.1f s of sensor data; CPU %.1f s, of it %.1f s "
+      "local SLAM; %.0f MB\n",
+      run.wall_seconds, run.sensor_seconds, run.cpu_seconds,
+      run.front_end_cpu_seconds, 1e-6 * run.peak_memory_bytes);
+  return text;
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
