@@ -26,7 +26,6 @@ namespace {
 using cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D;
 using proto::MatchRecord;
 using test::Count;
-using test::OwnOptions;
 using test::Path;
 using test::RunDrive;
 using test::RunOptions;
@@ -70,7 +69,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedWithinARoundWall) {
   Random random(7);
   std::vector<double> errors;
   for (int run = 0; run < 21; ++run) {
-    AdaptiveLocalTrajectoryBuilder2D builder(stock, OwnOptions(), {"scan"});
+    AdaptiveLocalTrajectoryBuilder2D builder(stock, FrontEndOptions(), {"scan"});
     const Pose2 start(random.Uniform(-1.5, 1.5), random.Uniform(0., 2.4),
                       random.Uniform(-kPi, kPi));
     const double heading = random.Uniform(-kPi, kPi);
@@ -150,7 +149,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, ScansBehindAGapWaitForOdometry) {
   EXPECT_LT(result.max_turn_error, 0.03);
   EXPECT_LT(result.max_error, 0.05);
   RunOptions hasty = AHoleInEverything();
-  hasty.own.mutable_odometry()->set_max_wait_after_gap(0.);
+  hasty.own.max_wait_after_gap = 0.;
   EXPECT_GT(RunDrive(hasty).max_turn_error, 3.);
 }
 
@@ -158,10 +157,10 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, ScansBehindAGapDoNotWaitForEver) {
   RunOptions options = AHoleInEverything();
   options.has_odometry = [](const double t) { return t < 10.01; };
   EXPECT_EQ(RunDrive(options).matched, 101 + 31 - 5);
-  options.own.mutable_odometry()->set_max_wait_after_gap(0.);
+  options.own.max_wait_after_gap = 0.;
   EXPECT_EQ(RunDrive(options).matched, 101 + 31);
   // Without odometry nothing is waited for.
-  options.own = OwnOptions();
+  options.own = FrontEndOptions();
   options.use_odometry = false;
   EXPECT_EQ(RunDrive(options).matched, 101 + 31);
 }
@@ -291,7 +290,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, ACorridorKeepsTheLengthOfOdometry) {
 
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, FeaturesDoTheJob) {
   RunOptions options;
-  options.own.mutable_features()->set_enabled(true);
+  options.own.match_features_only = true;
   const RunResult result = RunDrive(options);
   EXPECT_LT(result.max_error, 0.1);
 }
@@ -316,7 +315,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, RepeatsItselfBitForBit) {
 }
 
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, BadScansAreSurvived) {
-  AdaptiveLocalTrajectoryBuilder2D builder(StockOptions(), OwnOptions(),
+  AdaptiveLocalTrajectoryBuilder2D builder(StockOptions(), FrontEndOptions(),
                                            {"scan"});
   Random random(1);
   cartographer::sensor::TimedPointCloudData scan =
@@ -350,7 +349,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, BadScansAreSurvived) {
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, TheImuTurnsTheRobotAndLevelsIt) {
   LocalTrajectoryBuilderOptions2D stock = StockOptions();
   stock.set_use_imu_data(true);
-  AdaptiveLocalTrajectoryBuilder2D builder(stock, OwnOptions(), {"scan"});
+  AdaptiveLocalTrajectoryBuilder2D builder(stock, FrontEndOptions(), {"scan"});
   Random random(2);
   // Turns on the spot at 0.5 rad/s, tilted by 3 degrees.
   const Eigen::Quaterniond tilt(

@@ -20,7 +20,6 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/front_end/dropin/adaptive_local_trajectory_builder_2d.h"
 #include "cartographer_ext/front_end/match_recorder.h"
-#include "cartographer_ext/options/option_description.h"
 #include "tests/front_end/dropin/simulated_room.h"
 
 namespace cartographer_ext {
@@ -36,12 +35,6 @@ StockOptions() {
           std::vector<std::string>{"configuration_files"}));
   return cartographer::mapping::CreateLocalTrajectoryBuilderOptions2D(
       &dictionary);
-}
-
-inline proto::FrontEndOptions OwnOptions() {
-  proto::FrontEndOptions options;
-  options::SetDefaults(&options);
-  return options;
 }
 
 inline Pose2 ToPose2(const cartographer::transform::Rigid3d& pose) {
@@ -77,7 +70,7 @@ struct RunOptions {
   double max_range = 12.;
   cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D stock =
       StockOptions();
-  proto::FrontEndOptions own = OwnOptions();
+  FrontEndOptions own;
 };
 
 inline RunResult RunDrive(const RunOptions& options) {
