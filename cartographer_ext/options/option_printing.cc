@@ -139,7 +139,7 @@ std::string ToLuaFile(const std::vector<OptionBlock>& blocks) {
   std::set<std::string> written;
   for (const OptionBlock& block : blocks) {
     if (!written.insert(block.name).second) continue;
-    for (const OptionDescription& option : Describe(*Defaults(block))) {
+    for (const OptionDescription& option : Describe(*Defaults(*block.options))) {
       if (!option.is_basic) continue;
       absl::StrAppend(&result, "--   ", block.name, ".", option.key, " = ",
                       option.default_value, "\n");
@@ -151,7 +151,8 @@ std::string ToLuaFile(const std::vector<OptionBlock>& blocks) {
     if (!written.insert(block.name).second) continue;
     absl::StrAppend(
         &result, "\n-- ", block.summary, "\n",
-        ToLua(absl::StrCat("CARTOGRAPHER_EXT.", block.name), *Defaults(*block.options)));
+        ToLua(absl::StrCat("CARTOGRAPHER_EXT.", block.name),
+              *Defaults(*block.options)));
   }
   return result;
 }
