@@ -17,7 +17,21 @@
 --     CARTOGRAPHER_EXT.ceres_scan_matcher
 --   POSE_GRAPH.optimization_problem.cartographer_ext =
 --     CARTOGRAPHER_EXT.optimization_problem
--- Keys that are left out of a block keep their default.
+-- Keys that a block does not have keep their default.
+--
+-- The basic options, to look at first:
+--   trajectory_builder_2d.odometry.enabled = true
+--   trajectory_builder_2d.odometry.translation_noise_per_metre = 0.1
+--   trajectory_builder_2d.fault_check.enabled = true
+--   trajectory_builder_2d.imu.enabled = true
+--   trajectory_builder_2d.calibration.odometry_scale = 1
+--   ceres_scan_matcher.degeneracy.enabled = true
+--   constraint_builder.search.max_searches_per_node = 8
+--   constraint_builder.search.global_search = true
+--   constraint_builder.temporal_verification.window_base = 12
+--   constraint_builder.path_noise.translation_per_metre = 0.05
+--   constraint_builder.compatible_subset.min_revisits = 2
+--   optimization_problem.robust_loops = true
 
 CARTOGRAPHER_EXT = {}
 
@@ -25,149 +39,42 @@ CARTOGRAPHER_EXT = {}
 CARTOGRAPHER_EXT.trajectory_builder_2d = {
   odometry = {
     -- Predict with odometry where there is any. Off: odometry is ignored by
-    -- local SLAM (loop closure still gets it).
+    -- local SLAM (loop closure still gets it). [basic]
     enabled = true,
-    -- Standard deviation of the motion between two scans when standing.
-    -- Larger trusts the scan more. [> 0 and <= 10, m]
+    -- Standard deviation of the motion between two scans of a stationary
+    -- robot. Larger trusts the scan more. [> 0 and <= 10, m]
     translation_noise = 0.01,
-    -- The same that every metre adds, along and across the way. [>= 0 and <=
-    -- 10]
+    -- Standard deviation of odometry that every metre driven adds, along and
+    -- across. Larger trusts the scan more, smaller keeps the length of a
+    -- blank corridor nearer to the odometry. [basic, >= 0 and <= 10]
     translation_noise_per_metre = 0.1,
-    -- Standard deviation of the turn between two scans when standing. [> 0
-    -- and <= 10, rad]
-    rotation_noise = 0.005,
-    -- The same that every radian of turn adds. [>= 0 and <= 10]
-    rotation_noise_per_radian = 0.2,
-    -- The same that every metre adds. [>= 0 and <= 10, rad/m]
-    rotation_noise_per_metre = 0.02,
-    -- How far beyond its last message odometry is extrapolated; later the
-    -- prediction goes on without it. [>= 0 and <= 10, s]
-    max_extrapolation = 0.3,
-    -- After a gap in the scans over which odometry is missing, too, scans are
-    -- left out for at most this long until odometry tells what the robot did
-    -- in the gap. 0: the first scan is matched at once, from a guess. [>= 0
-    -- and <= 10, s]
-    max_wait_after_gap = 0.5,
   },
   time_offset = {
     -- Estimate by how much scans are stamped later than the odometry of the
-    -- same moment, from the turns that both see.
+    -- same moment, from the rotations that both measure.
     estimate = true,
-    -- The offset before the estimate is sure, or for ever without estimate.
-    -- [>= -1 and <= 1, s]
+    -- The offset before the estimate is certain, or for the whole run without
+    -- estimate. [>= -1 and <= 1, s]
     initial = 0,
-    -- Smallest offset that is considered. [>= -1 and <= 1, s]
-    minimum = -0.1,
-    -- Largest offset that is considered. [>= -1 and <= 1, s]
-    maximum = 0.25,
-  },
-  constant_velocity = {
-    -- Standard deviation of the change of speed between two scans, at most.
-    -- [> 0 and <= 100, m/s]
-    speed_noise = 0.5,
-    -- The same of the turn rate. [> 0 and <= 100, rad/s]
-    turn_rate_noise = 0.5,
-    -- A velocity is believed for this long; over a longer gap nothing is
-    -- known of the rest, and no turn is made up. [>= 0 and <= 10, s]
-    max_time = 0.6,
-    -- That change for every second between the scans. Larger follows a robot
-    -- that is driven roughly. [> 0 and <= 1000, m/s^2]
-    acceleration_noise = 1,
-    -- The same of the turn rate. [> 0 and <= 1000, rad/s^2]
-    turn_acceleration_noise = 1,
-    -- A turn is expected to end by itself, with this time constant. Matters
-    -- where scans do not tell the turn, as within a round wall. [> 0 and <=
-    -- 1000000, s]
-    turn_time = 1,
   },
   fault_check = {
-    -- Find out when odometry is stale, jumps, has the wrong sign or slips, do
-    -- without it then, and report it.
+    -- Detect when odometry is stale, jumps, has the wrong sign or slips,
+    -- predict without it then, and report it. [basic]
     enabled = true,
-    -- Motions are compared over this time besides from scan to scan. Longer
-    -- finds weaker slip, later. [> 0 and <= 60, s]
-    window = 1,
-    -- chi2 (3 degrees of freedom) beyond which odometry is at fault. Smaller
-    -- finds more and gives more false alarms. [> 0]
-    gate = 25,
-    -- Standard deviation of the comparison of translations, of scan matching
-    -- above all. [> 0 and <= 10, m]
-    translation_noise = 0.03,
-    -- The same of rotations. [> 0 and <= 10, rad]
-    rotation_noise = 0.03,
-    -- What every metre adds to it. [>= 0 and <= 10]
-    translation_noise_per_metre = 0.05,
-    -- What every radian adds to it. [>= 0 and <= 10]
-    rotation_noise_per_radian = 0.1,
-    -- A change of motion between two scans by this much is suspected at once,
-    -- before matching. [> 0 and <= 100, m]
-    jump_distance = 0.3,
-    -- The same for the turn. [> 0 and <= 3.2, rad]
-    jump_angle = 0.3,
-    -- Where the scan does not tell the way (a blank corridor), a change of
-    -- the odometry's speed faster than this is reported as slip. Set it above
-    -- what the robot can do. [> 0 and <= 1000, m/s^2]
+    -- Where the scan does not determine the translation (a blank corridor), a
+    -- change of the odometry's speed faster than this is reported as slip.
+    -- Set it above what the robot can do. [> 0 and <= 1000, m/s^2]
     max_acceleration = 1.5,
   },
   imu = {
-    -- Preintegrate the IMU for the turn of the prediction, and for the way
-    -- where there is no odometry. Needs use_imu_data.
+    -- Preintegrate the IMU for the rotation of the prediction, and for the
+    -- translation where there is no odometry. Needs use_imu_data. [basic]
     enabled = true,
-    -- Noise density of the accelerometers. [>= 0 and <= 100, m/s^2/sqrt(Hz)]
-    acceleration_noise = 0.02,
-    -- Noise density of the gyroscope. [>= 0 and <= 100, rad/s/sqrt(Hz)]
-    yaw_rate_noise = 0.001,
-    -- Standard deviation of the bias that is left after its estimate. [>= 0
-    -- and <= 10, rad/s]
-    yaw_rate_bias_noise = 0.002,
-    -- The same of the accelerometers, tilt included. [>= 0 and <= 100, m/s^2]
-    acceleration_bias_noise = 0.05,
-    -- After standing for this long the mean of the readings is taken as bias.
-    -- [> 0 and <= 1000, s]
-    standing_time = 1,
   },
   search = {
     -- Search around the predictions when odometry is suspect, the gap is
     -- long, or the scan fits worse than usual.
     enabled = true,
-    -- Search when the mean probability under the points is this much below
-    -- its running mean. Smaller searches more. [>= 0 and <= 1]
-    score_drop = 0.12,
-    -- Search when chi2 of the match against the prediction exceeds this. [>
-    -- 0]
-    gate = 16,
-    -- By how much the mean probability must grow for another place to be
-    -- taken. [>= 0 and <= 1]
-    min_gain = 0.03,
-    -- So much more must it grow for a place that contradicts a prediction
-    -- that is held for certain (15 cm or 5 degrees off; from 5 cm and 2
-    -- degrees on a part of it). Odometry is seldom wrong, and a poor fit has
-    -- many places nearly as good. [>= 0 and <= 1]
-    contradiction_gain = 0.12,
-    -- Half width of the search; half the way since the last scan is added.
-    -- [>= 0 and <= 10, m]
-    linear_window = 0.15,
-    -- It never gets wider than this. The cost of a search grows with the
-    -- square. [>= 0 and <= 10, m]
-    max_linear_window = 0.5,
-    -- Half width of the search; the turn since the last scan is added. [>= 0
-    -- and <= 3.2, rad]
-    angular_window = 0.15,
-    -- It never gets wider than this. [>= 0 and <= 3.2, rad]
-    max_angular_window = 0.7,
-  },
-  features = {
-    -- Match only the points around which the surface varies. The cloud of the
-    -- node stays whole.
-    enabled = false,
-    -- Neighbours that describe the surface around a point (k of G eq. 1). [>=
-    -- 2 and <= 1000]
-    num_neighbors = 10,
-    -- Near neighbours count more (G eq. 2 instead of eq. 1).
-    distance_weighted = true,
-    -- Fill up to this many points with the most varied of the rest, so that
-    -- the match never starves. [>= 0 and <= 100000]
-    min_points = 80,
   },
   wall_filling = {
     -- Before a scan is inserted, fill the gaps between its points where four
@@ -175,39 +82,25 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- whose dots lie at the same angles. Only the grid gets these points, no
     -- node and no match.
     enabled = true,
-    -- Wider gaps stay open. [>= 0 and <= 100, m]
-    max_gap = 1,
-    -- How far the points beside a gap may be off the line. About twice the
-    -- noise of the laser. [>= 0 and <= 10, m]
-    tolerance = 0.04,
   },
   calibration = {
-    -- Learn what the way of odometry must be multiplied with, from scans that
-    -- tell the way, for where they do not (a blank corridor).
-    estimate_way = true,
-    -- The same of the turn: its scale (wheel base), and what a robot with
-    -- unequal wheels turns on every metre. Scans seldom leave the turn open,
-    -- so that it matters less.
-    estimate_turn = false,
-    -- That number before anything is learnt, or for ever without estimate.
-    -- The run of another day reports one. [>= 0.5 and <= 2]
-    way_scale = 1,
-    -- Standard deviation of it: 0.02 for a robot as it comes, 0.002 after a
-    -- calibration with a tape. Smaller learns less. [> 0 and <= 1]
-    way_sigma = 0.02,
-    -- What the turn of odometry is multiplied with at first. [>= 0.5 and <=
-    -- 2]
-    turn_scale = 1,
-    -- Standard deviation of it. [> 0 and <= 1]
-    turn_sigma = 0.03,
-    -- What is added to the turn of odometry for every metre forward at first.
-    -- [>= -1 and <= 1, rad/m]
-    turn_per_metre = 0,
-    -- Standard deviation of it. [> 0 and <= 1, rad/m]
-    turn_per_metre_sigma = 0.02,
-    -- Nothing that is learnt is applied farther than this from the first
-    -- values (of the scales, and in rad/m). [>= 0 and <= 0.4]
-    max_deviation = 0.1,
+    -- Learn by what the translation of odometry must be multiplied, from
+    -- scans that determine the translation, for where they do not (a blank
+    -- corridor).
+    estimate_odometry_scale = true,
+    -- Learn the same of the rotation: its scale (wheel base), and what a
+    -- robot with unequal wheels turns on every metre. Scans nearly always
+    -- determine the rotation, so that it matters less.
+    estimate_rotation = false,
+    -- Factor on the translation of odometry before anything is learnt, or for
+    -- the whole run without estimate. Every run reports what it has learnt.
+    -- [basic, >= 0.5 and <= 2]
+    odometry_scale = 1,
+  },
+  paper_mode = {
+    -- Match only the points around which the surface varies (2024 paper,
+    -- equations 1 to 4). The cloud of the node stays whole.
+    adaptive_features = false,
   },
 }
 
@@ -215,52 +108,21 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
 CARTOGRAPHER_EXT.ceres_scan_matcher = {
   degeneracy = {
     -- Take from the prediction what the scan does not determine. Off: the
-    -- analysis is reported and the match is returned as it is.
+    -- analysis is reported and the match is returned as it is. [basic]
     enabled = true,
-    -- noise_floor: a direction counts as far as its information exceeds what
-    -- a blank quantised wall shows along itself, with a smooth transition.
-    -- paper_literal: eigenvalue ratio of the 2 x 2 covariance against
-    -- paper_ratio, all or nothing, rotation always from the match. [one of:
-    -- noise_floor, paper_literal]
-    mode = "noise_floor",
-    -- noise_floor: an axis along which the cost of the scan curves less than
-    -- this is taken from the prediction, in squared cost per squared cell.
+    -- A direction of translation along which the cost of the scan curves less
+    -- than this share of the best axis is taken from the prediction. Blank
+    -- walls show 0.02 along themselves, and 0.08 in one scan of twenty.
     -- Higher takes more from the prediction. [>= 0 and <= 1]
-    floor = 0.001,
-    -- noise_floor: the same for a translation, as a share of the curvature
-    -- along the best axis; the larger of the two counts. Blank walls show
-    -- 0.02 along themselves, and 0.08 in one scan of twenty. [>= 0 and <= 1]
     translation_floor = 0.05,
-    -- noise_floor: the same for a rotation. A round room shows 0.007, and
-    -- 0.02 in one scan of twenty. [>= 0 and <= 1]
-    rotation_floor = 0.015,
-    -- noise_floor: a curvature of this many times the floor is believed
-    -- fully, in between smoothly. [> 1 and <= 1000000]
-    full_ratio = 3,
-    -- paper_literal: ratio of the larger to the smaller eigenvalue of the
-    -- covariance beyond which the larger one's direction is taken from the
-    -- prediction. It depends on grid and laser: noise along a blank wall
-    -- keeps the ratio near 2 to 4 in a corridor. [> 1 and <= 1e+09]
-    paper_ratio = 2,
-    -- How far the scan is moved to see how its cost rises. Shorter sees the
-    -- noise of single cells, longer overlooks small structures. [>= 0.5 and
-    -- <= 20, cells]
-    curvature_step = 2,
   },
-  covariance = {
-    -- The variance of a match along an axis of curvature e is (map_noise^2 +
-    -- point_noise^2 / points) / e squared cells. This part comes from the
-    -- map; more points do not reduce it. Higher trusts the scan less. [> 0
-    -- and <= 10]
-    map_noise = 0.018,
-    -- The part that comes from the points of the scan. [>= 0 and <= 10]
-    point_noise = 0.165,
-    -- Standard deviation reported along what the scan does not determine,
-    -- when the covariance of the prediction is not known. Has no influence on
-    -- the pose. [> 0 and <= 1000, m]
-    prediction_translation_sigma = 0.1,
-    -- The same for the rotation. [> 0 and <= 3.1416, rad]
-    prediction_rotation_sigma = 0.05,
+  paper_mode = {
+    -- A direction is degenerate when the ratio of the eigenvalues of the 2 x
+    -- 2 covariance exceeds 2, all or nothing, and the rotation always comes
+    -- from the match (2024 paper, equations 17 to 19). Off: its information
+    -- is compared with what a blank quantised wall shows along itself, with a
+    -- smooth transition.
+    eigenvalue_ratio = false,
   },
 }
 
@@ -271,146 +133,42 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- sampled candidate is searched in Cartographer's fixed window.
     enabled = true,
     -- Hard cap on searches for one node. Fewer is faster and may miss loops.
-    -- [>= 1 and <= 100000]
+    -- [basic, >= 1 and <= 100000]
     max_searches_per_node = 8,
-    -- Half width of the window in standard deviations of the prediction.
-    -- Wider finds loops after more drift and costs more. [> 0 and <= 20]
-    window_sigmas = 3,
-    -- The window is never smaller than this. [> 0 and <= 1000, m]
-    min_linear_window = 1,
     -- Beyond this the whole submap is searched instead, when global_search is
     -- on. [> 0 and <= 1000, m]
     max_linear_window = 15,
-    -- The window is never smaller than this. [> 0 and <= 3.1416, rad]
-    min_angular_window = 0.17,
     -- Whether whole submaps of the same trajectory may be searched when the
-    -- uncertainty exceeds the largest window.
+    -- uncertainty exceeds the largest window. [basic]
     global_search = true,
-    -- After an accepted loop the same submap is not searched again before the
-    -- robot has gone this far. 0: never skipped. [>= 0 and <= 1000, m]
-    redundant_distance = 2,
-    -- Way between two searches of the same submap. Larger is faster and gives
-    -- the later stages less to go by. [>= 0 and <= 1000, m]
-    search_spacing = 0.5,
-    -- The same for searches of a whole submap within a trajectory. [>= 0 and
-    -- <= 1000, m]
-    full_search_spacing = 3,
-    -- Where the way to the submap is known better than this, a loop would
-    -- tell nothing new and is not searched. [>= 0 and <= 1000, m]
-    informative_sigma = 0.05,
-    -- After this time a submap is searched again all the same, so that a
-    -- place visited twice without going far is closed twice. Not for searches
-    -- of a whole submap. [>= 0 and <= 1e+09, s]
-    redundant_time = 10,
-    -- Where scans typically fit the submap that has just ended with less than
-    -- this (bushes, clutter), min_score and global_localization_min_score are
-    -- lowered in proportion. 0: never. [>= 0 and <= 1]
-    fit_reference = 0.65,
-    -- They are lowered to this part of them at most. Smaller finds more loops
-    -- outdoors and costs more. [> 0 and <= 1]
-    least_fit_scale = 0.85,
   },
   temporal_verification = {
     -- Compares the last nodes with what the submap predicts along the same
-    -- way.
+    -- path.
     enabled = true,
     -- Nodes compared for a new submap; the paper has 4. Longer tells
-    -- look-alike places apart better and needs more known map. [>= 1 and <=
-    -- 200, nodes]
+    -- look-alike places apart better and needs more known map. [basic, >= 1
+    -- and <= 200, nodes]
     window_base = 12,
-    -- How much the window grows with the age of the submap. [>= 0 and <= 200,
-    -- nodes]
-    window_span = 2,
-    -- How fast the window grows. [>= 0 and <= 1000, 1/s or 1/node]
+    -- How fast the window grows with the age of the submap, by up to 2 nodes
+    -- (gamma of equation 4 of the 2025 paper). [>= 0 and <= 1000, 1/s]
     window_gamma = 0.3,
-    -- Unit of the age of a submap; the paper does not name it. [one of:
-    -- seconds, nodes]
-    age_unit = "seconds",
-    -- Way between the nodes compared. Larger sees more of the way with the
-    -- same number of nodes. [>= 0 and <= 100, m]
-    spacing = 0.5,
-    -- With fewer comparable nodes there is no temporal score. [>= 1 and <=
-    -- 200, nodes]
-    minimum_length = 4,
-    -- Predictions for each step of the way. More absorbs the error of the
-    -- odometry's scale more finely and costs more. [>= 1 and <= 20]
-    oversampling = 2,
-    -- Half width of the warping band. Wider forgives more and discriminates
-    -- less; negative: no band. [>= -1 and <= 200, steps]
-    band = 1,
-    -- Whether every prediction has to be matched (symmetric, the textbook) or
-    -- one for each node. [one of: symmetric, asymmetric]
-    step = "asymmetric",
-    -- Angular sectors of a range signature, for sectors. [>= 1 and <= 720]
-    num_sectors = 36,
-    -- Rays of a sector, for sectors; their median is its range. [>= 1 and <=
-    -- 100]
-    rays_per_sector = 4,
-    -- Longer ranges count as this. [> 0 and <= 1000, m]
-    max_range = 25,
-    -- A predicted ray that crosses more unknown space than this predicts
-    -- nothing. [>= 0 and <= 1000, m]
-    max_unknown = 0.15,
-    -- Ranges that differ by more count as this. Smaller punishes small
-    -- differences more. [> 0 and <= 1000, m]
-    clip = 0.2,
-    -- Share of a scan that the submap has to predict. [> 0 and <= 1]
-    minimum_overlap = 0.7,
-    -- Nodes remembered of each trajectory, about 1500 bytes each. [>= 1 and
-    -- <= 1e+07, nodes]
-    max_history_nodes = 20000,
-    -- Neighbouring submaps on each side that continue the reference where the
-    -- way leaves the submap. [>= 0 and <= 100]
-    num_neighbours = 2,
-    -- beams compares every beam at its own angle, sectors the medians of
-    -- sectors. The beams tell look-alike places apart that differ in little;
-    -- for sectors max_range 10, clip 1 and minimum_overlap 0.5 suit. [one of:
-    -- sectors, beams]
-    comparison = "beams",
-    -- A beam that ends this near an occupied cell agrees, for beams. [>= 0
-    -- and <= 10, cells]
-    tolerance = 1,
-    -- Scans are thinned out to this many beams, for beams. Fewer is faster
-    -- and tells less. [>= 1 and <= 10000]
-    max_beams = 120,
   },
   dynamic_threshold = {
-    -- Off: the base threshold holds always.
+    -- Reject temporal scores below a threshold that follows their variance.
+    -- Off: no threshold on the temporal score.
     enabled = true,
-    -- The formula of the paper relaxes the threshold when scores vary, its
-    -- text wants the opposite. [one of: as_printed, stricter_when_unstable]
-    direction = "stricter_when_unstable",
-    -- Lower end of the threshold. [>= 0 and <= 1]
+    -- Lower end of the threshold. Higher rejects more, also true loops. [>= 0
+    -- and <= 1]
     low = 0.45,
     -- Range of the threshold above its lower end. [>= 0 and <= 1]
     span = 0.1,
-    -- C of equation 1. Variances are 0.001 to 0.01, so tens to hundreds
-    -- matter. [>= 0 and <= 1000000]
-    sensitivity = 100,
-    -- How many of the last scores the variance is taken of. [>= 1 and <=
-    -- 100000]
-    window = 10,
-    -- Threshold until there are that many scores. [>= 0 and <= 1]
-    base_threshold = 0.5,
   },
   fusion = {
     -- Off: the final score is the grid score.
     enabled = true,
-    -- as_printed blends by how typical the scores are, likelihood_ratio gives
-    -- the probability that the loop is true. [one of: as_printed,
-    -- likelihood_ratio]
-    mode = "likelihood_ratio",
-    -- How many of the last scores the blends look at. [>= 1 and <= 100000]
-    window = 10,
-    -- Smallest deviation of the scores that is believed. [> 0 and <= 1]
-    sigma_floor = 0.01,
     -- Candidates with a lower final score are rejected. [>= 0 and <= 1]
     min_final_score = 0.01,
-    -- Candidates that the prior of the mixture counts as. Stronger is safer
-    -- with few candidates. [> 0 and <= 100000]
-    prior_strength = 500,
-    -- Candidates the mixture remembers. [>= 1 and <= 1000000]
-    capacity = 500,
   },
   information = {
     -- Off: every loop has Cartographer's constant weights.
@@ -424,158 +182,85 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- pulls less than without confidence weights, in poor maps so much less
     -- that they bend. [> 0 and <= 1]
     reference_score = 0.6,
-    -- Lower final scores count as this. [> 0 and <= 1]
-    minimum_score = 0.001,
-    -- Whether loops pull less along what their match leaves open, as the way
-    -- along a corridor. Needs the swap full_information; stored maps have the
-    -- two weights.
+    -- Whether loops pull less along directions that their match does not
+    -- determine, as along a corridor. Needs the swap full_information; stored
+    -- maps have the two weights.
     full_matrix = false,
   },
   path_noise = {
-    -- Standard deviation after one metre; it grows with the square root of
-    -- the way. [>= 0 and <= 10, m]
+    -- Standard deviation of the path of local SLAM after one metre; it grows
+    -- with the square root of the distance. Larger searches wider and rejects
+    -- less. [basic, >= 0 and <= 10, m]
     translation_per_metre = 0.05,
-    -- Standard deviation after turning one radian. [>= 0 and <= 10, m]
-    translation_per_radian = 0.02,
     -- Standard deviation after one metre. [>= 0 and <= 10, rad]
     rotation_per_metre = 0.005,
-    -- Standard deviation after turning one radian. [>= 0 and <= 10, rad]
-    rotation_per_radian = 0.015,
-    -- Standard deviation of a loop itself. [> 0 and <= 10, m]
-    loop_translation = 0.05,
-    -- Standard deviation of a loop itself. [> 0 and <= 10, rad]
-    loop_rotation = 0.01,
     -- Standard deviation of a turn that is the same all along a run, as of
     -- unequal wheels. [>= 0 and <= 10, rad/m]
     heading_drift = 0.0005,
     -- Standard deviation of the scale of a whole run. [>= 0 and <= 1]
     scale_error = 0.005,
-    -- Two nodes farther apart tell of a jump or a gap, and the way between
-    -- them is as uncertain as the excess. [> 0 and <= 1000000, m]
-    free_metres = 0.5,
-    -- The same for the turn from one node to the next. [> 0 and <= 1000000,
-    -- rad]
-    free_radians = 0.4,
   },
   compatible_subset = {
     -- Candidates wait until others confirm them. Off: every candidate that
     -- has come this far is accepted at once.
     enabled = true,
-    -- Whether cycles are compared with their uncertainty or with fixed
-    -- bounds, as the paper prints it. [one of: chi_square, fixed_bound]
-    test = "chi_square",
-    -- Largest squared error of a cycle in standard deviations; 11.345 is the
-    -- 99 percent point for 3 degrees of freedom. [> 0 and <= 1000]
-    chi_square_bound = 11.345,
-    -- Largest error of a cycle for fixed_bound. [> 0 and <= 1000, m]
-    translation_bound = 0.5,
-    -- Largest error of a cycle for fixed_bound. [> 0 and <= 3.1416, rad]
-    rotation_bound = 0.1,
-    -- Loops nearer than this along the way are one piece of evidence. [>= 0
-    -- and <= 1000, m]
-    revisit_distance = 5,
-    -- A closed cycle confirms only when it is known this well. [> 0 and <=
-    -- 1000, m]
-    informative_sigma = 1,
-    -- Revisits that have to agree. More is safer and later. [>= 1 and <= 100]
+    -- Revisits that have to agree. More is safer and later. [basic, >= 1 and
+    -- <= 100]
     min_revisits = 2,
-    -- Share of contradictions that is forgiven. 0: exactly the maximum
-    -- clique. [>= 0 and <= 0.5]
-    tolerance = 0.04,
     -- Whether a loop that nothing confirms may be accepted by stricter rules.
     single_strong = true,
-    -- Final score it needs. [>= 0 and <= 1]
-    single_strong_score = 0.8,
-    -- Loops of neighbouring nodes it needs. [>= 1 and <= 1000]
-    single_strong_loops = 3,
-    -- Revisits remembered. [>= 1 and <= 10000]
-    max_clusters = 400,
-    -- Steps after which the search for the largest set takes the best found.
-    -- [>= 1 and <= 1e+09]
-    max_clique_steps = 100000,
-    -- How well a loop that nothing confirms has to be predicted. One that was
-    -- searched widely may be another place that looks alike. [>= 0 and <=
-    -- 1000, m]
-    single_strong_sigma = 0.5,
-    -- A place predicted worse than this needs doubtful_revisits. [>= 0 and <=
-    -- 1000, m]
-    doubtful_sigma = 1,
+    -- A place predicted worse than this needs weak_prior_revisits. [>= 0 and
+    -- <= 1000, m]
+    weak_prior_sigma = 1,
     -- Revisits that have to agree on a place that was predicted badly. [>= 1
     -- and <= 100]
-    doubtful_revisits = 3,
-    -- Share of contradictions that is forgiven to a loop where it was
-    -- predicted, within single_strong_sigma. [>= 0 and <= 0.5]
-    predicted_tolerance = 0.2,
+    weak_prior_revisits = 3,
   },
   innovation_veto = {
     -- Rejects loops that demand more than the uncertainty allows.
     enabled = true,
-    -- Largest squared innovation in standard deviations; 21.108 is the 99.99
-    -- percent point for 3 degrees of freedom. [> 0 and <= 1000000]
-    chi_square_bound = 21.108,
   },
   localization = {
     -- Searches all submaps of another run at once, follows the places found
-    -- along the way, and believes one only when it is ahead of all others.
-    -- Off: whole submaps are searched one by one as the host asks for.
+    -- along the path, and accepts one only when it is ahead of all others.
+    -- Off: whole submaps are searched one by one as the host proposes them.
     enabled = true,
-    -- Way between two searches of all submaps while the place is not known.
-    -- [>= 0 and <= 1000, m]
-    query_spacing = 2.5,
-    -- The same while the place is known, to find out when that is wrong.
-    -- Larger is cheaper and later. [>= 0 and <= 1000000, m]
-    watch_spacing = 5,
-    -- Hard cap on submaps searched for one node; the next node gets the
-    -- others. [>= 1 and <= 100000]
-    max_submaps_per_query = 100,
-    -- So many of the best submaps are looked at closer. [>= 1 and <= 1000]
-    places_per_query = 6,
-    -- Nodes along which places are followed and compared. More tells places
-    -- apart that look very much alike, and costs more. [>= 4 and <= 1000]
-    max_nodes = 16,
-    -- By how many standard deviations the scores of a place have to be ahead
-    -- of those of every other one. More is safer and later. [>= 0 and <= 100]
-    significance = 3,
-    -- Places along the way, revisit_distance apart, that have to agree before
-    -- the robot is localised. More is safer and later. [>= 1 and <= 100]
-    revisits = 3,
-    -- After that way without an accepted loop the place is not known any
-    -- more. [> 0 and <= 1000000, m]
-    lost_distance = 15,
-    -- So many searches of all submaps that decide for another place (one in
-    -- between may not) mean that it is not the one that was known. [>= 1 and
-    -- <= 100]
-    watches = 2,
   },
   log = {
-    -- Whether the records tell the CPU time of each stage. Such logs differ
+    -- Whether the records have the CPU time of each stage. Such logs differ
     -- from run to run.
     times = false,
+  },
+  paper_mode = {
+    -- Every node is compared, by medians of sectors, with textbook warping
+    -- (2025 paper, section 1.2).
+    temporal_verification = false,
+    -- The threshold falls when scores vary, as the formula has it (equation
+    -- 1). Off: it rises, as the text has it.
+    dynamic_threshold = false,
+    -- Scores are blended by how typical they are (equations 5 to 7). Off: the
+    -- final score is the probability that the loop is true.
+    fusion = false,
+    -- Cycles are compared with fixed bounds of 0.5 m and 0.1 rad, and the
+    -- subset is exactly the maximum clique (2024 paper, equations 20 and 21);
+    -- single_strong and weak_prior_revisits have no effect.
+    compatible_subset = false,
   },
 }
 
 -- Optimisation that finds and leaves out false loop closures.
 CARTOGRAPHER_EXT.optimization_problem = {
   -- Before each optimisation, decide which loop constraints agree with each
-  -- other and with the trajectory, and leave the others out. Every decision
-  -- is made anew each time.
+  -- other and with the trajectory, and disable the others. Every decision is
+  -- made anew each time. [basic]
   robust_loops = true,
   -- Standard deviation of the translation of a loop constraint. All weights
   -- of the problem, which are relative, are scaled by it for the decision;
   -- smaller values are stricter. [> 0, m]
   loop_sigma = 0.1,
-  -- A loop whose chi2 (3 degrees of freedom) exceeds this is left out; 11.345
-  -- refuses one right loop in a hundred. [> 0]
-  gate = 11.345,
   -- After the decision, compare the motion between neighbouring nodes with
-  -- local SLAM; where a loop bends it beyond the gate below, switch the loop
-  -- off and solve again from the poses before. The new result is kept only if
-  -- it passes.
+  -- local SLAM; where a loop bends it beyond a gate, disable the loop and
+  -- solve again from the poses before. The new result is kept only if it
+  -- passes.
   odometry_check = true,
-  -- chi2 (3 degrees of freedom) of the motion between neighbouring nodes
-  -- beyond which a loop is to blame. [> 0]
-  odometry_gate = 30,
-  -- Loops which the odometry check may switch off in one optimisation, and so
-  -- the number of times it solves again. [>= 0 and <= 1000]
-  max_rollbacks = 10,
 }

@@ -10,7 +10,7 @@ include "loop_closure_default.lua"
 
 POSE_GRAPH.constraint_builder.cartographer_ext.temporal_verification.window_base =
   20
-POSE_GRAPH.constraint_builder.cartographer_ext.compatible_subset.doubtful_revisits =
+POSE_GRAPH.constraint_builder.cartographer_ext.compatible_subset.weak_prior_revisits =
   4
 
 return {

@@ -14,11 +14,11 @@ TRAJECTORY_BUILDER_2D.cartographer_ext = CARTOGRAPHER_EXT.trajectory_builder_2d
 TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext =
   CARTOGRAPHER_EXT.ceres_scan_matcher
 
-TRAJECTORY_BUILDER_2D.cartographer_ext.features.enabled = true
+TRAJECTORY_BUILDER_2D.cartographer_ext.paper_mode.adaptive_features = true
 TRAJECTORY_BUILDER_2D.cartographer_ext.time_offset.estimate = false
-TRAJECTORY_BUILDER_2D.cartographer_ext.calibration.estimate_way = false
+TRAJECTORY_BUILDER_2D.cartographer_ext.calibration.estimate_odometry_scale = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.fault_check.enabled = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.search.enabled = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.wall_filling.enabled = false
-TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext.degeneracy.mode =
-  "paper_literal"
+TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext.paper_mode
+  .eigenvalue_ratio = true

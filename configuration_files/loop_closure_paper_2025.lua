@@ -8,32 +8,22 @@ include "loop_closure_stages_off.lua"
 
 local loops = POSE_GRAPH.constraint_builder.cartographer_ext
 
--- Equation 4: 4 to 6 nodes, textbook warping.
+-- Section 1.2, equation 4: 4 to 6 nodes.
 loops.temporal_verification.enabled = true
 loops.temporal_verification.window_base = 4
-loops.temporal_verification.window_span = 2
 loops.temporal_verification.window_gamma = 0.3
-loops.temporal_verification.spacing = 0.
-loops.temporal_verification.minimum_length = 2
-loops.temporal_verification.step = "symmetric"
-loops.temporal_verification.comparison = "sectors"
-loops.temporal_verification.max_range = 10.
-loops.temporal_verification.clip = 1.
-loops.temporal_verification.minimum_overlap = 0.5
+loops.paper_mode.temporal_verification = true
 
 -- Equations 1 to 3.
 loops.dynamic_threshold.enabled = true
-loops.dynamic_threshold.direction = "as_printed"
 loops.dynamic_threshold.low = 0.5
 loops.dynamic_threshold.span = 0.2
-loops.dynamic_threshold.window = 10
-loops.dynamic_threshold.base_threshold = 0.5
+loops.paper_mode.dynamic_threshold = true
 
 -- Equations 5 to 7.
 loops.fusion.enabled = true
-loops.fusion.mode = "as_printed"
-loops.fusion.window = 10
 loops.fusion.min_final_score = 0.55
+loops.paper_mode.fusion = true
 
 -- Equations 8 to 11.
 loops.information.enabled = true

@@ -10,8 +10,7 @@ include "loop_closure_stages_off.lua"
 
 local loops = POSE_GRAPH.constraint_builder.cartographer_ext
 loops.compatible_subset.enabled = true
-loops.compatible_subset.test = "fixed_bound"
-loops.compatible_subset.predicted_tolerance = 0.
+loops.paper_mode.compatible_subset = true
 
 POSE_GRAPH.optimization_problem.cartographer_ext =
   CARTOGRAPHER_EXT.optimization_problem

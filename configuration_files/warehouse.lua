@@ -10,7 +10,7 @@ include "loop_closure_default.lua"
 
 POSE_GRAPH.constraint_builder.cartographer_ext.compatible_subset.single_strong =
   false
-POSE_GRAPH.constraint_builder.cartographer_ext.compatible_subset.doubtful_sigma =
+POSE_GRAPH.constraint_builder.cartographer_ext.compatible_subset.weak_prior_sigma =
   0.5
 POSE_GRAPH.constraint_builder.cartographer_ext.search.global_search = false
 

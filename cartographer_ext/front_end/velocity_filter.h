@@ -27,14 +27,17 @@ namespace cartographer_ext {
 namespace front_end {
 
 struct ConstantVelocityOptions {
-  // Upper bounds of the change between two scans.
+  // Upper bounds of the change between two scans, whatever the time between
+  // them: robots in buildings drive about 1 m/s.
   double speed_noise = 0.5;      // m/s
   double turn_rate_noise = 0.5;  // rad/s
   // Growth of the change with the time between them.
   double acceleration_noise = 1.;       // m/s^2
   double turn_acceleration_noise = 1.;  // rad/s^2
-  double turn_time = 1.;                // seconds, > 0
-  double max_time = 0.6;                // seconds
+  // A turn is expected to end by itself with this time constant.
+  double turn_time = 1.;  // seconds, > 0
+  // A velocity holds for this long, a few scans; nothing is known of the rest.
+  double max_time = 0.6;  // seconds
 };
 
 class VelocityFilter {

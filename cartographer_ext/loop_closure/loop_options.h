@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// From the option message of the loop closure to the options of its parts.
+// All options of loop closure, those of the stages together. The initial values
+// here and in the stages are the defaults; those of them that are keys of the
+// Lua block are repeated in the option message, and a test compares the two.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_OPTIONS_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_OPTIONS_H_
 
+#include "Eigen/Core"
+#include "cartographer_ext/loop_closure/candidate_search/search_planner.h"
 #include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 #include "cartographer_ext/loop_closure/information/constraint_information.h"
-#include "cartographer_ext/loop_closure/relocalization/map_localization.h"
+#include "cartographer_ext/loop_closure/relocalization/relocalization_options.h"
 #include "cartographer_ext/loop_closure/verification/dtw.h"
 #include "cartographer_ext/loop_closure/verification/dynamic_threshold.h"
 #include "cartographer_ext/loop_closure/verification/loop_mixture.h"
@@ -21,31 +25,60 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-VariableWindowOptions ToVariableWindowOptions(
-    const proto::LoopClosureOptions& options);
-TemporalVerificationOptions ToTemporalVerificationOptions(
-    const proto::LoopClosureOptions& options);
-DynamicThresholdOptions ToDynamicThresholdOptions(
-    const proto::LoopClosureOptions& options);
-// The likelihood ratio is not a blend; for it the mode is the paper's and not
-// used.
-ScoreFusionOptions ToScoreFusionOptions(
-    const proto::LoopClosureOptions& options);
-LoopMixtureOptions ToLoopMixtureOptions(
-    const proto::LoopClosureOptions& options);
-ConfidenceWeightOptions ToConfidenceWeightOptions(
-    const proto::LoopClosureOptions& options);
-uncertainty::PathNoiseOptions ToPathNoiseOptions(
-    const proto::LoopClosureOptions& options);
-MapLocalizationOptions ToMapLocalizationOptions(
-    const proto::LoopClosureOptions& options);
-CompatibleSubsetOptions ToCompatibleSubsetOptions(
-    const proto::LoopClosureOptions& options);
-InnovationOptions ToInnovationOptions(const proto::LoopClosureOptions& options);
-TypicalFitOptions ToTypicalFitOptions(const proto::LoopClosureOptions& options);
+// S_t: which nodes are compared, and how.
+struct TemporalStageOptions {
+  bool enabled = true;
+  VariableWindowOptions window;
+  // Travelled from one node that is compared to the next, metres, >= 0. Where
+  // nodes lie closer, more of the path is seen with the same number.
+  double spacing = 0.5;
+  // Of each trajectory, about 1500 bytes each; the paths between nodes are kept
+  // as long: some 5 km of driving.
+  int max_history_nodes = 20000;
+  // Submaps on each side that continue the reference where the path leaves the
+  // submap: two overlap at any place.
+  int num_neighbours = 2;
+  TemporalVerificationOptions comparison;
+};
+
+enum class FusionMode {
+  kAsPrinted,        // C eq. 5 to 7
+  kLikelihoodRatio,  // the probability that the loop is true
+};
+
+struct FusionStageOptions {
+  bool enabled = true;
+  FusionMode mode = FusionMode::kLikelihoodRatio;
+  // Candidates with a lower final score are rejected.
+  double min_final_score = 0.01;
+  ScoreFusionOptions blend;    // kAsPrinted
+  LoopMixtureOptions mixture;  // kLikelihoodRatio
+};
+
+struct LoopOptions {
+  SearchPlannerOptions search;
+  TypicalFitOptions typical_fit;  // without effect where `search` is off
+  TemporalStageOptions temporal;
+  DynamicThresholdOptions threshold;
+  FusionStageOptions fusion;
+  InnovationOptions innovation_veto;
+  ConfidenceWeightOptions information;
+  CompatibleSubsetOptions compatible_subset;
+  RelocalizationOptions relocalization;
+  uncertainty::PathNoiseOptions path_noise;
+  // Standard deviation of a loop itself: a cell of 5 cm, and what that is over
+  // a few metres. Metres and radians, > 0.
+  double loop_translation = 0.05;
+  double loop_rotation = 0.01;
+  // Records with the CPU time of each stage differ from run to run.
+  bool log_times = false;
+};
+
+// Of the Lua block.
+LoopOptions ToLoopOptions(const proto::LoopClosureOptions& message);
 
 // Of a loop itself; (metres, metres, radians) squared.
-Eigen::Matrix3d LoopCovariance(const proto::LoopClosureOptions& options);
+Eigen::Matrix3d LoopCovariance(const LoopOptions& options);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

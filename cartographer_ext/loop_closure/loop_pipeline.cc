@@ -8,20 +8,18 @@
 
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 #include "cartographer_ext/loop_closure/information/loop_information.h"
-#include "cartographer_ext/loop_closure/loop_options.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
 using proto::LoopDecision;
 
-LoopPipeline::LoopPipeline(const proto::LoopClosureOptions& options,
+LoopPipeline::LoopPipeline(const LoopOptions& options,
                            const ConstraintWeights& stock_weights)
     : options_(options),
       stock_weights_(stock_weights),
-      history_(options.temporal_verification().max_history_nodes()),
-      paths_(ToPathNoiseOptions(options),
-             options.temporal_verification().max_history_nodes()),
+      history_(options.temporal.max_history_nodes),
+      paths_(options.path_noise, options.temporal.max_history_nodes),
       scores_(options),
       consensus_(options, &paths_) {}
 
@@ -69,7 +67,7 @@ void LoopPipeline::Process(LoopCandidate candidate) {
   // later.
   candidate.maps.clear();
   candidate.views.clear();
-  if (options_.compatible_subset().enabled()) {
+  if (options_.compatible_subset.enabled) {
     consensus_.Add(std::move(candidate));
   } else {
     candidate.Accept(LoopDecision::ALL_STAGES_PASSED);

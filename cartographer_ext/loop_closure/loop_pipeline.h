@@ -34,9 +34,9 @@
 #include "cartographer_ext/loop_closure/consensus/loop_consensus.h"
 #include "cartographer_ext/loop_closure/information/constraint_information.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/verification/node_history.h"
 #include "cartographer_ext/loop_closure/verification/score_verifier.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/uncertainty/ids.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
@@ -47,7 +47,7 @@ namespace loop_closure {
 class LoopPipeline {
  public:
   // `stock_weights`: of a constraint with the reference score.
-  LoopPipeline(const proto::LoopClosureOptions& options,
+  LoopPipeline(const LoopOptions& options,
                const ConstraintWeights& stock_weights);
 
   LoopPipeline(const LoopPipeline&) = delete;
@@ -99,7 +99,7 @@ class LoopPipeline {
   void Settle(std::vector<LoopCandidate> candidates);
   std::vector<LoopCandidate> TakeSettled();
 
-  const proto::LoopClosureOptions options_;
+  const LoopOptions options_;
   const ConstraintWeights stock_weights_;
   NodeHistory history_;
   // Between nodes and between submaps.

@@ -20,8 +20,10 @@ namespace options {
 
 // Number of the unknown field.
 constexpr int kExtensionFieldNumber = 51966;
-// Newest schema this code understands.
-constexpr int kSchema = 1;
+// Newest schema this code understands. Since 2 only the keys that
+// docs/options.md lists are options; what a message of schema 1 has beside them
+// is ignored, since the values are constants.
+constexpr int kSchema = 2;
 
 // Replaces the extension of `stock_options` by `extension`, with its schema set
 // to kSchema.

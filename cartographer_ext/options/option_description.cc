@@ -123,6 +123,7 @@ void DescribeInto(const std::string& prefix, const pb::Message& options,
     description.range = RangeText(field);
     description.unit = annotation.unit();
     description.documentation = annotation.documentation();
+    description.is_basic = annotation.basic();
     description.value = ValueText(options, field);
     descriptions->push_back(description);
   }
@@ -159,6 +160,9 @@ void TableToLua(const std::string& name, const pb::Message& options,
     }
     const proto::OptionAnnotation& annotation = Annotation(field);
     std::string facts = RangeText(field);
+    if (annotation.basic()) {
+      facts = absl::StrCat("basic", facts.empty() ? "" : ", ", facts);
+    }
     if (annotation.has_unit()) {
       absl::StrAppend(&facts, facts.empty() ? "" : ", ", annotation.unit());
     }
@@ -210,6 +214,22 @@ const pb::EnumValueDescriptor* FindChoice(const FieldDescriptor& field,
   for (int i = 0; i < choices->value_count(); ++i) {
     if (absl::AsciiStrToLower(choices->value(i)->name()) == name) {
       return choices->value(i);
+    }
+  }
+  return nullptr;
+}
+
+std::string FormerName(const FieldDescriptor& field) {
+  return field.options().HasExtension(proto::option)
+             ? Annotation(field).former_name()
+             : "";
+}
+
+const FieldDescriptor* FindRenamed(const pb::Descriptor& options,
+                                   const std::string& name) {
+  for (int i = 0; i < options.field_count(); ++i) {
+    if (!name.empty() && FormerName(*options.field(i)) == name) {
+      return options.field(i);
     }
   }
   return nullptr;

@@ -24,7 +24,8 @@ struct OptionDescription {
   std::string range;  // "> 0", "0 ... 1", "one of: a, b", or empty
   std::string unit;
   std::string documentation;
-  std::string value;  // of the message described
+  std::string value;      // of the message described
+  bool is_basic = false;  // one of the few that a first look shows
 };
 
 // Sets every field to the default of its annotation. A field without
@@ -39,6 +40,13 @@ std::string CheckNumber(const google::protobuf::FieldDescriptor& field,
 // The enum value of a lower-case name, or null.
 const google::protobuf::EnumValueDescriptor* FindChoice(
     const google::protobuf::FieldDescriptor& field, const std::string& name);
+
+// The name that the key of the field had before; empty where it had no other.
+std::string FormerName(const google::protobuf::FieldDescriptor& field);
+
+// The field that had this name before, or null.
+const google::protobuf::FieldDescriptor* FindRenamed(
+    const google::protobuf::Descriptor& options, const std::string& name);
 
 // "one of: a, b" for choices, ">= 0" and the like for numbers.
 std::string RangeText(const google::protobuf::FieldDescriptor& field);

@@ -46,20 +46,25 @@ std::vector<bool> ChangedOptions(const OptionBlock& block) {
 }  // namespace
 
 std::string ToText(const std::vector<OptionBlock>& blocks) {
-  std::string result;
+  std::string basic, advanced;
   for (const OptionBlock& block : blocks) {
-    absl::StrAppend(&result, result.empty() ? "" : "\n", block.stock_path, kKey,
+    const std::string path = absl::StrCat(block.stock_path, kKey);
+    absl::StrAppend(&advanced, "\n", path,
                     block.present ? "" : ": absent, stock behaviour", "\n  ",
                     block.summary, "\n");
     if (!block.present) continue;
     const std::vector<bool> changed = ChangedOptions(block);
     const std::vector<OptionDescription> values = Describe(*block.options);
     for (size_t i = 0; i < values.size(); ++i) {
-      absl::StrAppend(&result, changed[i] ? "* " : "  ", values[i].key, " = ",
-                      values[i].value, "  (", Facts(values[i]), ")\n");
+      absl::StrAppend(
+          values[i].is_basic ? &basic : &advanced, changed[i] ? "* " : "  ",
+          values[i].is_basic ? absl::StrCat(path, ".") : "", values[i].key,
+          " = ", values[i].value, "  (", Facts(values[i]), ")\n");
     }
   }
-  return result;
+  return absl::StrCat(basic.empty() ? "" : "Basic options\n", basic,
+                      basic.empty() ? "" : "\n", "Advanced options\n",
+                      advanced);
 }
 
 std::string ToMarkdown(const std::vector<OptionBlock>& blocks) {
@@ -70,12 +75,15 @@ std::string ToMarkdown(const std::vector<OptionBlock>& blocks) {
                     block.present ? "" : " Absent: stock behaviour.",
                     "\n\n| option | value | default | allowed | unit | meaning "
                     "|\n|---|---|---|---|---|---|\n");
-    for (const OptionDescription& option : Describe(*block.options)) {
-      absl::StrAppend(&result, "| `", option.key, "` | ",
-                      block.present ? option.value : "", " | ",
-                      option.default_value, " | ", EscapeCell(option.range),
-                      " | ", EscapeCell(option.unit), " | ",
-                      EscapeCell(option.documentation), " |\n");
+    for (const bool is_basic : {true, false}) {
+      for (const OptionDescription& option : Describe(*block.options)) {
+        if (option.is_basic != is_basic) continue;
+        absl::StrAppend(
+            &result, "| `", option.key, "`", is_basic ? " (basic)" : "", " | ",
+            block.present ? option.value : "", " | ", option.default_value,
+            " | ", EscapeCell(option.range), " | ", EscapeCell(option.unit),
+            " | ", EscapeCell(option.documentation), " |\n");
+      }
     }
   }
   return result;
@@ -111,9 +119,20 @@ std::string ToLuaFile(const std::vector<OptionBlock>& blocks) {
                     "CARTOGRAPHER_EXT.", block.name, "\n");
   }
   absl::StrAppend(&result,
-                  "-- Keys that are left out of a block keep their default.\n\n"
-                  "CARTOGRAPHER_EXT = {}\n");
+                  "-- Keys that a block does not have keep their default.\n"
+                  "--\n"
+                  "-- The basic options, to look at first:\n");
   std::set<std::string> written;
+  for (const OptionBlock& block : blocks) {
+    if (!written.insert(block.name).second) continue;
+    for (const OptionDescription& option : Describe(*Defaults(block))) {
+      if (!option.is_basic) continue;
+      absl::StrAppend(&result, "--   ", block.name, ".", option.key, " = ",
+                      option.default_value, "\n");
+    }
+  }
+  written.clear();
+  absl::StrAppend(&result, "\nCARTOGRAPHER_EXT = {}\n");
   for (const OptionBlock& block : blocks) {
     if (!written.insert(block.name).second) continue;
     absl::StrAppend(

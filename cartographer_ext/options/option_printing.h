@@ -29,11 +29,12 @@ struct OptionBlock {
   std::unique_ptr<google::protobuf::Message> options;
 };
 
-// For people: one paragraph for each block, one line for each option. A star
-// marks values that are not the default.
+// For people: the basic options of all blocks, then one paragraph for each
+// block with the others, one line for each option. A star marks values that are
+// not the default.
 std::string ToText(const std::vector<OptionBlock>& blocks);
 
-// One table for each block.
+// One table for each block, basic options first.
 std::string ToMarkdown(const std::vector<OptionBlock>& blocks);
 
 // Assignments for the blocks that are present, to be put behind the stock files

@@ -55,10 +55,11 @@ struct DegeneracyOptions {
   DegeneracyMode mode = DegeneracyMode::kNoiseFloor;
   // Spurious information of a blank wall along itself, in the units of the
   // Hessian, >= 0. Small rotations are scaled by how far they move the points.
-  double translation_floor = 10.;  // 1/m^2
-  double rotation_floor = 10.;     // 1/rad^2
-  double full_ratio = 10.;         // > 1
-  double paper_ratio = 30.;        // kPaperLiteral: degenerate above, > 1
+  // Depends on the scan (MatchInformation).
+  double translation_floor = 0.;  // 1/m^2
+  double rotation_floor = 0.;     // 1/rad^2
+  double full_ratio = 3.;         // > 1
+  double paper_ratio = 2.;        // kPaperLiteral: degenerate above, > 1
 };
 
 enum class DegeneracyState {

@@ -42,8 +42,11 @@ struct ScanMatchOptions {
   double translation_weight = 10.;
   double rotation_weight = 40.;
   PoseSolverOptions solver;
-  bool remap = true;           // step 3
-  double curvature_step = 2.;  // cells, > 0
+  bool remap = true;  // step 3
+  // How far the scan is moved to measure how its cost rises, cells, > 0.
+  // Shorter measures the noise of single cells, longer overlooks small
+  // structures.
+  double curvature_step = 2.;
   ScanInformationOptions information;
   // Standard deviations of a prediction whose covariance is not known; they
   // only enter the reported covariance.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: configuration options
+// LINK: configuration io options
 //
 // cartographer_ext_print_options: what do our blocks of a configuration mean,
 // and what else could they say?
@@ -11,7 +11,9 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_ext/configuration/option_blocks.h"
+#include "cartographer_ext/configuration/option_reference.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
+#include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/options/option_printing.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
@@ -22,10 +24,17 @@ DEFINE_string(configuration_directory, "",
               "command.");
 DEFINE_string(configuration_basename, "",
               "Configuration file; none: every option with its default.");
-DEFINE_string(format, "text", "text, markdown or lua.");
+DEFINE_string(format, "text",
+              "text, markdown, lua or, without a configuration, reference.");
+DEFINE_string(
+    effects_filename, "",
+    "Measured effects for -format=reference, as scripts/option_effects "
+    "writes them.");
 
 namespace cartographer_ext {
 namespace {
+
+constexpr size_t kMaxEffectsSize = 1 << 20;
 
 constexpr char kDescription[] =
     R"(Prints the options of cartographer_ext: value, default, range, meaning.
@@ -33,8 +42,24 @@ constexpr char kDescription[] =
   cartographer_ext_print_options -configuration_basename=default.lua
   cartographer_ext_print_options -format=lua
       writes configuration_files/cartographer_ext.lua to standard output
+  cartographer_ext_print_options -format=reference
+      -effects_filename=docs/option_effects.csv
+      writes docs/options.md to standard output
   cartographer_ext_print_options -configuration_basename=mine.lua -format=lua
       writes the blocks of mine.lua in full, with everything it leaves out)";
+
+int PrintReference(const std::vector<options::OptionBlock>& blocks) {
+  std::vector<evaluation::OptionEffect> effects;
+  if (!FLAGS_effects_filename.empty()) {
+    const auto text = io::ReadFile(FLAGS_effects_filename, kMaxEffectsSize);
+    if (!text.ok()) return tools::ExitCode(text.status());
+    auto parsed = evaluation::ParseOptionEffects(*text, FLAGS_effects_filename);
+    if (!parsed.ok()) return tools::ExitCode(parsed.status());
+    effects = *std::move(parsed);
+  }
+  std::cout << evaluation::OptionReference(blocks, effects);
+  return tools::kExitSuccess;
+}
 
 int Run() {
   evaluation::SlamConfiguration configuration;
@@ -57,6 +82,8 @@ int Run() {
     std::cout << options::ToText(blocks);
   } else if (FLAGS_format == "markdown") {
     std::cout << options::ToMarkdown(blocks);
+  } else if (FLAGS_format == "reference") {
+    return PrintReference(blocks);
   } else {
     std::cout << (has_configuration ? options::ToLua(blocks)
                                     : options::ToLuaFile(blocks));
@@ -71,8 +98,12 @@ int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
   tools::CommandLine(kDescription).Parse(argc, argv);
   if (FLAGS_format != "text" && FLAGS_format != "markdown" &&
-      FLAGS_format != "lua") {
-    return tools::UsageError("-format must be text, markdown or lua");
+      FLAGS_format != "lua" && FLAGS_format != "reference") {
+    return tools::UsageError(
+        "-format must be text, markdown, lua or reference");
+  }
+  if (FLAGS_format == "reference" && !FLAGS_configuration_basename.empty()) {
+    return tools::UsageError("-format=reference is for all options");
   }
   return Run();
 }

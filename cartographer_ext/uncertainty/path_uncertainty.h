@@ -26,7 +26,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -47,11 +46,12 @@ struct PathNoiseOptions {
   double rotation_per_metre = 0.005;     // radians, >= 0
   double rotation_per_radian = 0.015;    // radians, >= 0
   // Constant along the run.
-  double heading_drift = 0.;  // radians per metre, >= 0
-  double scale_error = 0.;    // >= 0
-  // Steps between nodes up to this length are no jumps, > 0.
-  double jump_threshold_metres = std::numeric_limits<double>::infinity();
-  double jump_threshold_radians = std::numeric_limits<double>::infinity();
+  double heading_drift = 5e-4;  // radians per metre, >= 0
+  double scale_error = 0.005;   // >= 0
+  // Steps between nodes up to these are no jumps, > 0. About twice of what the
+  // motion filter of the configurations lets pass between two nodes.
+  double jump_threshold_metres = 0.5;
+  double jump_threshold_radians = 0.4;
 };
 
 class PathUncertainty {

@@ -89,7 +89,7 @@ TEST(OptionTypesTest, LeavesToTheHostWhatIsTheHosts) {
   // Unknown keys, our own blocks, numbers as text.
   EXPECT_EQ(ErrorIn("no_such_key = {}"), "");
   EXPECT_EQ(ErrorIn("pose_graph = { optimization_problem = { "
-                    "cartographer_ext = { gate = 'x' } } }"),
+                    "cartographer_ext = { loop_sigma = 'x' } } }"),
             "");
   EXPECT_EQ(ErrorIn("num_background_threads = '4'"), "");
   EXPECT_EQ(ErrorIn(""), "");

@@ -30,7 +30,7 @@ TEST(StoredOptionsTest, NamesBlocksAndWhatIsNoBlock) {
   options::SetExtension(proto::ScanMatcherOptions(), matcher);
   EXPECT_THAT(DescribeBlocks(options),
               ElementsAre(HasSubstr("trajectory_builder_2d_options.ceres_scan_"
-                                    "matcher_options: schema: 1")));
+                                    "matcher_options: schema: 2")));
   // Bytes that nobody understands do no harm.
   auto* const range = options.mutable_trajectory_builder_2d_options()
                           ->mutable_motion_filter_options();

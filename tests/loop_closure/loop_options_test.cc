@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/loop_options.h"
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "cartographer_ext/loop_decision.pb.h"
 #include "cartographer_ext/options/option_description.h"
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -18,153 +21,119 @@ proto::LoopClosureOptions Defaults() {
   return options;
 }
 
-TEST(LoopOptionsTest, EveryDefaultIsAllowedAndDocumented) {
-  for (const auto& option : options::Describe(Defaults())) {
-    EXPECT_FALSE(option.documentation.empty()) << option.key;
-    EXPECT_EQ(option.value, option.default_value) << option.key;
-  }
-  const auto check = [](const google::protobuf::Message& message) {
-    const auto& descriptor = *message.GetDescriptor();
-    for (int i = 0; i < descriptor.field_count(); ++i) {
-      const auto& field = *descriptor.field(i);
-      const auto& reflection = *message.GetReflection();
-      if (field.cpp_type() ==
-          google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) {
-        EXPECT_EQ(
-            options::CheckNumber(field, reflection.GetDouble(message, &field)),
-            "")
-            << field.full_name();
-      }
-      if (field.cpp_type() ==
-          google::protobuf::FieldDescriptor::CPPTYPE_INT32) {
-        EXPECT_EQ(
-            options::CheckNumber(field, reflection.GetInt32(message, &field)),
-            "")
-            << field.full_name();
-      }
-    }
+// What the keys set, in the order of the message.
+std::map<std::string, double> Values(const LoopOptions& options) {
+  return {
+      {"search.enabled", static_cast<double>(options.search.enabled)},
+      {"search.max_searches_per_node",
+       static_cast<double>(options.search.max_searches_per_node)},
+      {"search.max_linear_window",
+       static_cast<double>(options.search.max_linear_window)},
+      {"search.global_search",
+       static_cast<double>(options.search.global_search)},
+      {"temporal_verification.enabled",
+       static_cast<double>(options.temporal.enabled)},
+      {"temporal_verification.window_base",
+       static_cast<double>(options.temporal.window.base)},
+      {"temporal_verification.window_gamma",
+       static_cast<double>(options.temporal.window.gamma)},
+      {"dynamic_threshold.enabled",
+       static_cast<double>(options.threshold.enabled)},
+      {"dynamic_threshold.low", static_cast<double>(options.threshold.low)},
+      {"dynamic_threshold.span", static_cast<double>(options.threshold.span)},
+      {"fusion.enabled", static_cast<double>(options.fusion.enabled)},
+      {"fusion.min_final_score",
+       static_cast<double>(options.fusion.min_final_score)},
+      {"information.enabled", static_cast<double>(options.information.enabled)},
+      {"information.alpha", static_cast<double>(options.information.alpha)},
+      {"information.beta", static_cast<double>(options.information.beta)},
+      {"information.reference_score",
+       static_cast<double>(options.information.reference_score)},
+      {"information.full_matrix",
+       static_cast<double>(options.information.full_matrix)},
+      {"path_noise.translation_per_metre",
+       static_cast<double>(options.path_noise.translation_per_metre)},
+      {"path_noise.rotation_per_metre",
+       static_cast<double>(options.path_noise.rotation_per_metre)},
+      {"path_noise.heading_drift",
+       static_cast<double>(options.path_noise.heading_drift)},
+      {"path_noise.scale_error",
+       static_cast<double>(options.path_noise.scale_error)},
+      {"compatible_subset.enabled",
+       static_cast<double>(options.compatible_subset.enabled)},
+      {"compatible_subset.min_revisits",
+       static_cast<double>(options.compatible_subset.min_revisits)},
+      {"compatible_subset.single_strong",
+       static_cast<double>(options.compatible_subset.single_strong_enabled)},
+      {"compatible_subset.weak_prior_sigma",
+       static_cast<double>(options.compatible_subset.weak_prior_sigma)},
+      {"compatible_subset.weak_prior_revisits",
+       static_cast<double>(options.compatible_subset.weak_prior_revisits)},
+      {"innovation_veto.enabled",
+       static_cast<double>(options.innovation_veto.enabled)},
+      {"localization.enabled",
+       static_cast<double>(options.relocalization.enabled)},
+      {"log.times", static_cast<double>(options.log_times)},
+      {"paper_mode.temporal_verification",
+       static_cast<double>(options.temporal.comparison.comparison)},
+      {"paper_mode.dynamic_threshold",
+       static_cast<double>(options.threshold.direction)},
+      {"paper_mode.fusion", static_cast<double>(options.fusion.mode)},
+      {"paper_mode.compatible_subset",
+       static_cast<double>(options.compatible_subset.cycle.test)},
   };
-  const proto::LoopClosureOptions defaults = Defaults();
-  check(defaults.search());
-  check(defaults.temporal_verification());
-  check(defaults.dynamic_threshold());
-  check(defaults.fusion());
-  check(defaults.information());
-  check(defaults.path_noise());
-  check(defaults.compatible_subset());
-  check(defaults.innovation_veto());
 }
 
-TEST(LoopOptionsTest, EveryStageCanBeSwitchedOff) {
-  const auto& descriptor = *proto::LoopClosureOptions::descriptor();
-  for (const std::string stage :
-       {"search", "temporal_verification", "dynamic_threshold", "fusion",
-        "information", "compatible_subset", "innovation_veto"}) {
-    const auto* const field = descriptor.FindFieldByName(stage);
-    ASSERT_NE(field, nullptr) << stage;
-    EXPECT_NE(field->message_type()->FindFieldByName("enabled"), nullptr)
-        << stage;
+// The defaults that are written beside the keys are those of the stages.
+TEST(LoopOptionsTest, DefaultsAreThoseOfTheStages) {
+  const std::map<std::string, double> shipped =
+      Values(ToLoopOptions(Defaults()));
+  EXPECT_EQ(shipped, Values(LoopOptions()));
+  std::vector<std::string> compared, keys;
+  for (const auto& value : shipped) compared.push_back(value.first);
+  for (const auto& option : options::Describe(Defaults())) {
+    keys.push_back(option.key);
   }
+  EXPECT_THAT(keys, testing::UnorderedElementsAreArray(compared));
 }
 
-// What is written beside the fields is what the parts have.
-TEST(LoopOptionsTest, DefaultsAgreeWithTheParts) {
-  const proto::LoopClosureOptions defaults = Defaults();
-
-  const auto temporal = ToTemporalVerificationOptions(defaults);
-  const TemporalVerificationOptions temporal_default;
-  EXPECT_EQ(temporal.signature.num_sectors,
-            temporal_default.signature.num_sectors);
-  EXPECT_EQ(temporal.signature.rays_per_sector,
-            temporal_default.signature.rays_per_sector);
-  EXPECT_EQ(temporal.comparison, temporal_default.comparison);
-  EXPECT_EQ(temporal.beams.max_range, temporal_default.beams.max_range);
-  EXPECT_EQ(temporal.beams.max_unknown, temporal_default.beams.max_unknown);
-  EXPECT_EQ(temporal.beams.tolerance, temporal_default.beams.tolerance);
-  EXPECT_EQ(temporal.beams.clip, temporal_default.beams.clip);
-  EXPECT_EQ(temporal.beams.minimum_overlap,
-            temporal_default.beams.minimum_overlap);
-  EXPECT_EQ(temporal.beams.max_beams, temporal_default.beams.max_beams);
-  EXPECT_EQ(temporal.oversampling, temporal_default.oversampling);
-  EXPECT_EQ(temporal.step, temporal_default.step);
-  EXPECT_EQ(temporal.band, temporal_default.band);
-
-  const auto threshold = ToDynamicThresholdOptions(defaults);
-  const DynamicThresholdOptions threshold_default;
-  EXPECT_EQ(threshold.direction, threshold_default.direction);
-  EXPECT_EQ(threshold.low, threshold_default.low);
-  EXPECT_EQ(threshold.span, threshold_default.span);
-  EXPECT_EQ(threshold.sensitivity, threshold_default.sensitivity);
-  EXPECT_EQ(threshold.window, threshold_default.window);
-  EXPECT_EQ(threshold.base_threshold, threshold_default.base_threshold);
-
-  const auto fusion = ToScoreFusionOptions(defaults);
-  const ScoreFusionOptions fusion_default;
-  EXPECT_EQ(fusion.window, fusion_default.window);
-  EXPECT_EQ(fusion.sigma_floor, fusion_default.sigma_floor);
-  EXPECT_EQ(ToLoopMixtureOptions(defaults).prior_strength,
-            LoopMixtureOptions().prior_strength);
-  EXPECT_EQ(ToLoopMixtureOptions(defaults).capacity,
-            LoopMixtureOptions().capacity);
-
-  const auto weights = ToConfidenceWeightOptions(defaults);
-  const ConfidenceWeightOptions weights_default;
-  EXPECT_EQ(weights.alpha, weights_default.alpha);
-  EXPECT_EQ(weights.beta, weights_default.beta);
-  EXPECT_EQ(weights.reference_score, weights_default.reference_score);
-  EXPECT_EQ(weights.minimum_score, weights_default.minimum_score);
-
-  const auto noise = ToPathNoiseOptions(defaults);
-  const uncertainty::PathNoiseOptions noise_default;
-  EXPECT_EQ(noise.translation_per_metre, noise_default.translation_per_metre);
-  EXPECT_EQ(noise.translation_per_radian, noise_default.translation_per_radian);
-  EXPECT_EQ(noise.rotation_per_metre, noise_default.rotation_per_metre);
-  EXPECT_EQ(noise.rotation_per_radian, noise_default.rotation_per_radian);
-
-  const auto subset = ToCompatibleSubsetOptions(defaults);
-  const CompatibleSubsetOptions subset_default;
-  EXPECT_EQ(subset.cycle.test, subset_default.cycle.test);
-  EXPECT_EQ(subset.cycle.chi_square_bound,
-            subset_default.cycle.chi_square_bound);
-  EXPECT_EQ(subset.cycle.translation_bound,
-            subset_default.cycle.translation_bound);
-  EXPECT_EQ(subset.cycle.rotation_bound, subset_default.cycle.rotation_bound);
-  EXPECT_EQ(subset.revisit_distance, subset_default.revisit_distance);
-  EXPECT_EQ(subset.informative_sigma, subset_default.informative_sigma);
-  EXPECT_EQ(subset.min_revisits, subset_default.min_revisits);
-  EXPECT_EQ(subset.tolerance, subset_default.tolerance);
-  EXPECT_EQ(subset.predicted_tolerance, subset_default.predicted_tolerance);
-  EXPECT_EQ(subset.single_strong_enabled, subset_default.single_strong_enabled);
-  EXPECT_EQ(subset.single_strong_score, subset_default.single_strong_score);
-  EXPECT_EQ(subset.single_strong_loops, subset_default.single_strong_loops);
-  EXPECT_EQ(subset.max_clusters, subset_default.max_clusters);
-  EXPECT_EQ(ToInnovationOptions(defaults).chi_square_bound,
-            InnovationOptions().chi_square_bound);
+TEST(LoopOptionsTest, EveryKeyHasAnEffect) {
+  const auto& block = *proto::LoopClosureOptions::descriptor();
+  int num_keys = 0;
+  for (int i = 0; i < block.field_count(); ++i) {
+    const auto* const table = block.field(i)->message_type();
+    if (table == nullptr) continue;
+    for (int k = 0; k < table->field_count(); ++k, ++num_keys) {
+      const auto* const field = table->field(k);
+      std::vector<double> read;
+      for (const int value : {0, 7}) {
+        proto::LoopClosureOptions message = Defaults();
+        auto* const target =
+            message.GetReflection()->MutableMessage(&message, block.field(i));
+        const auto* const reflection = target->GetReflection();
+        switch (field->cpp_type()) {
+          case google::protobuf::FieldDescriptor::CPPTYPE_BOOL:
+            reflection->SetBool(target, field, value > 0);
+            break;
+          case google::protobuf::FieldDescriptor::CPPTYPE_INT32:
+            reflection->SetInt32(target, field, value);
+            break;
+          default:
+            reflection->SetDouble(target, field, value);
+        }
+        read.push_back(Values(ToLoopOptions(message))
+                           .at(block.field(i)->name() + "." + field->name()));
+      }
+      EXPECT_NE(read[0], read[1]) << field->full_name();
+    }
+  }
+  EXPECT_EQ(num_keys, static_cast<int>(options::Describe(Defaults()).size()));
 }
 
-TEST(LoopOptionsTest, ChoicesArePassedOn) {
-  proto::LoopClosureOptions options = Defaults();
-  options.mutable_temporal_verification()->set_step(
-      proto::LoopClosureOptions::TemporalVerification::SYMMETRIC);
-  options.mutable_dynamic_threshold()->set_direction(
-      proto::LoopClosureOptions::DynamicThreshold::AS_PRINTED);
-  options.mutable_compatible_subset()->set_test(
-      proto::LoopClosureOptions::CompatibleSubset::FIXED_BOUND);
-  EXPECT_EQ(ToTemporalVerificationOptions(options).step,
-            WarpingStep::kSymmetric);
-  EXPECT_EQ(ToDynamicThresholdOptions(options).direction,
-            ThresholdDirection::kAsPrinted);
-  EXPECT_EQ(ToCompatibleSubsetOptions(options).cycle.test,
-            uncertainty::CycleTest::kFixedBound);
-}
-
-TEST(LoopOptionsTest, WindowOfThePaperAndCovarianceOfALoop) {
-  proto::LoopClosureOptions options = Defaults();
-  options.mutable_temporal_verification()->set_window_base(4.);
-  EXPECT_EQ(VariableWindow(ToVariableWindowOptions(options), 0.), 4);
-  EXPECT_EQ(VariableWindow(ToVariableWindowOptions(options), 100.), 6);
-  options.mutable_path_noise()->set_loop_translation(0.2);
-  options.mutable_path_noise()->set_loop_rotation(0.1);
+TEST(LoopOptionsTest, CovarianceOfALoop) {
+  LoopOptions options;
+  options.loop_translation = 0.2;
+  options.loop_rotation = 0.1;
   const Eigen::Matrix3d covariance = LoopCovariance(options);
   EXPECT_NEAR(covariance(0, 0), 0.04, 1e-12);
   EXPECT_NEAR(covariance(1, 1), 0.04, 1e-12);

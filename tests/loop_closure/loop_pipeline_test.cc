@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "cartographer_ext/loop_closure/decision_record.h"
-#include "cartographer_ext/options/option_description.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -46,17 +45,11 @@ OccupancyView Corridor(bool wide) {
 class LoopPipelineTest : public testing::Test {
  protected:
   LoopPipelineTest() : world_(Corridor(true)), other_(Corridor(false)) {
-    options::SetDefaults(&options_);
-    options_.mutable_compatible_subset()->set_single_strong(false);
+    options_.compatible_subset.single_strong_enabled = false;
     // The robot turns round in one step.
-    options_.mutable_path_noise()->set_free_radians(4.);
-    options_.mutable_temporal_verification()->set_comparison(
-        proto::LoopClosureOptions::TemporalVerification::SECTORS);
-    options_.mutable_temporal_verification()->set_max_range(10.);
-    options_.mutable_temporal_verification()->set_clip(1.);
-    options_.mutable_temporal_verification()->set_minimum_overlap(0.5);
-    options_.mutable_fusion()->set_mode(
-        proto::LoopClosureOptions::Fusion::AS_PRINTED);
+    options_.path_noise.jump_threshold_radians = 4.;
+    options_.temporal.comparison.comparison = ScanComparison::kSectors;
+    options_.fusion.mode = FusionMode::kAsPrinted;
   }
 
   static Pose2 True(int i) {
@@ -95,12 +88,12 @@ class LoopPipelineTest : public testing::Test {
   }
 
   LoopDecision Record(const LoopCandidate& candidate) const {
-    return MakeDecisionRecord(candidate, options_.log().times());
+    return MakeDecisionRecord(candidate, options_.log_times);
   }
 
   OccupancyView world_;
   OccupancyView other_;
-  proto::LoopClosureOptions options_;
+  LoopOptions options_;
   std::unique_ptr<LoopPipeline> pipeline_;
 };
 
@@ -142,7 +135,7 @@ TEST_F(LoopPipelineTest, ConfirmedLoopsGoThroughAllStages) {
 }
 
 TEST_F(LoopPipelineTest, AnotherWayScoresLow) {
-  options_.mutable_dynamic_threshold()->set_base_threshold(0.9);
+  options_.threshold.base_threshold = 0.9;
   MakePipeline();
   pipeline_->Process(Candidate(3, 120, 0., &other_));
   const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
@@ -202,7 +195,7 @@ TEST_F(LoopPipelineTest, NothingIsRememberedOfADeletedTrajectory) {
 }
 
 TEST_F(LoopPipelineTest, LowFinalScoreIsRejected) {
-  options_.mutable_fusion()->set_min_final_score(0.95);
+  options_.fusion.min_final_score = 0.95;
   MakePipeline();
   pipeline_->Process(Candidate(3, 120, 0., &world_));
   const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
@@ -211,7 +204,7 @@ TEST_F(LoopPipelineTest, LowFinalScoreIsRejected) {
 }
 
 TEST_F(LoopPipelineTest, ImpossibleInnovationIsVetoed) {
-  options_.mutable_temporal_verification()->set_enabled(false);
+  options_.temporal.enabled = false;
   MakePipeline();
   pipeline_->Process(Candidate(3, 60, 15., &world_));
   const std::vector<LoopCandidate> outcomes = pipeline_->Decide();
@@ -222,8 +215,7 @@ TEST_F(LoopPipelineTest, ImpossibleInnovationIsVetoed) {
 }
 
 TEST_F(LoopPipelineTest, WithoutHistoryTheOthersDecide) {
-  options_.mutable_fusion()->set_mode(
-      proto::LoopClosureOptions::Fusion::LIKELIHOOD_RATIO);
+  options_.fusion.mode = FusionMode::kLikelihoodRatio;
   MakePipeline();
   // Maps that show nothing.
   const OccupancyView empty(Eigen::Vector2d::Zero(), 0.1, 10, 10);
@@ -241,12 +233,12 @@ TEST_F(LoopPipelineTest, WithoutHistoryTheOthersDecide) {
 
 TEST_F(LoopPipelineTest, EveryCombinationOfStagesRuns) {
   for (int mask = 0; mask < 64; ++mask) {
-    options_.mutable_temporal_verification()->set_enabled(mask & 1);
-    options_.mutable_dynamic_threshold()->set_enabled(mask & 2);
-    options_.mutable_fusion()->set_enabled(mask & 4);
-    options_.mutable_information()->set_enabled(mask & 8);
-    options_.mutable_compatible_subset()->set_enabled(mask & 16);
-    options_.mutable_innovation_veto()->set_enabled(mask & 32);
+    options_.temporal.enabled = mask & 1;
+    options_.threshold.enabled = mask & 2;
+    options_.fusion.enabled = mask & 4;
+    options_.information.enabled = mask & 8;
+    options_.compatible_subset.enabled = mask & 16;
+    options_.innovation_veto.enabled = mask & 32;
     MakePipeline();
     pipeline_->Process(Candidate(5, 100, 0., &world_));
     pipeline_->Process(Candidate(3, 120, 0., &world_));
@@ -307,8 +299,7 @@ TEST_F(LoopPipelineTest, BadNumbersDoNotCrash) {
 TEST_F(LoopPipelineTest, RepeatsExactly) {
   std::vector<std::string> first;
   for (int run = 0; run < 2; ++run) {
-    options_.mutable_fusion()->set_mode(
-        proto::LoopClosureOptions::Fusion::LIKELIHOOD_RATIO);
+    options_.fusion.mode = FusionMode::kLikelihoodRatio;
     MakePipeline();
     std::vector<std::string> records;
     for (int k = 0; k < 40; ++k) {
@@ -332,8 +323,8 @@ TEST_F(LoopPipelineTest, RepeatsExactly) {
 
 TEST_F(LoopPipelineTest, TimesAndFullMatrixOnlyWhereAskedFor) {
   for (const bool asked : {false, true}) {
-    options_.mutable_log()->set_times(asked);
-    options_.mutable_information()->set_full_matrix(asked);
+    options_.log_times = asked;
+    options_.information.full_matrix = asked;
     MakePipeline();
     for (const int submap : {5, 3}) {
       LoopCandidate candidate =
@@ -364,7 +355,7 @@ TEST_F(LoopPipelineTest, TimesAndFullMatrixOnlyWhereAskedFor) {
 }
 
 TEST_F(LoopPipelineTest, UnpredictedLoopsOfAnotherRunNeedMorePlaces) {
-  options_.mutable_compatible_subset()->set_single_strong(true);
+  options_.compatible_subset.single_strong_enabled = true;
   MakePipeline();
   // Run 1 repeats the way of run 0, in whose submaps it is found.
   for (int i = 0; i <= 60; ++i) {

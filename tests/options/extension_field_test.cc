@@ -67,7 +67,7 @@ TEST(ExtensionFieldDeathTest, NewerSchemaAndGarbageAreRefused) {
   auto* const fields = stock.GetReflection()->MutableUnknownFields(&stock);
   fields->AddLengthDelimited(kExtensionFieldNumber, newer.SerializeAsString());
   test::SampleOptions back;
-  EXPECT_DEATH(GetExtension(stock, &back), "was written with schema 2");
+  EXPECT_DEATH(GetExtension(stock, &back), "was written with schema 3");
   fields->Clear();
   fields->AddLengthDelimited(kExtensionFieldNumber, "\xff\xff");
   EXPECT_DEATH(GetExtension(stock, &back), "does not hold");

@@ -54,6 +54,15 @@ TEST(LuaOptionsDeathTest, ErrorsNameKeyValueAndRange) {
                "allowed: enabled, "
                "mode, window");
   EXPECT_DEATH(
+      Read("return { cartographer_ext = { window = { size = 4 } } }", &sample),
+      "window.size: unknown key, now called length; allowed: length");
+  EXPECT_DEATH(
+      Read("return { cartographer_ext = { window = { width = 4 } } }", &sample),
+      "window.width: unknown key, removed, it is a constant now "
+      ".docs/options.md.; allowed: length, gamma");
+  EXPECT_DEATH(Read("return { cartographer_ext = { schema = 1 } }", &sample),
+               "schema: unknown key, allowed: ");
+  EXPECT_DEATH(
       Read("return { cartographer_ext = { window = { length = 0 } } }",
            &sample),
       "POSE_GRAPH.sample.cartographer_ext.window.length: 0 is out of range");

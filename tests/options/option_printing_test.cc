@@ -22,6 +22,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 // The same block in two places, absent in the second.
 std::vector<OptionBlock> SampleBlocks() {
@@ -42,12 +43,14 @@ std::vector<OptionBlock> SampleBlocks() {
   return blocks;
 }
 
-TEST(OptionPrintingTest, TextMarksChangedValues) {
+TEST(OptionPrintingTest, TextShowsBasicOptionsFirstAndMarksChangedValues) {
   const std::string text = ToText(SampleBlocks());
-  EXPECT_THAT(text, HasSubstr("STOCK.first.cartographer_ext\n  Samples.\n"));
+  EXPECT_THAT(text,
+              StartsWith("Basic options\n* STOCK.first.cartographer_ext.window."
+                         "length = 4  (default 10; >= 1 and <= 100)\n\n"
+                         "Advanced options\n\nSTOCK.first.cartographer_ext\n  "
+                         "Samples.\n"));
   EXPECT_THAT(text, HasSubstr("\n  enabled = true  (default true)\n"));
-  EXPECT_THAT(text, HasSubstr("\n* window.length = 4  (default 10; >= 1 and <= "
-                              "100)\n"));
   EXPECT_THAT(text,
               HasSubstr("\n  window.gamma = 0.3  (default 0.3; > 0; 1/s)\n"));
   EXPECT_THAT(text, HasSubstr("STOCK.second.cartographer_ext: absent, stock "
@@ -57,11 +60,12 @@ TEST(OptionPrintingTest, TextMarksChangedValues) {
 TEST(OptionPrintingTest, MarkdownIsATable) {
   const std::string markdown = ToMarkdown(SampleBlocks());
   EXPECT_THAT(markdown, HasSubstr("## `STOCK.first.cartographer_ext`\n"));
-  EXPECT_THAT(markdown, HasSubstr("| `window.length` | 4 | 10 | >= 1 and &lt;= "
-                                  "100 |  | How many. |\n"));
-  // No value where the block is absent.
   EXPECT_THAT(markdown,
-              HasSubstr("| `window.length` |  | 10 | >= 1 and &lt;= 100 |"));
+              HasSubstr("|---|---|---|---|---|---|\n| `window.length` (basic) "
+                        "| 4 | 10 | >= 1 and &lt;= 100 |  | How many. |\n"));
+  // No value where the block is absent.
+  EXPECT_THAT(markdown, HasSubstr("| `window.length` (basic) |  | 10 | >= 1 "
+                                  "and &lt;= 100 |"));
 }
 
 TEST(OptionPrintingTest, LuaHasWhatIsPresent) {
@@ -73,6 +77,7 @@ TEST(OptionPrintingTest, LuaHasWhatIsPresent) {
 
 TEST(OptionPrintingTest, LuaFileReadsBackAsDefaults) {
   const std::string file = ToLuaFile(SampleBlocks());
+  EXPECT_THAT(file, HasSubstr("--   sample.window.length = 10\n\n"));
   // Once, though it may stand in two places.
   const size_t first = file.find("CARTOGRAPHER_EXT.sample = {");
   ASSERT_NE(first, std::string::npos);

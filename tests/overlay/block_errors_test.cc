@@ -29,12 +29,12 @@ const std::vector<Place>& Places() {
        "max_searches_per_node"},
 #ifdef CARTOGRAPHER_EXT_SWAP_CERES_SCAN_MATCHER
       {"loop_scan_matcher", "POSE_GRAPH.constraint_builder.ceres_scan_matcher",
-       "degeneracy", "full_ratio"},
+       "degeneracy", "translation_floor"},
 #endif
 #endif
 #ifdef CARTOGRAPHER_EXT_SWAP_CERES_SCAN_MATCHER
       {"local_scan_matcher", "TRAJECTORY_BUILDER_2D.ceres_scan_matcher",
-       "degeneracy", "full_ratio"},
+       "degeneracy", "translation_floor"},
 #endif
 #ifdef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
       {"optimization_problem", "POSE_GRAPH.optimization_problem", "",
@@ -42,7 +42,7 @@ const std::vector<Place>& Places() {
 #endif
 #ifdef CARTOGRAPHER_EXT_SWAP_LOCAL_TRAJECTORY_BUILDER
       {"local_trajectory_builder", "TRAJECTORY_BUILDER_2D", "odometry",
-       "rotation_noise"},
+       "translation_noise"},
 #endif
   };
   return *places;
@@ -83,6 +83,17 @@ TEST_P(BlockErrorsDeathTest, WrongType) {
 TEST_P(BlockErrorsDeathTest, OutOfRange) {
   ExpectError(Number("-1"), NumberKey() + ": -1 is out of range, allowed: >");
 }
+
+#if defined(CARTOGRAPHER_EXT_SWAP_CONSTRAINT_BUILDER) && \
+    !(defined(CARTOGRAPHER_EXT_SWAP_FULL_INFORMATION) && \
+      defined(CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM))
+TEST(FullMatrixDeathTest, NeedsItsSwaps) {
+  EXPECT_DEATH(cartographer::mapping::test::LoadSlamOptions(
+                   "POSE_GRAPH.constraint_builder.cartographer_ext = "
+                   "{ information = { full_matrix = true } }"),
+               "information.full_matrix: true needs the swaps");
+}
+#endif
 
 INSTANTIATE_TEST_SUITE_P(EachPlace, BlockErrorsDeathTest,
                          testing::ValuesIn(Places()),

@@ -18,6 +18,14 @@ TEST(PrintOptionsMainTest, TheCommentedLuaFileIsUpToDate) {
   EXPECT_EQ(result.out, ReadFile("configuration_files/cartographer_ext.lua"));
 }
 
+TEST(PrintOptionsMainTest, TheReferenceIsUpToDate) {
+  const CommandResult result = RunCommand(
+      "print_options",
+      {"-format=reference", "-effects_filename=docs/option_effects.csv"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_EQ(result.out, ReadFile("docs/options.md"));
+}
+
 TEST(PrintOptionsMainTest, StockConfigurationHasNoBlock) {
   const CommandResult lua = RunCommand(
       "print_options", {"-configuration_basename=stock.lua", "-format=lua"});
@@ -65,6 +73,14 @@ TEST(PrintOptionsMainTest, PrintsABlockInFull) {
 
 TEST(PrintOptionsMainTest, WrongUsage) {
   EXPECT_EQ(RunCommand("print_options", {"-format=html"}).exit_code, 2);
+  EXPECT_EQ(RunCommand("print_options", {"-format=reference",
+                                         "-configuration_basename=stock.lua"})
+                .exit_code,
+            2);
+  EXPECT_EQ(RunCommand("print_options",
+                       {"-format=reference", "-effects_filename=no_such_file"})
+                .exit_code,
+            1);
   const CommandResult missing =
       RunCommand("print_options", {"-configuration_basename=no_such_file.lua"});
   EXPECT_EQ(missing.exit_code, 1);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace uncertainty {
@@ -21,7 +22,7 @@ class LeastUncertainPathsTest : public testing::Test {
   }
 
   static PathNoiseOptions Noise() {
-    PathNoiseOptions options;
+    PathNoiseOptions options = RandomWalk();
     options.translation_per_metre = 1.;
     options.translation_per_radian = 0.;
     options.rotation_per_metre = 1e-9;
@@ -119,7 +120,7 @@ TEST_F(LeastUncertainPathsTest, OtherTrajectoriesAreReachedOverLoops) {
 }
 
 TEST(LeastUncertainPathsOfOneLoopTest, ALoopShortensThePath) {
-  PathNoiseOptions options;
+  PathNoiseOptions options = RandomWalk();
   options.translation_per_metre = 0.1;
   options.translation_per_radian = 0.;
   options.rotation_per_metre = 0.01;

@@ -7,13 +7,14 @@
 
 #include "cartographer_ext/common/random.h"
 #include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace uncertainty {
 namespace {
 
 PathNoiseOptions Noise() {
-  PathNoiseOptions options;
+  PathNoiseOptions options = RandomWalk();
   options.translation_per_metre = 0.1;
   options.translation_per_radian = 0.;
   options.rotation_per_metre = 0.01;
@@ -115,7 +116,7 @@ TEST(PathUncertaintyTest, NearestNodeAndMissingTrajectories) {
 }
 
 TEST(PathUncertaintyTest, DriftAndScaleAreConstantAlongTheRun) {
-  PathNoiseOptions options;
+  PathNoiseOptions options = RandomWalk();
   options.translation_per_metre = 0.;
   options.rotation_per_metre = 0.;
   options.heading_drift = 0.01;
@@ -132,7 +133,7 @@ TEST(PathUncertaintyTest, DriftAndScaleAreConstantAlongTheRun) {
 }
 
 TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
-  PathNoiseOptions options;
+  PathNoiseOptions options = RandomWalk();
   options.translation_per_metre = 0.;
   options.rotation_per_metre = 0.;
   options.translation_per_radian = 0.;

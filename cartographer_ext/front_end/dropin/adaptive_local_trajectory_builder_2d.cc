@@ -14,7 +14,6 @@
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
-#include "cartographer_ext/front_end/front_end_options.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/match_record.pb.h"
 #include "glog/logging.h"
@@ -89,7 +88,7 @@ AssembledScan Transform(const AssembledScan& scan, const Pose2& pose) {
 
 AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
     const mapping::proto::LocalTrajectoryBuilderOptions2D& options,
-    const proto::FrontEndOptions& extension,
+    const FrontEndOptions& extension,
     const std::vector<std::string>& expected_range_sensor_ids)
     : options_(options),
       extension_(extension),
@@ -100,11 +99,11 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
       motion_filter_(options.motion_filter_options()),
       range_data_collator_(expected_range_sensor_ids),
       assembler_(options,
-                 ToWallFillingOptions(
+                 WallFillingFor(
                      extension,
                      options.submaps_options().grid_options_2d().resolution())),
-      predictor_(ToMotionPredictorOptions(extension)),
-      matcher_(extension, options.ceres_scan_matcher_options()) {}
+      predictor_(extension.prediction),
+      matcher_(extension.search, options.ceres_scan_matcher_options()) {}
 
 AdaptiveLocalTrajectoryBuilder2D::~AdaptiveLocalTrajectoryBuilder2D() {}
 
@@ -225,7 +224,7 @@ bool AdaptiveLocalTrajectoryBuilder2D::MustWaitForOdometry(
     is_waiting_ = true;
     waiting_since_ = seconds;
   }
-  return seconds - waiting_since_ < extension_.odometry().max_wait_after_gap();
+  return seconds - waiting_since_ < extension_.max_wait_after_gap;
 }
 
 LocalMatch AdaptiveLocalTrajectoryBuilder2D::MatchScan(
@@ -237,12 +236,11 @@ LocalMatch AdaptiveLocalTrajectoryBuilder2D::MatchScan(
     return match;
   }
   // The older submap contains more scans.
-  return matcher_.Match(
-      pose_, prediction,
-      extension_.features().enabled()
-          ? FeaturePoints(ToAdaptiveFeatureOptions(extension_), cloud)
-          : cloud,
-      *submaps.front());
+  return matcher_.Match(pose_, prediction,
+                        extension_.match_features_only
+                            ? FeaturePoints(extension_.features, cloud)
+                            : cloud,
+                        *submaps.front());
 }
 
 OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(

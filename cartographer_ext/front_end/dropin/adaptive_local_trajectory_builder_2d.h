@@ -41,9 +41,9 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/front_end/dropin/local_matcher.h"
 #include "cartographer_ext/front_end/dropin/scan_assembler.h"
+#include "cartographer_ext/front_end/front_end_options.h"
 #include "cartographer_ext/front_end/match_recorder.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
-#include "cartographer_ext/front_end_options.pb.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -59,7 +59,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   AdaptiveLocalTrajectoryBuilder2D(
       const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
           options,
-      const proto::FrontEndOptions& extension,
+      const FrontEndOptions& extension,
       const std::vector<std::string>& expected_range_sensor_ids);
   ~AdaptiveLocalTrajectoryBuilder2D();
   AdaptiveLocalTrajectoryBuilder2D(const AdaptiveLocalTrajectoryBuilder2D&) =
@@ -111,7 +111,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
               OdometryState odometry, bool is_node) const;
 
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
-  const proto::FrontEndOptions extension_;
+  const FrontEndOptions extension_;
   // Of the scope of construction; both null without one.
   const std::shared_ptr<PoseGraphContext> context_;
   MatchRecorder* const recorder_;

@@ -92,9 +92,9 @@ double Inconsistency(const Pose2& predicted, const Pose2& found) {
 }
 
 LocalMatcher::LocalMatcher(
-    const proto::FrontEndOptions& options,
+    const LocalSearchOptions& options,
     const stock_proto::CeresScanMatcherOptions2D& matcher_options)
-    : options_(options.search()),
+    : options_(options),
       matcher_(matcher_options, MatcherExtension(matcher_options)) {}
 
 LocalMatch LocalMatcher::MatchFrom(const Prediction& prediction,
@@ -113,9 +113,8 @@ LocalMatch LocalMatcher::MatchFrom(const Prediction& prediction,
 bool LocalMatcher::IsDoubtful(const LocalMatch& match,
                               const MotionPrediction& prediction) const {
   return prediction.is_uncertain ||
-         (has_mean_score_ &&
-          match.score < mean_score_ - options_.score_drop()) ||
-         match.report.mahalanobis > options_.gate();
+         (has_mean_score_ && match.score < mean_score_ - options_.score_drop) ||
+         match.report.mahalanobis > options_.gate;
 }
 
 Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
@@ -123,14 +122,13 @@ Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
                            const PointCloud& cloud, const Grid2D& grid) const {
   stock_proto::RealTimeCorrelativeScanMatcherOptions options;
   options.set_linear_search_window(std::min(
-      options_.max_linear_window(),
-      std::max(
-          prediction.search_radius,
-          options_.linear_window() + 0.5 * std::hypot(motion.x, motion.y))));
+      options_.max_linear_window,
+      std::max(prediction.search_radius,
+               options_.linear_window + 0.5 * std::hypot(motion.x, motion.y))));
   options.set_angular_search_window(
       std::max(prediction.search_angle,
-               std::min(options_.max_angular_window(),
-                        options_.angular_window() + std::abs(motion.theta))));
+               std::min(options_.max_angular_window,
+                        options_.angular_window + std::abs(motion.theta))));
   options.set_translation_delta_cost_weight(kSearchPenalty);
   options.set_rotation_delta_cost_weight(kSearchPenalty);
   const scan_matching::RealTimeMatcher2D search(options);
@@ -148,7 +146,7 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
       ToPrediction(last_pose, prediction.motion, prediction.covariance);
   predicted.scans_in_map = submap.num_range_data();
   LocalMatch match = MatchFrom(predicted, predicted.pose, cloud, grid);
-  if (options_.enabled() && IsDoubtful(match, prediction)) {
+  if (options_.enabled && IsDoubtful(match, prediction)) {
     match =
         MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
   }
@@ -166,7 +164,7 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
                                          const LocalMatch& matched) const {
   LocalMatch best = matched;
   best.searched = true;
-  double to_beat = matched.score + options_.min_gain();
+  double to_beat = matched.score + options_.min_gain;
   for (const Pose2& motion : MotionsToSearch(prediction)) {
     Prediction start = ToPrediction(
         last_pose, motion, kCovarianceScaleAfterSearch * prediction.covariance);
@@ -174,10 +172,10 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
     const LocalMatch match =
         MatchFrom(start, Search(start.pose, motion, prediction, cloud, grid),
                   cloud, grid);
-    const double gain = options_.min_gain() +
+    const double gain = options_.min_gain +
                         (prediction.is_uncertain
                              ? 0.
-                             : options_.contradiction_gain() *
+                             : options_.contradiction_gain *
                                    Inconsistency(predicted.pose, match.pose));
     if (match.score <= std::max(to_beat, matched.score + gain)) continue;
     to_beat = match.score;

@@ -21,8 +21,8 @@
 #include "cartographer/mapping/proto/scan_matching/ceres_scan_matcher_options_2d.pb.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/front_end_options.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
-#include "cartographer_ext/front_end_options.pb.h"
 #include "cartographer_ext/scan_matching/dropin/degeneracy_aware_scan_matcher_2d.h"
 #include "cartographer_ext/scan_matching/match_report.h"
 
@@ -41,7 +41,7 @@ struct LocalMatch {
 
 class LocalMatcher {
  public:
-  LocalMatcher(const proto::FrontEndOptions& options,
+  LocalMatcher(const LocalSearchOptions& options,
                const cartographer::mapping::scan_matching::proto::
                    CeresScanMatcherOptions2D& matcher_options);
 
@@ -72,7 +72,7 @@ class LocalMatcher {
                const cartographer::sensor::PointCloud& cloud,
                const cartographer::mapping::Grid2D& grid) const;
 
-  const proto::FrontEndOptions::Search options_;
+  const LocalSearchOptions options_;
   const scan_matching::DegeneracyAwareScanMatcher2D matcher_;
   double mean_score_ = 0.;
   bool has_mean_score_ = false;

@@ -24,9 +24,12 @@ namespace front_end {
 struct ImuPredictorOptions {
   bool enabled = true;
   ImuNoiseOptions noise;
+  // Standard deviations of the biases that are left after their estimate, of
+  // the accelerometers with the tilt.
   double yaw_rate_bias_noise = 0.002;     // rad/s
   double acceleration_bias_noise = 0.05;  // m/s^2
-  double stationary_time = 1.;            // seconds
+  // After so long stationary the mean of the readings is taken as bias.
+  double stationary_time = 1.;  // seconds
 };
 
 struct ImuMotion {

@@ -35,6 +35,7 @@ struct PlanarImuReading {
   double yaw_rate = 0.;                                    // rad/s
 };
 
+// Of inexpensive MEMS sensors, vibration of the robot included.
 struct ImuNoiseOptions {
   double acceleration_density = 0.02;  // m/s^2 / sqrt(Hz), >= 0
   double yaw_rate_density = 0.001;     // rad/s / sqrt(Hz), >= 0

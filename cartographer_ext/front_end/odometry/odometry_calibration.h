@@ -50,6 +50,8 @@ struct OdometryCalibrationOptions {
   bool estimate_odometry_scale = true;  // translation_scale
   bool estimate_rotation = false;       // rotation_scale, rotation_per_metre
   double translation_scale = 1.;        // initial value
+  // Of a robot as it comes: tyres and load change the scale by one or two per
+  // cent.
   double translation_scale_sigma = 0.02;
   double rotation_scale = 1.;
   double rotation_scale_sigma = 0.03;
@@ -57,6 +59,7 @@ struct OdometryCalibrationOptions {
   double rotation_per_metre_sigma = 0.02;
   // Limit of the correction around the initial values, of the scales and in
   // radians per metre.
+  // Five sigmas: more is a fault and no scale.
   double max_deviation = 0.1;
 };
 

@@ -48,14 +48,23 @@ enum class OdometryState {
 
 struct OdometryCheckOptions {
   bool enabled = true;
-  double window = 1.;               // seconds
-  double gate = 25.;                // chi2, 3 degrees of freedom
+  // Motions are also compared over this time. Longer detects weaker slip,
+  // later.
+  double window = 1.;  // seconds
+  // chi2, 3 degrees of freedom: far beyond 0.9999, since errors of scan
+  // matching are not Gaussian and a false alarm costs the odometry.
+  double gate = 25.;
+  // Standard deviations of the comparison, of scan matching above all: about
+  // half a cell of 5 cm.
   double translation_noise = 0.03;  // metres
   double rotation_noise = 0.03;     // radians
   double translation_noise_per_metre = 0.05;
   double rotation_noise_per_radian = 0.1;
-  double jump_distance = 0.3;     // metres
-  double jump_angle = 0.3;        // radians
+  // A change of motion between two scans by this much is suspect at once,
+  // before matching: beyond what the search around a prediction covers easily.
+  double jump_distance = 0.3;  // metres
+  double jump_angle = 0.3;     // radians
+  // Where the translation is not observable, above what robots in buildings do.
   double max_acceleration = 1.5;  // m/s^2
 };
 

@@ -29,12 +29,17 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Standard deviations above. The defaults suit any wheeled robot: they are wide
+// enough that a scan which determines a direction decides it, and finite so
+// that odometry decides the others.
 struct OdometryNoiseOptions {
-  double translation = 0.01;  // metres
+  double translation = 0.01;  // metres, of a stationary robot
   double translation_per_metre = 0.1;
-  double rotation = 0.005;  // radians
+  double rotation = 0.005;  // radians, of a stationary robot
   double rotation_per_radian = 0.2;
   double rotation_per_metre = 0.02;
+  // How far beyond its last reading odometry is extrapolated: some intervals
+  // between messages. Later the prediction goes on without it.
   double max_extrapolation = 0.3;  // seconds
 };
 

@@ -23,6 +23,8 @@ namespace front_end {
 struct TimeOffsetOptions {
   bool estimate = true;
   double initial = 0.;  // seconds
+  // Range of candidates: scans are stamped late more often than early, by a
+  // driver or a rotation of the laser.
   double minimum = -0.1;
   double maximum = 0.25;
   double step = 0.01;

@@ -31,7 +31,8 @@ namespace front_end {
 struct AdaptiveFeatureOptions {
   int num_neighbors = 10;         // k, > 0; the point itself is not one of them
   bool distance_weighted = true;  // eq. 2 instead of eq. 1
-  int min_points = 50;            // minimum number of features, >= 0
+  // Minimum number of features, >= 0: with fewer a match starves.
+  int min_points = 80;
 };
 
 // sigma(p_i) of eq. 3 for every point; 0 where there are fewer than two

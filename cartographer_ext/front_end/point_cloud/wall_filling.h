@@ -21,9 +21,11 @@ namespace cartographer_ext {
 namespace front_end {
 
 struct WallFillingOptions {
-  double spacing = 0.05;    // metres between the points of a filled wall, > 0
-  double max_gap = 1.;      // metres; wider gaps are left open
-  double tolerance = 0.04;  // metres that a point may be off the line
+  double spacing = 0.05;  // metres between the points of a filled wall, > 0
+  // Wider gaps are left open, as doors are; metres.
+  double max_gap = 1.;
+  // Metres that a point may be off the line: about twice the noise of a laser.
+  double tolerance = 0.04;
 };
 
 // New points only, in order. `points` in the order of the beams, metres.

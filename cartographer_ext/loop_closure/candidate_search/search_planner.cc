@@ -33,7 +33,7 @@ double WorstSigma(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-SearchPlanner::SearchPlanner(const proto::LoopClosureOptions::Search& options,
+SearchPlanner::SearchPlanner(const SearchPlannerOptions& options,
                              const Eigen::Matrix3d& loop_covariance,
                              const double reach,
                              const double default_linear_window,
@@ -81,14 +81,14 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
   }
   plan->translation_sigma = WorstSigma(path->covariance);
   plan->rotation_sigma = std::sqrt(std::max(0., path->covariance(2, 2)));
-  const double wanted = options_.window_sigmas() * plan->translation_sigma;
+  const double wanted = options_.window_sigmas * plan->translation_sigma;
   plan->full_submap =
-      wanted > options_.max_linear_window() && options_.global_search();
-  plan->linear_window = std::min(std::max(wanted, options_.min_linear_window()),
-                                 options_.max_linear_window());
+      wanted > options_.max_linear_window && options_.global_search;
+  plan->linear_window = std::min(std::max(wanted, options_.min_linear_window),
+                                 options_.max_linear_window);
   plan->angular_window =
-      std::min(kPi, std::max(options_.min_angular_window(),
-                             options_.window_sigmas() * plan->rotation_sigma));
+      std::min(kPi, std::max(options_.min_angular_window,
+                             options_.window_sigmas * plan->rotation_sigma));
   plan->out_of_reach =
       distance > reach_ + (plan->full_submap ? wanted : plan->linear_window);
   return true;
@@ -101,27 +101,27 @@ SearchPlan SearchPlanner::PlanAlone(const LoopCandidate& candidate) {
   const SubmapMemory* const memory =
       found == submaps_.end() ? nullptr : &found->second;
   if (memory != nullptr &&
-      HasNear(memory->accepted, candidate, options_.redundant_distance(),
-              options_.redundant_time())) {
+      HasNear(memory->accepted, candidate, options_.redundant_distance,
+              options_.redundant_time)) {
     plan.skipped = LoopDecision::SKIPPED_REDUNDANT;
     return plan;
   }
   const bool near_searched =
       memory != nullptr &&
-      HasNear(memory->searched, candidate, options_.search_spacing(),
-              options_.redundant_time());
+      HasNear(memory->searched, candidate, options_.search_spacing,
+              options_.redundant_time);
   // Searching whole submaps from a stationary robot would cost too much, so
   // that time does not count.
   const bool near_searched_fully =
       memory != nullptr &&
-      HasNear(memory->searched_fully, candidate, options_.full_search_spacing(),
+      HasNear(memory->searched_fully, candidate, options_.full_search_spacing,
               std::numeric_limits<double>::infinity());
-  if (near_searched && (near_searched_fully || !options_.global_search())) {
+  if (near_searched && (near_searched_fully || !options_.global_search)) {
     plan.skipped = LoopDecision::SKIPPED_SPACING;
     return plan;
   }
   const bool is_certain = PlanWindow(candidate, &plan) &&
-                          plan.translation_sigma < options_.informative_sigma();
+                          plan.translation_sigma < options_.informative_sigma;
   if (plan.out_of_reach) return plan;
   if (is_certain) {
     plan.skipped = LoopDecision::SKIPPED_UNINFORMATIVE;
@@ -144,7 +144,7 @@ double SearchPlanner::Promise(const LoopCandidate& candidate,
 void SearchPlanner::ApplyCap(
     const std::vector<const LoopCandidate*>& candidates,
     const std::vector<size_t>& indices, std::vector<SearchPlan>* const plans) {
-  const size_t cap = static_cast<size_t>(options_.max_searches_per_node());
+  const size_t cap = static_cast<size_t>(options_.max_searches_per_node);
   std::vector<double> promise(indices.size());
   std::vector<size_t> order(indices.size());
   std::iota(order.begin(), order.end(), 0);

@@ -30,7 +30,6 @@
 #include "Eigen/Core"
 #include "cartographer_ext/loop_closure/candidate_search/search_result.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/uncertainty/ids.h"
 #include "cartographer_ext/uncertainty/least_uncertain_paths.h"
 #include "cartographer_ext/uncertainty/loop_edge.h"
@@ -39,13 +38,44 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+struct SearchPlannerOptions {
+  // Otherwise Cartographer's sampler and its fixed window.
+  bool enabled = true;
+  int max_searches_per_node = 8;  // > 0
+  // Half width of the window in standard deviations of the prediction, > 0.
+  // The prediction errs by more once in a hundred times, and the next node
+  // tries again.
+  double window_sigmas = 3.;
+  // The window never gets smaller, for errors that the model of the path does
+  // not have. Metres and radians (10 degrees), > 0.
+  double min_linear_window = 1.;
+  double min_angular_window = 0.17;
+  // Beyond this the whole submap is searched, if that is allowed. Metres, > 0.
+  double max_linear_window = 15.;
+  bool global_search = true;
+  // The same submap is searched again after so many metres or seconds, after an
+  // accepted loop. 0 metres: at once. A second loop of the same revisit adds
+  // little. Time counts so that a place visited twice without going far is
+  // closed twice.
+  double redundant_distance = 2.;
+  double redundant_time = 10.;
+  // The same in metres after any search, in a window and in a whole submap,
+  // which costs a hundred times as much. Half a metre is the spacing of the
+  // nodes that temporal verification compares.
+  double search_spacing = 0.5;
+  double full_search_spacing = 3.;
+  // Metres. Where the path to the submap is less uncertain, a loop, which is as
+  // uncertain itself, would add nothing.
+  double informative_sigma = 0.05;
+};
+
 class SearchPlanner {
  public:
   // `loop_covariance`: of a loop itself. `reach`: how far a node may be from
   // the origin of a submap that it sees, metres. `default_linear_window`,
   // `default_angular_window`: where no uncertainty is known. `paths` has to
   // outlive this and to know the nodes.
-  SearchPlanner(const proto::LoopClosureOptions::Search& options,
+  SearchPlanner(const SearchPlannerOptions& options,
                 const Eigen::Matrix3d& loop_covariance, double reach,
                 double default_linear_window, double default_angular_window,
                 const uncertainty::PathUncertainty* paths);
@@ -97,7 +127,7 @@ class SearchPlanner {
                 const std::vector<size_t>& indices,
                 std::vector<SearchPlan>* plans);
 
-  const proto::LoopClosureOptions::Search options_;
+  const SearchPlannerOptions options_;
   const Eigen::Matrix3d loop_covariance_;
   const double reach_;
   const double default_linear_window_;

@@ -196,8 +196,8 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
     return true;
   }
   int needed = options_.min_revisits;
-  if (cluster.least_sigma > options_.doubtful_sigma) {
-    needed = std::max(needed, options_.doubtful_revisits);
+  if (cluster.least_sigma > options_.weak_prior_sigma) {
+    needed = std::max(needed, options_.weak_prior_revisits);
   }
   if (std::isinf(cluster.least_sigma)) {
     needed = std::max(needed, options_.unpredicted_revisits);

@@ -61,6 +61,8 @@ struct LoopEvidence {
 };
 
 struct CompatibleSubsetOptions {
+  // Otherwise every candidate that has come so far is accepted.
+  bool enabled = true;
   uncertainty::CycleConsistencyOptions cycle;
   // Loops nearer than this along the trajectory, on both sides, are one
   // revisit.
@@ -86,10 +88,11 @@ struct CompatibleSubsetOptions {
   // another place that looks alike.
   double single_strong_sigma = 0.5;  // metres
   // A place predicted worse than this needs more revisits that agree.
-  double doubtful_sigma = 1.;  // metres
-  int doubtful_revisits = 3;   // including the loop itself, >= 1
-  // The same for a place that was not predicted at all.
-  int unpredicted_revisits = 4;
+  double weak_prior_sigma = 1.;  // metres
+  int weak_prior_revisits = 3;   // including the loop itself, >= 1
+  // The same for a place that was not predicted at all, as of a run in the map
+  // of another one.
+  int unpredicted_revisits = 3;
   int max_clusters = 400;  // > 0
   MaxCliqueOptions clique;
 };

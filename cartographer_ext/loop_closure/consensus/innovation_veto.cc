@@ -27,11 +27,10 @@ InnovationResult TestInnovation(const InnovationOptions& options,
   return result;
 }
 
-void VetoByInnovation(const proto::LoopClosureOptions& options,
+void VetoByInnovation(const LoopOptions& options,
                       const uncertainty::PathUncertainty& paths,
                       LoopCandidate* const candidate) {
-  if (!options.innovation_veto().enabled() ||
-      candidate->is_inter_trajectory()) {
+  if (!options.innovation_veto.enabled || candidate->is_inter_trajectory()) {
     return;
   }
   absl::optional<uncertainty::VertexId> anchor = candidate->anchor;
@@ -48,8 +47,7 @@ void VetoByInnovation(const proto::LoopClosureOptions& options,
   uncertainty::UncertainPose loop;
   loop.pose = candidate->RefinedFromAnchor(*paths.LocalPose(*anchor));
   loop.covariance = MatchCovariance(options, *candidate);
-  candidate->innovation =
-      TestInnovation(ToInnovationOptions(options), *prior, loop);
+  candidate->innovation = TestInnovation(options.innovation_veto, *prior, loop);
   if (candidate->innovation->vetoed) {
     candidate->Reject(proto::LoopDecision::INNOVATION_TOO_LARGE);
   }

@@ -15,7 +15,6 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 
-#include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/uncertainty/cycle_consistency.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
@@ -23,8 +22,10 @@ namespace cartographer_ext {
 namespace loop_closure {
 
 struct LoopCandidate;
+struct LoopOptions;
 
 struct InnovationOptions {
+  bool enabled = true;
   double chi_square_bound = 21.108;  // chi^2, 3 degrees of freedom, 0.9999
 };
 
@@ -43,7 +44,7 @@ InnovationResult TestInnovation(const InnovationOptions& options,
 // its node (without an anchor: from the node next to the submap's origin), into
 // `innovation`, and rejects it where that is vetoed. Only the odometry counts:
 // a loop that contradicts accepted ones may still win the consensus.
-void VetoByInnovation(const proto::LoopClosureOptions& options,
+void VetoByInnovation(const LoopOptions& options,
                       const uncertainty::PathUncertainty& paths,
                       LoopCandidate* candidate);
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "cartographer_ext/loop_closure/information/loop_information.h"
-#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/stage_timer.h"
 #include "glog/logging.h"
 
@@ -52,11 +51,11 @@ double PriorSigma(const LoopCandidate& candidate) {
 
 }  // namespace
 
-LoopConsensus::LoopConsensus(const proto::LoopClosureOptions& options,
+LoopConsensus::LoopConsensus(const LoopOptions& options,
                              const uncertainty::PathUncertainty* const paths)
     : options_(options),
       paths_(CHECK_NOTNULL(paths)),
-      subset_(ToCompatibleSubsetOptions(options), paths) {}
+      subset_(options.compatible_subset, paths) {}
 
 LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
   LoopEvidence evidence;
@@ -84,7 +83,7 @@ void LoopConsensus::Add(LoopCandidate candidate) {
   const LoopEvidence evidence = MakeEvidence(candidate);
   Waiting& waiting = waiting_[candidate.number];
   waiting.candidate = std::move(candidate);
-  const StageTimer timer(options_.log().times(),
+  const StageTimer timer(options_.log_times,
                          &waiting.candidate.times.consensus);
   subset_.Add(evidence);
 }

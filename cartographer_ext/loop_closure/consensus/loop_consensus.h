@@ -23,7 +23,7 @@
 
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
@@ -35,7 +35,7 @@ class LoopConsensus {
 
   // `paths` has to outlive this and to know the submaps and nodes of the
   // candidates.
-  LoopConsensus(const proto::LoopClosureOptions& options,
+  LoopConsensus(const LoopOptions& options,
                 const uncertainty::PathUncertainty* paths);
 
   void Add(LoopCandidate candidate);
@@ -68,7 +68,7 @@ class LoopConsensus {
   std::vector<LoopCandidate> Settle(
       const std::vector<SubsetDecision>& decisions);
 
-  const proto::LoopClosureOptions options_;
+  const LoopOptions options_;
   const uncertainty::PathUncertainty* const paths_;
   CompatibleSubset subset_;
   std::map<int64_t, Waiting> waiting_;  // by number

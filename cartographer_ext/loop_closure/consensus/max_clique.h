@@ -46,8 +46,8 @@ class CompatibilityGraph {
 
 struct MaxCliqueOptions {
   // Search nodes; one with many candidates counts for several. Deterministic
-  // cap.
-  int64_t max_steps = 1000000;
+  // cap, some milliseconds.
+  int64_t max_steps = 100000;
 };
 
 struct MaxCliqueResult {

@@ -39,11 +39,16 @@ ConstraintWeights StockWeights(const ConstraintBuilderOptions& options) {
   return weights;
 }
 
+TypicalFitOptions NoTypicalFit() {
+  TypicalFitOptions options;
+  options.reference = 0.;
+  return options;
+}
+
 }  // namespace
 
 LoopClosure2D::LoopClosure2D(
-    const ConstraintBuilderOptions& options,
-    const proto::LoopClosureOptions& extension,
+    const ConstraintBuilderOptions& options, const LoopOptions& extension,
     cartographer::common::ThreadPoolInterface* const thread_pool)
     : options_(options),
       extension_(extension),
@@ -54,9 +59,10 @@ LoopClosure2D::LoopClosure2D(
       pipeline_(extension, StockWeights(options)),
       planner_(options, extension, &pipeline_.paths()),
       submaps_(options, extension, thread_pool),
-      relocalizer_(extension.localization(),
+      relocalizer_(extension.relocalization,
                    options.global_localization_min_score()),
-      typical_fit_(ToTypicalFitOptions(extension)) {}
+      typical_fit_(extension.search.enabled ? extension.typical_fit
+                                            : NoTypicalFit()) {}
 
 void LoopClosure2D::AddNode(const std::vector<Proposal>& proposals,
                             Task* const end_of_node) {
@@ -115,11 +121,7 @@ LoopCandidate LoopClosure2D::Propose(const Proposal& proposal) {
   candidate.aligned_from_tracking = AlignedFromTracking(*proposal.node);
   if (!candidate.is_inter_trajectory() && entry->newest_node_at_first >= 0) {
     candidate.submap_age =
-        extension_.temporal_verification().age_unit() ==
-                proto::LoopClosureOptions::TemporalVerification::NODES
-            ? candidate.node.node_index - entry->newest_node_at_first
-            : 1e-7 * static_cast<double>(candidate.node_time -
-                                         entry->time_at_first);
+        1e-7 * static_cast<double>(candidate.node_time - entry->time_at_first);
   }
   if (proposal.initial_relative_pose.has_value()) {
     candidate.predicted = ToPose2(*proposal.initial_relative_pose);
@@ -135,7 +137,7 @@ void LoopClosure2D::RememberNode(const Proposal& proposal) {
   node.node_index = id.node_index;
   node.time = cartographer::common::ToUniversal(proposal.node->time);
   node.local_pose = LocalPose(*proposal.node);
-  if (extension_.temporal_verification().enabled()) {
+  if (extension_.temporal.enabled) {
     DescribeScan(pipeline_.temporal_options(), PlanarPoints(*proposal.node),
                  &node);
   }
@@ -327,7 +329,7 @@ std::vector<LoopDecision> LoopClosure2D::Undecided() const {
 }
 
 LoopDecision LoopClosure2D::Describe(const LoopCandidate& candidate) const {
-  return MakeDecisionRecord(candidate, extension_.log().times());
+  return MakeDecisionRecord(candidate, extension_.log_times);
 }
 
 void LoopClosure2D::Record(const std::vector<LoopCandidate>& decided) {

@@ -54,8 +54,8 @@
 #include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
 #include "cartographer_ext/loop_closure/dropin/relocalizer.h"
 #include "cartographer_ext/loop_closure/dropin/submap_store.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/loop_pipeline.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/loop_decision.pb.h"
 
 namespace cartographer_ext {
@@ -79,7 +79,7 @@ class LoopClosure2D {
   LoopClosure2D(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
-      const proto::LoopClosureOptions& extension,
+      const LoopOptions& extension,
       cartographer::common::ThreadPoolInterface* thread_pool);
   LoopClosure2D(const LoopClosure2D&) = delete;
   LoopClosure2D& operator=(const LoopClosure2D&) = delete;
@@ -126,7 +126,7 @@ class LoopClosure2D {
 
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
       options_;
-  const proto::LoopClosureOptions extension_;
+  const LoopOptions extension_;
   cartographer::common::ThreadPoolInterface* const thread_pool_;
   const std::shared_ptr<PoseGraphContext> context_;
   DecisionRecorder* const recorder_;  // of the context

@@ -18,18 +18,18 @@ using proto::LoopDecision;
 }  // namespace
 
 PairPlanner::PairPlanner(const ConstraintBuilderOptions& options,
-                         const proto::LoopClosureOptions& extension,
+                         const LoopOptions& extension,
                          const uncertainty::PathUncertainty* const paths)
     : options_(options),
       extension_(extension),
-      search_planner_(extension.search(), LoopCovariance(extension),
+      search_planner_(extension.search, LoopCovariance(extension),
                       options.max_constraint_distance(),
                       options.fast_correlative_scan_matcher_options()
                           .linear_search_window(),
                       options.fast_correlative_scan_matcher_options()
                           .angular_search_window(),
                       paths),
-      localization_(ToMapLocalizationOptions(extension), paths) {}
+      localization_(extension.relocalization.map, paths) {}
 
 SearchPlan PairPlanner::PlanLikeStock(const LoopCandidate& candidate) {
   SearchPlan plan;
@@ -78,7 +78,7 @@ void PairPlanner::PlanQuery(const std::vector<size_t>& group,
                             last_queries_[proposed[b].submap];
                    });
   const size_t cap =
-      static_cast<size_t>(extension_.localization().max_submaps_per_query());
+      static_cast<size_t>(extension_.relocalization.max_submaps_per_query);
   for (size_t k = 0; k < order.size(); ++k) {
     Planned searched;
     searched.proposed = order[k];
@@ -136,7 +136,7 @@ void PairPlanner::PlanAroundPredictions(Session* const session) {
   std::vector<size_t>& around = session->around;
   std::sort(around.begin(), around.end());
   std::vector<SearchPlan> plans;
-  if (extension_.search().enabled()) {
+  if (extension_.search.enabled) {
     std::vector<const LoopCandidate*> candidates;
     for (const size_t i : around) candidates.push_back(&session->proposed[i]);
     plans = search_planner_.Plan(candidates);
@@ -164,8 +164,7 @@ std::vector<LoopCandidate> PairPlanner::Plan(
       inter_trajectory;
   for (size_t i = 0; i < proposed.size(); ++i) {
     const LoopCandidate& candidate = proposed[i];
-    if (extension_.localization().enabled() &&
-        candidate.is_inter_trajectory()) {
+    if (extension_.relocalization.enabled && candidate.is_inter_trajectory()) {
       inter_trajectory[std::make_pair(candidate.node,
                                       candidate.submap.trajectory_id)]
           .push_back(i);

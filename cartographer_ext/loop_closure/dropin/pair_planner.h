@@ -29,8 +29,8 @@
 #include "cartographer/mapping/proto/pose_graph/constraint_builder_options.pb.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_planner.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/relocalization/map_localization.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/uncertainty/ids.h"
 #include "cartographer_ext/uncertainty/loop_edge.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
@@ -53,8 +53,7 @@ class PairPlanner {
   PairPlanner(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
-      const proto::LoopClosureOptions& extension,
-      const uncertainty::PathUncertainty* paths);
+      const LoopOptions& extension, const uncertainty::PathUncertainty* paths);
 
   // The candidates with their plans. `proposed` are those proposed when one
   // node was added: those of this node first, then older nodes with a submap
@@ -93,7 +92,7 @@ class PairPlanner {
 
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
       options_;
-  const proto::LoopClosureOptions extension_;
+  const LoopOptions extension_;
   SearchPlanner search_planner_;
   MapLocalization localization_;
   std::map<uncertainty::SubmapId, cartographer::common::FixedRatioSampler>

@@ -27,14 +27,6 @@ constexpr size_t kSubmapsPerNode = 4;
 // The newest nodes that decide where the place is thought to be known.
 constexpr int kNodesWhenKnown = 5;
 
-PlaceTrackerOptions ToPlaceTrackerOptions(
-    const proto::LocalizationOptions& from) {
-  PlaceTrackerOptions to;
-  to.max_nodes = from.max_nodes();
-  to.significance = from.significance();
-  return to;
-}
-
 // Whether a node at a pose in the local frame of the map may lie in a submap.
 bool Covers(const Submap2D& submap, const Pose2& pose) {
   const auto& limits = submap.grid()->limits();
@@ -47,11 +39,9 @@ bool Covers(const Submap2D& submap, const Pose2& pose) {
 
 }  // namespace
 
-PlaceSearch::PlaceSearch(const proto::LocalizationOptions& options,
+PlaceSearch::PlaceSearch(const RelocalizationOptions& options,
                          const double min_score)
-    : options_(options),
-      min_score_(min_score),
-      tracker_(ToPlaceTrackerOptions(options)) {}
+    : options_(options), min_score_(min_score), tracker_(options.tracker) {}
 
 std::vector<PlaceMatch> PlaceSearch::FindPlaces(
     const PlaceNode& node, const std::vector<PlaceSubmap>& submaps,
@@ -64,9 +54,9 @@ std::vector<PlaceMatch> PlaceSearch::FindPlaces(
     searched_index.push_back(submap.submap_index);
   }
   const std::vector<SubmapRanking> ranking = MatchBestSubmaps(
-      searched, node.cloud, min_score_, options_.places_per_query());
+      searched, node.cloud, min_score_, options_.places_per_query);
   const bool is_full =
-      static_cast<int>(ranking.size()) == options_.places_per_query();
+      static_cast<int>(ranking.size()) == options_.places_per_query;
   result->scores.assign(searched.size(), 0.);
   result->outscored.assign(searched.size(), is_full);
   std::vector<PlaceMatch> found;

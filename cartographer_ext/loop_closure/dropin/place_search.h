@@ -19,10 +19,10 @@
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/localization_options.pb.h"
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure/relocalization/place_tracker.h"
+#include "cartographer_ext/loop_closure/relocalization/relocalization_options.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -68,7 +68,7 @@ class PlaceSearch {
       const cartographer::mapping::Submap2D& submap,
       const cartographer::sensor::PointCloud& cloud, const Pose2& pose)>;
 
-  PlaceSearch(const proto::LocalizationOptions& options, double min_score);
+  PlaceSearch(const RelocalizationOptions& options, double min_score);
 
   // The next node of the run; places are not followed to nodes that are older
   // than the one before. `is_known`: its place is thought to be known, and the
@@ -102,7 +102,7 @@ class PlaceSearch {
                         const Refiner& refiner,
                         std::vector<LoopCandidate>* candidates) const;
 
-  const proto::LocalizationOptions options_;
+  const RelocalizationOptions options_;
   const double min_score_;
   PlaceTracker tracker_;
   std::map<int, PlaceNode> nodes_;  // those of the tracker

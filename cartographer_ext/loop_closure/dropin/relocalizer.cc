@@ -10,7 +10,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-Relocalizer::Relocalizer(const proto::LocalizationOptions& options,
+Relocalizer::Relocalizer(const RelocalizationOptions& options,
                          const double min_score)
     : options_(options), min_score_(min_score) {}
 

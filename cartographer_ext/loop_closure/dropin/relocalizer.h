@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "cartographer/common/task.h"
-#include "cartographer_ext/localization_options.pb.h"
 #include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
 #include "cartographer_ext/loop_closure/dropin/place_search.h"
 #include "cartographer_ext/loop_closure/relocalization/map_localization.h"
+#include "cartographer_ext/loop_closure/relocalization/relocalization_options.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -28,7 +28,7 @@ namespace loop_closure {
 class Relocalizer {
  public:
   // `min_score`: of a match anywhere in a submap.
-  Relocalizer(const proto::LocalizationOptions& options, double min_score);
+  Relocalizer(const RelocalizationOptions& options, double min_score);
 
   // The query of the candidates of one node in one map.
   PlaceQuery MakeQuery(const std::vector<SearchJob*>& jobs,
@@ -58,7 +58,7 @@ class Relocalizer {
 
   static RunAndMap KeyOf(const PlaceQuery& query);
 
-  const proto::LocalizationOptions options_;
+  const RelocalizationOptions options_;
   const double min_score_;
   std::map<RunAndMap, State> states_;
   // Up to these nodes places are to be forgotten.

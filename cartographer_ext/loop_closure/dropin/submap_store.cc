@@ -25,12 +25,12 @@ constexpr int SubmapEntry::kUnknownNode;
 SubmapStore::SubmapStore(
     const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
         options,
-    const proto::LoopClosureOptions& extension,
+    const LoopOptions& extension,
     cartographer::common::ThreadPoolInterface* const thread_pool)
     : options_(options),
-      temporal_options_(ToTemporalVerificationOptions(extension)),
-      with_views_(extension.temporal_verification().enabled()),
-      num_neighbours_(extension.temporal_verification().num_neighbours()),
+      temporal_options_(extension.temporal.comparison),
+      with_views_(extension.temporal.enabled),
+      num_neighbours_(extension.temporal.num_neighbours),
       thread_pool_(thread_pool) {}
 
 void SubmapStore::AddNode(const uncertainty::NodeId& node, const int64_t time) {

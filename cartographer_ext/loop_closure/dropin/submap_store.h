@@ -30,9 +30,9 @@
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/verification/occupancy_view.h"
 #include "cartographer_ext/loop_closure/verification/temporal_verification.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/uncertainty/ids.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
@@ -66,7 +66,7 @@ class SubmapStore {
   SubmapStore(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
-      const proto::LoopClosureOptions& extension,
+      const LoopOptions& extension,
       cartographer::common::ThreadPoolInterface* thread_pool);
 
   // For every node and, after it, every pair proposed. Pairs of one group have

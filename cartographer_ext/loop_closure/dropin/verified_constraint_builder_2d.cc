@@ -16,7 +16,7 @@ using Proposal = LoopClosure2D::Proposal;
 
 VerifiedConstraintBuilder2D::VerifiedConstraintBuilder2D(
     const ConstraintBuilderOptions& options,
-    const proto::LoopClosureOptions& extension,
+    const LoopOptions& extension,
     cartographer::common::ThreadPoolInterface* const thread_pool)
     : thread_pool_(thread_pool),
       loop_closure_(options, extension, thread_pool),

@@ -34,7 +34,7 @@
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/loop_closure/dropin/loop_closure_2d.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -54,7 +54,7 @@ class VerifiedConstraintBuilder2D {
   // `extension` is our block of `options`. The pool has to outlive this.
   VerifiedConstraintBuilder2D(
       const ConstraintBuilderOptions& options,
-      const proto::LoopClosureOptions& extension,
+      const LoopOptions& extension,
       cartographer::common::ThreadPoolInterface* thread_pool);
   // WhenDone must have been called, and have called back, since the last node.
   // What is still undecided is rejected and goes to the decision log.

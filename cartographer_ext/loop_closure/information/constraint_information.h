@@ -27,10 +27,13 @@ namespace cartographer_ext {
 namespace loop_closure {
 
 struct ConfidenceWeightOptions {
+  bool enabled = true;           // otherwise every loop has the stock weights
   double alpha = 1.2;            // translation exponent, >= 0
   double beta = 1.5;             // rotation exponent, >= 0
   double reference_score = 0.6;  // S_ref, > 0
   double minimum_score = 1e-3;   // scores below count as this one, > 0
+  // Whether loops also get the full matrix (below).
+  bool full_matrix = false;
 };
 
 struct ConstraintWeights {
@@ -55,9 +58,9 @@ Eigen::Matrix3d PaperInformation(double final_score, double alpha, double beta,
 //   Omega = W L^(1/2) C^-1 L^(1/2) W,  W = diag(w_t, w_t, w_r)
 //
 // with L and C the two covariances. A certain match has W^2; along a corridor
-// that the scan does not observe the loop pulls less. Weights are no deviations in
-// metres, therefore only the ratio of the covariances counts. Zero where C has
-// no inverse.
+// that the scan does not observe the loop pulls less. Weights are no deviations
+// in metres, therefore only the ratio of the covariances counts. Zero where C
+// has no inverse.
 Eigen::Matrix3d FullInformation(const ConstraintWeights& weights,
                                 const Eigen::Matrix3d& certain_covariance,
                                 const Eigen::Matrix3d& match_covariance);

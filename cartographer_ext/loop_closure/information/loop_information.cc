@@ -4,7 +4,6 @@
 
 #include "Eigen/LU"
 #include "cartographer_ext/common/planar_matrix.h"
-#include "cartographer_ext/loop_closure/loop_options.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -32,7 +31,7 @@ Eigen::Matrix3d UnobservableCovariance(const SearchMatch& match) {
 
 }  // namespace
 
-Eigen::Matrix3d MatchCovariance(const proto::LoopClosureOptions& options,
+Eigen::Matrix3d MatchCovariance(const LoopOptions& options,
                                 const LoopCandidate& candidate) {
   const Eigen::Matrix3d rotation =
       PlanarRotation(candidate.RefinedInTrackingFrame().theta);
@@ -41,15 +40,15 @@ Eigen::Matrix3d MatchCovariance(const proto::LoopClosureOptions& options,
                                        rotation;
 }
 
-void WeighConstraint(const proto::LoopClosureOptions& options,
+void WeighConstraint(const LoopOptions& options,
                      const ConstraintWeights& stock_weights,
                      LoopCandidate* const candidate) {
   candidate->weights =
-      options.information().enabled()
-          ? ConfidenceWeights(ToConfidenceWeightOptions(options), stock_weights,
+      options.information.enabled
+          ? ConfidenceWeights(options.information, stock_weights,
                               candidate->FinalScore())
           : stock_weights;
-  if (!options.information().full_matrix() ||
+  if (!options.information.full_matrix ||
       candidate->match.information.isZero(0.)) {
     return;
   }

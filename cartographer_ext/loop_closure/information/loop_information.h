@@ -10,7 +10,7 @@
 #include "Eigen/Core"
 #include "cartographer_ext/loop_closure/information/constraint_information.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -18,12 +18,12 @@ namespace loop_closure {
 // Of the match of a candidate, in the frame of the node: the constant part that
 // the options give, and what the scan leaves unobservable, such as the
 // direction along a corridor.
-Eigen::Matrix3d MatchCovariance(const proto::LoopClosureOptions& options,
+Eigen::Matrix3d MatchCovariance(const LoopOptions& options,
                                 const LoopCandidate& candidate);
 
 // Weights from the final score (C eq. 8 to 11) and, where the options ask for
 // it and the information of the match is known, the full matrix.
-void WeighConstraint(const proto::LoopClosureOptions& options,
+void WeighConstraint(const LoopOptions& options,
                      const ConstraintWeights& stock_weights,
                      LoopCandidate* candidate);
 

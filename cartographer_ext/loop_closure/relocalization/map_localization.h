@@ -37,10 +37,14 @@ namespace cartographer_ext {
 namespace loop_closure {
 
 struct MapLocalizationOptions {
+  // Places half as far apart as revisits count as evidence, so that one query
+  // in two may find nothing.
   double query_spacing = 2.5;  // metres, >= 0
+  // Larger is cheaper and detects a wrong place later.
   double watch_spacing = 5.;   // metres, >= 0
-  double lost_distance = 15.;  // metres, > 0
-  int watches = 2;             // >= 1
+  double lost_distance = 15.;  // metres, > 0: three revisits without a loop
+  // One decision for another place may be wrong.
+  int watches = 2;  // >= 1
 };
 
 class MapLocalization {

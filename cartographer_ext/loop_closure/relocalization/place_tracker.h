@@ -40,7 +40,9 @@ namespace cartographer_ext {
 namespace loop_closure {
 
 struct PlaceTrackerOptions {
-  int max_nodes = 12;         // > 0
+  // Nodes along which places are followed and compared, > 0. More separate
+  // places that look very much alike, and cost more.
+  int max_nodes = 16;
   int max_tracks = 10;        // > 0
   int min_nodes = 4;          // of a decision, > 0
   double significance = 3.;   // z above, >= 0

@@ -28,6 +28,7 @@ namespace loop_closure {
 enum class ThresholdDirection { kAsPrinted, kStricterWhenUnstable };
 
 struct DynamicThresholdOptions {
+  bool enabled = true;  // otherwise there is no threshold
   ThresholdDirection direction = ThresholdDirection::kStricterWhenUnstable;
   double low = 0.45;            // of eq. 1, in [0, 1]
   double span = 0.1;            // of eq. 1, in [0, 1 - low]

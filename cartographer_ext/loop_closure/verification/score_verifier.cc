@@ -6,7 +6,6 @@
 #include <array>
 #include <vector>
 
-#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/stage_timer.h"
 #include "cartographer_ext/loop_closure/verification/dtw.h"
 
@@ -15,7 +14,6 @@ namespace loop_closure {
 namespace {
 
 using proto::LoopDecision;
-using FusionOptions = proto::LoopClosureOptions::Fusion;
 
 // The mixture moves slowly; it is fitted once in this many candidates.
 constexpr int64_t kFitInterval = 10;
@@ -41,24 +39,23 @@ MixtureDescription Describe(const MixtureComponent& component) {
 
 }  // namespace
 
-ScoreVerifier::ScoreVerifier(const proto::LoopClosureOptions& options)
+ScoreVerifier::ScoreVerifier(const LoopOptions& options)
     : options_(options),
-      temporal_options_(ToTemporalVerificationOptions(options)),
-      threshold_(ToDynamicThresholdOptions(options)),
-      fusion_(ToScoreFusionOptions(options)),
-      mixture_(ToLoopMixtureOptions(options)) {}
+      threshold_(options.threshold),
+      fusion_(options.fusion.blend),
+      mixture_(options.fusion.mixture) {}
 
 void ScoreVerifier::ComputeTemporalScore(const NodeHistory& history,
                                          LoopCandidate* const candidate) const {
-  if (!options_.temporal_verification().enabled()) return;
-  const StageTimer timer(options_.log().times(), &candidate->times.temporal);
+  if (!options_.temporal.enabled) return;
+  const StageTimer timer(options_.log_times, &candidate->times.temporal);
   candidate->temporal = TemporalScore();
   TemporalScore& temporal = *candidate->temporal;
   temporal.window =
-      VariableWindow(ToVariableWindowOptions(options_), candidate->submap_age);
+      VariableWindow(options_.temporal.window, candidate->submap_age);
   std::vector<const HistoryNode*> sequence = history.Sequence(
       candidate->node.trajectory_id, candidate->node.node_index,
-      temporal.window, options_.temporal_verification().spacing(),
+      temporal.window, options_.temporal.spacing,
       kScanPerNode * temporal.window);
   sequence.erase(sequence.begin(),
                  std::find_if(sequence.begin(), sequence.end(),
@@ -67,16 +64,14 @@ void ScoreVerifier::ComputeTemporalScore(const NodeHistory& history,
                                        candidate->first_node_index;
                               }));
   temporal.result =
-      VerifySequence(temporal_options_, sequence,
+      VerifySequence(options_.temporal.comparison, sequence,
                      candidate->RefinedInTrackingFrame(), candidate->maps);
 }
 
 void ScoreVerifier::TestTemporalScore(LoopCandidate* const candidate) {
-  if (!candidate->temporal.has_value()) return;
+  if (!options_.threshold.enabled || !candidate->temporal.has_value()) return;
   TemporalScore& temporal = *candidate->temporal;
-  temporal.threshold = options_.dynamic_threshold().enabled()
-                           ? threshold_.Current()
-                           : options_.dynamic_threshold().base_threshold();
+  temporal.threshold = threshold_.Current();
   temporal.score_variance = threshold_.Variance();
   if (!temporal.is_scored()) return;
   threshold_.AddScore(temporal.result.score);
@@ -86,20 +81,19 @@ void ScoreVerifier::TestTemporalScore(LoopCandidate* const candidate) {
 }
 
 void ScoreVerifier::FuseScores(LoopCandidate* const candidate) {
-  if (!options_.fusion().enabled()) return;
-  const StageTimer timer(options_.log().times(), &candidate->times.fusion);
+  if (!options_.fusion.enabled) return;
+  const StageTimer timer(options_.log_times, &candidate->times.fusion);
   ScoreFusionResult result;
-  if (options_.fusion().mode() == FusionOptions::LIKELIHOOD_RATIO) {
+  if (options_.fusion.mode == FusionMode::kLikelihoodRatio) {
     FuseByLikelihoodRatio(*candidate, &result);
   } else {
     FuseByLambda(*candidate, &result);
   }
   candidate->fusion = result;
   // What could not be scored is left to the stages that follow.
-  const bool is_comparable =
-      IsScored(*candidate) || !options_.temporal_verification().enabled();
+  const bool is_comparable = IsScored(*candidate) || !options_.temporal.enabled;
   if (!candidate->is_rejected() && is_comparable &&
-      result.final_score < options_.fusion().min_final_score()) {
+      result.final_score < options_.fusion.min_final_score) {
     candidate->Reject(LoopDecision::LOW_FINAL_SCORE);
   }
 }

@@ -26,23 +26,23 @@
 #include <cstdint>
 
 #include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/verification/dynamic_threshold.h"
 #include "cartographer_ext/loop_closure/verification/loop_mixture.h"
 #include "cartographer_ext/loop_closure/verification/node_history.h"
 #include "cartographer_ext/loop_closure/verification/score_fusion.h"
 #include "cartographer_ext/loop_closure/verification/temporal_verification.h"
-#include "cartographer_ext/loop_closure_options.pb.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
 class ScoreVerifier {
  public:
-  explicit ScoreVerifier(const proto::LoopClosureOptions& options);
+  explicit ScoreVerifier(const LoopOptions& options);
 
   // How `history` describes scans (DescribeScan).
   const TemporalVerificationOptions& temporal_options() const {
-    return temporal_options_;
+    return options_.temporal.comparison;
   }
 
   // S_t and N of eq. 4, into `temporal`.
@@ -59,8 +59,7 @@ class ScoreVerifier {
                              ScoreFusionResult* result);
   void FuseByLambda(const LoopCandidate& candidate, ScoreFusionResult* result);
 
-  const proto::LoopClosureOptions options_;
-  const TemporalVerificationOptions temporal_options_;
+  const LoopOptions options_;
   DynamicThreshold threshold_;
   ScoreFusion fusion_;
   LoopMixture mixture_;

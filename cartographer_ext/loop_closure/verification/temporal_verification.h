@@ -51,6 +51,7 @@ enum class WarpingStep {
   kAsymmetric,  // one reference sample for each node of the query
 };
 
+// Each has its own options.
 enum class ScanComparison {
   kSectors,  // range signatures
   kBeams,
@@ -65,7 +66,9 @@ struct TemporalVerificationOptions {
   // Half width of the Sakoe-Chiba band in steps of the query; negative: no
   // band. Symmetric warping takes at least 0.5; with less there is no path.
   double band = 1.;
-  int minimum_length = 3;  // nodes of the query, > 0
+  // Nodes of the query, > 0; with fewer there is no score. The paper's shortest
+  // window.
+  int minimum_length = 4;
 };
 
 enum class TemporalOutcome {

@@ -123,10 +123,7 @@ RobustOptimizationProblem2D::Select(
   const SlamPoseGraph problem = MakeProblem(constraints, trajectories_state);
   LoopSelectionOptions options;
   options.robust_loops = extension_.robust_loops();
-  options.gate = extension_.gate();
   options.odometry_check = extension_.odometry_check();
-  options.odometry_gate = extension_.odometry_gate();
-  options.max_rollbacks = extension_.max_rollbacks();
   // Now and then, so that all of these together cost twice the last.
   const int num_nodes = stock_.node_data().size();
   options.thorough = num_nodes >= kThoroughGrowth * nodes_when_thorough_;

@@ -37,9 +37,13 @@ namespace optimization {
 
 struct LoopSelectionOptions {
   bool robust_loops = true;
-  double gate = kChi2Gate;
+  double gate = kChi2Gate;  // of a loop, rejects one right loop in a hundred
   bool odometry_check = true;
+  // chi2 (3 degrees of freedom) of the motion between neighbouring poses beyond
+  // which a loop is suspect: no noise of local SLAM goes so far.
   double odometry_gate = 30.;
+  // Loops that the odometry check may disable in one selection, and so the
+  // number of times it solves again.
   int max_rollbacks = 10;
   // Whether (2) may go on to the starts which cost more than the rest.
   bool thorough = true;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/options/dropin/lua_options.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -30,6 +29,18 @@ std::vector<std::string> KnownKeys(const pb::Descriptor& descriptor) {
     }
   }
   return keys;
+}
+
+// What has become of a key that earlier versions had; empty for others.
+std::string FormerKey(const pb::Descriptor& descriptor,
+                      const std::string& key) {
+  const FieldDescriptor* const renamed = FindRenamed(descriptor, key);
+  if (renamed != nullptr) {
+    return absl::StrCat("now called ", renamed->name(), "; ");
+  }
+  return descriptor.IsReservedName(key)
+             ? "removed, it is a constant now (docs/options.md); "
+             : "";
 }
 
 std::string AllowedNumbers(const FieldDescriptor& field) {
@@ -120,10 +131,11 @@ void ReadTable(const std::string& path, LuaParameterDictionary* const table,
   const std::map<std::string, LuaLiteral> literals =
       LuaLiterals(table->ToString());
   for (const std::string& key : table->GetKeys()) {
-    CHECK(std::find(known.begin(), known.end(), key) != known.end())
-        << path << "." << key
-        << ": unknown key, allowed: " << absl::StrJoin(known, ", ");
-    const FieldDescriptor& field = *descriptor.FindFieldByName(key);
+    const FieldDescriptor* const found = descriptor.FindFieldByName(key);
+    CHECK(found != nullptr && key != "schema")
+        << path << "." << key << ": unknown key, " << FormerKey(descriptor, key)
+        << "allowed: " << absl::StrJoin(known, ", ");
+    const FieldDescriptor& field = *found;
     const std::string key_path = absl::StrCat(path, ".", key);
     const auto literal = literals.find(key);
     if (literal != literals.end()) CheckType(key_path, field, literal->second);

@@ -36,24 +36,12 @@ ScanMatchOptions ToOptions(const StockOptions& stock,
   options.rotation_weight = stock.rotation_weight();
   options.solver.max_iterations =
       stock.ceres_solver_options().max_num_iterations();
-  const auto& degeneracy = extension.degeneracy();
-  options.remap = degeneracy.enabled();
-  options.curvature_step = degeneracy.curvature_step();
-  options.information.mode =
-      degeneracy.mode() == proto::ScanMatcherOptions::Degeneracy::PAPER_LITERAL
-          ? DegeneracyMode::kPaperLiteral
-          : DegeneracyMode::kNoiseFloor;
-  options.information.floor = degeneracy.floor();
-  options.information.translation_floor = degeneracy.translation_floor();
-  options.information.rotation_floor = degeneracy.rotation_floor();
-  options.information.full_ratio = degeneracy.full_ratio();
-  options.information.paper_ratio = degeneracy.paper_ratio();
-  const auto& covariance = extension.covariance();
-  options.information.map_noise = covariance.map_noise();
-  options.information.point_noise = covariance.point_noise();
-  options.prediction_translation_sigma =
-      covariance.prediction_translation_sigma();
-  options.prediction_rotation_sigma = covariance.prediction_rotation_sigma();
+  options.remap = extension.degeneracy().enabled();
+  options.information.translation_floor =
+      extension.degeneracy().translation_floor();
+  options.information.mode = extension.paper_mode().eigenvalue_ratio()
+                                 ? DegeneracyMode::kPaperLiteral
+                                 : DegeneracyMode::kNoiseFloor;
   return options;
 }
 

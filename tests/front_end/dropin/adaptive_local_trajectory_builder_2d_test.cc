@@ -18,7 +18,6 @@
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/front_end/match_recorder.h"
-#include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
 #include "tests/front_end/dropin/simulated_room.h"
 
@@ -38,12 +37,6 @@ LocalTrajectoryBuilderOptions2D StockOptions() {
           std::vector<std::string>{"configuration_files"}));
   return cartographer::mapping::CreateLocalTrajectoryBuilderOptions2D(
       &dictionary);
-}
-
-proto::FrontEndOptions OwnOptions() {
-  proto::FrontEndOptions options;
-  options::SetDefaults(&options);
-  return options;
 }
 
 Pose2 ToPose2(const cartographer::transform::Rigid3d& pose) {
@@ -78,7 +71,7 @@ struct RunOptions {
   double seconds = 40.;
   double max_range = 12.;
   LocalTrajectoryBuilderOptions2D stock = StockOptions();
-  proto::FrontEndOptions own = OwnOptions();
+  FrontEndOptions own;
 };
 
 RunResult RunDrive(const RunOptions& options) {
@@ -171,7 +164,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedWithinARoundWall) {
   Random random(7);
   std::vector<double> errors;
   for (int run = 0; run < 21; ++run) {
-    AdaptiveLocalTrajectoryBuilder2D builder(stock, OwnOptions(), {"scan"});
+    AdaptiveLocalTrajectoryBuilder2D builder(stock, FrontEndOptions(), {"scan"});
     const Pose2 start(random.Uniform(-1.5, 1.5), random.Uniform(0., 2.4),
                       random.Uniform(-kPi, kPi));
     const double heading = random.Uniform(-kPi, kPi);
@@ -251,7 +244,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, ScansBehindAGapWaitForOdometry) {
   EXPECT_LT(result.max_turn_error, 0.03);
   EXPECT_LT(result.max_error, 0.05);
   RunOptions hasty = AHoleInEverything();
-  hasty.own.mutable_odometry()->set_max_wait_after_gap(0.);
+  hasty.own.max_wait_after_gap = 0.;
   EXPECT_GT(RunDrive(hasty).max_turn_error, 3.);
 }
 
@@ -259,10 +252,10 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, ScansBehindAGapDoNotWaitForEver) {
   RunOptions options = AHoleInEverything();
   options.has_odometry = [](const double t) { return t < 10.01; };
   EXPECT_EQ(RunDrive(options).matched, 101 + 31 - 5);
-  options.own.mutable_odometry()->set_max_wait_after_gap(0.);
+  options.own.max_wait_after_gap = 0.;
   EXPECT_EQ(RunDrive(options).matched, 101 + 31);
   // Without odometry nothing is waited for.
-  options.own = OwnOptions();
+  options.own = FrontEndOptions();
   options.use_odometry = false;
   EXPECT_EQ(RunDrive(options).matched, 101 + 31);
 }
@@ -392,7 +385,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, ACorridorKeepsTheLengthOfOdometry) {
 
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, FeaturesDoTheJob) {
   RunOptions options;
-  options.own.mutable_features()->set_enabled(true);
+  options.own.match_features_only = true;
   const RunResult result = RunDrive(options);
   EXPECT_LT(result.max_error, 0.1);
 }
@@ -417,7 +410,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, RepeatsItselfBitForBit) {
 }
 
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, BadScansAreSurvived) {
-  AdaptiveLocalTrajectoryBuilder2D builder(StockOptions(), OwnOptions(),
+  AdaptiveLocalTrajectoryBuilder2D builder(StockOptions(), FrontEndOptions(),
                                            {"scan"});
   Random random(1);
   cartographer::sensor::TimedPointCloudData scan =
@@ -451,7 +444,7 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, BadScansAreSurvived) {
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, TheImuTurnsTheRobotAndLevelsIt) {
   LocalTrajectoryBuilderOptions2D stock = StockOptions();
   stock.set_use_imu_data(true);
-  AdaptiveLocalTrajectoryBuilder2D builder(stock, OwnOptions(), {"scan"});
+  AdaptiveLocalTrajectoryBuilder2D builder(stock, FrontEndOptions(), {"scan"});
   Random random(2);
   // Turns on the spot at 0.5 rad/s, tilted by 3 degrees.
   const Eigen::Quaterniond tilt(

@@ -12,7 +12,6 @@
 #include "cartographer/common/lua_parameter_dictionary.h"
 #include "cartographer/mapping/internal/2d/local_trajectory_builder_options_2d.h"
 #include "cartographer/transform/transform.h"
-#include "cartographer_ext/options/option_description.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
 #include "gtest/gtest.h"
 #include "tests/front_end/dropin/simulated_room.h"
@@ -67,7 +66,6 @@ class LocalMatcherTest : public testing::Test {
       range_data.returns = Cloud();
       submaps_->InsertRangeData(range_data);
     }
-    options::SetDefaults(&options_);
     prediction_.source = PredictionSource::kOdometry;
     prediction_.covariance = Eigen::Vector3d(1e-4, 1e-4, 25e-6).asDiagonal();
   }
@@ -97,7 +95,7 @@ class LocalMatcherTest : public testing::Test {
 
   cartographer::mapping::scan_matching::proto::CeresScanMatcherOptions2D
       matcher_options_;
-  proto::FrontEndOptions options_;
+  LocalSearchOptions options_;
   std::unique_ptr<ActiveSubmaps2D> submaps_;
   MotionPrediction prediction_;
   Random random_{3};
@@ -113,14 +111,14 @@ TEST_F(LocalMatcherTest, AMuchBetterPlaceOverrulesThePrediction) {
 }
 
 TEST_F(LocalMatcherTest, ASlightlyBetterPlaceDoesNot) {
-  options_.mutable_search()->set_contradiction_gain(1.);
+  options_.contradiction_gain = 1.;
   const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
   EXPECT_TRUE(match.searched);
   EXPECT_FALSE(match.relocated);
 }
 
 TEST_F(LocalMatcherTest, APredictionInDoubtIsOverruledSooner) {
-  options_.mutable_search()->set_contradiction_gain(1.);
+  options_.contradiction_gain = 1.;
   prediction_.is_uncertain = true;
   const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
   EXPECT_TRUE(match.relocated);
@@ -129,7 +127,7 @@ TEST_F(LocalMatcherTest, APredictionInDoubtIsOverruledSooner) {
 }
 
 TEST_F(LocalMatcherTest, WithoutSearchItStaysWithThePrediction) {
-  options_.mutable_search()->set_enabled(false);
+  options_.enabled = false;
   const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
   EXPECT_FALSE(match.searched);
   EXPECT_FALSE(match.relocated);

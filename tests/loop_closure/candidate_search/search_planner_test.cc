@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -23,21 +23,18 @@ class SearchPlannerTest : public testing::Test {
     for (int i = 0; i <= 200; ++i) {
       paths_.Add(uncertainty::NodeId{0, i}, Pose2(i, 0., 0.));
     }
-    proto::LoopClosureOptions options;
-    options::SetDefaults(&options);
-    options_ = options.search();
-    options_.set_window_sigmas(3.);
-    options_.set_min_linear_window(1.);
-    options_.set_max_linear_window(4.);
-    options_.set_min_angular_window(0.2);
-    options_.set_max_searches_per_node(2);
-    options_.set_redundant_distance(5.);
-    options_.set_search_spacing(2.);
-    options_.set_informative_sigma(0.15);
+    options_.window_sigmas = 3.;
+    options_.min_linear_window = 1.;
+    options_.max_linear_window = 4.;
+    options_.min_angular_window = 0.2;
+    options_.max_searches_per_node = 2;
+    options_.redundant_distance = 5.;
+    options_.search_spacing = 2.;
+    options_.informative_sigma = 0.15;
   }
 
   static uncertainty::PathNoiseOptions Noise() {
-    uncertainty::PathNoiseOptions noise;
+    uncertainty::PathNoiseOptions noise = uncertainty::RandomWalk();
     noise.translation_per_metre = 0.1;
     noise.translation_per_radian = 0.;
     noise.rotation_per_metre = 0.;
@@ -76,7 +73,7 @@ class SearchPlannerTest : public testing::Test {
   }
 
   uncertainty::PathUncertainty paths_;
-  proto::LoopClosureOptions::Search options_;
+  SearchPlannerOptions options_;
   std::unique_ptr<SearchPlanner> planner_;
 };
 
@@ -99,7 +96,7 @@ TEST_F(SearchPlannerTest, SearchesTheWholeSubmapWhereTheWindowIsTooSmall) {
   // 15 m and three times the square root of two.
   EXPECT_FALSE(PlanOne(Pair(1, 0, 200, 19.)).out_of_reach);
   EXPECT_TRUE(PlanOne(Pair(2, 0, 200, 19.3)).out_of_reach);
-  options_.set_global_search(false);
+  options_.global_search = false;
   MakePlanner();
   const SearchPlan bounded = PlanOne(Pair(0, 0, 200, 3.));
   EXPECT_FALSE(bounded.full_submap);
@@ -153,7 +150,7 @@ TEST_F(SearchPlannerTest, AcceptedLoopsNarrowTheWindowAndRestTheSubmap) {
 }
 
 TEST_F(SearchPlannerTest, AfterSomeTimeASubmapIsSearchedAgain) {
-  options_.set_redundant_time(10.);
+  options_.redundant_time = 10.;
   MakePlanner();
   LoopCandidate pair = Pair(0, 0, 100, 3.);
   pair.node_time = 1000000000;
@@ -217,7 +214,7 @@ TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
   paths_.Add(submap, Pose2());
   for (int i = 0; i <= 20; ++i)
     paths_.Add(uncertainty::NodeId{1, i}, Pose2(i, 0., 0.));
-  options_.set_search_spacing(0.);
+  options_.search_spacing = 0.;
   MakePlanner();
   LoopCandidate pair;
   pair.anchor = submap;

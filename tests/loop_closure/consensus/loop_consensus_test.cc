@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "cartographer_ext/options/option_description.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -19,9 +19,8 @@ using testing::IsEmpty;
 // Forth and back along a line, a node every metre.
 class LoopConsensusTest : public testing::Test {
  protected:
-  LoopConsensusTest() : paths_(uncertainty::PathNoiseOptions(), 1000) {
-    options::SetDefaults(&options_);
-    options_.mutable_compatible_subset()->set_single_strong(false);
+  LoopConsensusTest() : paths_(uncertainty::RandomWalk(), 1000) {
+    options_.compatible_subset.single_strong_enabled = false;
     for (int i = 0; i <= 100; ++i) {
       paths_.Add(uncertainty::NodeId{0, i}, Truth(i));
     }
@@ -47,7 +46,7 @@ class LoopConsensusTest : public testing::Test {
     return candidate;
   }
 
-  proto::LoopClosureOptions options_;
+  LoopOptions options_;
   uncertainty::PathUncertainty paths_;
   std::unique_ptr<LoopConsensus> consensus_;
   int num_candidates_ = 0;

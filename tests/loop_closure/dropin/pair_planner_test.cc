@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
-#include "cartographer_ext/options/option_description.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -25,8 +25,7 @@ using uncertainty::SubmapId;
 // submaps.
 class PairPlannerTest : public testing::Test {
  protected:
-  PairPlannerTest() : paths_(uncertainty::PathNoiseOptions(), 1000) {
-    options::SetDefaults(&extension_);
+  PairPlannerTest() : paths_(uncertainty::RandomWalk(), 1000) {
     options_.set_max_constraint_distance(15.);
     options_.set_sampling_ratio(0.5);
     options_.mutable_fast_correlative_scan_matcher_options()
@@ -82,7 +81,7 @@ class PairPlannerTest : public testing::Test {
   }
 
   cartographer::mapping::constraints::proto::ConstraintBuilderOptions options_;
-  proto::LoopClosureOptions extension_;
+  LoopOptions extension_;
   uncertainty::PathUncertainty paths_;
   std::unique_ptr<PairPlanner> planner_;
   std::vector<LostPlace> lost_;
@@ -121,7 +120,7 @@ TEST_F(PairPlannerTest, WithoutItsNeighboursASubmapIsNotCovered) {
 }
 
 TEST_F(PairPlannerTest, TheCapTakesTurns) {
-  extension_.mutable_localization()->set_max_submaps_per_query(3);
+  extension_.relocalization.max_submaps_per_query = 3;
   MakePlanner();
   const std::vector<LoopCandidate> first = Plan(WithMap(0, true));
   EXPECT_THAT(Searched(first), ElementsAre(0, 2, 4));
@@ -182,8 +181,8 @@ TEST_F(PairPlannerTest, ALoadedMapIsNotSearchedInTheRun) {
 }
 
 TEST_F(PairPlannerTest, WithoutPlanningPairsAreSearchedAsTheHostAsks) {
-  extension_.mutable_localization()->set_enabled(false);
-  extension_.mutable_search()->set_enabled(false);
+  extension_.relocalization.enabled = false;
+  extension_.search.enabled = false;
   MakePlanner();
   const std::vector<LoopCandidate> global = Plan(WithMap(0, true));
   ASSERT_EQ(global.size(), 7u);

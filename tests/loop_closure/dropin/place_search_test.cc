@@ -8,7 +8,6 @@
 #include "absl/memory/memory.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
-#include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
 #include "tests/host/mapping_test_helpers.h"
 #include "tests/host/slam_test_helpers.h"
@@ -26,9 +25,6 @@ using host::Submap2D;
 class PlaceSearchTest : public testing::Test {
  protected:
   PlaceSearchTest() {
-    proto::LoopClosureOptions defaults;
-    options::SetDefaults(&defaults);
-    options_ = defaults.localization();
     const auto matcher_options = host::test::LoadSlamOptions("")
                                      .map_builder.pose_graph_options()
                                      .constraint_builder_options()
@@ -76,7 +72,7 @@ class PlaceSearchTest : public testing::Test {
                              const Pose2& pose) { return pose; });
   }
 
-  proto::LocalizationOptions options_;
+  RelocalizationOptions options_;
   host::ValueConversionTables tables_;
   std::vector<std::unique_ptr<Submap2D>> submaps_;
   std::vector<std::unique_ptr<const SubmapMatcher>> matchers_;

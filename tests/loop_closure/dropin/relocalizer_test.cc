@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -14,7 +14,7 @@ namespace {
 class RelocalizerTest : public testing::Test {
  protected:
   RelocalizerTest()
-      : paths_(uncertainty::PathNoiseOptions(), 1000),
+      : paths_(uncertainty::RandomWalk(), 1000),
         localization_(MapLocalizationOptions(), &paths_) {
     paths_.Add(uncertainty::NodeId{1, 5}, Pose2());
     for (int s = 0; s < 2; ++s) {
@@ -22,12 +22,6 @@ class RelocalizerTest : public testing::Test {
       jobs_[s].candidate.node = uncertainty::NodeId{1, 5};
       jobs_[s].candidate.predicted = Pose2(1., 0., 0.);
     }
-  }
-
-  static proto::LocalizationOptions Options() {
-    proto::LoopClosureOptions options;
-    options::SetDefaults(&options);
-    return options.localization();
   }
 
   PlaceQuery Query(Relocalizer* const relocalizer) {
@@ -40,7 +34,7 @@ class RelocalizerTest : public testing::Test {
 };
 
 TEST_F(RelocalizerTest, PlacesAreForgottenOnceWithTheNextQuery) {
-  Relocalizer relocalizer(Options(), 0.5);
+  Relocalizer relocalizer(RelocalizationOptions(), 0.5);
   const PlaceQuery first = Query(&relocalizer);
   EXPECT_FALSE(first.is_known);
   EXPECT_EQ(first.forget_up_to, -1);
@@ -58,7 +52,7 @@ TEST_F(RelocalizerTest, PlacesAreForgottenOnceWithTheNextQuery) {
 }
 
 TEST_F(RelocalizerTest, DecisionsForAnotherPlaceMakeARunLost) {
-  Relocalizer relocalizer(Options(), 0.5);
+  Relocalizer relocalizer(RelocalizationOptions(), 0.5);
   const uncertainty::NodeId node{1, 5};
   localization_.AddAcceptedLoop(node, 0);
   PlaceQuery query = Query(&relocalizer);

@@ -8,8 +8,8 @@
 #include "absl/synchronization/notification.h"
 #include "cartographer/common/thread_pool.h"
 #include "cartographer/mapping/2d/probability_grid.h"
-#include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 #include "tests/host/mapping_test_helpers.h"
 #include "tests/host/slam_test_helpers.h"
 
@@ -27,10 +27,9 @@ class SubmapStoreTest : public testing::Test {
       : pool_(2),
         submap_(Eigen::Vector2f(1.f, 0.f),
                 host::test::RoomGrid(&tables_, 0.05, 5), &tables_),
-        paths_(uncertainty::PathNoiseOptions(), 1000) {
+        paths_(uncertainty::RandomWalk(), 1000) {
     submap_.Finish();
-    proto::LoopClosureOptions extension;
-    options::SetDefaults(&extension);
+    LoopOptions extension;
     store_ =
         absl::make_unique<SubmapStore>(host::test::LoadSlamOptions("")
                                            .map_builder.pose_graph_options()

@@ -25,7 +25,6 @@ using host::SubmapId;
 using proto::LoopDecision;
 using test::Builder;
 using test::Collect;
-using test::Defaults;
 using test::StagesOff;
 using test::StockOptions;
 
@@ -33,7 +32,7 @@ using VerifiedConstraintBuilder2DTest = test::VerifiedConstraintBuilderRoom;
 
 TEST_F(VerifiedConstraintBuilder2DTest, CallsBackWithoutPairs) {
   cartographer::common::ThreadPool pool(1);
-  Builder builder(StockOptions(), Defaults(), &pool);
+  Builder builder(StockOptions(), LoopOptions(), &pool);
   EXPECT_EQ(builder.GetNumFinishedNodes(), 0);
   EXPECT_TRUE(Collect(&builder).empty());
   builder.NotifyEndOfNode();
@@ -113,13 +112,13 @@ TEST_F(VerifiedConstraintBuilder2DTest, FloorFollowsWhatScansReach) {
   }
   auto stock_options = StockOptions();
   auto options = StagesOff();
-  options.mutable_search()->set_enabled(true);
-  options.mutable_search()->set_informative_sigma(0.);
-  options.mutable_search()->set_search_spacing(0.);
+  options.search.enabled = true;
+  options.search.informative_sigma = 0.;
+  options.search.search_spacing = 0.;
   std::vector<size_t> found;
   for (const double reference : {0., 0.65}) {
     cartographer::common::ThreadPool pool(2);
-    options.mutable_search()->set_fit_reference(reference);
+    options.typical_fit.reference = reference;
     Builder builder(stock_options, options, &pool);
     found.push_back(0);
     for (const Builder::Result& result : Drive(&builder)) {

@@ -24,7 +24,6 @@ using host::SubmapId;
 using proto::LoopDecision;
 using test::Builder;
 using test::Collect;
-using test::Defaults;
 using test::StagesOff;
 using test::StockOptions;
 
@@ -36,7 +35,7 @@ TEST_F(VerifiedConstraintBuilderRecordsTest, EveryCandidateHasOneRecord) {
   int64_t accepted = 0;
   {
     cartographer::common::ThreadPool pool(2);
-    Builder builder(StockOptions(), Defaults(), &pool);
+    Builder builder(StockOptions(), LoopOptions(), &pool);
     for (const Builder::Result& result : Drive(&builder)) {
       accepted += static_cast<int64_t>(result.size());
     }
@@ -73,7 +72,7 @@ TEST_F(VerifiedConstraintBuilderRecordsTest, RecordsBelongToOnePoseGraph) {
   {
     const ScopedPoseGraphContext scope(other);
     cartographer::common::ThreadPool pool(1);
-    Builder builder(StockOptions(), Defaults(), &pool);
+    Builder builder(StockOptions(), LoopOptions(), &pool);
     Drive(&builder);
   }
   EXPECT_TRUE(recorder_->All().empty());
@@ -83,11 +82,11 @@ TEST_F(VerifiedConstraintBuilderRecordsTest, RecordsBelongToOnePoseGraph) {
 TEST_F(VerifiedConstraintBuilderRecordsTest,
        DeletedSubmapsTakeTheirNodesAlong) {
   recorder_->Start(100000);
-  proto::LoopClosureOptions options = Defaults();
+  LoopOptions options;
   // Nothing is ever confirmed, so everything waits.
-  options.mutable_compatible_subset()->set_min_revisits(50);
-  options.mutable_compatible_subset()->set_single_strong(false);
-  options.mutable_search()->set_informative_sigma(0.);
+  options.compatible_subset.min_revisits = 50;
+  options.compatible_subset.single_strong_enabled = false;
+  options.search.informative_sigma = 0.;
   cartographer::common::ThreadPool pool(2);
   Builder builder(StockOptions(), options, &pool);
   EXPECT_TRUE(Drive(&builder).back().empty());
@@ -120,9 +119,9 @@ TEST_F(VerifiedConstraintBuilderRecordsTest,
 // have been part of it.
 TEST_F(VerifiedConstraintBuilderRecordsTest, UnknownNodesAreAllGivenUp) {
   recorder_->Start(100000);
-  proto::LoopClosureOptions options = Defaults();
-  options.mutable_compatible_subset()->set_min_revisits(50);
-  options.mutable_compatible_subset()->set_single_strong(false);
+  LoopOptions options;
+  options.compatible_subset.min_revisits = 50;
+  options.compatible_subset.single_strong_enabled = false;
   cartographer::common::ThreadPool pool(1);
   Builder builder(StockOptions(), options, &pool);
   for (int i = 0; i < 10; ++i) {
@@ -142,9 +141,9 @@ TEST_F(VerifiedConstraintBuilderRecordsTest, UnknownNodesAreAllGivenUp) {
 
 TEST_F(VerifiedConstraintBuilderRecordsTest, FreesDeletedTrajectories) {
   recorder_->Start(100000);
-  proto::LoopClosureOptions options = Defaults();
-  options.mutable_compatible_subset()->set_min_revisits(50);
-  options.mutable_compatible_subset()->set_single_strong(false);
+  LoopOptions options;
+  options.compatible_subset.min_revisits = 50;
+  options.compatible_subset.single_strong_enabled = false;
   cartographer::common::ThreadPool pool(2);
   Builder builder(StockOptions(), options, &pool);
   Drive(&builder);
@@ -174,10 +173,10 @@ TEST_F(VerifiedConstraintBuilderRecordsTest, FreesDeletedTrajectories) {
 TEST_F(VerifiedConstraintBuilderRecordsTest,
        WithdrawsTheLoopsOfARunThatWasLost) {
   constexpr int kLastBefore = 9, kFirstAfter = 30, kLastDeleted = 5;
-  proto::LoopClosureOptions options = StagesOff();
-  options.mutable_localization()->set_enabled(true);
-  options.mutable_localization()->set_lost_distance(1.);
-  options.mutable_localization()->set_query_spacing(0.05);
+  LoopOptions options = StagesOff();
+  options.relocalization.enabled = true;
+  options.relocalization.map.lost_distance = 1.;
+  options.relocalization.map.query_spacing = 0.05;
   auto stock_options = StockOptions();
   stock_options.set_sampling_ratio(1.);
   for (const bool deletes : {false, true}) {

@@ -16,7 +16,6 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/loop_closure/dropin/verified_constraint_builder_2d.h"
-#include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
 #include "tests/host/mapping_test_helpers.h"
 #include "tests/host/slam_test_helpers.h"
@@ -36,22 +35,16 @@ StockOptions() {
   return options;
 }
 
-inline proto::LoopClosureOptions Defaults() {
-  proto::LoopClosureOptions options;
-  options::SetDefaults(&options);
-  return options;
-}
-
 // Nothing but Cartographer's search.
-inline proto::LoopClosureOptions StagesOff() {
-  proto::LoopClosureOptions options = Defaults();
-  options.mutable_search()->set_enabled(false);
-  options.mutable_temporal_verification()->set_enabled(false);
-  options.mutable_dynamic_threshold()->set_enabled(false);
-  options.mutable_fusion()->set_enabled(false);
-  options.mutable_information()->set_enabled(false);
-  options.mutable_compatible_subset()->set_enabled(false);
-  options.mutable_innovation_veto()->set_enabled(false);
+inline LoopOptions StagesOff() {
+  LoopOptions options;
+  options.search.enabled = false;
+  options.temporal.enabled = false;
+  options.threshold.enabled = false;
+  options.fusion.enabled = false;
+  options.information.enabled = false;
+  options.compatible_subset.enabled = false;
+  options.innovation_veto.enabled = false;
   return options;
 }
 

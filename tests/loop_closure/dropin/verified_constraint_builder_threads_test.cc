@@ -30,7 +30,6 @@ using host::SubmapId;
 using proto::LoopDecision;
 using test::Builder;
 using test::Collect;
-using test::Defaults;
 using test::StagesOff;
 using test::StockOptions;
 
@@ -42,7 +41,7 @@ class VerifiedConstraintBuilderThreadsTest
   // that is deleted meanwhile is missed.
   void MixAllCalls(cartographer::common::ThreadPoolInterface* const pool,
                    const uint64_t seed) {
-    Builder builder(StockOptions(), Defaults(), pool);
+    Builder builder(StockOptions(), LoopOptions(), pool);
     constexpr int kThreads = 3;
     constexpr int kNodesEach = 20;
     std::vector<std::thread> threads;
@@ -97,7 +96,7 @@ TEST_F(VerifiedConstraintBuilderThreadsTest, TheSameForAnyNumberOfThreads) {
     recorder->Start(100000);
     {
       cartographer::common::ThreadPool pool(num_threads);
-      Builder builder(StockOptions(), Defaults(), &pool);
+      Builder builder(StockOptions(), LoopOptions(), &pool);
       runs.push_back(Drive(&builder));
     }
     records.push_back(recorder->All());
@@ -142,7 +141,7 @@ class BlockingGauge : public cartographer::metrics::Gauge {
 
 TEST_F(VerifiedConstraintBuilderThreadsTest, VerificationHoldsUpNoProposals) {
   cartographer::common::ThreadPool pool(2);
-  Builder builder(StockOptions(), Defaults(), &pool);
+  Builder builder(StockOptions(), LoopOptions(), &pool);
   Offer(&builder, 0, 0);
   builder.NotifyEndOfNode();
   BlockingGauge gauge;
@@ -174,7 +173,7 @@ TEST_F(VerifiedConstraintBuilderThreadsTest, VerificationHoldsUpNoProposals) {
 TEST_F(VerifiedConstraintBuilderThreadsTest, CallbacksMayReenter) {
   for (const int num_threads : {1, 4}) {
     cartographer::common::ThreadPool pool(num_threads);
-    Builder builder(StockOptions(), Defaults(), &pool);
+    Builder builder(StockOptions(), LoopOptions(), &pool);
     absl::Notification done;
     int next = 0;
     std::function<void(const Builder::Result&)> callback =

@@ -3,18 +3,11 @@
 #include "cartographer_ext/loop_closure/information/loop_information.h"
 
 #include "cartographer_ext/loop_closure/loop_options.h"
-#include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 namespace {
-
-proto::LoopClosureOptions Defaults() {
-  proto::LoopClosureOptions options;
-  options::SetDefaults(&options);
-  return options;
-}
 
 // A match in a corridor along the x axis of the submap.
 LoopCandidate InCorridor(const double heading) {
@@ -26,7 +19,7 @@ LoopCandidate InCorridor(const double heading) {
 }
 
 TEST(LoopInformationTest, TheCorridorIsUncertainAlongItInTheFrameOfTheNode) {
-  const proto::LoopClosureOptions options = Defaults();
+  const LoopOptions options = LoopOptions();
   const Eigen::Matrix3d constant = LoopCovariance(options);
   const Eigen::Matrix3d along = MatchCovariance(options, InCorridor(0.));
   EXPECT_NEAR(along(0, 0), constant(0, 0) + 0.09, 1e-6);
@@ -38,13 +31,13 @@ TEST(LoopInformationTest, TheCorridorIsUncertainAlongItInTheFrameOfTheNode) {
 }
 
 TEST(LoopInformationTest, WithoutInformationTheConstantPartIsLeft) {
-  const proto::LoopClosureOptions options = Defaults();
+  const LoopOptions options = LoopOptions();
   EXPECT_EQ(MatchCovariance(options, LoopCandidate()), LoopCovariance(options));
 }
 
 TEST(LoopInformationTest, WeightsFollowTheFinalScore) {
-  proto::LoopClosureOptions options = Defaults();
-  options.mutable_information()->set_full_matrix(true);
+  LoopOptions options;
+  options.information.full_matrix = true;
   const ConstraintWeights stock{100., 200.};
   LoopCandidate candidate = InCorridor(0.);
   WeighConstraint(options, stock, &candidate);
@@ -52,8 +45,8 @@ TEST(LoopInformationTest, WeightsFollowTheFinalScore) {
   EXPECT_GT(candidate.weights->rotation, 200.);
   EXPECT_LT(candidate.full_information(0, 0),
             0.1 * candidate.full_information(1, 1));
-  options.mutable_information()->set_enabled(false);
-  options.mutable_information()->set_full_matrix(false);
+  options.information.enabled = false;
+  options.information.full_matrix = false;
   candidate = InCorridor(0.);
   WeighConstraint(options, stock, &candidate);
   EXPECT_EQ(candidate.weights->translation, 100.);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -13,7 +14,7 @@ namespace {
 // Run 1, a node every metre along a line, in the map of run 0.
 class MapLocalizationTest : public testing::Test {
  protected:
-  MapLocalizationTest() : paths_(uncertainty::PathNoiseOptions(), 1000) {
+  MapLocalizationTest() : paths_(uncertainty::RandomWalk(), 1000) {
     for (int i = 0; i <= 300; ++i) {
       paths_.Add(uncertainty::NodeId{1, i}, Pose2(i, 0., 0.));
     }
@@ -128,7 +129,7 @@ TEST_F(MapLocalizationTest, DecisionsTellThatThePlaceIsAnotherOne) {
 }
 
 TEST_F(MapLocalizationTest, AWayThatIsForgottenIsALongOne) {
-  uncertainty::PathUncertainty short_memory(uncertainty::PathNoiseOptions(), 3);
+  uncertainty::PathUncertainty short_memory(uncertainty::RandomWalk(), 3);
   MapLocalization localization(options_, &short_memory);
   for (int i = 0; i < 6; ++i) {
     short_memory.Add(uncertainty::NodeId{1, i}, Pose2(0.1 * i, 0., 0.));

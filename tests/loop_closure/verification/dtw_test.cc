@@ -15,7 +15,8 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(VariableWindowTest, EquationFour) {
-  VariableWindowOptions options;  // 4, 2, 0.3 as in the paper
+  VariableWindowOptions options;  // 2, 0.3 as in the paper
+  options.base = 4.;
   EXPECT_EQ(VariableWindow(options, 0.), 4);
   EXPECT_EQ(VariableWindow(options, -5.), 4);
   // 4 + 2 (1 - exp(-0.3)) = 4.518..., rounds to 5.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/verification/score_verifier.h"
 
-#include "cartographer_ext/options/option_description.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -10,13 +9,11 @@ namespace loop_closure {
 namespace {
 
 using proto::LoopDecision;
-using Fusion = proto::LoopClosureOptions::Fusion;
 
-proto::LoopClosureOptions Options(const Fusion::Mode mode) {
-  proto::LoopClosureOptions options;
-  options::SetDefaults(&options);
-  options.mutable_fusion()->set_mode(mode);
-  options.mutable_dynamic_threshold()->set_base_threshold(0.5);
+LoopOptions Options(const FusionMode mode) {
+  LoopOptions options;
+  options.fusion.mode = mode;
+  options.threshold.base_threshold = 0.5;
   return options;
 }
 
@@ -31,8 +28,8 @@ LoopCandidate Scored(const double grid_score, const double temporal_score) {
 }
 
 TEST(ScoreVerifierTest, TheThresholdIsThatOfTheCandidatesBefore) {
-  proto::LoopClosureOptions options = Options(Fusion::AS_PRINTED);
-  options.mutable_dynamic_threshold()->set_window(2);
+  LoopOptions options = Options(FusionMode::kAsPrinted);
+  options.threshold.window = 2;
   ScoreVerifier verifier(options);
   for (const double score : {0.4, 0.9}) {
     LoopCandidate candidate = Scored(0.7, score);
@@ -48,8 +45,8 @@ TEST(ScoreVerifierTest, TheThresholdIsThatOfTheCandidatesBefore) {
 }
 
 TEST(ScoreVerifierTest, WithoutATemporalScoreTheFinalOneIsNeutralAtBest) {
-  for (const Fusion::Mode mode :
-       {Fusion::AS_PRINTED, Fusion::LIKELIHOOD_RATIO}) {
+  for (const FusionMode mode :
+       {FusionMode::kAsPrinted, FusionMode::kLikelihoodRatio}) {
     ScoreVerifier verifier(Options(mode));
     LoopCandidate candidate = Scored(0.9, 0.);
     candidate.temporal->result.outcome = TemporalOutcome::kShortHistory;
@@ -58,14 +55,14 @@ TEST(ScoreVerifierTest, WithoutATemporalScoreTheFinalOneIsNeutralAtBest) {
     EXPECT_FALSE(candidate.is_rejected());
     EXPECT_EQ(candidate.FinalScore(), 0.5);
     EXPECT_EQ(candidate.fusion->mixture.has_value(),
-              mode == Fusion::LIKELIHOOD_RATIO);
+              mode == FusionMode::kLikelihoodRatio);
   }
 }
 
 TEST(ScoreVerifierTest, FusionLearnsFromRejectedCandidates) {
-  proto::LoopClosureOptions options = Options(Fusion::AS_PRINTED);
-  options.mutable_fusion()->set_window(1);
-  options.mutable_fusion()->set_min_final_score(0.65);
+  LoopOptions options = Options(FusionMode::kAsPrinted);
+  options.fusion.blend.window = 1;
+  options.fusion.min_final_score = 0.65;
   ScoreVerifier verifier(options);
   LoopCandidate rejected = Scored(0.7, 0.1);
   verifier.TestTemporalScore(&rejected);
@@ -86,9 +83,9 @@ TEST(ScoreVerifierTest, FusionLearnsFromRejectedCandidates) {
 }
 
 TEST(ScoreVerifierTest, StagesThatAreOffLeaveNoResult) {
-  proto::LoopClosureOptions options = Options(Fusion::AS_PRINTED);
-  options.mutable_temporal_verification()->set_enabled(false);
-  options.mutable_fusion()->set_enabled(false);
+  LoopOptions options = Options(FusionMode::kAsPrinted);
+  options.temporal.enabled = false;
+  options.fusion.enabled = false;
   ScoreVerifier verifier(options);
   const NodeHistory history(10);
   LoopCandidate candidate;

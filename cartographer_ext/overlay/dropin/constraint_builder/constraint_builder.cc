@@ -7,6 +7,8 @@
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/options/lua_path.h"
 #include "cartographer_ext/overlay/signature.h"
+#include "cartographer_ext/swaps.h"
+#include "glog/logging.h"
 
 #ifndef CARTOGRAPHER_EXT_OVERLAY_CONSTRAINT_BUILDER_H_
 #error \
@@ -30,6 +32,13 @@ proto::ConstraintBuilderOptions CreateConstraintBuilderOptions(
       StockCreateConstraintBuilderOptions(parameter_dictionary);
   ::cartographer_ext::proto::LoopClosureOptions extension;
   if (ext::ReadExtension(path, parameter_dictionary, &extension)) {
+#if !defined(CARTOGRAPHER_EXT_SWAP_FULL_INFORMATION) || \
+    !defined(CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM)
+    CHECK(!extension.information().full_matrix())
+        << path << "." << ext::kExtensionKey
+        << ".information.full_matrix: true needs the swaps full_information "
+           "and optimization_problem, which this build does not have";
+#endif
     ext::SetExtension(extension, &options);
   }
   return options;

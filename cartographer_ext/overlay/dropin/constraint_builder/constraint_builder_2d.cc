@@ -6,6 +6,7 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/verified_constraint_builder_2d.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure_options.pb.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/overlay/signature.h"
@@ -57,7 +58,8 @@ ConstraintBuilder2D::ConstraintBuilder2D(
   ::cartographer_ext::proto::LoopClosureOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
     verified_ = absl::make_unique<VerifiedConstraintBuilder2D>(
-        options, extension, thread_pool);
+        options, ::cartographer_ext::loop_closure::ToLoopOptions(extension),
+        thread_pool);
   } else {
     stock_ = absl::make_unique<Stock>(options, thread_pool);
   }

@@ -39,7 +39,8 @@ LocalTrajectoryBuilder2D::LocalTrajectoryBuilder2D(
   ::cartographer_ext::proto::FrontEndOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
     adaptive_ = absl::make_unique<AdaptiveLocalTrajectoryBuilder2D>(
-        options, extension, expected_range_sensor_ids);
+        options, ::cartographer_ext::front_end::ToFrontEndOptions(extension),
+        expected_range_sensor_ids);
   } else {
     stock_ = absl::make_unique<Stock>(options, expected_range_sensor_ids);
   }
