@@ -235,7 +235,7 @@ void PrintOutputs(std::ostream& out) {
   if (!names.empty()) out << "Written    " << absl::StrJoin(names, ", ") << "\n";
 }
 
-nlohmann::ordered_json ToJson(const evaluation::SlamRun& run) {
+nlohmann::ordered_json RunToJson(const evaluation::SlamRun& run) {
   nlohmann::ordered_json json;
   json["input"] = FLAGS_input_filename;
   json["configuration"] = FLAGS_configuration_basename;
@@ -402,7 +402,7 @@ absl::Status Run(const std::string& command_line) {
   const absl::Status written = WriteResults(*run);
   if (!written.ok()) return written;
   out << evaluation::ToText(*run);
-  nlohmann::ordered_json json = ToJson(*run);
+  nlohmann::ordered_json json = RunToJson(*run);
   if (!FLAGS_report_filename.empty()) {
     const absl::Status reported = WriteReport(command_line, &json, out);
     if (!reported.ok()) return reported;
