@@ -179,7 +179,7 @@ void PrintRecording(const io::SensorSourceInfo& info, std::ostream& out) {
       io::ToSeconds(info.end - info.begin));
 }
 
-// Of the wrong loops that were injected.
+// Of the injected wrong loops.
 int CountSwitchedOff(const evaluation::SlamRun& run,
                      const std::vector<evaluation::GraphConstraint>& injected) {
   evaluation::MapGraph graph;
@@ -214,6 +214,7 @@ void NameOutputs(const std::string& stem) {
 absl::Status WriteReport(const std::string& command_line,
                          nlohmann::ordered_json* const json,
                          std::ostream& out) {
+  if (FLAGS_report_filename.empty()) return absl::OkStatus();
   const auto report =
       report::ReportMap(FLAGS_pbstream_filename,
                         tools::BaseName(FLAGS_input_filename), command_line);
@@ -224,9 +225,8 @@ absl::Status WriteReport(const std::string& command_line,
 }
 
 void PrintOutputs(std::ostream& out) {
-  std::vector<std::string> names = {FLAGS_pbstream_filename,
-                                    FLAGS_picture_filename,
-                                    FLAGS_report_filename};
+  std::vector<std::string> names = {
+      FLAGS_pbstream_filename, FLAGS_picture_filename, FLAGS_report_filename};
   if (!FLAGS_map_filestem.empty()) {
     names.push_back(FLAGS_map_filestem + ".yaml");
     names.push_back(FLAGS_map_filestem + ".pgm");
@@ -332,10 +332,18 @@ absl::Status CheckOutputs() {
   return tools::CheckWritable(outputs);
 }
 
+io::SensorSourceOptions SourceOptions(
+    const evaluation::SensorSettings& settings) {
+  io::SensorSourceOptions options = evaluation::ToSourceOptions(settings);
+  options.scan_topic = FLAGS_scan_topic;
+  options.odometry_topic = FLAGS_odometry_topic;
+  options.imu_topic = FLAGS_imu_topic;
+  return options;
+}
+
 absl::Status Run(const std::string& command_line) {
   const absl::Status writable = CheckOutputs();
   if (!writable.ok()) return writable;
-
   const std::vector<std::string> directories =
       tools::ConfigurationDirectories(FLAGS_configuration_directory);
   auto configuration = evaluation::LoadSlamConfiguration(
@@ -343,7 +351,6 @@ absl::Status Run(const std::string& command_line) {
   if (!configuration.ok()) return configuration.status();
   const absl::Status applied = ApplyFlags(&configuration->sensors);
   if (!applied.ok()) return applied;
-
   if (SameFile(FLAGS_load_state_filename, FLAGS_pbstream_filename)) {
     return absl::InvalidArgumentError(
         absl::StrCat(FLAGS_load_state_filename,
@@ -352,14 +359,8 @@ absl::Status Run(const std::string& command_line) {
   }
   auto state = ReadStartingState();
   if (!state.ok()) return state.status();
-
-  io::SensorSourceOptions source_options =
-      evaluation::ToSourceOptions(configuration->sensors);
-  source_options.scan_topic = FLAGS_scan_topic;
-  source_options.odometry_topic = FLAGS_odometry_topic;
-  source_options.imu_topic = FLAGS_imu_topic;
-  const auto source = evaluation::OpenRecording(FLAGS_input_filename,
-                                                source_options, FLAGS_seed);
+  const auto source = evaluation::OpenRecording(
+      FLAGS_input_filename, SourceOptions(configuration->sensors), FLAGS_seed);
   if (!source.ok()) return source.status();
   // With the JSON on standard output nothing else may go there.
   std::ostream& out = FLAGS_json == "-" ? std::cerr : std::cout;
@@ -403,10 +404,8 @@ absl::Status Run(const std::string& command_line) {
   if (!written.ok()) return written;
   out << evaluation::ToText(*run);
   nlohmann::ordered_json json = RunToJson(*run);
-  if (!FLAGS_report_filename.empty()) {
-    const absl::Status reported = WriteReport(command_line, &json, out);
-    if (!reported.ok()) return reported;
-  }
+  const absl::Status reported = WriteReport(command_line, &json, out);
+  if (!reported.ok()) return reported;
   PrintOutputs(out);
   if (FLAGS_json.empty()) return absl::OkStatus();
   if (FLAGS_wrong_loops > 0) {

@@ -41,6 +41,7 @@ std::map<std::string, double> Values(const FrontEndOptions& options) {
        prediction.calibration.estimate_rotation},
       {"calibration.odometry_scale", prediction.calibration.translation_scale},
       {"paper_mode.adaptive_features", options.match_features_only},
+      {"log.directory", static_cast<double>(options.log_directory.size())},
   };
 }
 
@@ -73,6 +74,10 @@ TEST(FrontEndOptionsTest, EveryKeyHasAnEffect) {
         if (field->cpp_type() ==
             google::protobuf::FieldDescriptor::CPPTYPE_BOOL) {
           target->GetReflection()->SetBool(target, field, value > 0);
+        } else if (field->cpp_type() ==
+                   google::protobuf::FieldDescriptor::CPPTYPE_STRING) {
+          target->GetReflection()->SetString(target, field,
+                                             std::string(value, 'x'));
         } else {
           target->GetReflection()->SetDouble(target, field, value);
         }

@@ -56,7 +56,7 @@ TEST(SensorSourceTest, SaysWhatIsWrong) {
   EXPECT_THAT(ErrorOf(".clf", "some text"), HasSubstr("a CARMEN log?"));
   EXPECT_EQ(OpenSensorSource("/nonexistent.clf", {}).status().code(),
             absl::StatusCode::kNotFound);
-  EXPECT_FALSE(OpenSensorSource("/tmp", {}).ok());
+  EXPECT_FALSE(OpenSensorSource("configuration_files", {}).ok());
   EXPECT_FALSE(OpenSensorSource("/dev/null", {}).ok());
 }
 

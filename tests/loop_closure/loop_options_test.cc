@@ -74,6 +74,7 @@ std::map<std::string, double> Values(const LoopOptions& options) {
       {"localization.enabled",
        static_cast<double>(options.relocalization.enabled)},
       {"log.times", static_cast<double>(options.log_times)},
+      {"log.directory", static_cast<double>(options.log_directory.size())},
       {"paper_mode.temporal_verification",
        static_cast<double>(options.temporal.comparison.comparison)},
       {"paper_mode.dynamic_threshold",
@@ -114,6 +115,9 @@ TEST(LoopOptionsTest, EveryKeyHasAnEffect) {
         switch (field->cpp_type()) {
           case google::protobuf::FieldDescriptor::CPPTYPE_BOOL:
             reflection->SetBool(target, field, value > 0);
+            break;
+          case google::protobuf::FieldDescriptor::CPPTYPE_STRING:
+            reflection->SetString(target, field, std::string(value, 'x'));
             break;
           case google::protobuf::FieldDescriptor::CPPTYPE_INT32:
             reflection->SetInt32(target, field, value);

@@ -232,7 +232,7 @@ TEST(CarmenReaderTest, OnlyRawLaser) {
 TEST(CarmenReaderTest, Errors) {
   EXPECT_EQ(Read("/nonexistent.clf").status().code(),
             absl::StatusCode::kNotFound);
-  EXPECT_FALSE(Read("/tmp").ok());
+  EXPECT_FALSE(Read("configuration_files").ok());
   EXPECT_FALSE(Read("/dev/null").ok());
   EXPECT_FALSE(ReadText("").ok());
   const auto no_scan = ReadText("hello\nworld\n");
