@@ -15,6 +15,7 @@
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
+#include "cartographer_ext/uncertainty/drift_model.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -56,7 +57,10 @@ LoopClosure2D::LoopClosure2D(
       submaps_(options, extension, thread_pool),
       relocalizer_(extension.localization(),
                    options.global_localization_min_score()),
-      typical_fit_(ToTypicalFitOptions(extension)) {}
+      typical_fit_(ToTypicalFitOptions(extension)) {
+  context_->Get<uncertainty::DriftModel>()->SetPrior(
+      ToPathNoiseOptions(extension));
+}
 
 void LoopClosure2D::AddNode(const std::vector<Proposal>& proposals,
                             Task* const end_of_node) {
@@ -214,6 +218,10 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   std::vector<Constraint> constraints;
   for (const LoopCandidate& candidate : decided) {
     if (candidate.is_accepted()) Close(candidate, &constraints);
+  }
+  auto* const drift = context_->Get<uncertainty::DriftModel>();
+  for (const auto& estimate : pipeline_.drift().Estimates()) {
+    drift->Set(estimate.first, estimate.second);
   }
   metrics.undecided->Set(pipeline_.num_undecided());
   return constraints;
