@@ -60,6 +60,10 @@ struct LoopCandidate {
   // A node of the submap, or the submap itself, from which paths lead to the
   // node.
   absl::optional<uncertainty::VertexId> anchor;
+  // The nodes that may have been inserted in the submap, of its trajectory;
+  // empty where they are not known.
+  int first_submap_node = 0;
+  int last_submap_node = -1;
   // (submap <- node); none where the whole submap is to be searched.
   absl::optional<Pose2> predicted;
   // (gravity-aligned <- tracking frame) of the node, a rotation.

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "cartographer_ext/loop_closure/consensus/candidate_edge.h"
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 #include "cartographer_ext/loop_closure/information/loop_information.h"
 
@@ -14,12 +15,20 @@ namespace loop_closure {
 
 using proto::LoopDecision;
 
+namespace {
+
+// Candidates that wait for the drift to turn out larger, oldest given up first.
+constexpr size_t kMaxVetoed = 2000;
+
+}  // namespace
+
 LoopPipeline::LoopPipeline(const LoopOptions& options,
                            const ConstraintWeights& stock_weights)
     : options_(options),
       stock_weights_(stock_weights),
       history_(options.temporal.max_history_nodes),
       paths_(options.path_noise, options.temporal.max_history_nodes),
+      drift_(options.path_noise, &paths_),
       scores_(options),
       consensus_(options, &paths_) {}
 
@@ -56,17 +65,34 @@ void LoopPipeline::Process(LoopCandidate candidate) {
   scores_.FuseScores(&candidate);
   if (candidate.is_rejected()) return Settle({std::move(candidate)});
 
-  // Could odometry have drifted so far: chi^2 (G section 3.4).
-  VetoByInnovation(options_, paths_, &candidate);
-  if (candidate.is_rejected()) return Settle({std::move(candidate)});
+  candidate.maps.clear();
+  candidate.views.clear();
 
   // Information of the constraint: Omega (C eq. 8-11).
   WeighConstraint(options_, stock_weights_, &candidate);
 
+  // How much local SLAM drifts, whether or not this one turns out right.
+  if (!candidate.is_inter_trajectory()) {
+    drift_.Add(CandidateEdge(options_, paths_, candidate));
+  }
+  Veto(std::move(candidate));
+}
+
+void LoopPipeline::Veto(LoopCandidate candidate) {
+  // Could odometry have drifted so far: chi^2 (G section 3.4).
+  VetoByInnovation(options_, paths_, &candidate);
+  if (candidate.is_rejected()) {
+    candidate.verdict = LoopDecision::UNDECIDED;
+    vetoed_.push_back(std::move(candidate));
+    if (vetoed_.size() <= kMaxVetoed) return;
+    vetoed_.front().Reject(LoopDecision::INNOVATION_TOO_LARGE);
+    Settle({std::move(vetoed_.front())});
+    vetoed_.pop_front();
+    return;
+  }
   // Consensus: the largest compatible subset (G eq. 20, 21) decides, maybe
   // later.
-  candidate.maps.clear();
-  candidate.views.clear();
+  candidate.reason = LoopDecision::NONE;
   if (options_.compatible_subset.enabled) {
     consensus_.Add(std::move(candidate));
   } else {
@@ -89,14 +115,39 @@ std::vector<LoopCandidate> LoopPipeline::TakeSettled() {
   return candidates;
 }
 
+void LoopPipeline::UpdateDrift() {
+  if (!drift_.Update()) return;
+  consensus_.DriftChanged();
+  std::deque<LoopCandidate> vetoed;
+  vetoed.swap(vetoed_);
+  for (LoopCandidate& candidate : vetoed) Veto(std::move(candidate));
+}
+
 std::vector<LoopCandidate> LoopPipeline::Decide() {
+  UpdateDrift();
   Settle(consensus_.Decide());
   return TakeSettled();
 }
 
 std::vector<LoopCandidate> LoopPipeline::Flush() {
+  UpdateDrift();
+  for (LoopCandidate& candidate : vetoed_) {
+    candidate.Reject(LoopDecision::INNOVATION_TOO_LARGE);
+    Settle({std::move(candidate)});
+  }
+  vetoed_.clear();
   Settle(consensus_.Flush());
   return TakeSettled();
+}
+
+std::vector<LoopCandidate> LoopPipeline::Undecided() const {
+  std::vector<LoopCandidate> candidates = consensus_.Undecided();
+  candidates.insert(candidates.end(), vetoed_.begin(), vetoed_.end());
+  std::sort(candidates.begin(), candidates.end(),
+            [](const LoopCandidate& a, const LoopCandidate& b) {
+              return a.number < b.number;
+            });
+  return candidates;
 }
 
 void LoopPipeline::RejectIf(const LoopConsensus::Condition& condition,
@@ -109,6 +160,11 @@ void LoopPipeline::RejectIf(const LoopConsensus::Condition& condition,
     }
   }
   std::vector<LoopCandidate> removed = consensus_.Remove(condition);
+  const auto kept = std::stable_partition(
+      vetoed_.begin(), vetoed_.end(),
+      [&](const LoopCandidate& candidate) { return !condition(candidate); });
+  std::move(kept, vetoed_.end(), std::back_inserter(removed));
+  vetoed_.erase(kept, vetoed_.end());
   for (LoopCandidate& candidate : removed) candidate.Reject(reason);
   Settle(std::move(removed));
 }
@@ -145,6 +201,7 @@ void LoopPipeline::DeleteNodes(const int trajectory_id,
 
 void LoopPipeline::DeleteTrajectory(const int trajectory_id) {
   history_.DeleteTrajectory(trajectory_id);
+  drift_.DeleteTrajectory(trajectory_id);
   paths_.DeleteTrajectory(trajectory_id);
 }
 

@@ -28,9 +28,11 @@
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_PIPELINE_H_
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/consensus/drift_learner.h"
 #include "cartographer_ext/loop_closure/consensus/loop_consensus.h"
 #include "cartographer_ext/loop_closure/information/constraint_information.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
@@ -74,11 +76,13 @@ class LoopPipeline {
   std::vector<LoopCandidate> Decide();
   std::vector<LoopCandidate> Flush();
 
-  // What waits for other loops and why, in the order of the numbers.
-  std::vector<LoopCandidate> Undecided() const {
-    return consensus_.Undecided();
+  // What waits and why, in the order of the numbers: for other loops, or for
+  // evidence that local SLAM drifts more than is known.
+  std::vector<LoopCandidate> Undecided() const;
+  int num_undecided() const {
+    return consensus_.num_undecided() + static_cast<int>(vetoed_.size());
   }
-  int num_undecided() const { return consensus_.num_undecided(); }
+  const DriftLearner& drift() const { return drift_; }
 
   // Loops of nodes of a trajectory up to an index with submaps of another one
   // no longer count: the trajectory was lost in between. Undecided ones with a
@@ -97,6 +101,10 @@ class LoopPipeline {
   void RejectIf(const LoopConsensus::Condition& condition,
                 LoopCandidate::Reason reason);
   void Settle(std::vector<LoopCandidate> candidates);
+  // The innovation of a candidate that was verified, and what follows.
+  void Veto(LoopCandidate candidate);
+  // What was learnt of the drift, with all that depends on it.
+  void UpdateDrift();
   std::vector<LoopCandidate> TakeSettled();
 
   const LoopOptions options_;
@@ -104,9 +112,12 @@ class LoopPipeline {
   NodeHistory history_;
   // Between nodes and between submaps.
   uncertainty::PathUncertainty paths_;
+  DriftLearner drift_;
   ScoreVerifier scores_;
   LoopConsensus consensus_;
   int64_t num_candidates_ = 0;
+  // Demand more drift than is known, in the order of their numbers.
+  std::deque<LoopCandidate> vetoed_;
   std::vector<LoopCandidate> settled_;
 };
 

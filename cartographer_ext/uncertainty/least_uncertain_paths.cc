@@ -203,6 +203,10 @@ absl::optional<UncertainPose> LeastUncertainPaths::Between(const VertexId& a,
   absl::optional<UncertainPose> best = paths_->Between(a, b);
   if (loops_.empty()) return best;
   if (!is_built_) BuildVertices();
+  if (drift_version_ != paths_->drift_version()) {
+    drift_version_ = paths_->drift_version();
+    trees_.clear();
+  }
   Tree* const tree = TreeOf(a);
   for (const size_t vertex : Adjacent(b)) {
     const absl::optional<UncertainPose>& to = PoseOf(vertex, tree);

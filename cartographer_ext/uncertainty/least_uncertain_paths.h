@@ -12,8 +12,8 @@
 // know more.
 //
 // One search of the graph serves all queries from the same vertex, until the
-// next loop. A loop close to another one at both ends adds no path and is not
-// stored. Not thread-safe.
+// next loop or the next change of what drift is assumed. A loop close to
+// another one at both ends adds no path and is not stored. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 #define CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 
@@ -86,6 +86,7 @@ class LeastUncertainPaths {
   std::map<VertexId, size_t> index_of_;
   // What was built from the loops is valid.
   bool is_built_ = false;
+  int drift_version_ = 0;  // of `paths_` when the trees were searched
   std::map<VertexId, Tree> trees_;
 };
 

@@ -14,21 +14,30 @@ namespace uncertainty {
 namespace {
 
 // Covariance of one step, in the frame of its end. Only steps between nodes can
-// be jumps; submaps are as far apart as their size.
-Eigen::Matrix3d StepCovariance(const PathNoiseOptions& options,
-                               const bool are_nodes, const double metres,
-                               const double radians) {
-  const double jump =
-      are_nodes ? std::max(0., metres - options.jump_threshold_metres) : 0.;
-  const double turn =
-      are_nodes ? std::max(0., radians - options.jump_threshold_radians) : 0.;
-  const double translation = Squared(options.translation_per_metre) * metres +
-                             Squared(options.translation_per_radian) * radians +
-                             Squared(jump);
-  const double rotation = Squared(options.rotation_per_metre) * metres +
-                          Squared(options.rotation_per_radian) * radians +
-                          Squared(turn);
-  return Eigen::Vector3d(translation, translation, rotation).asDiagonal();
+// be jumps; submaps are as far apart as their size. `num_steps`: from node to
+// node, with those that are not known.
+CovarianceParts StepCovariance(const PathNoiseOptions& options,
+                               const bool are_nodes, const int num_steps,
+                               const double metres, const double radians) {
+  const auto diagonal = [](const double translation, const double rotation) {
+    return Eigen::Matrix3d(
+        Eigen::Vector3d(translation, translation, rotation).asDiagonal());
+  };
+  CovarianceParts parts;
+  parts.translation =
+      diagonal(Squared(options.translation_per_metre) * metres +
+                   Squared(options.translation_per_radian) * radians,
+               0.);
+  parts.rotation = diagonal(0., Squared(options.rotation_per_metre) * metres);
+  parts.turning = diagonal(0., Squared(options.rotation_per_radian) * radians);
+  if (are_nodes) {
+    parts.other = diagonal(
+        Squared(
+            std::max(0., metres - num_steps * options.jump_threshold_metres)),
+        Squared(std::max(
+            0., radians - num_steps * options.jump_threshold_radians)));
+  }
+  return parts;
 }
 
 // Keeps costs finite where driving is configured to be exact.
@@ -43,6 +52,43 @@ auto LowerBound(Entries& entries, const int index)
 }
 
 }  // namespace
+
+PathNoiseOptions Scaled(const PathNoiseOptions& noise,
+                        const DriftFactors& factors) {
+  PathNoiseOptions scaled = noise;
+  scaled.translation_per_metre *= factors.translation;
+  scaled.translation_per_radian *= factors.translation;
+  scaled.rotation_per_metre *= factors.rotation;
+  scaled.rotation_per_radian *= factors.turning;
+  return scaled;
+}
+
+CommonDrift PriorCommonDrift(const PathNoiseOptions& options) {
+  CommonDrift prior;
+  prior.covariance.diagonal() << Squared(options.heading_drift), 0.,
+      Squared(options.scale_error);
+  return prior;
+}
+
+Eigen::Matrix3d CovarianceParts::Total(
+    const DriftFactors& factors,
+    const Eigen::Matrix3d& common_covariance) const {
+  return Squared(factors.translation) * translation +
+         Squared(factors.rotation) * rotation +
+         Squared(factors.turning) * turning +
+         common * common_covariance * common.transpose() + other;
+}
+
+CovarianceParts Transported(const CovarianceParts& parts,
+                            const Eigen::Matrix3d& adjoint) {
+  CovarianceParts result;
+  result.translation = adjoint * parts.translation * adjoint.transpose();
+  result.rotation = adjoint * parts.rotation * adjoint.transpose();
+  result.turning = adjoint * parts.turning * adjoint.transpose();
+  result.common = adjoint * parts.common;
+  result.other = adjoint * parts.other * adjoint.transpose();
+  return result;
+}
 
 PathUncertainty::PathUncertainty(const PathNoiseOptions& options,
                                  const int max_vertices)
@@ -71,22 +117,34 @@ void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose) {
   }
 }
 
-void PathUncertainty::Accumulate(const bool are_nodes, const Entry& before,
+void PathUncertainty::Accumulate(const bool are_nodes,
+                                 const Eigen::Vector3d& common,
+                                 const Entry& before,
                                  Entry* const entry) const {
   const Pose2 step =
       cartographer_ext::Between(before.local_pose, entry->local_pose);
   const double metres = step.translation().norm();
-  const Eigen::Matrix3d adjoint = Adjoint(entry->local_pose);
-  const Eigen::Matrix3d covariance =
-      StepCovariance(options_, are_nodes, metres, std::abs(step.theta));
+  const Pose2 corrected((1. + common.z()) * step.x, (1. + common.z()) * step.y,
+                        (1. + common.y()) * step.theta + common.x() * metres);
+  entry->corrected = before.corrected * corrected;
+  const CovarianceParts step_parts =
+      StepCovariance(options_, are_nodes, entry->index - before.index, metres,
+                     std::abs(step.theta));
   entry->travelled = before.travelled + metres;
-  entry->cost = before.cost + PathCostOf(covariance);
-  entry->sum = before.sum + adjoint * covariance * adjoint.transpose();
-  entry->drift = before.drift + adjoint * Eigen::Vector3d(0., 0., metres);
+  entry->cost = before.cost + PathCostOf(step_parts.Total(
+                                  DriftFactors(), Eigen::Matrix3d::Zero()));
+  CovarianceParts parts = step_parts;
+  parts.common.col(0) = Eigen::Vector3d(0., 0., metres);
+  parts.common.col(1) = Eigen::Vector3d(0., 0., step.theta);
   // The translation of the step in the frame of its end.
-  const Eigen::Vector2d translation = -step.Inverse().translation();
-  entry->scale = before.scale + adjoint * Eigen::Vector3d(translation.x(),
-                                                          translation.y(), 0.);
+  parts.common.col(2).head<2>() = -step.Inverse().translation();
+  parts = Transported(parts, Adjoint(entry->corrected));
+  entry->sum = before.sum;
+  entry->sum.translation += parts.translation;
+  entry->sum.rotation += parts.rotation;
+  entry->sum.turning += parts.turning;
+  entry->sum.common += parts.common;
+  entry->sum.other += parts.other;
 }
 
 const PathUncertainty::Entry* PathUncertainty::Find(
@@ -95,15 +153,21 @@ const PathUncertainty::Entry* PathUncertainty::Find(
   if (it == sequences_.end()) return nullptr;
   Sequence& sequence = it->second;
   std::deque<Entry>& entries = sequence.entries;
+  if (sequence.num_valid == entries.size()) {
+    const auto place = LowerBound(entries, vertex.index());
+    return place == entries.end() || place->index != vertex.index() ? nullptr
+                                                                    : &*place;
+  }
+  const Eigen::Vector3d common = Common(vertex.trajectory_id()).mean;
   for (; sequence.num_valid < entries.size(); ++sequence.num_valid) {
     Entry& entry = entries[sequence.num_valid];
     entry.travelled = 0.;
     entry.cost = 0.;
-    entry.sum.setZero();
-    entry.drift.setZero();
-    entry.scale.setZero();
+    entry.sum = CovarianceParts();
+    entry.corrected = entry.local_pose;
     if (sequence.num_valid == 0) continue;
-    Accumulate(vertex.is_node(), entries[sequence.num_valid - 1], &entry);
+    Accumulate(vertex.is_node(), common, entries[sequence.num_valid - 1],
+               &entry);
   }
   const auto place = LowerBound(entries, vertex.index());
   if (place == entries.end() || place->index != vertex.index()) return nullptr;
@@ -122,19 +186,59 @@ absl::optional<UncertainPose> PathUncertainty::Between(
   const Entry* const to = Find(v);
   if (from == nullptr || to == nullptr) return absl::nullopt;
   UncertainPose result;
-  result.pose = cartographer_ext::Between(from->local_pose, to->local_pose);
-  const Eigen::Matrix3d adjoint = Adjoint(to->local_pose.Inverse());
-  const Eigen::Vector3d drift =
-      options_.heading_drift * (to->drift - from->drift);
-  const Eigen::Vector3d scale =
-      options_.scale_error * (to->scale - from->scale);
-  const Eigen::Matrix3d covariance =
-      adjoint *
-      (to->sum - from->sum + drift * drift.transpose() +
-       scale * scale.transpose()) *
-      adjoint.transpose();
-  result.covariance = Symmetric(covariance);
+  result.pose = cartographer_ext::Between(from->corrected, to->corrected);
+  result.covariance =
+      Symmetric(PartsBetween(*from, *to)
+                    .Total(Drift(u.trajectory_id()),
+                           Common(u.trajectory_id()).covariance));
   return result;
+}
+
+CovarianceParts PathUncertainty::PartsBetween(const Entry& from,
+                                              const Entry& to) const {
+  CovarianceParts sum;
+  sum.translation = to.sum.translation - from.sum.translation;
+  sum.rotation = to.sum.rotation - from.sum.rotation;
+  sum.turning = to.sum.turning - from.sum.turning;
+  sum.common = to.sum.common - from.sum.common;
+  sum.other = to.sum.other - from.sum.other;
+  return Transported(sum, Adjoint(to.corrected.Inverse()));
+}
+
+absl::optional<CovarianceParts> PathUncertainty::Parts(
+    const VertexId& u, const VertexId& v) const {
+  if (!u.InSequenceWith(v)) return absl::nullopt;
+  const Entry* const from = Find(u);
+  const Entry* const to = Find(v);
+  if (from == nullptr || to == nullptr) return absl::nullopt;
+  if (u.index() <= v.index()) return PartsBetween(*from, *to);
+  // Seen from the other end, as Invert() does.
+  CovarianceParts parts = Transported(
+      PartsBetween(*to, *from),
+      Adjoint(cartographer_ext::Between(to->corrected, from->corrected)));
+  parts.common = -parts.common;
+  return parts;
+}
+
+void PathUncertainty::SetDrift(const int trajectory_id,
+                               const DriftFactors& factors,
+                               const CommonDrift& common) {
+  drift_[trajectory_id] = TrajectoryDrift{factors, common};
+  ++drift_version_;
+  for (auto& sequence : sequences_) {
+    if (sequence.first.second == trajectory_id) sequence.second.num_valid = 0;
+  }
+}
+
+DriftFactors PathUncertainty::Drift(const int trajectory_id) const {
+  const auto found = drift_.find(trajectory_id);
+  return found == drift_.end() ? DriftFactors() : found->second.factors;
+}
+
+CommonDrift PathUncertainty::Common(const int trajectory_id) const {
+  const auto found = drift_.find(trajectory_id);
+  return found == drift_.end() ? PriorCommonDrift(options_)
+                               : found->second.common;
 }
 
 absl::optional<double> PathUncertainty::Difference(
@@ -199,6 +303,7 @@ absl::optional<NodeId> PathUncertainty::Nearest(
 void PathUncertainty::DeleteTrajectory(const int trajectory_id) {
   sequences_.erase(KeyOf(NodeId{trajectory_id, 0}));
   sequences_.erase(KeyOf(SubmapId{trajectory_id, 0}));
+  drift_.erase(trajectory_id);
 }
 
 }  // namespace uncertainty

@@ -10,15 +10,24 @@
 //   cov(u <- v) = Ad(X_v^-1) (S_v - S_u) Ad(X_v^-1)^T,
 //   S_n = sum over k <= n of Ad(X_k) Q_k Ad(X_k)^T,
 //
-// so any pair of vertices costs the same, however far apart. Two errors are
-// constant along a run, a heading that drifts by so many radians per metre and
-// an error of scale; each adds w w^T times its variance, where w is the sum of
-// its effects on the steps, transported as above.
+// so any pair of vertices costs the same, however far apart.
+//
+// Three errors are constant along a run (CommonDrift): a heading that drifts by
+// so many radians per metre, an error of the turns and one of the scale. With A
+// the sum of their effects on the steps, transported as above, they add
+// A P A^T, where P is their covariance. What they are known to be is taken out
+// of the relative pose: every step is corrected before the steps are put
+// together.
 //
 // Where local SLAM moves farther from one node to the next than nodes are
 // apart, it may have been misled (a jump of the odometry, a gap in the data):
 // the excess of a step over the jump thresholds counts as its standard
-// deviation.
+// deviation. Where nodes between two known ones have not been added yet, the
+// thresholds apply to each of the steps between them.
+//
+// The sums are kept apart for the errors of translation, of rotation on the way
+// and of rotation while turning, so that each can be scaled for a trajectory
+// whose drift is learnt (drift_model.h).
 //
 // Not thread-safe; vertices may be added in any order.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_PATH_UNCERTAINTY_H_
@@ -54,6 +63,47 @@ struct PathNoiseOptions {
   double jump_threshold_radians = 0.4;
 };
 
+// By which the standard deviations of PathNoiseOptions are multiplied, > 0.
+struct DriftFactors {
+  double translation = 1.;  // translation_per_*
+  double rotation = 1.;     // rotation_per_metre
+  double turning = 1.;      // rotation_per_radian
+};
+
+// Errors that are the same all along a run. A step of local SLAM of d metres
+// and a radians is in truth one of (1 + scale) d metres and
+// (1 + turning) a + heading d radians.
+struct CommonDrift {
+  // heading (radians per metre), turning, scale
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+// That of the options: means of zero.
+CommonDrift PriorCommonDrift(const PathNoiseOptions& options);
+
+// `noise` with these standard deviations multiplied.
+PathNoiseOptions Scaled(const PathNoiseOptions& noise,
+                        const DriftFactors& factors);
+
+// Where the covariance of a relative pose comes from: with the factors f,
+//   C = f_translation^2 translation + f_rotation^2 rotation
+//       + f_turning^2 turning + common P common^T + other.
+struct CovarianceParts {
+  Eigen::Matrix3d translation = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
+  // Effects of the errors of CommonDrift, one a column.
+  Eigen::Matrix3d common = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d other = Eigen::Matrix3d::Zero();  // jumps, loops
+
+  Eigen::Matrix3d Total(const DriftFactors& factors,
+                        const Eigen::Matrix3d& common_covariance) const;
+};
+
+// Adjoint C adjoint^T of each part, adjoint A of the common errors.
+CovarianceParts Transported(const CovarianceParts& parts,
+                            const Eigen::Matrix3d& adjoint);
+
 class PathUncertainty {
  public:
   // Keeps the newest `max_vertices` (> 0) nodes and as many submaps of each
@@ -68,13 +118,23 @@ class PathUncertainty {
   // vertices that are not kept.
   absl::optional<UncertainPose> Between(const VertexId& u,
                                         const VertexId& v) const;
+  // The parts of its covariance for factors of one, empty as above.
+  absl::optional<CovarianceParts> Parts(const VertexId& u,
+                                        const VertexId& v) const;
+  // Of this trajectory; at first factors of one and the prior.
+  void SetDrift(int trajectory_id, const DriftFactors& factors,
+                const CommonDrift& common);
+  DriftFactors Drift(int trajectory_id) const;
+  CommonDrift Common(int trajectory_id) const;
+  // Grows with every change of the drift.
+  int drift_version() const { return drift_version_; }
   // Metres driven between two vertices, empty as above.
   absl::optional<double> Travelled(const VertexId& u, const VertexId& v) const;
   // Uncertainty of the path between two vertices as one number, jumps included:
   // the metres of straight driving that would be as uncertain. Adds up along
   // the trajectory. Empty as above.
   absl::optional<double> PathCost(const VertexId& u, const VertexId& v) const;
-  // The same of a relative pose with this covariance.
+  // The same of a relative pose with this covariance. Both as without factors.
   double PathCostOf(const Eigen::Matrix3d& covariance) const;
   // (local frame <- vertex).
   absl::optional<Pose2> LocalPose(const VertexId& vertex) const;
@@ -95,12 +155,10 @@ class PathUncertainty {
   struct Entry {
     int index;
     Pose2 local_pose;
-    double travelled = 0.;                          // prefix sum, metres
-    double cost = 0.;                               // prefix sum, metres
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();  // S_n
-    // Sums of the steps' errors for a unit of drift and scale error.
-    Eigen::Vector3d drift = Eigen::Vector3d::Zero();
-    Eigen::Vector3d scale = Eigen::Vector3d::Zero();
+    double travelled = 0.;  // prefix sum, metres
+    double cost = 0.;       // prefix sum, metres
+    Pose2 corrected;        // of corrected steps, from that of the first entry
+    CovarianceParts sum;    // S_n and the sum of A
   };
   // The nodes, or the submaps, of a trajectory.
   struct Sequence {
@@ -112,9 +170,17 @@ class PathUncertainty {
   static SequenceKey KeyOf(const VertexId& vertex) {
     return {vertex.is_node(), vertex.trajectory_id()};
   }
+  struct TrajectoryDrift {
+    DriftFactors factors;
+    CommonDrift common;
+  };
+
   // Computes the sums of `entry` from those of the entry before.
-  void Accumulate(bool are_nodes, const Entry& before, Entry* entry) const;
+  void Accumulate(bool are_nodes, const Eigen::Vector3d& common,
+                  const Entry& before, Entry* entry) const;
   const Entry* Find(const VertexId& vertex) const;
+  // Of the way from the older to the newer entry, frame of the newer.
+  CovarianceParts PartsBetween(const Entry& from, const Entry& to) const;
   // Of a prefix sum, without sign. Empty as `Between`.
   absl::optional<double> Difference(const VertexId& u, const VertexId& v,
                                     double Entry::*sum) const;
@@ -123,6 +189,8 @@ class PathUncertainty {
   const size_t max_vertices_;
   // The sums are computed when they are asked for.
   mutable std::map<SequenceKey, Sequence> sequences_;
+  std::map<int, TrajectoryDrift> drift_;
+  int drift_version_ = 0;
 };
 
 }  // namespace uncertainty

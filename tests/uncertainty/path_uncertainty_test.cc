@@ -3,6 +3,7 @@
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "cartographer_ext/common/random.h"
@@ -149,6 +150,100 @@ TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
   EXPECT_NEAR(path->covariance(0, 0), 0.8 * 0.8, 1e-12);
   EXPECT_NEAR(path->covariance(1, 1), 0.8 * 0.8, 1e-12);
   EXPECT_NEAR(path->covariance(2, 2), 0.1 * 0.1, 1e-12);
+}
+
+TEST(PathUncertaintyTest, NodesThatAreStillMissingAreNoJump) {
+  PathNoiseOptions options = Noise();
+  options.translation_per_metre = 0.;
+  options.rotation_per_metre = 0.;
+  options.rotation_per_radian = 0.;
+  options.jump_threshold_metres = 0.5;
+  options.jump_threshold_radians = 0.4;
+  PathUncertainty paths(options, 100);
+  paths.Add(Key(0), Pose2(0., 0., 0.));
+  paths.Add(Key(10), Pose2(5., 0., 1.));
+  EXPECT_TRUE(paths.Between(Key(0), Key(10))->covariance.isZero(1e-12));
+  paths.Add(Key(12), Pose2(7., 0., 1.));
+  EXPECT_NEAR(paths.Between(Key(10), Key(12))->covariance(0, 0), 1., 1e-12);
+}
+
+TEST(PathUncertaintyTest, DriftScalesEachPart) {
+  PathNoiseOptions options = Noise();
+  options.translation_per_radian = 0.03;
+  DriftFactors factors;
+  factors.translation = 2.;
+  factors.rotation = 3.;
+  factors.turning = 0.5;
+  PathUncertainty learnt(options, 100), given(Scaled(options, factors), 100);
+  for (int i = 0; i <= 20; ++i) {
+    const Pose2 pose(0.3 * i, 0.02 * i * i, 0.1 * i);
+    learnt.Add(Key(i), pose);
+    given.Add(Key(i), pose);
+  }
+  learnt.SetDrift(0, factors, CommonDrift());
+  EXPECT_EQ(learnt.drift_version(), 1);
+  for (const auto& ends : {std::make_pair(2, 17), std::make_pair(17, 2)}) {
+    const VertexId u = Key(ends.first), v = Key(ends.second);
+    const Eigen::Matrix3d expected = given.Between(u, v)->covariance;
+    EXPECT_NEAR((learnt.Between(u, v)->covariance - expected).norm(), 0.,
+                1e-12);
+    EXPECT_NEAR(
+        (learnt.Parts(u, v)->Total(factors, Eigen::Matrix3d::Zero()) - expected)
+            .norm(),
+        0., 1e-12);
+  }
+  // Another trajectory is not concerned.
+  EXPECT_EQ(learnt.Drift(1).translation, 1.);
+  EXPECT_FALSE(learnt.Parts(Key(2), Key(99)).has_value());
+}
+
+// A run whose heading drifts, whose turns and whose scale are off, corrected.
+TEST(PathUncertaintyTest, CommonDriftIsTakenOut) {
+  CommonDrift common;
+  common.mean << 0.01, 0.05, -0.03;
+  common.covariance.diagonal() << 1e-6, 1e-4, 1e-5;
+  PathUncertainty paths(Noise(), 100), truth(Noise(), 100);
+  Pose2 local, corrected;
+  for (int i = 0; i <= 20; ++i) {
+    if (i > 0) {
+      const Pose2 step(0.5, 0.02 * i, 0.03 * (i - 8));
+      local = local * step;
+      corrected = corrected *
+                  Pose2(0.97 * step.x, 0.97 * step.y,
+                        1.05 * step.theta + 0.01 * std::hypot(step.x, step.y));
+    }
+    paths.Add(Key(i), local);
+    truth.Add(Key(i), corrected);
+  }
+  paths.SetDrift(0, DriftFactors(), common);
+  const auto path = paths.Between(Key(3), Key(17));
+  const Pose2 error = Between(truth.Between(Key(3), Key(17))->pose, path->pose);
+  EXPECT_NEAR(error.translation().norm(), 0., 1e-9);
+  EXPECT_NEAR(NormalizeAngle(error.theta), 0., 1e-9);
+  // Where the submaps are is not changed.
+  EXPECT_EQ(paths.LocalPose(Key(20))->x, local.x);
+
+  // The effects of each are the derivatives of the relative pose.
+  for (const auto& ends : {std::make_pair(3, 17), std::make_pair(17, 3)}) {
+    const VertexId u = Key(ends.first), v = Key(ends.second);
+    const Eigen::Matrix3d effects = paths.Parts(u, v)->common;
+    const Pose2 middle = paths.Between(u, v)->pose;
+    for (int k = 0; k < 3; ++k) {
+      constexpr double kStep = 1e-6;
+      CommonDrift changed = common;
+      changed.mean(k) += kStep;
+      PathUncertainty other = paths;
+      other.SetDrift(0, DriftFactors(), changed);
+      const Pose2 moved = Between(middle, other.Between(u, v)->pose);
+      const Eigen::Vector3d derivative =
+          Eigen::Vector3d(moved.x, moved.y, NormalizeAngle(moved.theta)) /
+          kStep;
+      // A step is straight to first order only.
+      EXPECT_NEAR((derivative - effects.col(k)).norm(), 0.,
+                  0.02 * (1. + derivative.norm()))
+          << k;
+    }
+  }
 }
 
 TEST(PathUncertaintyTest, NearestAmongSomeNodes) {

@@ -31,6 +31,16 @@ double WorstSigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0., solver.eigenvalues()(1)));
 }
 
+// (anchor <- tracking frame of the node).
+Pose2 HostPrediction(const uncertainty::PathUncertainty& paths,
+                     const LoopCandidate& candidate) {
+  const Pose2 in_submap = candidate.InTrackingFrame(candidate.SearchCenter());
+  const absl::optional<Pose2> anchor_pose = paths.LocalPose(*candidate.anchor);
+  return anchor_pose.has_value()
+             ? Between(*anchor_pose, candidate.submap_local_pose) * in_submap
+             : in_submap;
+}
+
 }  // namespace
 
 SearchPlanner::SearchPlanner(const SearchPlannerOptions& options,
@@ -84,11 +94,19 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
   const double wanted = options_.window_sigmas * plan->translation_sigma;
   plan->full_submap =
       wanted > options_.max_linear_window && options_.global_search;
-  plan->linear_window = std::min(std::max(wanted, options_.min_linear_window),
-                                 options_.max_linear_window);
+  // The host predicts without what was learnt of the drift.
+  const Pose2 offset =
+      paths_->drift_version() > 0
+          ? Between(path->pose, HostPrediction(*paths_, candidate))
+          : Pose2();
+  plan->linear_window =
+      std::min(std::max(wanted, options_.min_linear_window) +
+                   offset.translation().norm(),
+               options_.max_linear_window);
   plan->angular_window =
       std::min(kPi, std::max(options_.min_angular_window,
-                             options_.window_sigmas * plan->rotation_sigma));
+                             options_.window_sigmas * plan->rotation_sigma) +
+                        std::abs(NormalizeAngle(offset.theta)));
   plan->out_of_reach =
       distance > reach_ + (plan->full_submap ? wanted : plan->linear_window);
   return true;

@@ -60,10 +60,11 @@ CompatibleSubset::Relation CompatibleSubset::Relate(
              : Relation::kVague;
 }
 
-bool CompatibleSubset::SameRevisit(const uncertainty::LoopEdge& u,
-                                   const uncertainty::LoopEdge& v) const {
-  const absl::optional<double> a = paths_->Travelled(u.a, v.a);
-  const absl::optional<double> b = paths_->Travelled(u.b, v.b);
+bool CompatibleSubset::SameRevisit(const LoopEvidence& u,
+                                   const LoopEvidence& v) const {
+  const absl::optional<double> a = paths_->Travelled(
+      u.anchor.value_or(u.edge.a), v.anchor.value_or(v.edge.a));
+  const absl::optional<double> b = paths_->Travelled(u.edge.b, v.edge.b);
   return a.has_value() && b.has_value() && *a <= options_.revisit_distance &&
          *b <= options_.revisit_distance;
 }
@@ -71,7 +72,7 @@ bool CompatibleSubset::SameRevisit(const uncertainty::LoopEdge& u,
 void CompatibleSubset::Add(const LoopEvidence& loop) {
   changed_ = true;
   for (Cluster& cluster : clusters_) {
-    if (!SameRevisit(cluster.leader.edge, loop.edge)) continue;
+    if (!SameRevisit(cluster.leader, loop)) continue;
     const Relation relation = Relate(cluster.leader.edge, loop.edge);
     if (relation != Relation::kSupports && relation != Relation::kVague) {
       continue;
@@ -96,6 +97,16 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
   cluster.least_sigma = loop.prior_sigma;
   clusters_.push_back(std::move(cluster));
   relations_.push_back(std::move(relations));
+}
+
+void CompatibleSubset::RelateAll() {
+  changed_ = true;
+  for (int i = 0; i < num_clusters(); ++i) {
+    for (int j = 0; j < i; ++j) {
+      relations_[i][j] =
+          Relate(clusters_[j].leader.edge, clusters_[i].leader.edge);
+    }
+  }
 }
 
 // How many support a cluster, all of them or those of the subset.

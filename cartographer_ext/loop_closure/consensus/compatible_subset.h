@@ -43,6 +43,7 @@
 #include <functional>
 #include <vector>
 
+#include "absl/types/optional.h"
 #include "cartographer_ext/loop_closure/consensus/max_clique.h"
 #include "cartographer_ext/uncertainty/cycle_consistency.h"
 #include "cartographer_ext/uncertainty/loop_edge.h"
@@ -54,6 +55,9 @@ namespace loop_closure {
 struct LoopEvidence {
   int64_t id = 0;  // of the caller, unique
   uncertainty::LoopEdge edge;
+  // Where the distance of revisits is measured from, the same for all loops of
+  // a submap; empty: edge.a.
+  absl::optional<uncertainty::VertexId> anchor;
   double score = 0.;  // the fused score, in [0, 1]
   // How well the place was predicted before the search, one standard deviation
   // in metres; infinity without a prediction.
@@ -130,6 +134,9 @@ class CompatibleSubset {
   // clusters stay known.
   std::vector<SubsetDecision> Flush();
 
+  // Compares all loops again, after a change of what is known of the paths.
+  void RelateAll();
+
   // Removes undecided loops, such as those of submaps or nodes that are
   // deleted; returns their ids in the order of adding.
   std::vector<int64_t> Remove(
@@ -173,8 +180,7 @@ class CompatibleSubset {
 
   Relation Relate(const uncertainty::LoopEdge& u,
                   const uncertainty::LoopEdge& v) const;
-  bool SameRevisit(const uncertainty::LoopEdge& u,
-                   const uncertainty::LoopEdge& v) const;
+  bool SameRevisit(const LoopEvidence& u, const LoopEvidence& v) const;
   int Support(int index, bool of_subset) const;
   void Solve();
   bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 
-#include "cartographer_ext/loop_closure/information/loop_information.h"
+#include "cartographer_ext/loop_closure/consensus/candidate_edge.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 
@@ -33,21 +33,20 @@ void VetoByInnovation(const LoopOptions& options,
   if (!options.innovation_veto.enabled || candidate->is_inter_trajectory()) {
     return;
   }
-  absl::optional<uncertainty::VertexId> anchor = candidate->anchor;
-  if (!anchor.has_value()) {
+  uncertainty::LoopEdge loop = CandidateEdge(options, paths, *candidate);
+  if (!loop.a.is_node()) {
     const absl::optional<uncertainty::NodeId> nearest =
         paths.Nearest(candidate->submap.trajectory_id,
                       candidate->submap_local_pose.translation());
     if (!nearest.has_value()) return;
-    anchor = *nearest;
+    loop.a = *nearest;
+    loop.pose.pose = candidate->RefinedFromAnchor(*paths.LocalPose(*nearest));
   }
   const absl::optional<uncertainty::UncertainPose> prior =
-      paths.Between(*anchor, candidate->node);
+      paths.Between(loop.a, loop.b);
   if (!prior.has_value()) return;
-  uncertainty::UncertainPose loop;
-  loop.pose = candidate->RefinedFromAnchor(*paths.LocalPose(*anchor));
-  loop.covariance = MatchCovariance(options, *candidate);
-  candidate->innovation = TestInnovation(options.innovation_veto, *prior, loop);
+  candidate->innovation =
+      TestInnovation(options.innovation_veto, *prior, loop.pose);
   if (candidate->innovation->vetoed) {
     candidate->Reject(proto::LoopDecision::INNOVATION_TOO_LARGE);
   }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "cartographer_ext/loop_closure/consensus/candidate_edge.h"
 #include "cartographer_ext/loop_closure/information/loop_information.h"
 #include "cartographer_ext/loop_closure/stage_timer.h"
 #include "glog/logging.h"
@@ -60,20 +61,13 @@ LoopConsensus::LoopConsensus(const LoopOptions& options,
 LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
   LoopEvidence evidence;
   evidence.id = candidate.number;
-  evidence.edge.a = candidate.submap;
-  evidence.edge.b = candidate.node;
-  evidence.edge.pose.pose = candidate.RefinedInTrackingFrame();
-  // Within a trajectory the path runs along the nodes, which know about jumps.
+  evidence.edge = CandidateEdge(options_, *paths_, candidate);
+  evidence.anchor = candidate.submap;
   if (candidate.anchor.has_value() &&
-      candidate.anchor->IsNodeOf(candidate.node.trajectory_id)) {
-    const absl::optional<Pose2> anchor_pose =
-        paths_->LocalPose(*candidate.anchor);
-    if (anchor_pose.has_value()) {
-      evidence.edge.a = *candidate.anchor;
-      evidence.edge.pose.pose = candidate.RefinedFromAnchor(*anchor_pose);
-    }
+      candidate.anchor->IsNodeOf(candidate.node.trajectory_id) &&
+      paths_->LocalPose(*candidate.anchor).has_value()) {
+    evidence.anchor = *candidate.anchor;
   }
-  evidence.edge.pose.covariance = MatchCovariance(options_, candidate);
   evidence.score = candidate.FinalScore();
   evidence.prior_sigma = PriorSigma(candidate);
   return evidence;

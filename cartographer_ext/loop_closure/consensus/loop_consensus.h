@@ -45,6 +45,9 @@ class LoopConsensus {
   std::vector<LoopCandidate> Decide();
   std::vector<LoopCandidate> Flush();
 
+  // After a change of the drift that `paths` assumes.
+  void DriftChanged() { subset_.RelateAll(); }
+
   // Removes the undecided candidates for which the condition holds.
   std::vector<LoopCandidate> Remove(const Condition& condition);
   // Accepted loops of nodes of a trajectory up to an index with submaps of

@@ -17,6 +17,7 @@
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
+#include "cartographer_ext/uncertainty/drift_model.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -69,6 +70,7 @@ LoopClosure2D::LoopClosure2D(
                                             : NoTypicalFit()) {
   LOG_IF(ERROR, !log_.status().ok())
       << "cartographer_ext: no log of loop decisions: " << log_.status();
+  context_->Get<uncertainty::DriftModel>()->SetPrior(extension.path_noise);
 }
 
 void LoopClosure2D::AddNode(const std::vector<Proposal>& proposals,
@@ -223,6 +225,10 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   std::vector<Constraint> constraints;
   for (const LoopCandidate& candidate : decided) {
     if (candidate.is_accepted()) Close(candidate, &constraints);
+  }
+  auto* const drift = context_->Get<uncertainty::DriftModel>();
+  for (const auto& estimate : pipeline_.drift().Estimates()) {
+    drift->Set(estimate.first, estimate.second);
   }
   metrics.undecided->Set(pipeline_.num_undecided());
   return constraints;

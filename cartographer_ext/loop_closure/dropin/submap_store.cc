@@ -90,6 +90,16 @@ int SubmapStore::Erase(const SubmapId& id) {
   return newest_node;
 }
 
+int SubmapStore::OldestNode(const SubmapId& id) const {
+  // Two submaps are active at a time, so the nodes of this one are newer than
+  // the end of the last but one.
+  const auto before =
+      submaps_.find(SubmapId{id.trajectory_id, id.submap_index - 2});
+  return before == submaps_.end()
+             ? 0
+             : std::max(0, before->second->newest_node_at_first);
+}
+
 absl::optional<uncertainty::VertexId> SubmapStore::Anchor(
     const SubmapId& id, const SubmapEntry& entry, const int node_trajectory_id,
     const uncertainty::PathUncertainty& paths) const {
@@ -97,17 +107,9 @@ absl::optional<uncertainty::VertexId> SubmapStore::Anchor(
     return uncertainty::VertexId(id);
   }
   if (entry.newest_node_at_first < 0) return absl::nullopt;
-  // Two submaps are active at a time, so the nodes of this one are newer than
-  // the end of the last but one.
-  int oldest = 0;
-  const auto before =
-      submaps_.find(SubmapId{id.trajectory_id, id.submap_index - 2});
-  if (before != submaps_.end()) {
-    oldest = std::max(0, before->second->newest_node_at_first);
-  }
   const absl::optional<uncertainty::NodeId> nearest =
-      paths.Nearest(id.trajectory_id, entry.local_pose.translation(), oldest,
-                    entry.newest_node_at_first);
+      paths.Nearest(id.trajectory_id, entry.local_pose.translation(),
+                    OldestNode(id), entry.newest_node_at_first);
   if (!nearest.has_value()) return absl::nullopt;
   return uncertainty::VertexId(*nearest);
 }
@@ -120,6 +122,10 @@ LoopCandidate SubmapStore::MakeCandidate(
   candidate.submap_local_pose = entry.local_pose;
   // Of another trajectory: as old as can be.
   candidate.submap_age = 1e9;
+  if (node_trajectory_id == id.trajectory_id) {
+    candidate.first_submap_node = OldestNode(id);
+    candidate.last_submap_node = entry.newest_node_at_first;
+  }
   candidate.anchor = Anchor(id, entry, node_trajectory_id, paths);
   return candidate;
 }

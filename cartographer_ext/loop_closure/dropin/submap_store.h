@@ -89,7 +89,7 @@ class SubmapStore {
   }
 
   // What is the same for all candidates of a submap and a trajectory: the
-  // submap, its local pose, its anchor.
+  // submap, its local pose, its nodes, its anchor.
   LoopCandidate MakeCandidate(const uncertainty::SubmapId& id,
                               const SubmapEntry& entry, int node_trajectory_id,
                               const uncertainty::PathUncertainty& paths) const;
@@ -109,6 +109,8 @@ class SubmapStore {
     int64_t time;
   };
 
+  // Of those that may have been inserted in the submap.
+  int OldestNode(const uncertainty::SubmapId& id) const;
   absl::optional<uncertainty::VertexId> Anchor(
       const uncertainty::SubmapId& id, const SubmapEntry& entry,
       int node_trajectory_id, const uncertainty::PathUncertainty& paths) const;

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/consensus/drift_learner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+using uncertainty::CommonDrift;
+using uncertainty::CovarianceParts;
+using uncertainty::DriftCycle;
+using uncertainty::DriftEstimate;
+using uncertainty::DriftFactors;
+using uncertainty::DriftStretch;
+using uncertainty::LoopEdge;
+using uncertainty::VertexId;
+
+// Nearer loops see the same errors of the match and too little of the path;
+// farther ones are no longer of one revisit. Metres along the path.
+constexpr double kNearestLoop = 3.;
+constexpr double kFarthestLoop = 15.;
+// Of a path that closes a cycle with a single loop. Beyond it the place may be
+// another one that looks alike.
+constexpr double kLongestPath = 30.;
+// Loops remembered of a trajectory, oldest forgotten first.
+constexpr size_t kMaxLoops = 500;
+// Change of the logarithm of a factor that matters.
+constexpr double kNoticeableChange = 0.1;
+// Cycles are worth another fit when there are this many times those before.
+constexpr double kLeastGrowth = 1.1;
+
+bool Differ(const double a, const double b) {
+  return std::abs(std::log(a / b)) > kNoticeableChange;
+}
+
+bool Differ(const DriftFactors& a, const DriftFactors& b) {
+  return Differ(a.translation, b.translation) ||
+         Differ(a.rotation, b.rotation) || Differ(a.turning, b.turning);
+}
+
+// Against how well it is known.
+bool Differ(const CommonDrift& a, const CommonDrift& b) {
+  for (int i = 0; i < 3; ++i) {
+    const double sigma = std::sqrt(a.covariance(i, i));
+    const double other_sigma = std::sqrt(b.covariance(i, i));
+    if (std::abs(a.mean(i) - b.mean(i)) > 0.3 * sigma ||
+        std::abs(sigma - other_sigma) > 2. * kNoticeableChange * sigma) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Of one stretch of the path and another one that may overlap.
+bool Overlap(const LoopEdge& u, const LoopEdge& v) {
+  return std::max(u.a.index(), v.a.index()) >
+         std::min(u.b.index(), v.b.index());
+}
+
+}  // namespace
+
+DriftLearner::Trajectory::Trajectory()
+    : estimator(uncertainty::DriftEstimatorOptions()) {}
+
+DriftLearner::DriftLearner(const uncertainty::PathNoiseOptions& prior,
+                           uncertainty::PathUncertainty* const paths)
+    : prior_(prior), paths_(CHECK_NOTNULL(paths)) {}
+
+absl::optional<DriftCycle> DriftLearner::CycleWithPath(
+    const LoopEdge& loop) const {
+  const absl::optional<double> travelled = paths_->Travelled(loop.a, loop.b);
+  if (!travelled.has_value() || *travelled > kLongestPath) return absl::nullopt;
+  const absl::optional<CovarianceParts> parts = paths_->Parts(loop.b, loop.a);
+  DriftStretch path;
+  path.pose = Between(*paths_->LocalPose(loop.b), *paths_->LocalPose(loop.a));
+  path.parts = *parts;
+  return CycleOfLoop(loop.pose, path);
+}
+
+absl::optional<DriftCycle> DriftLearner::CycleWithLoop(
+    const LoopEdge& u, const LoopEdge& v) const {
+  const absl::optional<CovarianceParts> parts_b = paths_->Parts(u.b, v.b);
+  const absl::optional<CovarianceParts> parts_a = paths_->Parts(v.a, u.a);
+  if (!parts_a.has_value() || !parts_b.has_value()) return absl::nullopt;
+  DriftStretch path_b, path_a;
+  path_b.pose = Between(*paths_->LocalPose(u.b), *paths_->LocalPose(v.b));
+  path_b.parts = *parts_b;
+  path_a.pose = Between(*paths_->LocalPose(v.a), *paths_->LocalPose(u.a));
+  path_a.parts = *parts_a;
+  return CycleOfLoops(u.pose, path_b, v.pose, path_a);
+}
+
+void DriftLearner::Add(const LoopEdge& loop) {
+  if (!loop.a.InSequenceWith(loop.b)) return;
+  Trajectory& trajectory = trajectories_[loop.b.trajectory_id()];
+  // The nearest loop of the same revisit.
+  const LoopEdge* nearest = nullptr;
+  double nearest_distance = kFarthestLoop;
+  for (const LoopEdge& other : trajectory.loops) {
+    const absl::optional<double> a = paths_->Travelled(other.a, loop.a);
+    const absl::optional<double> b = paths_->Travelled(other.b, loop.b);
+    if (!a.has_value() || !b.has_value()) continue;
+    const double distance = std::max(*a, *b);
+    if (distance >= nearest_distance) continue;
+    nearest_distance = distance;
+    nearest = &other;
+  }
+  if (nearest != nullptr && nearest_distance < kNearestLoop) return;
+  absl::optional<DriftCycle> cycle = CycleWithPath(loop);
+  if (!cycle.has_value() && nearest != nullptr && !Overlap(*nearest, loop)) {
+    cycle = CycleWithLoop(*nearest, loop);
+  }
+  if (cycle.has_value()) {
+    trajectory.estimator.Add(*cycle);
+  }
+  trajectory.loops.push_back(loop);
+  if (trajectory.loops.size() > kMaxLoops) trajectory.loops.pop_front();
+}
+
+bool DriftLearner::Update() {
+  bool any = false;
+  for (auto& entry : trajectories_) {
+    Trajectory& trajectory = entry.second;
+    const int num_cycles = trajectory.estimator.num_cycles();
+    if (num_cycles < kLeastGrowth * trajectory.num_fitted + 1) continue;
+    trajectory.num_fitted = num_cycles;
+    trajectory.fit = trajectory.estimator.Fit();
+    DriftFactors factors = trajectory.fit.upper;
+    factors.translation = std::max(1., factors.translation);
+    factors.rotation = std::max(1., factors.rotation);
+    factors.turning = std::max(1., factors.turning);
+    // Nothing is as constant as the model says.
+    CommonDrift common = trajectory.fit.common;
+    common.covariance += PriorCommonDrift(prior_).covariance;
+    if (!Differ(factors, paths_->Drift(entry.first)) &&
+        !Differ(common, paths_->Common(entry.first))) {
+      continue;
+    }
+    paths_->SetDrift(entry.first, factors, common);
+    any = true;
+  }
+  return any;
+}
+
+DriftEstimate DriftLearner::Estimate(const int trajectory_id) const {
+  DriftEstimate estimate;
+  estimate.mean = prior_;
+  estimate.upper = Scaled(prior_, paths_->Drift(trajectory_id));
+  estimate.common = paths_->Common(trajectory_id);
+  const auto found = trajectories_.find(trajectory_id);
+  if (found == trajectories_.end()) return estimate;
+  estimate.mean = Scaled(prior_, found->second.fit.mean);
+  estimate.num_cycles = found->second.num_fitted;
+  return estimate;
+}
+
+std::map<int, DriftEstimate> DriftLearner::Estimates() const {
+  std::map<int, DriftEstimate> estimates;
+  for (const auto& entry : trajectories_) {
+    estimates[entry.first] = Estimate(entry.first);
+  }
+  return estimates;
+}
+
+void DriftLearner::DeleteTrajectory(const int trajectory_id) {
+  trajectories_.erase(trajectory_id);
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext

@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/uncertainty/drift_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "Eigen/Cholesky"
+#include "Eigen/LU"
+#include "cartographer_ext/common/planar_matrix.h"
+#include "cartographer_ext/common/squared.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace uncertainty {
+namespace {
+
+// Levels of the logarithm of a factor on the grid; at first from a quarter to
+// sixteen in steps of two.
+constexpr int kLevels = 7;
+constexpr double kFirstCenter = 0.6931471805599453;
+constexpr double kFirstStep = 0.6931471805599453;
+// Later in steps of this many standard deviations of the posterior before.
+constexpr double kStepInSigmas = 0.75;
+constexpr double kLeastStep = 0.03;
+
+constexpr int kReweightings = 5;
+constexpr int kAlternations = 3;
+
+constexpr double kLogTwoPi = 1.8378770664093453;
+
+double LogNormalDensity(const Eigen::Vector3d& error,
+                        const Eigen::Matrix3d& covariance) {
+  const Eigen::LLT<Eigen::Matrix3d> factor(Symmetric(covariance));
+  if (factor.info() != Eigen::Success) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  const Eigen::Matrix3d lower = factor.matrixL();
+  return -0.5 * error.dot(factor.solve(error)) -
+         std::log(lower.diagonal().prod()) - 1.5 * kLogTwoPi;
+}
+
+Eigen::Vector3d ErrorOf(const Pose2& cycle) {
+  return Eigen::Vector3d(cycle.x, cycle.y, NormalizeAngle(cycle.theta));
+}
+
+Eigen::Matrix3d Moved(const Eigen::Matrix3d& covariance, const Pose2& pose) {
+  const Eigen::Matrix3d adjoint = Adjoint(pose);
+  return adjoint * covariance * adjoint.transpose();
+}
+
+DriftFactors FactorsOf(const Eigen::Vector3d& logarithms) {
+  DriftFactors factors;
+  factors.translation = std::exp(logarithms(0));
+  factors.rotation = std::exp(logarithms(1));
+  factors.turning = std::exp(logarithms(2));
+  return factors;
+}
+
+}  // namespace
+
+DriftCycle CycleOfLoops(const UncertainPose& loop_u, const DriftStretch& path_b,
+                        const UncertainPose& loop_v,
+                        const DriftStretch& path_a) {
+  const UncertainPose back = Invert(loop_v);
+  DriftCycle cycle;
+  cycle.error = ErrorOf(loop_u.pose * path_b.pose * back.pose * path_a.pose);
+  // What is right of each edge moves its error to the end of the cycle.
+  const Pose2 right_of_back = path_a.pose;
+  const Pose2 right_of_b = back.pose * right_of_back;
+  const Pose2 right_of_u = path_b.pose * right_of_b;
+  cycle.parts = Transported(path_b.parts, Adjoint(right_of_b.Inverse()));
+  cycle.parts.translation += path_a.parts.translation;
+  cycle.parts.rotation += path_a.parts.rotation;
+  cycle.parts.turning += path_a.parts.turning;
+  cycle.parts.common += path_a.parts.common;
+  cycle.parts.other += path_a.parts.other +
+                       Moved(loop_u.covariance, right_of_u.Inverse()) +
+                       Moved(back.covariance, right_of_back.Inverse());
+  return cycle;
+}
+
+DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path) {
+  DriftCycle cycle;
+  cycle.error = ErrorOf(loop.pose * path.pose);
+  cycle.parts = path.parts;
+  cycle.parts.other += Moved(loop.covariance, path.pose.Inverse());
+  return cycle;
+}
+
+DriftEstimator::DriftEstimator(const DriftEstimatorOptions& options)
+    : options_(options),
+      log_outlier_(std::log(options.outlier_share * options.outlier_density)) {
+  CHECK_GT(options.prior_sigma, 0.);
+  CHECK_GT(options.max_cycles, 0u);
+}
+
+void DriftEstimator::Add(const DriftCycle& cycle) {
+  if (!cycle.error.allFinite()) return;
+  ++num_cycles_;
+  cycles_.push_back(cycle);
+  if (cycles_.size() > options_.max_cycles) cycles_.pop_front();
+}
+
+CommonDrift DriftEstimator::FitCommon(const DriftFactors& factors) const {
+  const double log_inlier = std::log1p(-options_.outlier_share);
+  const Eigen::Vector3d prior_sigma(
+      options_.prior_heading, options_.prior_turning, options_.prior_scale);
+  CommonDrift common;
+  for (int iteration = 0; iteration < kReweightings; ++iteration) {
+    // In units of the prior.
+    Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    for (const DriftCycle& cycle : cycles_) {
+      const Eigen::Matrix3d covariance =
+          Symmetric(cycle.parts.Total(factors, Eigen::Matrix3d::Zero()));
+      const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
+      if (factor.info() != Eigen::Success) continue;
+      const double density =
+          log_inlier +
+          LogNormalDensity(cycle.error + cycle.parts.common * common.mean,
+                           covariance);
+      const double weight = 1. / (1. + std::exp(log_outlier_ - density));
+      const Eigen::Matrix3d effects =
+          cycle.parts.common * prior_sigma.asDiagonal();
+      information += weight * effects.transpose() * factor.solve(effects);
+      gradient -= weight * effects.transpose() * factor.solve(cycle.error);
+    }
+    const Eigen::Matrix3d inverse = Symmetric(information.inverse());
+    common.mean = prior_sigma.asDiagonal() * (inverse * gradient);
+    common.covariance =
+        prior_sigma.asDiagonal() * inverse * prior_sigma.asDiagonal();
+  }
+  return common;
+}
+
+double DriftEstimator::Marginal::LogFactor(const int level) const {
+  return center + step * (level - kLevels / 2);
+}
+
+double DriftEstimator::Marginal::Mean() const {
+  double mean = 0.;
+  for (int i = 0; i < kLevels; ++i) mean += mass[i] * LogFactor(i);
+  return mean;
+}
+
+double DriftEstimator::Marginal::Sigma() const {
+  const double mean = Mean();
+  double variance = Squared(step) / 12.;
+  for (int i = 0; i < kLevels; ++i) {
+    variance += mass[i] * Squared(LogFactor(i) - mean);
+  }
+  return std::sqrt(variance);
+}
+
+double DriftEstimator::Marginal::Quantile(const double quantile) const {
+  double below = 0.;
+  for (int i = 0; i < kLevels; ++i) {
+    if (below + mass[i] >= quantile) {
+      return LogFactor(i) + step * ((quantile - below) / mass[i] - 0.5);
+    }
+    below += mass[i];
+  }
+  return LogFactor(kLevels - 1) + 0.5 * step;
+}
+
+void DriftEstimator::FitFactors(const CommonDrift& common,
+                                std::array<Marginal, 3>* const grid) const {
+  const double log_inlier = std::log1p(-options_.outlier_share);
+  std::vector<DriftCycle> residuals(cycles_.begin(), cycles_.end());
+  for (DriftCycle& cycle : residuals) {
+    cycle.error += cycle.parts.common * common.mean;
+  }
+  const auto log_posterior = [&](const Eigen::Vector3d& logarithms) {
+    const DriftFactors factors = FactorsOf(logarithms);
+    double sum =
+        -0.5 * logarithms.squaredNorm() / Squared(options_.prior_sigma);
+    for (const DriftCycle& cycle : residuals) {
+      const double density =
+          log_inlier +
+          LogNormalDensity(cycle.error,
+                           cycle.parts.Total(factors, common.covariance));
+      const double top = std::max(density, log_outlier_);
+      sum += top + std::log1p(std::exp(-std::abs(density - log_outlier_)));
+    }
+    return sum;
+  };
+  std::array<Marginal, 3>& axes = *grid;
+  std::vector<double> values;
+  for (int t = 0; t < kLevels; ++t) {
+    for (int r = 0; r < kLevels; ++r) {
+      for (int u = 0; u < kLevels; ++u) {
+        values.push_back(log_posterior(Eigen::Vector3d(
+            axes[0].LogFactor(t), axes[1].LogFactor(r), axes[2].LogFactor(u))));
+      }
+    }
+  }
+  const double top = *std::max_element(values.begin(), values.end());
+  for (Marginal& axis : axes) axis.mass.assign(kLevels, 0.);
+  double total = 0.;
+  size_t index = 0;
+  for (int t = 0; t < kLevels; ++t) {
+    for (int r = 0; r < kLevels; ++r) {
+      for (int u = 0; u < kLevels; ++u) {
+        const double mass = std::exp(values[index++] - top);
+        axes[0].mass[t] += mass;
+        axes[1].mass[r] += mass;
+        axes[2].mass[u] += mass;
+        total += mass;
+      }
+    }
+  }
+  for (Marginal& axis : axes) {
+    for (double& mass : axis.mass) mass /= total;
+  }
+}
+
+DriftFit DriftEstimator::Fit() const {
+  DriftFit fit;
+  std::array<Marginal, 3> grid;
+  for (int iteration = 0; iteration < kAlternations; ++iteration) {
+    for (Marginal& axis : grid) {
+      const bool first = iteration == 0;
+      const double center = first ? kFirstCenter : axis.Mean();
+      axis.step = first ? kFirstStep
+                        : std::max(kLeastStep, kStepInSigmas * axis.Sigma());
+      axis.center = center;
+    }
+    fit.common = FitCommon(fit.mean);
+    FitFactors(fit.common, &grid);
+    fit.mean = FactorsOf(
+        Eigen::Vector3d(grid[0].Mean(), grid[1].Mean(), grid[2].Mean()));
+  }
+  const double quantile = options_.upper_quantile;
+  fit.upper = FactorsOf(Eigen::Vector3d(grid[0].Quantile(quantile),
+                                        grid[1].Quantile(quantile),
+                                        grid[2].Quantile(quantile)));
+  return fit;
+}
+
+}  // namespace uncertainty
+}  // namespace cartographer_ext

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How much local SLAM drifts, estimated from cycles that loops close over short
+// stretches of its path.
+//
+// A cycle would close but for the errors of its path. With c the errors that
+// are constant along the run (CommonDrift), of which A are the effects,
+//
+//   E = -A c + noise,
+//   cov(noise) = C(f) = f_t^2 C_t + f_r^2 C_r + f_u^2 C_u + C_other,
+//
+// where C_t, C_r and C_u are what the prior of the noise says about
+// translation, rotation on the way and rotation while turning, and C_other is
+// the noise of the loops. Not known are c and the factors f. Some of the loops
+// are wrong, which says nothing about the drift, so the likelihood of a cycle
+// is that of a mixture with a uniform density:
+//
+//   p(E | c, f) = (1 - w) N(E; -A c, C(f)) + w u.
+//
+// Given f, c has a normal prior and is found by reweighted least squares, where
+// a cycle weighs what it is likely to be right. Given c, the posterior of
+// (ln f_t, ln f_r, ln f_u) is computed on a grid, with a normal prior around
+// zero that allows for a factor of ten within two standard deviations. Both
+// alternate a fixed number of times, the grid closing in on the posterior.
+//
+// The bound from above is a quantile of each factor: far above the mean while
+// few cycles are known, close to it later.
+#ifndef CARTOGRAPHER_EXT_UNCERTAINTY_DRIFT_ESTIMATOR_H_
+#define CARTOGRAPHER_EXT_UNCERTAINTY_DRIFT_ESTIMATOR_H_
+
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/uncertainty/path_uncertainty.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
+
+namespace cartographer_ext {
+namespace uncertainty {
+
+// A cycle that would close without errors.
+struct DriftCycle {
+  Eigen::Vector3d error;  // metres, metres, radians
+  CovarianceParts parts;  // of the error; loops are in `other`
+};
+
+// A stretch of the path of local SLAM, not corrected.
+struct DriftStretch {
+  Pose2 pose;
+  CovarianceParts parts;
+};
+
+// The cycle of two loops (cycle_consistency.h): `loop_u` is (a_u <- b_u),
+// `path_b` (b_u <- b_v), `loop_v` (a_v <- b_v), `path_a` (a_v <- a_u).
+DriftCycle CycleOfLoops(const UncertainPose& loop_u, const DriftStretch& path_b,
+                        const UncertainPose& loop_v,
+                        const DriftStretch& path_a);
+// That of one loop (a <- b) with the path (b <- a).
+DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path);
+
+struct DriftEstimatorOptions {
+  // Of the logarithm of a factor.
+  double prior_sigma = 1.15;  // > 0
+  // Of the errors that are constant along the run, > 0: robots whose wheels or
+  // laser were never calibrated.
+  double prior_heading = 0.002;  // radians per metre
+  double prior_turning = 0.03;
+  double prior_scale = 0.02;
+  double outlier_share = 0.1;     // w, in (0, 1)
+  double outlier_density = 0.01;  // u, over 10 m by 10 m by 1 rad
+  double upper_quantile = 0.9;    // in (0.5, 1)
+  size_t max_cycles = 400;        // oldest forgotten first, > 0
+};
+
+struct DriftFit {
+  // Exponentials of the means of the logarithms.
+  DriftFactors mean;
+  DriftFactors upper;
+  CommonDrift common;
+};
+
+class DriftEstimator {
+ public:
+  explicit DriftEstimator(const DriftEstimatorOptions& options);
+
+  void Add(const DriftCycle& cycle);
+  DriftFit Fit() const;
+  // Ever added.
+  int num_cycles() const { return num_cycles_; }
+
+ private:
+  // Posterior of the logarithm of one factor on equidistant levels, each of
+  // which stands for its cell.
+  struct Marginal {
+    double center = 0.;
+    double step = 1.;
+    std::vector<double> mass;  // sums to one
+
+    double LogFactor(int level) const;
+    double Mean() const;
+    double Sigma() const;
+    double Quantile(double quantile) const;
+  };
+
+  CommonDrift FitCommon(const DriftFactors& factors) const;
+  // Of the levels in `grid`, which says where they are.
+  void FitFactors(const CommonDrift& common,
+                  std::array<Marginal, 3>* grid) const;
+
+  const DriftEstimatorOptions options_;
+  const double log_outlier_;  // ln(w u)
+  std::deque<DriftCycle> cycles_;
+  int num_cycles_ = 0;
+};
+
+}  // namespace uncertainty
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_UNCERTAINTY_DRIFT_ESTIMATOR_H_
