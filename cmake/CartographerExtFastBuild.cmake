@@ -10,7 +10,8 @@
 # to be listed by hand; where an edit makes two sources of a batch collide ("redefinition of"), running CMake again keeps
 # them apart.
 
-# With a compiler cache they are better off: then a source that did not change is not compiled again.
+# On in the presets. Who edits with a compiler cache is better off without unity builds: then a source that did not change is
+# not compiled again.
 option(CARTOGRAPHER_EXT_PRECOMPILED_HEADERS "Precompile the headers of the libraries that most sources include" OFF)
 option(CARTOGRAPHER_EXT_UNITY_BUILD "Compile several sources of a target as one" OFF)
 set(CARTOGRAPHER_EXT_UNITY_BATCH_SIZE 8 CACHE STRING "Sources that a unity build compiles as one")

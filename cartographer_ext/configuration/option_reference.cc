@@ -11,7 +11,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_ext/options/option_description.h"
 
@@ -19,6 +18,7 @@ namespace cartographer_ext {
 namespace evaluation {
 namespace {
 
+using options::EscapeCell;
 using options::OptionBlock;
 using options::OptionDescription;
 
@@ -53,10 +53,6 @@ reason for their value in the options of the module that uses them.
 
 )";
 
-std::string Cell(const std::string& text) {
-  return absl::StrReplaceAll(text, {{"|", "\\|"}, {"<", "&lt;"}});
-}
-
 // Each block once, though it may stand in several places.
 std::vector<const OptionBlock*> Distinct(
     const std::vector<OptionBlock>& blocks) {
@@ -70,9 +66,9 @@ std::vector<const OptionBlock*> Distinct(
 
 std::string Row(const std::string& key, const OptionDescription& option) {
   return absl::StrCat(
-      "| `", key, "` | ", option.default_value, " | ", Cell(option.range),
+      "| `", key, "` | ", option.default_value, " | ", EscapeCell(option.range),
       option.range.empty() || option.unit.empty() ? "" : ", ",
-      Cell(option.unit), " | ", Cell(option.documentation), " |\n");
+      EscapeCell(option.unit), " | ", EscapeCell(option.documentation), " |\n");
 }
 
 void AppendTables(const std::vector<const OptionBlock*>& blocks,

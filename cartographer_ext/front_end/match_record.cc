@@ -161,14 +161,16 @@ absl::StatusOr<std::vector<MatchRecord>> ParseRecords(
   return ParseDelimited<MatchRecord>(bytes, "match record");
 }
 
-std::string RecordCsv(const std::vector<MatchRecord>& records) {
-  std::string table = kHead;
+absl::string_view RecordCsvHead() { return kHead; }
+
+std::string RecordCsvRows(const std::vector<MatchRecord>& records) {
+  std::string rows;
   for (const MatchRecord& record : records) {
     const Eigen::Matrix3d covariance = Covariance(record);
     const Ellipse ellipse = PositionEllipse(covariance);
     const int64_t seconds = record.time() / kTicksPerSecond;
     absl::StrAppendFormat(
-        &table, "%d,%d.%07d,%d,%.6f,%.6f,%.5f,%.5g,%.5g,%.2f,%.5g,%s,%.2f,",
+        &rows, "%d,%d.%07d,%d,%.6f,%.6f,%.5f,%.5g,%.5g,%.2f,%.5g,%s,%.2f,",
         record.builder(), seconds - kUnixEpochSeconds,
         record.time() % kTicksPerSecond, record.is_node() ? 1 : 0, record.x(),
         record.y(), RadToDeg(record.theta()), ellipse.long_axis,
@@ -178,7 +180,7 @@ std::string RecordCsv(const std::vector<MatchRecord>& records) {
             MatchRecord::Degeneracy_Name(record.degeneracy())),
         RadToDeg(record.weak_direction()));
     absl::StrAppendFormat(
-        &table, "%.4g,%.5f,%.5f,%.4f,%.4g,%s,%s,%d,%.4f,%.4f,%.4f,",
+        &rows, "%.4g,%.5f,%.5f,%.4f,%.4g,%s,%s,%d,%.4f,%.4f,%.4f,",
         record.information_ratio(), record.disagreement_x(),
         record.disagreement_y(), RadToDeg(record.disagreement_theta()),
         record.chi_square(),
@@ -187,13 +189,17 @@ std::string RecordCsv(const std::vector<MatchRecord>& records) {
         absl::AsciiStrToLower(MatchRecord::Source_Name(record.source())),
         record.searched() ? 1 : 0, record.score(), record.time_offset(),
         record.interval());
-    absl::StrAppendFormat(&table, "%.6f,%.6f,%.6f,%.6f,%.5f,%.5f\n",
+    absl::StrAppendFormat(&rows, "%.6f,%.6f,%.6f,%.6f,%.5f,%.5f\n",
                           record.way_scale(), record.way_scale_sigma(),
                           record.turn_scale(), record.turn_scale_sigma(),
                           RadToDeg(record.turn_per_metre()),
                           RadToDeg(record.turn_per_metre_sigma()));
   }
-  return table;
+  return rows;
+}
+
+std::string RecordCsv(const std::vector<MatchRecord>& records) {
+  return absl::StrCat(RecordCsvHead(), RecordCsvRows(records));
 }
 
 }  // namespace front_end

@@ -42,7 +42,10 @@ void AppendRecord(const proto::MatchRecord& record, std::string* bytes);
 absl::StatusOr<std::vector<proto::MatchRecord>> ParseRecords(
     absl::string_view bytes);
 
-// Times in seconds since the Unix epoch, angles in degrees.
+// Times in seconds since the Unix epoch, angles in degrees: the first line of
+// the table, the others, and both.
+absl::string_view RecordCsvHead();
+std::string RecordCsvRows(const std::vector<proto::MatchRecord>& records);
 std::string RecordCsv(const std::vector<proto::MatchRecord>& records);
 
 }  // namespace front_end

@@ -146,12 +146,18 @@ absl::StatusOr<std::vector<LoopDecision>> ParseDecisions(
   return ParseDelimited<LoopDecision>(bytes, "decision record");
 }
 
-std::string DecisionCsv(const std::vector<LoopDecision>& decisions) {
-  std::string csv = kHead;
+absl::string_view DecisionCsvHead() { return kHead; }
+
+std::string DecisionCsvRows(const std::vector<LoopDecision>& decisions) {
+  std::string rows;
   for (const LoopDecision& decision : decisions) {
-    absl::StrAppend(&csv, CsvLine(decision));
+    absl::StrAppend(&rows, CsvLine(decision));
   }
-  return csv;
+  return rows;
+}
+
+std::string DecisionCsv(const std::vector<LoopDecision>& decisions) {
+  return absl::StrCat(DecisionCsvHead(), DecisionCsvRows(decisions));
 }
 
 }  // namespace loop_closure

@@ -26,6 +26,9 @@ void AppendDecision(const proto::LoopDecision& decision, std::string* bytes);
 absl::StatusOr<std::vector<proto::LoopDecision>> ParseDecisions(
     absl::string_view bytes);
 
+// The first line of the table, and the others.
+absl::string_view DecisionCsvHead();
+std::string DecisionCsvRows(const std::vector<proto::LoopDecision>& decisions);
 std::string DecisionCsv(const std::vector<proto::LoopDecision>& decisions);
 
 }  // namespace loop_closure

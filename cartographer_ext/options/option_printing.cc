@@ -23,10 +23,6 @@ std::string Facts(const OptionDescription& option) {
   return facts;
 }
 
-std::string EscapeCell(const std::string& text) {
-  return absl::StrReplaceAll(text, {{"|", "\\|"}, {"<", "&lt;"}});
-}
-
 std::unique_ptr<google::protobuf::Message> Defaults(
     const google::protobuf::Message& options) {
   std::unique_ptr<google::protobuf::Message> defaults(options.New());
@@ -46,6 +42,10 @@ std::vector<bool> ChangedOptions(const google::protobuf::Message& options) {
 }
 
 }  // namespace
+
+std::string EscapeCell(const std::string& text) {
+  return absl::StrReplaceAll(text, {{"|", "\\|"}, {"<", "&lt;"}});
+}
 
 std::string ChangesToText(const google::protobuf::Message& options) {
   const std::vector<bool> changed = ChangedOptions(options);

@@ -29,6 +29,9 @@ struct OptionBlock {
   std::unique_ptr<google::protobuf::Message> options;
 };
 
+// As the text of one cell of a Markdown table.
+std::string EscapeCell(const std::string& text);
+
 // For people: the basic options of all blocks, then one paragraph for each
 // block with the others, one line for each option. A star marks values that are
 // not the default.

@@ -38,8 +38,7 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
         {"build", run.loop_cpu.build},
         {"verification", run.loop_cpu.verification}}}};
   if (!run.matches.empty()) {
-    const MatchCounts counts =
-        CountMatches(run.matches);
+    const MatchCounts counts = CountMatches(run.matches);
     json["local_slam"] = {{"degenerate_scans", counts.degenerate},
                           {"searches", counts.searched},
                           {"relocated", counts.relocated},
@@ -52,8 +51,7 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
                           {"turn_per_metre", counts.turn_per_metre}};
   }
   if (!run.decisions.empty()) {
-    const DecisionCounts counts =
-        CountDecisions(run.decisions);
+    const DecisionCounts counts = CountDecisions(run.decisions);
     json["loop_decisions"] = {{"accepted", counts.accepted},
                               {"rejected", counts.rejected},
                               {"not_found", counts.not_found},

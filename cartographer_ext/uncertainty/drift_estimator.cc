@@ -30,9 +30,9 @@ constexpr int kAlternations = 3;
 
 constexpr double kLogTwoPi = 1.8378770664093453;
 
+// `factor` is that of the covariance.
 double LogNormalDensity(const Eigen::Vector3d& error,
-                        const Eigen::Matrix3d& covariance) {
-  const Eigen::LLT<Eigen::Matrix3d> factor(Symmetric(covariance));
+                        const Eigen::LLT<Eigen::Matrix3d>& factor) {
   if (factor.info() != Eigen::Success) {
     return -std::numeric_limits<double>::infinity();
   }
@@ -71,12 +71,8 @@ DriftCycle CycleOfLoops(const UncertainPose& loop_u, const DriftStretch& path_b,
   const Pose2 right_of_b = back.pose * right_of_back;
   const Pose2 right_of_u = path_b.pose * right_of_b;
   cycle.parts = Transported(path_b.parts, Adjoint(right_of_b.Inverse()));
-  cycle.parts.translation += path_a.parts.translation;
-  cycle.parts.rotation += path_a.parts.rotation;
-  cycle.parts.turning += path_a.parts.turning;
-  cycle.parts.common += path_a.parts.common;
-  cycle.parts.other += path_a.parts.other +
-                       Moved(loop_u.covariance, right_of_u.Inverse()) +
+  cycle.parts += path_a.parts;
+  cycle.parts.other += Moved(loop_u.covariance, right_of_u.Inverse()) +
                        Moved(back.covariance, right_of_back.Inverse());
   return cycle;
 }
@@ -113,14 +109,13 @@ CommonDrift DriftEstimator::FitCommon(const DriftFactors& factors) const {
     Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
     for (const DriftCycle& cycle : cycles_) {
-      const Eigen::Matrix3d covariance =
-          Symmetric(cycle.parts.Total(factors, Eigen::Matrix3d::Zero()));
-      const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
+      const Eigen::LLT<Eigen::Matrix3d> factor(
+          Symmetric(cycle.parts.Total(factors, Eigen::Matrix3d::Zero())));
       if (factor.info() != Eigen::Success) continue;
       const double density =
           log_inlier +
           LogNormalDensity(cycle.error + cycle.parts.common * common.mean,
-                           covariance);
+                           factor);
       const double weight = 1. / (1. + std::exp(log_outlier_ - density));
       const Eigen::Matrix3d effects =
           cycle.parts.common * prior_sigma.asDiagonal();
@@ -177,10 +172,10 @@ void DriftEstimator::FitFactors(const CommonDrift& common,
     double sum =
         -0.5 * logarithms.squaredNorm() / Squared(options_.prior_sigma);
     for (const DriftCycle& cycle : residuals) {
+      const Eigen::LLT<Eigen::Matrix3d> factor(
+          Symmetric(cycle.parts.Total(factors, common.covariance)));
       const double density =
-          log_inlier +
-          LogNormalDensity(cycle.error,
-                           cycle.parts.Total(factors, common.covariance));
+          log_inlier + LogNormalDensity(cycle.error, factor);
       const double top = std::max(density, log_outlier_);
       sum += top + std::log1p(std::exp(-std::abs(density - log_outlier_)));
     }

@@ -11,7 +11,7 @@
 //   cov(noise) = C(f) = f_t^2 C_t + f_r^2 C_r + f_u^2 C_u + C_other,
 //
 // where C_t, C_r and C_u are what the prior of the noise says about
-// translation, rotation on the way and rotation while turning, and C_other is
+// translation, rotation per metre and rotation while turning, and C_other is
 // the noise of the loops. Not known are c and the factors f. Some of the loops
 // are wrong, which says nothing about the drift, so the likelihood of a cycle
 // is that of a mixture with a uniform density:

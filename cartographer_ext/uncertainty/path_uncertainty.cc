@@ -79,6 +79,24 @@ Eigen::Matrix3d CovarianceParts::Total(
          common * common_covariance * common.transpose() + other;
 }
 
+CovarianceParts& CovarianceParts::operator+=(const CovarianceParts& parts) {
+  translation += parts.translation;
+  rotation += parts.rotation;
+  turning += parts.turning;
+  common += parts.common;
+  other += parts.other;
+  return *this;
+}
+
+CovarianceParts& CovarianceParts::operator-=(const CovarianceParts& parts) {
+  translation -= parts.translation;
+  rotation -= parts.rotation;
+  turning -= parts.turning;
+  common -= parts.common;
+  other -= parts.other;
+  return *this;
+}
+
 CovarianceParts Transported(const CovarianceParts& parts,
                             const Eigen::Matrix3d& adjoint) {
   CovarianceParts result;
@@ -140,11 +158,7 @@ void PathUncertainty::Accumulate(const bool are_nodes,
   parts.common.col(2).head<2>() = -step.Inverse().translation();
   parts = Transported(parts, Adjoint(entry->corrected));
   entry->sum = before.sum;
-  entry->sum.translation += parts.translation;
-  entry->sum.rotation += parts.rotation;
-  entry->sum.turning += parts.turning;
-  entry->sum.common += parts.common;
-  entry->sum.other += parts.other;
+  entry->sum += parts;
 }
 
 const PathUncertainty::Entry* PathUncertainty::Find(
@@ -153,21 +167,18 @@ const PathUncertainty::Entry* PathUncertainty::Find(
   if (it == sequences_.end()) return nullptr;
   Sequence& sequence = it->second;
   std::deque<Entry>& entries = sequence.entries;
-  if (sequence.num_valid == entries.size()) {
-    const auto place = LowerBound(entries, vertex.index());
-    return place == entries.end() || place->index != vertex.index() ? nullptr
-                                                                    : &*place;
-  }
-  const Eigen::Vector3d common = Common(vertex.trajectory_id()).mean;
-  for (; sequence.num_valid < entries.size(); ++sequence.num_valid) {
-    Entry& entry = entries[sequence.num_valid];
-    entry.travelled = 0.;
-    entry.cost = 0.;
-    entry.sum = CovarianceParts();
-    entry.corrected = entry.local_pose;
-    if (sequence.num_valid == 0) continue;
-    Accumulate(vertex.is_node(), common, entries[sequence.num_valid - 1],
-               &entry);
+  if (sequence.num_valid < entries.size()) {
+    const Eigen::Vector3d common = Common(vertex.trajectory_id()).mean;
+    for (; sequence.num_valid < entries.size(); ++sequence.num_valid) {
+      Entry& entry = entries[sequence.num_valid];
+      entry.travelled = 0.;
+      entry.cost = 0.;
+      entry.sum = CovarianceParts();
+      entry.corrected = entry.local_pose;
+      if (sequence.num_valid == 0) continue;
+      Accumulate(vertex.is_node(), common, entries[sequence.num_valid - 1],
+                 &entry);
+    }
   }
   const auto place = LowerBound(entries, vertex.index());
   if (place == entries.end() || place->index != vertex.index()) return nullptr;
@@ -196,12 +207,8 @@ absl::optional<UncertainPose> PathUncertainty::Between(
 
 CovarianceParts PathUncertainty::PartsBetween(const Entry& from,
                                               const Entry& to) const {
-  CovarianceParts sum;
-  sum.translation = to.sum.translation - from.sum.translation;
-  sum.rotation = to.sum.rotation - from.sum.rotation;
-  sum.turning = to.sum.turning - from.sum.turning;
-  sum.common = to.sum.common - from.sum.common;
-  sum.other = to.sum.other - from.sum.other;
+  CovarianceParts sum = to.sum;
+  sum -= from.sum;
   return Transported(sum, Adjoint(to.corrected.Inverse()));
 }
 

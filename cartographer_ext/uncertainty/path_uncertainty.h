@@ -25,7 +25,7 @@
 // deviation. Where nodes between two known ones have not been added yet, the
 // thresholds apply to each of the steps between them.
 //
-// The sums are kept apart for the errors of translation, of rotation on the way
+// The sums are kept apart for the errors of translation, of rotation per metre
 // and of rotation while turning, so that each can be scaled for a trajectory
 // whose drift is learnt (drift_model.h).
 //
@@ -96,6 +96,9 @@ struct CovarianceParts {
   Eigen::Matrix3d common = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d other = Eigen::Matrix3d::Zero();  // jumps, loops
 
+  // Part by part.
+  CovarianceParts& operator+=(const CovarianceParts& parts);
+  CovarianceParts& operator-=(const CovarianceParts& parts);
   Eigen::Matrix3d Total(const DriftFactors& factors,
                         const Eigen::Matrix3d& common_covariance) const;
 };
@@ -179,7 +182,7 @@ class PathUncertainty {
   void Accumulate(bool are_nodes, const Eigen::Vector3d& common,
                   const Entry& before, Entry* entry) const;
   const Entry* Find(const VertexId& vertex) const;
-  // Of the way from the older to the newer entry, frame of the newer.
+  // Of the path from the older to the newer entry, frame of the newer.
   CovarianceParts PartsBetween(const Entry& from, const Entry& to) const;
   // Of a prefix sum, without sign. Empty as `Between`.
   absl::optional<double> Difference(const VertexId& u, const VertexId& v,

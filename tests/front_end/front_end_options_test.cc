@@ -4,21 +4,13 @@
 
 #include <map>
 #include <string>
-#include <vector>
 
-#include "cartographer_ext/options/option_description.h"
-#include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/options/every_key.h"
 
 namespace cartographer_ext {
 namespace front_end {
 namespace {
-
-proto::FrontEndOptions Defaults() {
-  proto::FrontEndOptions message;
-  options::SetDefaults(&message);
-  return message;
-}
 
 // What the keys set.
 std::map<std::string, double> Values(const FrontEndOptions& options) {
@@ -45,49 +37,18 @@ std::map<std::string, double> Values(const FrontEndOptions& options) {
   };
 }
 
+options::test::KeyValues ValuesOfMessage(const proto::FrontEndOptions& message) {
+  return Values(ToFrontEndOptions(message));
+}
+
 // The defaults that are written beside the keys are those of the parts.
 TEST(FrontEndOptionsTest, DefaultsAreThoseOfTheParts) {
-  const std::map<std::string, double> shipped =
-      Values(ToFrontEndOptions(Defaults()));
-  EXPECT_EQ(shipped, Values(FrontEndOptions()));
-  std::vector<std::string> compared, keys;
-  for (const auto& value : shipped) compared.push_back(value.first);
-  for (const auto& option : options::Describe(Defaults())) {
-    keys.push_back(option.key);
-  }
-  EXPECT_THAT(keys, testing::UnorderedElementsAreArray(compared));
+  options::test::ExpectSameDefaults<proto::FrontEndOptions>(
+      ValuesOfMessage, Values(FrontEndOptions()));
 }
 
 TEST(FrontEndOptionsTest, EveryKeyHasAnEffect) {
-  const auto& block = *proto::FrontEndOptions::descriptor();
-  int num_keys = 0;
-  for (int i = 0; i < block.field_count(); ++i) {
-    const auto* const table = block.field(i)->message_type();
-    if (table == nullptr) continue;
-    for (int k = 0; k < table->field_count(); ++k, ++num_keys) {
-      const auto* const field = table->field(k);
-      std::vector<double> read;
-      for (const int value : {0, 7}) {
-        proto::FrontEndOptions message = Defaults();
-        auto* const target =
-            message.GetReflection()->MutableMessage(&message, block.field(i));
-        if (field->cpp_type() ==
-            google::protobuf::FieldDescriptor::CPPTYPE_BOOL) {
-          target->GetReflection()->SetBool(target, field, value > 0);
-        } else if (field->cpp_type() ==
-                   google::protobuf::FieldDescriptor::CPPTYPE_STRING) {
-          target->GetReflection()->SetString(target, field,
-                                             std::string(value, 'x'));
-        } else {
-          target->GetReflection()->SetDouble(target, field, value);
-        }
-        read.push_back(Values(ToFrontEndOptions(message))
-                           .at(block.field(i)->name() + "." + field->name()));
-      }
-      EXPECT_NE(read[0], read[1]) << field->full_name();
-    }
-  }
-  EXPECT_EQ(num_keys, static_cast<int>(options::Describe(Defaults()).size()));
+  options::test::ExpectEveryKeyHasAnEffect<proto::FrontEndOptions>(ValuesOfMessage);
 }
 
 TEST(FrontEndOptionsTest, WallsAreFilledAtTheResolutionOfTheGrid) {

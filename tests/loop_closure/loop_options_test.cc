@@ -4,22 +4,14 @@
 
 #include <map>
 #include <string>
-#include <vector>
 
 #include "cartographer_ext/loop_decision.pb.h"
-#include "cartographer_ext/options/option_description.h"
-#include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/options/every_key.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 namespace {
-
-proto::LoopClosureOptions Defaults() {
-  proto::LoopClosureOptions options;
-  options::SetDefaults(&options);
-  return options;
-}
 
 // What the keys set, in the order of the message.
 std::map<std::string, double> Values(const LoopOptions& options) {
@@ -85,53 +77,18 @@ std::map<std::string, double> Values(const LoopOptions& options) {
   };
 }
 
+options::test::KeyValues ValuesOfMessage(const proto::LoopClosureOptions& message) {
+  return Values(ToLoopOptions(message));
+}
+
 // The defaults that are written beside the keys are those of the stages.
 TEST(LoopOptionsTest, DefaultsAreThoseOfTheStages) {
-  const std::map<std::string, double> shipped =
-      Values(ToLoopOptions(Defaults()));
-  EXPECT_EQ(shipped, Values(LoopOptions()));
-  std::vector<std::string> compared, keys;
-  for (const auto& value : shipped) compared.push_back(value.first);
-  for (const auto& option : options::Describe(Defaults())) {
-    keys.push_back(option.key);
-  }
-  EXPECT_THAT(keys, testing::UnorderedElementsAreArray(compared));
+  options::test::ExpectSameDefaults<proto::LoopClosureOptions>(
+      ValuesOfMessage, Values(LoopOptions()));
 }
 
 TEST(LoopOptionsTest, EveryKeyHasAnEffect) {
-  const auto& block = *proto::LoopClosureOptions::descriptor();
-  int num_keys = 0;
-  for (int i = 0; i < block.field_count(); ++i) {
-    const auto* const table = block.field(i)->message_type();
-    if (table == nullptr) continue;
-    for (int k = 0; k < table->field_count(); ++k, ++num_keys) {
-      const auto* const field = table->field(k);
-      std::vector<double> read;
-      for (const int value : {0, 7}) {
-        proto::LoopClosureOptions message = Defaults();
-        auto* const target =
-            message.GetReflection()->MutableMessage(&message, block.field(i));
-        const auto* const reflection = target->GetReflection();
-        switch (field->cpp_type()) {
-          case google::protobuf::FieldDescriptor::CPPTYPE_BOOL:
-            reflection->SetBool(target, field, value > 0);
-            break;
-          case google::protobuf::FieldDescriptor::CPPTYPE_STRING:
-            reflection->SetString(target, field, std::string(value, 'x'));
-            break;
-          case google::protobuf::FieldDescriptor::CPPTYPE_INT32:
-            reflection->SetInt32(target, field, value);
-            break;
-          default:
-            reflection->SetDouble(target, field, value);
-        }
-        read.push_back(Values(ToLoopOptions(message))
-                           .at(block.field(i)->name() + "." + field->name()));
-      }
-      EXPECT_NE(read[0], read[1]) << field->full_name();
-    }
-  }
-  EXPECT_EQ(num_keys, static_cast<int>(options::Describe(Defaults()).size()));
+  options::test::ExpectEveryKeyHasAnEffect<proto::LoopClosureOptions>(ValuesOfMessage);
 }
 
 TEST(LoopOptionsTest, CovarianceOfALoop) {

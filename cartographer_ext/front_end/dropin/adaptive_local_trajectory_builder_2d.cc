@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "absl/memory/memory.h"
-#include "absl/strings/strip.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/transform/transform.h"
@@ -108,7 +107,7 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
                      options.submaps_options().grid_options_2d().resolution())),
       predictor_(extension.prediction),
       matcher_(extension.search, options.ceres_scan_matcher_options()),
-      log_(extension.log_directory, "nodes", RecordCsv({})) {
+      log_(extension.log_directory, "nodes", RecordCsvHead()) {
   LOG_IF(ERROR, !log_.status().ok())
       << "cartographer_ext: no log of scans: " << log_.status();
 }
@@ -339,8 +338,7 @@ void AdaptiveLocalTrajectoryBuilder2D::Count(const proto::MatchRecord& record) {
   if (!log_.is_on()) return;
   std::string bytes;
   AppendRecord(record, &bytes);
-  const std::string table = RecordCsv({record});
-  log_.Append(absl::StripPrefix(table, RecordCsv({})), bytes);
+  log_.Append(RecordCsvRows({record}), bytes);
   LOG_IF(ERROR, !log_.is_on())
       << "cartographer_ext: the log of scans ends: " << log_.status();
 }

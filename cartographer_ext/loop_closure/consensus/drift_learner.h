@@ -3,11 +3,11 @@
 //
 // Learns from the candidates of a run how much local SLAM drifts.
 //
-// Candidates in a row between the same two stretches of the path tell without
-// any assumption about the way between the stretches: two of them, a few metres
+// Candidates in a row between the same two stretches of the path need no
+// assumption about the path between the stretches: two of them, a few metres
 // apart, close a cycle with the two short pieces of path between them, and it
 // stays open by as much as local SLAM has drifted there (drift_estimator.h). A
-// candidate with a place that was mapped a short way before closes a cycle with
+// candidate with a place that was mapped shortly before closes a cycle with
 // the path itself. Wrong candidates are what the mixture of the estimator is
 // for; none has to be accepted before it counts, so a model that is too narrow
 // cannot keep itself alive by refusing what contradicts it.

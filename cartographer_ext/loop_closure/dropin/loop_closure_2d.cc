@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "absl/memory/memory.h"
-#include "absl/strings/strip.h"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/loop_information.h"
@@ -59,7 +58,7 @@ LoopClosure2D::LoopClosure2D(
       thread_pool_(thread_pool),
       context_(PoseGraphContext::CurrentOrNew()),
       recorder_(context_->Get<DecisionRecorder>()),
-      log_(extension.log_directory, "loops", DecisionCsv({})),
+      log_(extension.log_directory, "loops", DecisionCsvHead()),
       searcher_(options),
       pipeline_(extension, StockWeights(options)),
       planner_(options, extension, &pipeline_.paths()),
@@ -329,6 +328,7 @@ void LoopClosure2D::FreeDormantTrajectories() {
     relocalizer_.DeleteTrajectory(trajectory_id);
     typical_fit_.DeleteTrajectory(trajectory_id);
     inter_trajectory_loops_.DeleteTrajectory(trajectory_id);
+    context_->Get<uncertainty::DriftModel>()->DeleteTrajectory(trajectory_id);
     it = dormant_since_.erase(it);
   }
 }
@@ -365,8 +365,7 @@ void LoopClosure2D::Record(const std::vector<LoopCandidate>& decided) {
   for (const LoopDecision& decision : decisions) {
     AppendDecision(decision, &bytes);
   }
-  const std::string table = DecisionCsv(decisions);
-  log_.Append(absl::StripPrefix(table, DecisionCsv({})), bytes);
+  log_.Append(DecisionCsvRows(decisions), bytes);
   LOG_IF(ERROR, !log_.is_on())
       << "cartographer_ext: the log of loop decisions ends: " << log_.status();
 }
