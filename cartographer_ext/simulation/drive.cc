@@ -93,6 +93,10 @@ class Driver {
 
   // Turns in place by `angle` radians.
   bool Turn(const double angle) {
+    if (robot_.turn_radius > 0. && std::abs(angle) >= kReachedAngle) {
+      must_turn_in_place_ = true;
+      return false;
+    }
     const double target = state_.heading + angle;
     while (true) {
       const double left = target - state_.heading;
@@ -130,6 +134,8 @@ class Driver {
   Eigen::Vector2d position() const { return state_.pose.translation(); }
   double heading() const { return state_.heading; }
   double length() const { return length_; }
+  // Whether a robot that needs a turning circle was to turn in place.
+  bool must_turn_in_place() const { return must_turn_in_place_; }
   std::vector<MotionState> TakeStates() {
     state_.acceleration = state_.turn_acceleration = 0.;
     states_.push_back(state_);
@@ -237,7 +243,10 @@ class Driver {
         std::atan2(aim.y(), aim.x()) + (leg.backwards ? kPi : 0.);
     const double off = std::remainder(direction - state_.heading, 2. * kPi);
     double speed = SpeedLimit(leg, to);
-    const double curvature = 2. * std::sin(off) / std::max(0.1, aim.norm());
+    double curvature = 2. * std::sin(off) / std::max(0.1, aim.norm());
+    if (robot_.turn_radius > 0.) {
+      curvature = Limited(curvature, 1. / robot_.turn_radius);
+    }
     if (std::abs(curvature) * speed > robot_.turn_rate) {
       speed = std::max(0.02, robot_.turn_rate / std::abs(curvature));
     }
@@ -251,6 +260,7 @@ class Driver {
   MotionState state_;
   std::vector<MotionState> states_;
   double length_ = 0.;
+  bool must_turn_in_place_ = false;
 };
 
 }  // namespace
@@ -297,6 +307,11 @@ absl::StatusOr<Drive> Drive::Plan(const World& world, const uint64_t seed) {
                                                        : world.robot.speed);
       }
       if (leg.points.size() >= 2) reached = reached && driver.Follow(leg);
+    }
+    if (driver.must_turn_in_place()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          command.where, ": the drive needs a turn in place, and the robot has "
+          "a turning radius of ", world.robot.turn_radius, " m"));
     }
     if (!reached) {
       return absl::InvalidArgumentError(absl::StrCat(

@@ -31,7 +31,9 @@ bool PlanBuilder::Spend(const size_t shapes, Statement* statement) {
 void PlanBuilder::AddSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                              const double reflectivity, Statement* statement) {
   if (!Spend(1, statement)) return;
-  current_->segments.push_back({a, b, reflectivity});
+  const double degrees = statement->Option("echo_angle", 90., 0., 90.);
+  current_->segments.push_back(
+      {a, b, reflectivity, degrees < 90. ? DegToRad(degrees) : kAnyAngle});
 }
 
 void PlanBuilder::AddDisc(const Disc& disc, Statement* statement) {
@@ -154,7 +156,8 @@ void PlanBuilder::ReadPlace(Statement* statement) {
   };
   for (const Segment& segment : shapes.segments) {
     current_->segments.push_back(
-        {moved(segment.a), moved(segment.b), segment.reflectivity});
+        {moved(segment.a), moved(segment.b), segment.reflectivity,
+         segment.echo_angle});
   }
   for (const Disc& disc : shapes.discs) {
     current_->discs.push_back(

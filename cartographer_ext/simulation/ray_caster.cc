@@ -18,6 +18,13 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+// Whether the ray goes through a pane that it meets at a slant.
+bool Passes(const Eigen::Vector2d& direction, const Segment& segment) {
+  const Eigen::Vector2d edge = segment.b - segment.a;
+  return std::abs(direction.dot(edge)) >
+         std::sin(segment.echo_angle) * edge.norm();
+}
+
 int Clamp(const double value, const int low, const int high) {
   if (!(value > low)) return low;
   if (value > high) return high;
@@ -170,9 +177,14 @@ void RayCaster::VisitCells(const int shape, const Visitor& visit) const {
 double RayCaster::IntersectShape(const int shape, const Eigen::Vector2d& origin,
                                  const Eigen::Vector2d& direction) const {
   const int num_segments = static_cast<int>(segments_.size());
-  return shape < num_segments
-             ? RayToSegment(origin, direction, segments_[shape])
-             : RayToDisc(origin, direction, discs_[shape - num_segments]);
+  if (shape >= num_segments) {
+    return RayToDisc(origin, direction, discs_[shape - num_segments]);
+  }
+  const Segment& segment = segments_[shape];
+  if (segment.echo_angle < kAnyAngle && Passes(direction, segment)) {
+    return kNoHit;
+  }
+  return RayToSegment(origin, direction, segment);
 }
 
 RayHit RayCaster::Cast(const Eigen::Vector2d& origin,

@@ -27,13 +27,21 @@
 namespace cartographer_ext {
 namespace simulation {
 
+// An echo angle that leaves no beam out, a quarter turn.
+constexpr double kAnyAngle = 1.57079632679489662;
+
 // Reflectivity is in (0, 1]: a surface of reflectivity q returns no echo beyond
 // sqrt(q) times the laser's range, since the echo of a diffuse surface fades
 // with q / range^2.
+//
+// Clear glass reflects like a mirror: a beam comes back when it meets the pane
+// nearly at a right angle, and goes through otherwise. `echo_angle` is the
+// largest angle, in radians from the normal, at which the segment stops a beam.
 struct Segment {
   Eigen::Vector2d a = Eigen::Vector2d::Zero();  // metres, world frame
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
   double reflectivity = 1.;
+  double echo_angle = kAnyAngle;
 };
 
 struct Disc {
@@ -61,15 +69,16 @@ class RayCaster {
  public:
   RayCaster(std::vector<Segment> segments, std::vector<Disc> discs);
 
-  // The nearest shape within `max_range` metres; range kNoHit where there is
-  // none. `direction` has length 1. Any thread.
+  // The nearest shape within `max_range` metres that stops the ray; range kNoHit
+  // where there is none. `direction` has length 1. Any thread.
   RayHit Cast(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
               double max_range) const;
 
   // Distance from a point to the nearest line of the plan, at most `limit`.
   double Clearance(const Eigen::Vector2d& point, double limit) const;
 
-  // Whether the straight line between two points is free.
+  // Whether the straight line between two points is free; one looks through
+  // glass.
   bool Visible(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
   const std::vector<Segment>& segments() const { return segments_; }

@@ -22,6 +22,8 @@ enum class RandomStream : uint64_t {
   kImu,
   kObstacles,
   kFaults,
+  kBuilding,
+  kOdometryLateral,
 };
 
 // The finaliser of SplitMix64 (Steele, Lea and Flood 2014) spreads neighbouring

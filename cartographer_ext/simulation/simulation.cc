@@ -26,6 +26,7 @@ World PerfectWorld(World world) {
   odometry.scale_left = odometry.scale_right = odometry.scale_sigma = 0.;
   odometry.mismatch_sigma = odometry.wheel_base_error = 0.;
   odometry.wheel_base_sigma = odometry.noise = odometry.ticks_per_meter = 0.;
+  odometry.lateral_noise = 0.;
   ImuSettings& imu = world.imu;
   imu.gyro_noise = imu.gyro_bias_sigma = imu.gyro_bias_walk = 0.;
   imu.accel_noise = imu.accel_bias_sigma = imu.accel_bias_walk = 0.;

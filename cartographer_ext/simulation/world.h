@@ -44,7 +44,12 @@ struct LaserSettings {
 // counted in whole ticks. The scales of one run are drawn from the seed:
 //   right/left = scale_right/left + common +- mismatch / 2,
 // with common ~ N(0, scale_sigma^2) and mismatch ~ N(0, mismatch_sigma^2).
+//
+// Wheels that can roll sideways (mecanum) are besides carried sideways by
+//   lateral_noise sqrt(|d|) N(0, 1)
+// of which they measure nothing.
 struct OdometrySettings {
+  bool present = true;
   double rate = 20.;            // messages per second
   double encoder_rate = 100.;   // wheel readings per second
   double phase = 0.;            // stamp of the first message, seconds
@@ -57,6 +62,7 @@ struct OdometrySettings {
   double wheel_base_error = 0.;  // assumed / true - 1
   double wheel_base_sigma = 0.;  // one draw a run
   double noise = 0.;             // metres per square root of a metre
+  double lateral_noise = 0.;     // the same, sideways
 };
 
 // Continuous-time noise densities as in data sheets; white noise of one sample
@@ -90,6 +96,7 @@ struct RobotSettings {
   double turn_acceleration = 1.5;  // rad/s^2
   double lookahead = 0.6;          // metres; larger cuts corners more
   double jitter = 0.;              // metres each waypoint moves with the seed
+  double turn_radius = 0.;         // metres, the least; 0: turns in place
 };
 
 struct DriveCommand {

@@ -63,6 +63,10 @@ void ReadLaser(Statement* s, LaserSettings* laser) {
 }
 
 void ReadOdometry(Statement* s, OdometrySettings* odometry) {
+  if (s->has_values()) {
+    if (s->Word("'none'") != "none") s->Fail("expected options, or none");
+    odometry->present = false;
+  }
   odometry->rate = s->Option("rate", odometry->rate, 0.01, 1000.);
   odometry->encoder_rate =
       s->Option("encoder_rate", std::max(100., odometry->rate), 0.01, 1000.);
@@ -77,6 +81,7 @@ void ReadOdometry(Statement* s, OdometrySettings* odometry) {
   odometry->wheel_base_error = s->Option("wheel_base_error", 0., -0.5, 0.5);
   odometry->wheel_base_sigma = s->Option("wheel_base_sigma", 0., 0., 0.2);
   odometry->noise = s->Option("noise", 0., 0., 1.);
+  odometry->lateral_noise = s->Option("lateral_noise", 0., 0., 1.);
 }
 
 void ReadImu(Statement* s, ImuSettings* imu) {
@@ -101,6 +106,7 @@ void ReadRobot(Statement* s, RobotSettings* robot) {
       s->Option("turn_acceleration", robot->turn_acceleration, 0.05, 100.);
   robot->lookahead = s->Option("lookahead", robot->lookahead, 0.1, 5.);
   robot->jitter = s->Option("jitter", 0., 0., 5.);
+  robot->turn_radius = s->Option("turn_radius", 0., 0., 100.);
 }
 
 void ReadObstacle(Statement* s, World* world) {

@@ -14,10 +14,15 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/simulation/buildings/building.h"
+#include "cartographer_ext/simulation/sensors/presets.h"
 #include "cartographer_ext/simulation/simulation_output.h"
 #include "cartographer_ext/simulation/world_parser.h"
 #include "cartographer_ext/simulation/world_picture.h"
+#include "cartographer_ext/simulation/world_writer.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
@@ -26,6 +31,22 @@ DEFINE_string(world_filename, "",
               "World file: floor plan, robot, sensors, drive. Its format is "
               "described in docs/world_format.md; examples are in "
               "configuration_files/worlds.");
+DEFINE_string(generate, "",
+              "Makes a world instead of reading one: office, hotel, warehouse, "
+              "hall, street or campus. The seed chooses the plan.");
+DEFINE_int32(laps, 1, "-generate: rounds driven, 1 to 20.");
+DEFINE_string(laser, "",
+              "Laser: depth_camera, rplidar_a1, ld06, urg_04lx, utm_30lx or "
+              "sick_lms. Empty: the world's own; -generate: ld06.");
+DEFINE_string(robot, "",
+              "Robot: differential, mecanum or car. Empty: the world's own; "
+              "-generate: differential. A car cannot turn in place and needs a "
+              "warehouse, hall, street or campus.");
+DEFINE_string(odometry, "",
+              "Errors of the wheels: good, fair, poor (with slips) or none (no "
+              "odometry). Empty: the world's own; -generate: fair.");
+DEFINE_string(world_output_filename, "",
+              "Writes the world, presets included, as a world file.");
 DEFINE_uint64(seed, 0,
               "Chooses noise, biases, obstacle phases and random faults. The "
               "same world and seed always give the same files.");
@@ -71,7 +92,15 @@ Make a log with ground truth, then map and evaluate it:
 Add odometry faults:
   ... -odometry_faults=stale:3,jump:2,slip:2,offset:0.12
 
-The format of worlds and of the files written: docs/world_format.md.)";
+A building out of a seed, with sensors of your choice:
+  cartographer_ext_simulate -generate=hotel -seed=17 -laser=rplidar_a1
+      -odometry=poor -laps=2 -output_filestem=/tmp/hotel -mcap
+      -world_output_filename=/tmp/hotel.world -picture_filename=/tmp/hotel.png
+The same sensors in a world of your own:
+  cartographer_ext_simulate -world_filename=my.world -laser=depth_camera ...
+
+The format of worlds and of the files written, and the values of the presets:
+docs/world_format.md.)";
 
 nlohmann::ordered_json Report(const simulation::Simulation& simulation,
                               const simulation::SimulationSummary& summary,
@@ -79,6 +108,9 @@ nlohmann::ordered_json Report(const simulation::Simulation& simulation,
   nlohmann::ordered_json json;
   json["world"] = simulation.world().name;
   json["seed"] = simulation.options().seed;
+  json["laser_beams_per_second"] =
+      simulation.world().laser.beams * simulation.world().laser.rate;
+  json["people"] = simulation.obstacles().size();
   json["sensor_seconds"] = simulation.drive().duration();
   json["driven_metres"] = simulation.drive().length();
   json["scans"] = summary.scans;
@@ -97,16 +129,120 @@ nlohmann::ordered_json Report(const simulation::Simulation& simulation,
   return json;
 }
 
+// A flag that names a preset: exit code 2 when there is none by that name.
+bool IsKnown(const char* flag, const std::string& value,
+             const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (value.empty() || value == name) return true;
+  }
+  tools::UsageError(absl::StrCat("-", flag, "=", value, " is none of ",
+                                 absl::StrJoin(names, ", ")));
+  return false;
+}
+
+bool FlagsAreKnown() {
+  return IsKnown("generate", FLAGS_generate, simulation::BuildingNames()) &&
+         IsKnown("laser", FLAGS_laser, simulation::LaserPresetNames()) &&
+         IsKnown("robot", FLAGS_robot, simulation::RobotPresetNames()) &&
+         IsKnown("odometry", FLAGS_odometry,
+                 simulation::OdometryPresetNames());
+}
+
+// The small MEMS unit of the shipped worlds.
+simulation::ImuSettings SmallImu() {
+  simulation::ImuSettings imu;
+  imu.present = true;
+  imu.gyro_noise = 1e-4;
+  imu.gyro_bias_sigma = 1e-3;
+  imu.gyro_bias_walk = 1e-5;
+  imu.accel_noise = 4e-3;
+  imu.accel_bias_sigma = 0.03;
+  imu.accel_bias_walk = 3e-4;
+  return imu;
+}
+
+absl::StatusOr<simulation::World> GenerateWorld() {
+  const auto kind = simulation::BuildingKindByName(FLAGS_generate);
+  if (!kind.ok()) return kind.status();
+  const auto robot = simulation::RobotPreset(
+      FLAGS_robot.empty() ? "differential" : FLAGS_robot);
+  if (!robot.ok()) return robot.status();
+  simulation::BuildingOptions options;
+  options.kind = *kind;
+  options.seed = FLAGS_seed;
+  options.laps = FLAGS_laps;
+  options.robot = robot->robot;
+  auto building = simulation::GenerateBuilding(options);
+  if (!building.ok()) return building.status();
+  building->world.odometry = robot->odometry;
+  building->world.imu = SmallImu();
+  building->world.laser.mounting.x = 0.1;
+  return std::move(building->world);
+}
+
+absl::StatusOr<simulation::World> LoadWorldWithRobot() {
+  absl::StatusOr<simulation::World> world =
+      simulation::LoadWorld(FLAGS_world_filename);
+  if (!world.ok() || FLAGS_robot.empty()) return world;
+  const auto preset = simulation::RobotPreset(FLAGS_robot);
+  if (!preset.ok()) return preset.status();
+  const double jitter = world->robot.jitter;
+  world->robot = preset->robot;
+  world->robot.jitter = jitter;
+  simulation::OdometrySettings& odometry = world->odometry;
+  odometry.rate = preset->odometry.rate;
+  odometry.wheel_base = preset->odometry.wheel_base;
+  odometry.ticks_per_meter = preset->odometry.ticks_per_meter;
+  odometry.lateral_noise = preset->odometry.lateral_noise;
+  return world;
+}
+
+// The world of the flags with its presets. A generated one or one with presets
+// is passed through its text, so that the file written is the same world.
+absl::StatusOr<simulation::World> MakeWorld() {
+  const bool generated = !FLAGS_generate.empty();
+  absl::StatusOr<simulation::World> world =
+      generated ? GenerateWorld() : LoadWorldWithRobot();
+  if (!world.ok()) return world;
+  const std::string laser =
+      generated && FLAGS_laser.empty() ? "ld06" : FLAGS_laser;
+  if (!laser.empty()) {
+    const Pose2 mounting = world->laser.mounting;
+    const auto preset = simulation::LaserPreset(laser);
+    if (!preset.ok()) return preset.status();
+    world->laser = *preset;
+    world->laser.mounting = mounting;
+  }
+  const std::string odometry =
+      generated && FLAGS_odometry.empty() ? "fair" : FLAGS_odometry;
+  if (!odometry.empty()) {
+    const absl::Status status =
+        simulation::ApplyOdometryPreset(odometry, FLAGS_seed, &*world);
+    if (!status.ok()) return status;
+  }
+  if (!generated && FLAGS_laser.empty() && FLAGS_robot.empty() &&
+      FLAGS_odometry.empty() && FLAGS_world_output_filename.empty()) {
+    return world;
+  }
+  const std::string text = simulation::FormatWorld(*world);
+  if (!FLAGS_world_output_filename.empty()) {
+    const absl::Status status =
+        WriteFileAtomically(FLAGS_world_output_filename, text);
+    if (!status.ok()) return status;
+  }
+  return simulation::ParseWorld(text, world->name);
+}
+
 absl::Status Run() {
   const std::clock_t begin = std::clock();
-  std::vector<std::string> outputs = {FLAGS_picture_filename, FLAGS_json};
+  std::vector<std::string> outputs = {FLAGS_picture_filename, FLAGS_json,
+                                      FLAGS_world_output_filename};
   if (!FLAGS_output_filestem.empty()) {
     outputs.push_back(FLAGS_output_filestem + ".tum");
   }
   absl::Status status = tools::CheckWritable(outputs);
   if (!status.ok()) return status;
-  absl::StatusOr<simulation::World> world =
-      simulation::LoadWorld(FLAGS_world_filename);
+  absl::StatusOr<simulation::World> world = MakeWorld();
   if (!world.ok()) return world.status();
   simulation::SimulationOptions options;
   options.seed = FLAGS_seed;
@@ -117,7 +253,9 @@ absl::Status Run() {
   if (!created.ok()) {
     return absl::Status(
         created.status().code(),
-        absl::StrCat(FLAGS_world_filename, ": ", created.status().message()));
+        absl::StrCat(FLAGS_generate.empty() ? FLAGS_world_filename
+                                            : FLAGS_generate,
+                     ": ", created.status().message()));
   }
   const std::shared_ptr<const simulation::Simulation> simulation =
       *std::move(created);
@@ -181,13 +319,23 @@ int main(int argc, char** argv) {
   tools::CommandLine command_line(cartographer_ext::kDescription,
                                   "world_filename");
   command_line.Parse(argc, argv);
-  if (FLAGS_world_filename.empty()) {
-    return tools::UsageError("-world_filename is missing");
+  if (FLAGS_world_filename.empty() == FLAGS_generate.empty()) {
+    return tools::UsageError(
+        FLAGS_generate.empty()
+            ? "-world_filename is missing, or -generate"
+            : "-world_filename and -generate exclude each other");
+  }
+  if (!cartographer_ext::FlagsAreKnown()) return tools::kExitUsage;
+  if (FLAGS_laps < 1 || FLAGS_laps > cartographer_ext::simulation::kMaxLaps) {
+    return tools::UsageError(absl::StrCat(
+        "-laps=", FLAGS_laps, " is outside [1, ",
+        cartographer_ext::simulation::kMaxLaps, "]"));
   }
   if (FLAGS_output_filestem.empty() && FLAGS_picture_filename.empty() &&
-      FLAGS_json.empty()) {
+      FLAGS_json.empty() && FLAGS_world_output_filename.empty()) {
     return tools::UsageError(
-        "nothing to write: give -output_filestem, -picture_filename or -json");
+        "nothing to write: give -output_filestem, -picture_filename, "
+        "-world_output_filename or -json");
   }
   return tools::ExitCode(cartographer_ext::Run());
 }

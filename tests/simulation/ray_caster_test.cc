@@ -162,6 +162,25 @@ TEST(RayCasterTest, LongThinAndHugePlansStayBounded) {
   EXPECT_NEAR(huge.Cast(Vector2d(9., 0.), Direction(kPi), 10.).range, 3., 1e-9);
 }
 
+// A pane answers near its normal only; what lies behind is seen at a slant.
+TEST(RayCasterTest, PanesLetSlantingBeamsThrough) {
+  const RayCaster plan({{Vector2d(2., -9.), Vector2d(2., 9.), 0.5,
+                         DegToRad(20.)},
+                        {Vector2d(4., -9.), Vector2d(4., 9.), 1., kAnyAngle}},
+                       {});
+  for (int degrees = -60; degrees <= 60; ++degrees) {
+    const RayHit hit =
+        plan.Cast(Vector2d(0., 0.), Direction(DegToRad(degrees)), 30.);
+    const bool through = std::abs(degrees) > 20;
+    EXPECT_NEAR(hit.range * std::cos(DegToRad(degrees)), through ? 4. : 2.,
+                1e-9)
+        << degrees;
+    EXPECT_EQ(hit.reflectivity, through ? 1. : 0.5);
+  }
+  // A robot does not fit through, whatever it sees.
+  EXPECT_NEAR(plan.Clearance(Vector2d(1.7, 0.), 1.), 0.3, 1e-12);
+}
+
 }  // namespace
 }  // namespace simulation
 }  // namespace cartographer_ext

@@ -32,6 +32,7 @@ class Odometer {
         faults_(faults),
         begin_(world.begin),
         noise_(MakeRandom(seed, RandomStream::kOdometryNoise)),
+        lateral_(MakeRandom(seed, RandomStream::kOdometryLateral)),
         left_(0., 0., 0.),
         right_(0., 0., 0.),
         open_(faults.size()),
@@ -50,6 +51,7 @@ class Odometer {
   }
 
   OdometryRun Run() {
+    if (!settings_.present) return std::move(run_);
     for (int64_t i = 0;; ++i) {
       const double stamp = settings_.phase + i / settings_.rate;
       if (stamp > drive_.duration() + 1e-9) break;
@@ -140,6 +142,11 @@ class Odometer {
     }
     pose_ = pose_ * ArcPose(counted, (counted_right - counted_left) /
                                          run_.believed_wheel_base);
+    if (settings_.lateral_noise > 0.) {
+      const double sigma =
+          settings_.lateral_noise * std::sqrt(std::abs(distance));
+      pose_ = pose_ * Pose2(0., sigma * lateral_.Normal(), 0.);
+    }
   }
 
   void Message(const double stamp) {
@@ -185,6 +192,7 @@ class Odometer {
   const std::vector<OdometryFault>& faults_;
   const double begin_;
   Random noise_;
+  Random lateral_;
   Wheel left_;
   Wheel right_;
   OdometryRun run_;
