@@ -157,8 +157,11 @@ bool IsKnown(const std::string& name) {
 }  // namespace
 
 CommandLine::CommandLine(const std::string& description,
-                         const std::string& input_flag)
-    : description_(description), input_flag_(input_flag) {}
+                         const std::string& input_flag,
+                         const std::string& second_input_flag)
+    : description_(description),
+      input_flag_(input_flag),
+      second_input_flag_(second_input_flag) {}
 
 void CommandLine::TakePositional(const std::string& argument) {
   if (input_flag_.empty() || argument == "-") {
@@ -166,10 +169,17 @@ void CommandLine::TakePositional(const std::string& argument) {
         absl::StrCat("what is \"", argument, "\"? All arguments are flags",
                      input_flag_.empty() ? "" : " but the input"));
   }
-  gflags::CommandLineFlagInfo info;
-  if (has_positional_input_ ||
-      (gflags::GetCommandLineFlagInfo(input_flag_.c_str(), &info) &&
-       !info.is_default)) {
+  const auto is_set = [](const std::string& flag) {
+    gflags::CommandLineFlagInfo info;
+    return gflags::GetCommandLineFlagInfo(flag.c_str(), &info) &&
+           !info.is_default;
+  };
+  if (has_positional_input_ || is_set(input_flag_)) {
+    if (!second_input_flag_.empty() && !is_set(second_input_flag_)) {
+      SetFlag(second_input_flag_, argument);
+      second_input_flag_.clear();
+      return;
+    }
     ExitWithUsageError(absl::StrCat("\"", argument, "\" is a second input"));
   }
   SetFlag(input_flag_, argument);

@@ -41,9 +41,10 @@ constexpr int kExitUsage = 2;
 class CommandLine {
  public:
   // `description` is what -help prints above the flags, `input_flag` the flag of
-  // the main input, if any.
+  // the main input, if any, `second_input_flag` that of a second one.
   explicit CommandLine(const std::string& description,
-                       const std::string& input_flag = "");
+                       const std::string& input_flag = "",
+                       const std::string& second_input_flag = "");
   void Parse(int argc, char** argv);
 
   // Whether the main input stood there without its flag.
@@ -54,6 +55,7 @@ class CommandLine {
 
   const std::string description_;
   const std::string input_flag_;
+  std::string second_input_flag_;  // empty once it was taken
   bool has_positional_input_ = false;
 };
 
