@@ -36,7 +36,7 @@ TEST(ReproduceTest, ListsEveryTable) {
   for (const char* name : {"a_table_2", "r_table_2", "g_table_2", "g_table_3",
                            "c_table_1", "c_table_3", "c_table_4", "c_table_5",
                            "c_gamma", "c_alpha_beta", "stored_maps",
-                           "c_navigation"}) {
+                           "c_navigation", "any_building"}) {
     EXPECT_THAT(result.out, HasSubstr(name));
   }
 }
@@ -53,6 +53,34 @@ TEST(ReproduceTest, SaysWhatIsWrong) {
             "/out --build " + folder.path());
   EXPECT_EQ(not_built.exit_code, 1);
   EXPECT_THAT(not_built.out, HasSubstr("cartographer_ext_robustness is not"));
+}
+
+// A sample of the cases is balanced whatever its size, and all of them are all
+// combinations.
+TEST(ReproduceTest, CasesOfBuildingsAreBalanced) {
+  const ShellResult result = Shell(
+      "python3 -c \"import collections; m = {}; "
+      "exec(open('scripts/reproduce_buildings.py').read(), m); "
+      "all = m['cases'](m['KINDS'], m['LASERS'], m['GRADES'], 72); "
+      "count = lambda runs, of: "
+      "sorted(set(collections.Counter(map(of, runs)).values())); "
+      "print(len({c[:3] for c in all}), "
+      "[count(all[:36], lambda c, i=i: c[i]) for i in (0, 1, 2)], "
+      "count(all[:36], lambda c: c[:2]), count(all[:36], lambda c: c[1:3]))\"");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_EQ(result.out, "72 [[6], [6], [18]] [1] [3]\n");
+}
+
+TEST(ReproduceTest, OutcomesOfBuildings) {
+  const ShellResult result = Shell(
+      "python3 -c \"m = {}; "
+      "exec(open('scripts/reproduce_buildings.py').read(), m); "
+      "run = lambda apart, precision, accepted: m['outcome'](dict("
+      "loops_apart=apart, precision=precision, accepted=accepted)); "
+      "print(run(0.1, 0.2, 9), run(0.2, 1., 9), run(0.2, 0.9, 9), "
+      "run(1., None, 0), run(None, None, 0), m['outcome']({'error': 'x'}))\"");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_EQ(result.out, "right open folded open not judged failed\n");
 }
 
 TEST(ReproduceTest, ClosingErrorsAndDistances) {
