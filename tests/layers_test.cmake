@@ -28,7 +28,8 @@ set(level_report 11)
 set(level_experiments 11)
 set(level_navigation 11)
 set(level_tuning 11)
-set(level_tools 12)
+set(level_repair 12)
+set(level_tools 13)
 
 # The name of the layer that a path below cartographer_ext/ is in.
 function(layer_of path result)

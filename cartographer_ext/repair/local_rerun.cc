@@ -1,0 +1,384 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/repair/local_rerun.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/types/optional.h"
+#include "cartographer/mapping/2d/submap_2d.h"
+#include "cartographer/mapping/internal/2d/local_trajectory_builder_2d.h"
+#include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
+#include "cartographer/mapping/trajectory_node.h"
+#include "cartographer/sensor/range_data.h"
+#include "cartographer/transform/transform.h"
+#include "cartographer_ext/map/host_types.h"
+#include "cartographer_ext/map/verdict/motion_disagreement.h"
+
+namespace cartographer_ext {
+namespace repair {
+namespace {
+
+using cartographer::mapping::LocalTrajectoryBuilder2D;
+using cartographer::mapping::Submap2D;
+using cartographer::mapping::TrajectoryNode;
+using cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D;
+using cartographer::mapping::proto::PoseGraph;
+using cartographer::transform::Rigid2d;
+using cartographer::transform::Rigid3d;
+using evaluation::GraphId;
+
+constexpr char kSensor[] = "scan";
+// Stock's weights of insertions, where the map has none.
+constexpr double kTranslationWeight = 5e2;
+constexpr double kRotationWeight = 1.6e3;
+// The wheels replace local SLAM where the two differ by more than this, and by
+// so many times the median difference.
+constexpr double kLeastAngle = 0.087;    // radians
+constexpr double kLeastDistance = 0.15;  // metres
+constexpr double kOutlying = 10.;
+
+GraphId IdOf(const cartographer::mapping::proto::Node& node) {
+  return {node.node_id().trajectory_id(), node.node_id().node_index()};
+}
+
+Rigid3d Gravity(const cartographer::mapping::proto::Node& node) {
+  return Rigid3d::Rotation(
+      cartographer::transform::ToEigen(node.node_data().gravity_alignment()));
+}
+
+Rigid3d Embed(const Pose2& pose) {
+  return cartographer::transform::Embed3D(
+      Rigid2d(Eigen::Vector2d(pose.x, pose.y), pose.theta));
+}
+
+// Submaps of one trajectory in the order in which they were begun.
+struct NewSubmaps {
+  std::vector<std::shared_ptr<const Submap2D>> submaps;
+
+  int IndexOf(const std::shared_ptr<const Submap2D>& submap) {
+    for (size_t i = submaps.size(); i > 0; --i) {
+      if (submaps[i - 1] == submap) return static_cast<int>(i) - 1;
+    }
+    submaps.push_back(submap);
+    return static_cast<int>(submaps.size()) - 1;
+  }
+};
+
+// Local SLAM of one trajectory, node by node.
+class NodeMapper {
+ public:
+  NodeMapper(const LocalTrajectoryBuilderOptions2D& options,
+             const NodeMatching matching)
+      : matching_(matching),
+        builder_(options, {kSensor}),
+        matcher_(options.ceres_scan_matcher_options()),
+        active_submaps_(options.submaps_options()) {}
+
+  // The pose of the node (local <- gravity aligned) and, in `inserted`, the
+  // indices of its submaps.
+  Pose2 Add(const TrajectoryNode::Data& node, const Pose2& chain,
+            std::vector<int>* const inserted) {
+    // Without a match, the chain alone.
+    const Pose2 predicted =
+        has_pose_ ? pose_ * Between(last_chain_, chain) : Pose2();
+    if (matching_ == NodeMatching::kFrontEnd) {
+      AddByFrontEnd(node, chain, predicted);
+    } else {
+      AddByChain(node, predicted);
+    }
+    has_pose_ = true;
+    last_chain_ = chain;
+    *inserted = last_inserted_;
+    return pose_;
+  }
+
+  const std::vector<std::shared_ptr<const Submap2D>>& submaps() const {
+    return submaps_.submaps;
+  }
+
+ private:
+  void AddByFrontEnd(const TrajectoryNode::Data& node, const Pose2& chain,
+                     const Pose2& predicted) {
+    builder_.AddOdometryData({node.time, Embed(chain)});
+    cartographer::sensor::TimedPointCloudData scan;
+    scan.time = node.time;
+    scan.origin = Eigen::Vector3f::Zero();
+    for (const auto& point : node.filtered_gravity_aligned_point_cloud) {
+      scan.ranges.push_back({point.position, 0.f});
+    }
+    pose_ = predicted;
+    if (scan.ranges.empty()) return;
+    const auto result = builder_.AddRangeData(kSensor, scan);
+    if (result == nullptr || result->insertion_result == nullptr) return;
+    pose_ = evaluation::ToPlanarPose(result->local_pose);
+    Remember(result->insertion_result->insertion_submaps);
+  }
+
+  void AddByChain(const TrajectoryNode::Data& node, const Pose2& predicted) {
+    const auto& cloud = node.filtered_gravity_aligned_point_cloud;
+    pose_ = predicted;
+    if (cloud.empty()) return;
+    const auto submaps = active_submaps_.submaps();
+    if (matching_ == NodeMatching::kRefine && !submaps.empty()) {
+      const Rigid2d start({predicted.x, predicted.y}, predicted.theta);
+      Rigid2d matched;
+      ceres::Solver::Summary summary;
+      matcher_.Match(start.translation(), start, cloud,
+                     *submaps.front()->grid(), &matched, &summary);
+      pose_ = Pose2(matched.translation().x(), matched.translation().y(),
+                    NormalizeAngle(matched.rotation().angle()));
+    }
+    cartographer::sensor::RangeData range_data{
+        Eigen::Vector3f::Zero(), cloud, {}};
+    Remember(active_submaps_.InsertRangeData(
+        cartographer::sensor::TransformRangeData(range_data,
+                                                 Embed(pose_).cast<float>())));
+  }
+
+  void Remember(const std::vector<std::shared_ptr<const Submap2D>>& inserted) {
+    last_inserted_.clear();
+    for (const auto& submap : inserted) {
+      last_inserted_.push_back(submaps_.IndexOf(submap));
+    }
+  }
+
+  const NodeMatching matching_;
+  LocalTrajectoryBuilder2D builder_;
+  cartographer::mapping::scan_matching::CeresScanMatcher2D matcher_;
+  cartographer::mapping::ActiveSubmaps2D active_submaps_;
+  NewSubmaps submaps_;
+  bool has_pose_ = false;
+  Pose2 pose_, last_chain_;
+  std::vector<int> last_inserted_;
+};
+
+// Calls `visit` for each pair of successive nodes of a trajectory.
+template <typename Visit>
+void ForSteps(const MotionChain& chain, const Visit& visit) {
+  const GraphId* last = nullptr;
+  for (const auto& entry : chain) {
+    if (last != nullptr && last->trajectory_id == entry.first.trajectory_id) {
+      visit(*last, entry.first);
+    }
+    last = &entry.first;
+  }
+}
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0.;
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Weights {
+  double translation = kTranslationWeight;
+  double rotation = kRotationWeight;
+};
+
+Weights InsertionWeights(const PoseGraph& graph) {
+  Weights weights;
+  for (const auto& constraint : graph.constraint()) {
+    if (constraint.tag() == PoseGraph::Constraint::INTRA_SUBMAP) {
+      weights.translation = constraint.translation_weight();
+      weights.rotation = constraint.rotation_weight();
+      break;
+    }
+  }
+  return weights;
+}
+
+void StoreSubmaps(const std::map<int, NodeMapper>& mappers,
+                  io::Pbstream* const pbstream) {
+  pbstream->submaps.clear();
+  for (auto& trajectory : *pbstream->pose_graph.mutable_trajectory()) {
+    trajectory.clear_submap();
+    const auto mapper = mappers.find(trajectory.trajectory_id());
+    if (mapper == mappers.end()) continue;
+    int index = 0;
+    for (const auto& submap : mapper->second.submaps()) {
+      auto proto = submap->ToProto(true);
+      proto.mutable_submap_id()->set_trajectory_id(trajectory.trajectory_id());
+      proto.mutable_submap_id()->set_submap_index(index);
+      pbstream->submaps.push_back(std::move(proto));
+      auto* const placed = trajectory.add_submap();
+      placed->set_submap_index(index++);
+      *placed->mutable_pose() =
+          cartographer::transform::ToProto(submap->local_pose());
+    }
+  }
+}
+
+}  // namespace
+
+MotionChain LocalChain(const io::Pbstream& pbstream) {
+  MotionChain chain;
+  for (const auto& node : pbstream.nodes) {
+    chain[IdOf(node)] = evaluation::ToPlanarPose(
+        cartographer::transform::ToRigid3(node.node_data().local_pose()) *
+        Gravity(node).inverse());
+  }
+  return chain;
+}
+
+MotionChain GlobalChain(const io::Pbstream& pbstream,
+                        const evaluation::MapGraph& graph) {
+  MotionChain chain = LocalChain(pbstream);
+  for (auto& entry : chain) {
+    const auto node = graph.nodes.find(entry.first);
+    if (node == graph.nodes.end()) continue;
+    // The frames of a node differ by a rotation that stays the same.
+    const Pose2 tracking_from_gravity =
+        Between(node->second.local_pose, entry.second);
+    entry.second = node->second.global_pose * tracking_from_gravity;
+  }
+  return chain;
+}
+
+MotionChain OdometryChain(const io::Pbstream& pbstream) {
+  const std::map<int, evaluation::Trajectory> odometry =
+      evaluation::ReadOdometry(pbstream);
+  const MotionChain local = LocalChain(pbstream);
+  MotionChain chain;
+  int64_t covered = 0;
+  bool has_last = false;
+  GraphId last;
+  absl::optional<Pose2> last_wheels;
+  for (const auto& record : pbstream.nodes) {
+    const GraphId id = IdOf(record);
+    absl::optional<Pose2> wheels;
+    const auto readings = odometry.find(id.trajectory_id);
+    if (readings != odometry.end()) {
+      const auto pose = readings->second.Lookup(
+          evaluation::FromHostTicks(record.node_data().timestamp()), 0);
+      if (pose.has_value()) wheels = evaluation::ToPose2(*pose);
+    }
+    if (!has_last || last.trajectory_id != id.trajectory_id) {
+      chain[id] = local.at(id);
+    } else if (wheels.has_value() && last_wheels.has_value()) {
+      chain[id] = chain[last] * Between(*last_wheels, *wheels);
+      ++covered;
+    } else {
+      chain[id] = chain[last] * Between(local.at(last), local.at(id));
+    }
+    has_last = true;
+    last = id;
+    last_wheels = wheels;
+  }
+  if (2 * covered < static_cast<int64_t>(chain.size())) chain.clear();
+  return chain;
+}
+
+MotionChain MixedChain(const io::Pbstream& pbstream) {
+  const MotionChain wheels = OdometryChain(pbstream);
+  if (wheels.empty()) return wheels;
+  const MotionChain local = LocalChain(pbstream);
+  std::vector<double> angles, distances;
+  ForSteps(local, [&](const GraphId& from, const GraphId& to) {
+    const Pose2 difference = Between(Between(local.at(from), local.at(to)),
+                                     Between(wheels.at(from), wheels.at(to)));
+    angles.push_back(std::abs(difference.theta));
+    distances.push_back(difference.translation().norm());
+  });
+  const double max_angle = std::max(kLeastAngle, kOutlying * Median(angles));
+  const double max_distance =
+      std::max(kLeastDistance, kOutlying * Median(distances));
+  MotionChain chain = local;
+  size_t step = 0;
+  ForSteps(local, [&](const GraphId& from, const GraphId& to) {
+    const bool differ =
+        angles[step] > max_angle || distances[step] > max_distance;
+    const MotionChain& source = differ ? wheels : local;
+    chain[to] = chain[from] * Between(source.at(from), source.at(to));
+    ++step;
+  });
+  return chain;
+}
+
+LocalTrajectoryBuilderOptions2D OptionsForClouds(
+    const LocalTrajectoryBuilderOptions2D& base,
+    const LocalTrajectoryBuilderOptions2D& stored) {
+  LocalTrajectoryBuilderOptions2D options = base;
+  options.set_use_imu_data(false);
+  options.set_num_accumulated_range_data(1);
+  options.set_min_range(0.f);
+  options.set_max_range(1e4f);
+  options.set_min_z(-1e4f);
+  options.set_max_z(1e4f);
+  options.set_voxel_filter_size(0.01f);
+  auto* const filter = options.mutable_motion_filter_options();
+  filter->set_max_time_seconds(0.);
+  filter->set_max_distance_meters(0.);
+  filter->set_max_angle_radians(0.);
+  auto* const submaps = options.mutable_submaps_options();
+  if (stored.submaps_options().num_range_data() > 0) {
+    submaps->set_num_range_data(stored.submaps_options().num_range_data());
+  }
+  const double resolution =
+      stored.submaps_options().grid_options_2d().resolution();
+  if (resolution > 0.) {
+    submaps->mutable_grid_options_2d()->set_resolution(resolution);
+  }
+  return options;
+}
+
+absl::StatusOr<io::Pbstream> RerunLocalSlam(
+    const io::Pbstream& pbstream, const MotionChain& chain,
+    const NodeMatching matching,
+    const LocalTrajectoryBuilderOptions2D& options) {
+  io::Pbstream result = pbstream;
+  const Weights weights = InsertionWeights(pbstream.pose_graph);
+  result.pose_graph.clear_constraint();
+  std::map<int, NodeMapper> mappers;
+  std::map<GraphId, Rigid3d> local_poses;
+  for (auto& record : result.nodes) {
+    const GraphId id = IdOf(record);
+    NodeMapper& mapper = mappers
+                             .emplace(std::piecewise_construct,
+                                      std::forward_as_tuple(id.trajectory_id),
+                                      std::forward_as_tuple(options, matching))
+                             .first->second;
+    const auto data = cartographer::mapping::FromProto(record.node_data());
+    std::vector<int> inserted;
+    const Pose2 pose = mapper.Add(data, chain.at(id), &inserted);
+    if (inserted.empty()) {
+      return absl::FailedPreconditionError(absl::StrCat(
+          "the first node ", evaluation::ToString(id),
+          " has no cloud, so that local SLAM cannot be run again"));
+    }
+    const Rigid3d local = Embed(pose) * Gravity(record);
+    local_poses[id] = local;
+    *record.mutable_node_data()->mutable_local_pose() =
+        cartographer::transform::ToProto(local);
+    for (const int index : inserted) {
+      auto* const constraint = result.pose_graph.add_constraint();
+      constraint->mutable_submap_id()->set_trajectory_id(id.trajectory_id);
+      constraint->mutable_submap_id()->set_submap_index(index);
+      constraint->mutable_node_id()->set_trajectory_id(id.trajectory_id);
+      constraint->mutable_node_id()->set_node_index(id.index);
+      *constraint->mutable_relative_pose() = cartographer::transform::ToProto(
+          mapper.submaps()[index]->local_pose().inverse() * local);
+      constraint->set_translation_weight(weights.translation);
+      constraint->set_rotation_weight(weights.rotation);
+      constraint->set_tag(PoseGraph::Constraint::INTRA_SUBMAP);
+    }
+  }
+  StoreSubmaps(mappers, &result);
+  for (auto& trajectory : *result.pose_graph.mutable_trajectory()) {
+    for (auto& node : *trajectory.mutable_node()) {
+      const auto pose =
+          local_poses.find({trajectory.trajectory_id(), node.node_index()});
+      if (pose == local_poses.end()) continue;
+      *node.mutable_pose() = cartographer::transform::ToProto(pose->second);
+    }
+  }
+  return result;
+}
+
+}  // namespace repair
+}  // namespace cartographer_ext

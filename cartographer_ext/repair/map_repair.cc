@@ -1,0 +1,398 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/repair/map_repair.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/types/optional.h"
+#include "cartographer_ext/io/pbstream/pbstream_validation.h"
+#include "cartographer_ext/map/map_contents.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/pbstream_optimization.h"
+#include "cartographer_ext/map/verdict/motion_disagreement.h"
+#include "cartographer_ext/optimization/offline/optimize.h"
+#include "cartographer_ext/repair/kept_frame.h"
+#include "cartographer_ext/repair/local_rerun.h"
+#include "cartographer_ext/repair/store_graph.h"
+#include "cartographer_ext/rerun/rerun.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace repair {
+namespace {
+
+using PbstreamPointer = std::shared_ptr<const io::Pbstream>;
+using cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D;
+using cartographer::mapping::proto::PoseGraphOptions;
+
+constexpr int64_t kMaxSearchedLoops = 400;
+
+LocalTrajectoryBuilderOptions2D StoredLocalOptions(
+    const io::Pbstream& pbstream) {
+  for (const auto& options : pbstream.options.options_with_sensor_ids()) {
+    if (options.trajectory_builder_options()
+            .has_trajectory_builder_2d_options()) {
+      return options.trajectory_builder_options()
+          .trajectory_builder_2d_options();
+    }
+  }
+  return {};
+}
+
+// The map optimised once more, without the loops that the method rejects; null
+// with a reason where its graph cannot be optimised.
+PbstreamPointer Optimize(const evaluation::MapGraph& graph,
+                         const io::Pbstream& pbstream,
+                         const std::string& method, std::string* const reason) {
+  const auto map = evaluation::MakeMapPoseGraph(graph, {});
+  if (!map.ok()) {
+    *reason = std::string(map.status().message());
+    return nullptr;
+  }
+  optimization::OptimizeOptions options;
+  options.method = method;
+  // Weights of a map are relative; their scale is a guess.
+  options.adaptive_gate = false;
+  options.estimate_noise = false;
+  const auto solved = optimization::Optimize(map->graph, options);
+  if (!solved.ok()) {
+    *reason = std::string(solved.status().message());
+    return nullptr;
+  }
+  std::vector<int> rejected;
+  for (size_t i = 0; i != map->graph.edges.size(); ++i) {
+    if (method != "huber" && !solved->accepted[i]) {
+      rejected.push_back(map->constraint_of_edge[i]);
+    }
+  }
+  auto result = std::make_shared<io::Pbstream>(pbstream);
+  evaluation::StorePoses(*map, solved->poses, result.get());
+  evaluation::DropConstraints(rejected, result.get());
+  return result;
+}
+
+// Why a map stays as it is, a clause.
+std::string WhyBroken(const MapRepair& repair) {
+  const evaluation::SelfConsistency& after = repair.after.consistency;
+  if (!after.wrong_turns.empty()) {
+    const evaluation::MotionStep& step = after.wrong_turns.front();
+    return absl::StrFormat(
+        "local SLAM turned %.0f degrees away from the odometry before node %s, "
+        "and no loop repairs that",
+        RadToDeg(step.odometry_rotation), evaluation::ToString(step.node_id));
+  }
+  if (!after.severe.empty()) {
+    const evaluation::ConflictStretch& stretch = after.severe.front();
+    return absl::StrFormat(
+        "nothing that was tried brings nodes %s to %s (near x = %.1f m, y = "
+        "%.1f m) into agreement with what was mapped there at another time",
+        evaluation::ToString(stretch.first_node),
+        evaluation::ToString(stretch.last_node), stretch.center.x(),
+        stretch.center.y());
+  }
+  return "nothing that was tried made it better";
+}
+
+// The sentence on top, and what to do.
+void Conclude(MapRepair* const repair) {
+  const std::string& before = repair->before.quality.verdict;
+  const std::string& after = repair->after.quality.verdict;
+  const bool is_fine = after == "sound" || after == "unknown";
+  if (!repair->changed() && is_fine) {
+    repair->conclusion = absl::StrCat(
+        "nothing to repair: ", repair->before.consistency.reasons.front());
+    repair->advice.push_back("Use the map as it is.");
+    return;
+  }
+  const std::string better =
+      absl::StrFormat("severe share %.1f %% before, %.1f %% after",
+                      100. * repair->before.quality.severe_share,
+                      100. * repair->after.quality.severe_share);
+  if (repair->changed() && is_fine) {
+    repair->conclusion = absl::StrCat("repaired: the map was ", before,
+                                      " and is ", after, " (", better, ")");
+    repair->advice.push_back(
+        "Look at both pictures: a map that nothing contradicts can still be "
+        "wrong where a place was seen once only.");
+    repair->advice.push_back(
+        "Poses that were noted in the old map (docks, waypoints) move: run "
+        "with -keep_frame and look them up in the table of poses.");
+    return;
+  }
+  repair->conclusion =
+      repair->changed()
+          ? absl::StrCat("better, but still ", after, " (", better,
+                         "): cannot be repaired further, because ",
+                         WhyBroken(*repair))
+          : absl::StrCat("cannot be repaired, because ", WhyBroken(*repair));
+  repair->advice.push_back(
+      "Do not navigate with this map. If the recording is still there, run "
+      "cartographer_ext_slam on it: all scans say more than the thinned clouds "
+      "of the nodes.");
+  repair->advice.push_back(
+      "If you record again: drive slowly through the places named above, close "
+      "loops early and more than once, and record the odometry.");
+}
+
+// The state of a repair: the best version so far, and how it came about.
+class Repairer {
+ public:
+  Repairer(io::Pbstream pbstream, const RepairOptions& options)
+      : options_(options),
+        original_(std::make_shared<const io::Pbstream>(std::move(pbstream))) {
+    result_.before = Assess(original_);
+    result_.after = result_.before;
+  }
+
+  MapRepair Run() {
+    if (!options_.dropped_loops.empty()) DropLoops();
+    if (!done()) JudgeLoopsAgain();
+    RunLoopClosure(true);
+    RerunLocalSlamAlongChains();
+    is_local_ = false;
+    RunLoopClosure(false);
+    is_local_ = true;
+    RepeatAlongBest();
+    if (result_.changed()) KeepFrame();
+    Conclude(&result_);
+    return std::move(result_);
+  }
+
+ private:
+  // New loops over bent submaps can make a map just sound; local SLAM has its
+  // turn even then.
+  bool done() const {
+    const std::string& word = result_.after.consistency.word;
+    return (word == "sound" || word == "unknown") &&
+           (local_had_its_turn_ || !options_.local || !result_.changed());
+  }
+
+  void Begin(const std::string& name) {
+    RepairStep step;
+    step.name = name;
+    result_.steps.push_back(step);
+    LOG(INFO) << name;
+    if (options_.on_step) options_.on_step(name);
+  }
+
+  void Skip(const std::string& reason) { result_.steps.back().reason = reason; }
+
+  // Keeps the version if it is better.
+  MapVersion Consider(PbstreamPointer pbstream) {
+    const auto problems = io::FindPbstreamProblems(*pbstream, 1);
+    if (!problems.empty()) {
+      Skip(absl::StrCat("its map would not be valid: ", problems.front()));
+      return result_.after;
+    }
+    MapVersion version = Assess(std::move(pbstream));
+    RepairStep& step = result_.steps.back();
+    step.has_quality = true;
+    step.quality = version.quality;
+    step.loops = version.graph.num_loops();
+    const std::string why_not =
+        WhyNotBetter(result_.after.quality, version.quality);
+    step.kept = why_not.empty();
+    step.reason =
+        step.kept ? absl::StrCat("the map is better: ", ToText(version.quality))
+                  : absl::StrCat(why_not, " (", ToText(version.quality), ")");
+    if (step.kept) {
+      result_.after = version;
+      local_had_its_turn_ = local_had_its_turn_ || is_local_;
+    }
+    return version;
+  }
+
+  void DropLoops() {
+    Begin("loops left out by hand");
+    auto pbstream = std::make_shared<io::Pbstream>(*original_);
+    evaluation::DropConstraints(options_.dropped_loops, pbstream.get());
+    std::string reason;
+    const PbstreamPointer solved = Optimize(evaluation::MakeMapGraph(*pbstream),
+                                            *pbstream, "huber", &reason);
+    if (solved == nullptr) {
+      Skip(reason);
+    } else {
+      Consider(solved);
+    }
+  }
+
+  void KeepFrame() {
+    const Pose2 old_from_new =
+        options_.keep_frame
+            ? OldFromNewByNodes(result_.before.graph, result_.after.graph)
+            : OldFromNewByStart(result_.before.graph, result_.after.graph);
+    auto pbstream = std::make_shared<io::Pbstream>(*result_.after.pbstream);
+    MoveMap(old_from_new, pbstream.get());
+    result_.after = Assess(std::move(pbstream));
+    result_.faults = FindLocalFaults(result_.before.graph, result_.after.graph,
+                                     LocalFaultOptions());
+  }
+
+  void JudgeLoopsAgain() {
+    if (!options_.loops) return;
+    Begin("loops judged again");
+    std::string reason;
+    const PbstreamPointer judged = JudgeLoops(result_.after, &reason);
+    if (judged == nullptr) {
+      Skip(reason);
+    } else {
+      Consider(judged);
+    }
+  }
+
+  // Global SLAM over `base` with our loop closure or with stock's, and its loops
+  // judged again. Returns the better of the two versions, kept or not.
+  absl::optional<MapVersion> CloseLoops(const std::string& prefix,
+                                        const PbstreamPointer& base,
+                                        const bool ours) {
+    Begin(absl::StrCat(prefix, "loop closure run again",
+                       ours ? "" : " as stock does"));
+    evaluation::RerunOptions rerun_options;
+    rerun_options.num_background_threads = options_.num_background_threads;
+    rerun_options.on_progress = options_.on_progress;
+    const auto rerun = evaluation::RerunPoseGraph(
+        *base,
+        ours ? *options_.configuration.ours : options_.configuration.stock,
+        rerun_options);
+    if (!rerun.ok()) {
+      Skip(std::string(rerun.status().message()));
+      return absl::nullopt;
+    }
+    auto pbstream = std::make_shared<io::Pbstream>(*base);
+    StoreGraph(rerun->graph, pbstream.get());
+    MapVersion version = Consider(pbstream);
+    if (done()) return version;
+    Begin(absl::StrCat(result_.steps.back().name, ", its loops judged"));
+    std::string reason;
+    const PbstreamPointer judged = JudgeLoops(version, &reason);
+    if (judged == nullptr) {
+      Skip(reason);
+      return version;
+    }
+    MapVersion after = Consider(judged);
+    return WhyNotBetter(version.quality, after.quality).empty()
+               ? std::move(after)
+               : std::move(version);
+  }
+
+  // Local SLAM along `chain` and loops over it. The best outcome of any chain is
+  // remembered, kept or not: stock's loop closure, which takes long, is run over
+  // that one only.
+  void RerunAlong(const std::string& name, const MotionChain& chain,
+                  const NodeMatching matching) {
+    if (done() || chain.empty()) return;
+    const auto rerun = RerunLocalSlam(
+        *original_, chain, matching,
+        OptionsForClouds(options_.local_slam, StoredLocalOptions(*original_)));
+    if (!rerun.ok()) {
+      Begin(name);
+      Skip(std::string(rerun.status().message()));
+      return;
+    }
+    const auto base = std::make_shared<const io::Pbstream>(*rerun);
+    const bool has_ours = options_.configuration.ours.has_value();
+    const auto version = CloseLoops(absl::StrCat(name, ", "), base, has_ours);
+    if (!has_ours || !version.has_value()) return;
+    if (!best_local_.has_value() ||
+        WhyNotBetter(best_local_->quality, version->quality).empty()) {
+      best_local_ = version;
+      best_base_ = base;
+      best_name_ = name;
+    }
+  }
+
+  void RunLoopClosure(const bool ours) {
+    if (done() || !options_.loops ||
+        (ours && !options_.configuration.ours.has_value())) {
+      return;
+    }
+    CloseLoops("", original_, ours);
+  }
+
+  void RerunLocalSlamAlongChains() {
+    if (done() || !options_.local) return;
+    is_local_ = true;
+    const MotionChain stored = LocalChain(*original_);
+    RerunAlong("local SLAM run again", stored, NodeMatching::kFrontEnd);
+    RerunAlong("local SLAM refined", stored, NodeMatching::kRefine);
+    local_had_its_turn_ = true;
+    const MotionChain mixed = MixedChain(*original_);
+    RerunAlong("local SLAM run again, odometry where the two differ", mixed,
+               NodeMatching::kFrontEnd);
+    RerunAlong("local SLAM refined, odometry where the two differ", mixed,
+               NodeMatching::kRefine);
+    const MotionChain wheels = OdometryChain(*original_);
+    RerunAlong("local SLAM run again along the odometry", wheels,
+               NodeMatching::kFrontEnd);
+    RerunAlong("local SLAM refined along the odometry", wheels,
+               NodeMatching::kRefine);
+    if (done() || best_base_ == nullptr) return;
+    CloseLoops(absl::StrCat(best_name_, ", "), best_base_, false);
+  }
+
+  // What loops have put right helps local SLAM to follow, and the other way
+  // round.
+  void RepeatAlongBest() {
+    if (!options_.local) return;
+    for (int i = 0; i < options_.max_rounds && !done(); ++i) {
+      const PbstreamPointer before = result_.after.pbstream;
+      const MotionChain best = GlobalChain(*original_, result_.after.graph);
+      RerunAlong("local SLAM refined along the best map so far", best,
+                 NodeMatching::kRefine);
+      RerunAlong("submaps built anew along the best map so far", best,
+                 NodeMatching::kNone);
+      if (before == result_.after.pbstream) break;
+    }
+  }
+
+  const RepairOptions options_;
+  const PbstreamPointer original_;
+  MapRepair result_;
+  bool is_local_ = false;  // the steps that run now
+  bool local_had_its_turn_ = false;
+  // Of local SLAM run again with our loop closure.
+  absl::optional<MapVersion> best_local_;
+  PbstreamPointer best_base_;
+  std::string best_name_;
+};
+
+}  // namespace
+
+MapVersion Assess(PbstreamPointer pbstream) {
+  MapVersion version;
+  version.graph = evaluation::MakeMapGraph(*pbstream);
+  version.consistency = evaluation::AssessSelfConsistency(
+      version.graph, evaluation::ReadMapContents(*pbstream, {}),
+      evaluation::ReadOdometry(*pbstream), {});
+  version.quality = QualityOf(version.consistency);
+  version.pbstream = std::move(pbstream);
+  return version;
+}
+
+PbstreamPointer JudgeLoops(const MapVersion& version,
+                           std::string* const reason) {
+  if (version.graph.num_loops() == 0) {
+    *reason = "the map has no loops";
+    return nullptr;
+  }
+  // The search over many solvers takes minutes on thousands of loops, which
+  // outvote wrong ones anyway.
+  return Optimize(
+      version.graph, *version.pbstream,
+      version.graph.num_loops() <= kMaxSearchedLoops ? "auto" : "gnc_tls",
+      reason);
+}
+
+absl::StatusOr<MapRepair> RepairMap(io::Pbstream pbstream,
+                                    const RepairOptions& options) {
+  if (pbstream.nodes.empty() || pbstream.submaps.empty()) {
+    return absl::InvalidArgumentError(
+        "a map without nodes or submaps cannot be repaired");
+  }
+  return Repairer(std::move(pbstream), options).Run();
+}
+
+}  // namespace repair
+}  // namespace cartographer_ext

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Repairs a finished map from what the map itself holds. Each step makes a
+// version of the map and is kept only if the verdict finds that version better
+// (map_quality.h):
+//
+//   loops judged again     robust selection among the stored loops; wrong ones
+//                          are left out
+//   loop closure again     global SLAM from the stored nodes and submaps, with
+//                          our loop closure and with stock's
+//   local SLAM again       node clouds matched and submaps built anew, along
+//                          the stored chain of poses, along the odometry, and
+//                          along the best version so far; then loop closure
+//                          and the judgement of its loops over each
+//
+// Steps end as soon as the map is sound. The result is the best version, or the
+// input where nothing was better.
+#ifndef CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_
+#define CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer/mapping/proto/local_trajectory_builder_options_2d.pb.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+#include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/map/verdict/self_consistency.h"
+#include "cartographer_ext/repair/local_faults.h"
+#include "cartographer_ext/repair/map_quality.h"
+#include "cartographer_ext/rerun/rerun_configuration.h"
+
+namespace cartographer_ext {
+namespace repair {
+
+struct RepairOptions {
+  bool loops = true;  // steps that only touch loops
+  bool local = true;  // steps that run local SLAM again
+  // Of the pose graph, stock and ours.
+  evaluation::RerunConfiguration configuration;
+  // Of local SLAM, ours.
+  cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D local_slam;
+  // Indices of constraints that the user wants left out, see FindLoops.
+  std::vector<int> dropped_loops;
+  // The repaired map keeps the frame of the map by a robust fit of its nodes;
+  // otherwise its first node stays where it was.
+  bool keep_frame = false;
+  int max_rounds = 3;  // of local SLAM along the best version so far
+  int num_background_threads = 2;
+  // Called when a step begins, with its name.
+  std::function<void(const std::string&)> on_step;
+  // Called within a step: nodes done and in total.
+  std::function<void(int64_t, int64_t)> on_progress;
+};
+
+// The map at some point of the repair.
+struct MapVersion {
+  std::shared_ptr<const io::Pbstream> pbstream;
+  evaluation::MapGraph graph;
+  evaluation::SelfConsistency consistency;
+  MapQuality quality;
+};
+
+struct RepairStep {
+  std::string name;
+  bool kept = false;
+  std::string reason;  // why it was kept or not, a clause
+  bool has_quality = false;
+  MapQuality quality;
+  int64_t loops = 0;
+};
+
+struct MapRepair {
+  MapVersion before, after;
+  std::vector<RepairStep> steps;
+  // What local SLAM did wrong, by the repaired map.
+  std::vector<LocalFault> faults;
+  bool changed() const { return before.pbstream != after.pbstream; }
+  // A sentence without full stop, such as "nothing to repair: ...".
+  std::string conclusion;
+  // What the user can do, sentences.
+  std::vector<std::string> advice;
+};
+
+MapVersion Assess(std::shared_ptr<const io::Pbstream> pbstream);
+
+// The loops of the map judged again; null with a reason where there are none
+// or none is wrong.
+std::shared_ptr<const io::Pbstream> JudgeLoops(const MapVersion& version,
+                                               std::string* reason);
+
+// Errors: a map without nodes or clouds.
+absl::StatusOr<MapRepair> RepairMap(io::Pbstream pbstream,
+                                    const RepairOptions& options);
+
+}  // namespace repair
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a repair did, for programs, for a terminal and as a page.
+#ifndef CARTOGRAPHER_EXT_REPAIR_REPAIR_OUTPUT_H_
+#define CARTOGRAPHER_EXT_REPAIR_REPAIR_OUTPUT_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/repair/map_repair.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_ext {
+namespace repair {
+
+nlohmann::ordered_json ToJson(const MapRepair& repair);
+
+// Several lines, the last one ended.
+std::string ToText(const MapRepair& repair);
+
+// One HTML file: what became of the map, what to do, the steps with their
+// reasons, both versions laid over each other. An error where a version has no
+// walls to draw.
+absl::StatusOr<std::string> MakeRepairReport(const MapRepair& repair,
+                                             const std::string& title,
+                                             const std::string& command_line);
+
+}  // namespace repair
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_REPAIR_REPAIR_OUTPUT_H_

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+// LINK: repair_library
+//
+// cartographer_ext_repair: makes a better map of a finished one.
+#include <sys/stat.h>
+
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/configuration/slam_configuration.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/pbstream_optimization.h"
+#include "cartographer_ext/repair/kept_frame.h"
+#include "cartographer_ext/repair/map_repair.h"
+#include "cartographer_ext/repair/repair_output.h"
+#include "cartographer_ext/tools/command_line.h"
+#include "gflags/gflags.h"
+#include "nlohmann/json.hpp"
+
+DEFINE_string(pbstream_filename, "", "Map to repair.");
+DEFINE_string(output_filename, "",
+              "Output: the repaired map. Written only if it is better than the "
+              "input.");
+DEFINE_string(report_filename, "", "Output: report as one HTML file.");
+DEFINE_string(poses_filename, "",
+              "Output: CSV with the pose of every node in the old and in the "
+              "new map. With -keep_frame beside the repaired map "
+              "(MAP.poses.csv) where none is named.");
+DEFINE_string(only, "loops,local",
+              "Steps, comma separated: loops (judged again, searched again), "
+              "local (local SLAM run again from the node clouds).");
+DEFINE_bool(keep_frame, false,
+            "The repaired map keeps the frame of the map by a robust fit of "
+            "its nodes, so that what was right stays where it was. Without it "
+            "the first node stays.");
+DEFINE_bool(dry_run, false, "Try all steps and report, but write no map.");
+DEFINE_string(drop_loops, "",
+              "Loops to leave out, named "
+              "submap_trajectory:submap:node_trajectory:node, comma "
+              "separated.");
+DEFINE_string(configuration_directory, "",
+              "Folders with Lua files, comma separated; ours when empty.");
+DEFINE_string(configuration_basename, "default.lua",
+              "Lua file for loop closure and local SLAM. Stock is the same "
+              "file without blocks of ours.");
+DEFINE_int32(num_background_threads, 2,
+             "Threads. The result is the same for any number.");
+DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
+
+namespace cartographer_ext {
+namespace {
+
+constexpr char kDescription[] =
+    R"(Repairs a finished map from the map alone; no recording is needed.
+
+  cartographer_ext_repair map.pbstream -output_filename=repaired.pbstream
+      -report_filename=repair.html
+  cartographer_ext_repair map.pbstream -dry_run
+
+Loops are judged again, loop closure is run again, and local SLAM is run again
+from the clouds of the nodes. A step is kept only if the verdict finds its map
+better; a sound map is left alone. Nothing is written unless it is better than
+the input. Exit code 0 whether or not the map could be repaired; `written` and
+`after.verdict` of -json tell which.)";
+
+bool IsSameFile(const std::string& a, const std::string& b) {
+  struct stat first, second;
+  return stat(a.c_str(), &first) == 0 && stat(b.c_str(), &second) == 0 &&
+         first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
+std::string PosesFilename() {
+  if (!FLAGS_poses_filename.empty() || !FLAGS_keep_frame ||
+      FLAGS_output_filename.empty() || FLAGS_dry_run) {
+    return FLAGS_poses_filename;
+  }
+  return absl::StrCat(absl::StripSuffix(FLAGS_output_filename, ".pbstream"),
+                      ".poses.csv");
+}
+
+absl::StatusOr<repair::RepairOptions> MakeOptions(
+    const evaluation::MapGraph& graph) {
+  repair::RepairOptions options;
+  const std::vector<std::string> directories =
+      tools::ConfigurationDirectories(FLAGS_configuration_directory);
+  auto configuration = evaluation::LoadRerunConfiguration(
+      directories, FLAGS_configuration_basename, "", graph);
+  if (!configuration.ok()) return configuration.status();
+  options.configuration = *std::move(configuration);
+  const auto slam = evaluation::LoadSlamConfiguration(
+      directories, FLAGS_configuration_basename);
+  if (!slam.ok()) return slam.status();
+  options.local_slam =
+      slam->trajectory_builder_options.trajectory_builder_2d_options();
+  options.loops = options.local = false;
+  for (const auto& name : absl::StrSplit(FLAGS_only, ',')) {
+    options.loops = options.loops || name == "loops";
+    options.local = options.local || name == "local";
+  }
+  const auto dropped = evaluation::FindLoops(graph, FLAGS_drop_loops);
+  if (!dropped.ok()) return dropped.status();
+  options.dropped_loops = *dropped;
+  options.keep_frame = FLAGS_keep_frame;
+  options.num_background_threads = FLAGS_num_background_threads;
+  return options;
+}
+
+absl::Status WriteOutputs(const repair::MapRepair& repair, const bool written,
+                          const std::string& command_line) {
+  absl::Status status;
+  if (!FLAGS_report_filename.empty()) {
+    const auto page = repair::MakeRepairReport(
+        repair, tools::BaseName(FLAGS_pbstream_filename), command_line);
+    if (!page.ok()) return page.status();
+    status = WriteFileAtomically(FLAGS_report_filename, *page);
+  }
+  if (status.ok() && !PosesFilename().empty()) {
+    status = WriteFileAtomically(
+        PosesFilename(),
+        repair::PoseTable(repair.before.graph, repair.after.graph));
+  }
+  if (status.ok() && written) {
+    status = io::WritePbstream(*repair.after.pbstream, FLAGS_output_filename);
+  }
+  if (!status.ok() || FLAGS_json.empty()) return status;
+  nlohmann::ordered_json json;
+  json["pbstream"] = FLAGS_pbstream_filename;
+  json["written"] = written;
+  json.update(repair::ToJson(repair));
+  return tools::WriteJson(json, FLAGS_json);
+}
+
+absl::Status Run(const std::string& command_line) {
+  const absl::Status writable = tools::CheckWritable(
+      {FLAGS_dry_run ? "" : FLAGS_output_filename, FLAGS_report_filename,
+       PosesFilename(), FLAGS_json});
+  if (!writable.ok()) return writable;
+  if (IsSameFile(FLAGS_pbstream_filename, FLAGS_output_filename)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        FLAGS_output_filename,
+        ": the output is the input; a repair never overwrites its map"));
+  }
+  auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
+  if (!pbstream.ok()) return pbstream.status();
+  const auto in_file = [](const absl::Status& status) {
+    return absl::Status(status.code(), absl::StrCat(FLAGS_pbstream_filename,
+                                                    ": ", status.message()));
+  };
+  auto options = MakeOptions(evaluation::MakeMapGraph(*pbstream));
+  if (!options.ok()) return options.status();
+  Progress progress("repairing", 0);
+  std::string step = "judging the map";
+  progress.Update(0, step);
+  options->on_step = [&](const std::string& name) {
+    step = name;
+    progress.Update(0, step);
+  };
+  options->on_progress = [&](const int64_t done, const int64_t total) {
+    progress.Update(done, absl::StrCat("of ", total, " nodes, ", step));
+  };
+  const auto repair = repair::RepairMap(*std::move(pbstream), *options);
+  progress.Finish();
+  if (!repair.ok()) return in_file(repair.status());
+  const bool written = repair->changed() && !FLAGS_dry_run;
+  const absl::Status status = WriteOutputs(*repair, written, command_line);
+  if (!status.ok()) return status;
+  if (FLAGS_json != "-") {
+    std::cout << repair::ToText(*repair)
+              << (written ? absl::StrCat("written: ", FLAGS_output_filename)
+                          : "no map was written")
+              << "\n";
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+}  // namespace cartographer_ext
+
+int main(int argc, char** argv) {
+  using namespace cartographer_ext;  // NOLINT
+  const std::string command_line = absl::StrJoin(argv, argv + argc, " ");
+  tools::CommandLine(kDescription, "pbstream_filename").Parse(argc, argv);
+  if (FLAGS_pbstream_filename.empty()) {
+    return tools::UsageError("-pbstream_filename is missing");
+  }
+  if (FLAGS_output_filename.empty() && !FLAGS_dry_run) {
+    return tools::UsageError("-output_filename is missing (or use -dry_run)");
+  }
+  for (const auto& name : absl::StrSplit(FLAGS_only, ',')) {
+    if (name != "loops" && name != "local") {
+      return tools::UsageError(absl::StrCat(
+          "unknown step \"", name, "\" in -only, expected loops or local"));
+    }
+  }
+  if (FLAGS_num_background_threads < 1) {
+    return tools::UsageError("-num_background_threads must be above 0");
+  }
+  return tools::ExitCode(Run(command_line));
+}

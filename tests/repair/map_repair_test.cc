@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/repair/map_repair.h"
+
+#include <cmath>
+
+#include "cartographer_ext/experiments/wrong_loops.h"
+#include "cartographer_ext/io/pbstream/pbstream_validation.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/pbstream_optimization.h"
+#include "cartographer_ext/optimization/offline/optimize.h"
+#include "cartographer_ext/repair/kept_frame.h"
+#include "cartographer_ext/repair/local_rerun.h"
+#include "cartographer_ext/repair/repair_output.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/slam/room_map.h"
+
+namespace cartographer_ext {
+namespace repair {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class MapRepairTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    room_ = new io::Pbstream(
+        test::MakeRoomMap(testing::TempDir() + "/map_repair_test.pbstream"));
+  }
+  static void TearDownTestSuite() { delete room_; }
+
+  static RepairOptions Options() {
+    const auto slam = test::RoomConfiguration();
+    RepairOptions options;
+    options.configuration.stock = slam.map_builder_options.pose_graph_options();
+    options.local_slam =
+        slam.trajectory_builder_options.trajectory_builder_2d_options();
+    return options;
+  }
+
+  // The room with wrong loops, optimised as if they were right.
+  static io::Pbstream Broken() {
+    io::Pbstream broken = *room_;
+    evaluation::WrongLoopOptions wrong;
+    wrong.count = 8;
+    CHECK(evaluation::AddWrongLoops(wrong, &broken).ok());
+    const auto graph =
+        evaluation::MakeMapPoseGraph(evaluation::MakeMapGraph(broken), {});
+    CHECK(graph.ok()) << graph.status();
+    optimization::OptimizeOptions options;
+    options.method = "none";
+    const auto solved = optimization::Optimize(graph->graph, options);
+    CHECK(solved.ok()) << solved.status();
+    evaluation::StorePoses(*graph, solved->poses, &broken);
+    return broken;
+  }
+
+  // The largest distance of a node from where the room's map has it, both laid
+  // over each other.
+  static double LargestError(const io::Pbstream& pbstream) {
+    const auto graph = evaluation::MakeMapGraph(pbstream);
+    const auto room = evaluation::MakeMapGraph(*room_);
+    const Pose2 room_from_map = OldFromNewByNodes(room, graph);
+    double largest = 0.;
+    for (const auto& node : room.nodes) {
+      const Pose2 pose = room_from_map * graph.nodes.at(node.first).global_pose;
+      largest = std::max(
+          largest,
+          (pose.translation() - node.second.global_pose.translation()).norm());
+    }
+    return largest;
+  }
+
+  static io::Pbstream* room_;
+};
+
+io::Pbstream* MapRepairTest::room_ = nullptr;
+
+TEST_F(MapRepairTest, ASoundMapIsLeftAlone) {
+  const auto repair = RepairMap(*room_, Options());
+  ASSERT_TRUE(repair.ok()) << repair.status();
+  EXPECT_EQ(repair->before.quality.verdict, "sound");
+  EXPECT_FALSE(repair->changed());
+  EXPECT_TRUE(repair->steps.empty());
+  EXPECT_THAT(repair->conclusion, StartsWith("nothing to repair"));
+}
+
+TEST_F(MapRepairTest, WrongLoopsAreTakenOut) {
+  const io::Pbstream broken = Broken();
+  ASSERT_GT(LargestError(broken), 0.5);
+  const auto repair = RepairMap(broken, Options());
+  ASSERT_TRUE(repair.ok()) << repair.status();
+  EXPECT_EQ(repair->before.quality.verdict, "broken");
+  EXPECT_TRUE(repair->changed());
+  EXPECT_EQ(repair->after.quality.verdict, "sound") << ToText(*repair);
+  EXPECT_THAT(repair->conclusion, StartsWith("repaired"));
+  const io::Pbstream& after = *repair->after.pbstream;
+  EXPECT_TRUE(io::FindPbstreamProblems(after).empty());
+  EXPECT_EQ(after.nodes.size(), broken.nodes.size());
+  EXPECT_EQ(after.odometry_data.size(), broken.odometry_data.size());
+  EXPECT_EQ(after.options.SerializeAsString(),
+            broken.options.SerializeAsString());
+  EXPECT_LT(LargestError(after), 0.2);
+  const auto json = ToJson(*repair);
+  EXPECT_EQ(json["after"]["verdict"], "sound");
+  ASSERT_FALSE(json["steps"].empty());
+  EXPECT_TRUE(json["steps"][0]["kept"].is_boolean());
+  const auto page = MakeRepairReport(*repair, "room", "");
+  ASSERT_TRUE(page.ok()) << page.status();
+  EXPECT_THAT(*page, HasSubstr("What to do"));
+}
+
+TEST_F(MapRepairTest, AnyNumberOfThreadsGivesTheSameBytes) {
+  const io::Pbstream broken = Broken();
+  std::string bytes[2];
+  for (const int threads : {1, 3}) {
+    RepairOptions options = Options();
+    options.num_background_threads = threads;
+    const auto repair = RepairMap(broken, options);
+    ASSERT_TRUE(repair.ok());
+    bytes[threads == 1] = io::SerializePbstream(*repair->after.pbstream);
+  }
+  EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+TEST_F(MapRepairTest, LocalSlamRunsAgainFromTheClouds) {
+  const auto slam = test::RoomConfiguration();
+  const auto& stored =
+      slam.trajectory_builder_options.trajectory_builder_2d_options();
+  const evaluation::MapGraph before = evaluation::MakeMapGraph(*room_);
+  for (const NodeMatching matching :
+       {NodeMatching::kFrontEnd, NodeMatching::kRefine, NodeMatching::kNone}) {
+    const auto rerun = RerunLocalSlam(*room_, LocalChain(*room_), matching,
+                                      OptionsForClouds(stored, stored));
+    ASSERT_TRUE(rerun.ok()) << rerun.status();
+    EXPECT_TRUE(io::FindPbstreamProblems(*rerun).empty());
+    const evaluation::MapGraph after = evaluation::MakeMapGraph(*rerun);
+    ASSERT_EQ(after.nodes.size(), before.nodes.size());
+    EXPECT_EQ(after.num_loops(), 0);
+    EXPECT_GE(after.submaps.size() + 1, before.submaps.size());
+    const Pose2 start = after.nodes.begin()->second.local_pose *
+                        before.nodes.begin()->second.local_pose.Inverse();
+    for (const auto& node : before.nodes) {
+      const Pose2 error = Between(start * node.second.local_pose,
+                                  after.nodes.at(node.first).local_pose);
+      EXPECT_LT(error.translation().norm(), 0.25);
+    }
+  }
+}
+
+TEST_F(MapRepairTest, TheWheelsReplaceALostTurn) {
+  // Local SLAM turns half a radian too far before one node.
+  io::Pbstream lost = *room_;
+  const size_t node = lost.nodes.size() / 2;
+  const MotionChain right = LocalChain(lost);
+  const auto id = [&](const size_t i) {
+    return evaluation::GraphId{0, lost.nodes[i].node_id().node_index()};
+  };
+  const Pose2 pivot = right.at(id(node));
+  const Pose2 turn = pivot * Pose2(0., 0., 0.5) * pivot.Inverse();
+  for (size_t i = node; i < lost.nodes.size(); ++i) {
+    const Pose2 pose = turn * right.at(id(i));
+    auto* const proto = lost.nodes[i].mutable_node_data();
+    *proto->mutable_local_pose() = cartographer::transform::ToProto(
+        cartographer::transform::Embed3D(cartographer::transform::Rigid2d(
+            Eigen::Vector2d(pose.x, pose.y), pose.theta)));
+  }
+  const MotionChain mixed = MixedChain(lost);
+  ASSERT_FALSE(mixed.empty());
+  // The room's odometry is exact.
+  const auto graph = evaluation::MakeMapGraph(lost);
+  const auto truth = [&](const size_t i) {
+    return test::RoomSource::TruePose(static_cast<int>(
+        (graph.nodes.at(id(i)).time - test::RoomSource::kStart) /
+        test::RoomSource::kStep));
+  };
+  const Pose2 error =
+      Between(Between(truth(node - 1), truth(node)),
+              Between(mixed.at(id(node - 1)), mixed.at(id(node))));
+  EXPECT_LT(std::abs(error.theta), 1e-3);
+  EXPECT_LT(error.translation().norm(), 1e-3);
+}
+
+TEST_F(MapRepairTest, AMapWithoutNodesIsRefused) {
+  io::Pbstream empty = *room_;
+  empty.nodes.clear();
+  EXPECT_FALSE(RepairMap(empty, Options()).ok());
+}
+
+}  // namespace
+}  // namespace repair
+}  // namespace cartographer_ext
