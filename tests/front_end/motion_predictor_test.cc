@@ -65,6 +65,22 @@ TEST(MotionPredictorTest, OdometryBridgesAGapInTheScans) {
   EXPECT_FALSE(prediction.is_uncertain);
 }
 
+// A laser of short range crosses a hall without an echo: the robot is where
+// odometry says, not where it was last seen.
+TEST(MotionPredictorTest, OdometryBridgesMinutes) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  predictor.AddOdometry(0., Pose2());
+  predictor.AddMatch(0.01, Matched(Pose2()));
+  for (int i = 1; i <= 15000; ++i) {
+    predictor.AddOdometry(0.02 * i, Pose2(0.01 * i, 0., 0.));
+  }
+  const MotionPrediction prediction = predictor.Predict(299.99);
+  EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
+  EXPECT_NEAR(prediction.motion.x, 150., 0.02);
+  // Less certain than over one metre.
+  EXPECT_GT(prediction.covariance(0, 0), 1.);
+}
+
 TEST(MotionPredictorTest, OdometryThatWillTellOfAGapIsMissed) {
   MotionPredictor predictor((MotionPredictorOptions()));
   predictor.AddMatch(0., Matched(Pose2()));

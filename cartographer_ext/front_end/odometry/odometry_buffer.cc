@@ -37,11 +37,21 @@ bool OdometryBuffer::Add(const double time, const Pose2& pose) {
   if (!readings_.empty() && time <= readings_.back().time) return false;
   readings_.push_back({time, pose});
   // The reading before the span stays, so that all of it can be interpolated.
-  while (readings_.size() > max_readings_ ||
-         (readings_.size() > 2 && readings_[1].time < time - seconds_)) {
+  while (readings_.size() > 2 && readings_[1].time < time - seconds_) {
     readings_.pop_front();
   }
+  if (readings_.size() > max_readings_) Thin();
   return true;
+}
+
+void OdometryBuffer::Thin() {
+  // Of the older half every second one, the first included.
+  const size_t half = readings_.size() / 2;
+  std::deque<Reading> thinned;
+  for (size_t i = 0; i != readings_.size(); ++i) {
+    if (i >= half || i % 2 == 0) thinned.push_back(readings_[i]);
+  }
+  readings_.swap(thinned);
 }
 
 Pose2 OdometryBuffer::Extrapolate(const double seconds) const {

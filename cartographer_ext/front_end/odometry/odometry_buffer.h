@@ -30,7 +30,8 @@ struct OdometrySample {
 
 class OdometryBuffer {
  public:
-  // Keeps the readings of the last `seconds`, and `max_readings` at most.
+  // Keeps the readings of the last `seconds`, and `max_readings` at most: of
+  // more, every second one of the older half is dropped.
   OdometryBuffer(double seconds, size_t max_readings, double max_extrapolation);
 
   // Seconds and (odometry <- robot). Returns false and ignores the reading
@@ -54,6 +55,7 @@ class OdometryBuffer {
   };
 
   Pose2 Extrapolate(double seconds) const;
+  void Thin();
 
   const double seconds_;
   const size_t max_readings_;

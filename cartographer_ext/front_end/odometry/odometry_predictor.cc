@@ -11,8 +11,9 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// Gaps between scans up to this long are bridged, seconds.
-constexpr double kBufferSeconds = 30.;
+// Gaps between scans up to this long are bridged, seconds. A laser of short
+// range crosses a hall or a square without a single echo.
+constexpr double kBufferSeconds = 3600.;
 constexpr size_t kMaxReadings = 20000;
 // Longer intervals are not used to estimate the clock offset, seconds.
 constexpr double kMaxOffsetInterval = 1.;

@@ -103,7 +103,25 @@ TEST(OdometryBufferTest, ForgetsWhatIsOld) {
   }
   // The reading before the last second is kept, so that all of it is known.
   EXPECT_NEAR(by_time.first_time(), 9., 0.1001);
-  EXPECT_NEAR(by_number.first_time(), 9.6, 1e-9);
+  EXPECT_EQ(by_number.first_time(), 0.);
+}
+
+// Half an hour without a lookup: the readings are thinned, the older the more,
+// and a motion over all of it is still known.
+TEST(OdometryBufferTest, ThinsWhatIsTooMuch) {
+  OdometryBuffer buffer(3600., 1000, 0.3);
+  for (int i = 0; i <= 40000; ++i) {
+    const double time = 0.05 * i;
+    buffer.Add(time, Pose2(0.7 * time, 0., 0.));
+  }
+  EXPECT_EQ(buffer.first_time(), 0.);
+  EXPECT_NEAR(buffer.MedianInterval(), 0.05, 1e-9);
+  OdometrySample begin, end;
+  ASSERT_TRUE(buffer.Lookup(12.34, &begin));
+  ASSERT_TRUE(buffer.Lookup(1999.01, &end));
+  EXPECT_EQ(begin.extrapolated, 0.);
+  EXPECT_NEAR(begin.pose.x, 0.7 * 12.34, 1e-6);
+  EXPECT_NEAR(end.pose.x - begin.pose.x, 0.7 * (1999.01 - 12.34), 1e-6);
 }
 
 }  // namespace
