@@ -149,9 +149,9 @@ class Repairer {
   MapRepair Run() {
     if (!options_.dropped_loops.empty()) DropLoops();
     if (!done()) JudgeLoopsAgain();
-    RunLoopClosure(true);
     RerunLocalSlamAlongChains();
     is_local_ = false;
+    RunLoopClosure(true);
     RunLoopClosure(false);
     is_local_ = true;
     RepeatAlongBest();
@@ -161,12 +161,16 @@ class Repairer {
   }
 
  private:
+  bool is_sound() const {
+    const std::string& word = result_.after.consistency.word;
+    return word == "sound" || word == "unknown";
+  }
+
   // New loops over bent submaps can make a map just sound; local SLAM has its
   // turn even then.
   bool done() const {
-    const std::string& word = result_.after.consistency.word;
-    return (word == "sound" || word == "unknown") &&
-           (local_had_its_turn_ || !options_.local || !result_.changed());
+    return is_sound() &&
+           (best_is_local_ || !options_.local || !result_.changed());
   }
 
   void Begin(const std::string& name) {
@@ -176,6 +180,8 @@ class Repairer {
     LOG(INFO) << name;
     if (options_.on_step) options_.on_step(name);
   }
+
+  bool step_kept() const { return result_.steps.back().kept; }
 
   void Skip(const std::string& reason) { result_.steps.back().reason = reason; }
 
@@ -199,7 +205,7 @@ class Repairer {
                   : absl::StrCat(why_not, " (", ToText(version.quality), ")");
     if (step.kept) {
       result_.after = version;
-      local_had_its_turn_ = local_had_its_turn_ || is_local_;
+      best_is_local_ = is_local_;
     }
     return version;
   }
@@ -263,7 +269,7 @@ class Repairer {
     auto pbstream = std::make_shared<io::Pbstream>(*base);
     StoreGraph(rerun->graph, pbstream.get());
     MapVersion version = Consider(pbstream);
-    if (done()) return version;
+    if (is_sound() && step_kept()) return version;
     Begin(absl::StrCat(result_.steps.back().name, ", its loops judged"));
     std::string reason;
     const PbstreamPointer judged = JudgeLoops(version, &reason);
@@ -304,7 +310,7 @@ class Repairer {
   }
 
   void RunLoopClosure(const bool ours) {
-    if (done() || !options_.loops ||
+    if (is_sound() || !options_.loops ||
         (ours && !options_.configuration.ours.has_value())) {
       return;
     }
@@ -315,20 +321,21 @@ class Repairer {
     if (done() || !options_.local) return;
     is_local_ = true;
     const MotionChain stored = LocalChain(*original_);
-    RerunAlong("local SLAM run again", stored, NodeMatching::kFrontEnd);
-    RerunAlong("local SLAM refined", stored, NodeMatching::kRefine);
-    local_had_its_turn_ = true;
     const MotionChain mixed = MixedChain(*original_);
-    RerunAlong("local SLAM run again, odometry where the two differ", mixed,
-               NodeMatching::kFrontEnd);
-    RerunAlong("local SLAM refined, odometry where the two differ", mixed,
-               NodeMatching::kRefine);
     const MotionChain wheels = OdometryChain(*original_);
-    RerunAlong("local SLAM run again along the odometry", wheels,
-               NodeMatching::kFrontEnd);
-    RerunAlong("local SLAM refined along the odometry", wheels,
-               NodeMatching::kRefine);
-    if (done() || best_base_ == nullptr) return;
+    // Refinement loses track more easily than the front end, and over a map
+    // that has lost track loop closure searches far and wide.
+    for (const NodeMatching matching :
+         {NodeMatching::kFrontEnd, NodeMatching::kRefine}) {
+      const std::string name = matching == NodeMatching::kFrontEnd
+                                   ? "local SLAM run again"
+                                   : "local SLAM refined";
+      RerunAlong(absl::StrCat(name, ", odometry where the two differ"), mixed,
+                 matching);
+      RerunAlong(name, stored, matching);
+      RerunAlong(absl::StrCat(name, " along the odometry"), wheels, matching);
+    }
+    if (is_sound() || best_base_ == nullptr) return;
     CloseLoops(absl::StrCat(best_name_, ", "), best_base_, false);
   }
 
@@ -351,7 +358,7 @@ class Repairer {
   const PbstreamPointer original_;
   MapRepair result_;
   bool is_local_ = false;  // the steps that run now
-  bool local_had_its_turn_ = false;
+  bool best_is_local_ = false;
   // Of local SLAM run again with our loop closure.
   absl::optional<MapVersion> best_local_;
   PbstreamPointer best_base_;
