@@ -141,6 +141,8 @@ def share(part, whole, digits=0):
 
 def quantile(values, fraction):
     values = sorted(v for v in values if v is not None)
+    if fraction == 0.5:
+        return common.median(values)
     return values[min(len(values) - 1, int(fraction * len(values)))] if values else None
 
 
