@@ -323,18 +323,12 @@ class Repairer {
     const MotionChain stored = LocalChain(*original_);
     const MotionChain mixed = MixedChain(*original_);
     const MotionChain wheels = OdometryChain(*original_);
-    // Refinement loses track more easily than the front end, and over a map
-    // that has lost track loop closure searches far and wide.
-    for (const NodeMatching matching :
-         {NodeMatching::kFrontEnd, NodeMatching::kRefine}) {
-      const std::string name = matching == NodeMatching::kFrontEnd
-                                   ? "local SLAM run again"
-                                   : "local SLAM refined";
-      RerunAlong(absl::StrCat(name, ", odometry where the two differ"), mixed,
-                 matching);
-      RerunAlong(name, stored, matching);
-      RerunAlong(absl::StrCat(name, " along the odometry"), wheels, matching);
-    }
+    const std::string name = "local SLAM run again";
+    RerunAlong(absl::StrCat(name, ", odometry where the two differ"), mixed,
+               NodeMatching::kFrontEnd);
+    RerunAlong(name, stored, NodeMatching::kFrontEnd);
+    RerunAlong(absl::StrCat(name, " along the odometry"), wheels,
+               NodeMatching::kFrontEnd);
     if (is_sound() || best_base_ == nullptr) return;
     CloseLoops(absl::StrCat(best_name_, ", "), best_base_, false);
   }
@@ -346,8 +340,6 @@ class Repairer {
     for (int i = 0; i < options_.max_rounds && !done(); ++i) {
       const PbstreamPointer before = result_.after.pbstream;
       const MotionChain best = GlobalChain(*original_, result_.after.graph);
-      RerunAlong("local SLAM refined along the best map so far", best,
-                 NodeMatching::kRefine);
       RerunAlong("submaps built anew along the best map so far", best,
                  NodeMatching::kNone);
       if (before == result_.after.pbstream) break;

@@ -11,8 +11,9 @@
 //                          our loop closure and with stock's
 //   local SLAM again       node clouds matched and submaps built anew, along
 //                          the stored chain of poses, along the odometry, and
-//                          along the best version so far; then loop closure
-//                          and the judgement of its loops over each
+//                          where the two differ; then loop closure and the
+//                          judgement of its loops over each
+//   submaps again          built anew along the best version so far
 //
 // Steps end as soon as the map is sound. The result is the best version, or the
 // input where nothing was better.
