@@ -125,7 +125,11 @@ void LoopPipeline::UpdateDrift() {
 
 std::vector<LoopCandidate> LoopPipeline::Decide() {
   UpdateDrift();
-  Settle(consensus_.Decide());
+  std::vector<LoopCandidate> decided = consensus_.Decide();
+  for (const LoopCandidate& candidate : decided) {
+    if (candidate.is_accepted()) scores_.Learn(candidate);
+  }
+  Settle(std::move(decided));
   return TakeSettled();
 }
 

@@ -2,12 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/run_summary.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/slam/decision_files.h"
 #include "cartographer_ext/slam/match_files.h"
 
 namespace cartographer_ext {
 namespace evaluation {
+
+namespace {
+
+double Sigma(const uncertainty::CommonDrift& drift, const int i) {
+  return std::sqrt(std::max(0., drift.covariance(i, i)));
+}
+
+// Means; standard deviations beside what is constant along the run.
+nlohmann::ordered_json ToJson(const uncertainty::DriftEstimate& drift) {
+  return {{"translation_per_metre", drift.mean.translation_per_metre},
+          {"rotation_per_metre", drift.mean.rotation_per_metre},
+          {"rotation_per_radian", drift.mean.rotation_per_radian},
+          {"heading", drift.common.mean(0)},
+          {"heading_sigma", Sigma(drift.common, 0)},
+          {"turning", drift.common.mean(1)},
+          {"turning_sigma", Sigma(drift.common, 1)},
+          {"scale", drift.common.mean(2)},
+          {"scale_sigma", Sigma(drift.common, 2)},
+          {"cycles", drift.num_cycles}};
+}
+
+}  // namespace
 
 nlohmann::ordered_json ToJson(const SlamRun& run) {
   nlohmann::ordered_json json;
@@ -58,6 +84,7 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
                               {"undecided", counts.undecided},
                               {"skipped", counts.skipped}};
   }
+  json["drift"] = ToJson(run.drift);
   const optimization::SwitchedLoops& switched = run.switched_loops;
   json["optimizations"] = {
       {"robust", switched.optimizations},
@@ -80,6 +107,16 @@ std::string ToText(const SlamRun& run) {
       "local SLAM; %.0f MB\n",
       run.wall_seconds, run.sensor_seconds, run.cpu_seconds,
       run.front_end_cpu_seconds, 1e-6 * run.peak_memory_bytes);
+  if (run.drift.num_cycles > 0) {
+    const uncertainty::CommonDrift& drift = run.drift.common;
+    absl::StrAppendFormat(
+        &text,
+        "Drift      of local SLAM, learnt from %d cycles of loops: heading "
+        "%.2f +- %.2f deg/m, turns %.1f +- %.1f %%, scale %.1f +- %.1f %%\n",
+        run.drift.num_cycles, RadToDeg(drift.mean(0)),
+        RadToDeg(Sigma(drift, 0)), 100. * drift.mean(1), 100. * Sigma(drift, 1),
+        100. * drift.mean(2), 100. * Sigma(drift, 2));
+  }
   return text;
 }
 

@@ -294,6 +294,8 @@ class Runner {
   void CollectPoses() {
     const PoseGraphInterface& pose_graph = *run_.map_builder->pose_graph();
     CountResults(pose_graph, &run_);
+    run_.drift =
+        context_->Get<uncertainty::DriftModel>()->Of(run_.trajectory_id);
     run_.online_scan_poses = online_->At(run_.local_scan_poses);
     run_.global_scan_poses =
         GlobalScanPoses(run_.local_scan_poses,

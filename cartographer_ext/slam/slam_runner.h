@@ -36,6 +36,7 @@
 #include "cartographer_ext/slam/back_end_metrics.h"
 #include "cartographer_ext/slam/sensor_feeder.h"
 #include "cartographer_ext/slam/starting_state.h"
+#include "cartographer_ext/uncertainty/drift_model.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -109,6 +110,9 @@ struct SlamRun : FedReadings {
   // The host's metrics at the end, less those at the start.
   std::map<std::string, double> metrics;
 
+  // What our loop closure learnt of local SLAM's drift on this trajectory;
+  // without it, or without loops, what it assumes before (no cycles).
+  uncertainty::DriftEstimate drift;
   // Why loop candidates were accepted or not, where our loop closure ran.
   std::vector<proto::LoopDecision> decisions;
   // One a matched scan; empty with the stock local SLAM.

@@ -13,6 +13,13 @@ namespace cartographer_ext {
 namespace loop_closure {
 namespace {
 
+// In the subset, of a cluster about which next to nothing speaks.
+constexpr double kLeastClusterWeight = 0.1;
+// Of the best score of a cluster; rivals below are none.
+constexpr double kRivalScore = 0.5;
+// Of a cluster that may confirm others: rather true than false.
+constexpr double kConfirmingScore = 0.5;
+
 uncertainty::LoopEdge Reversed(const uncertainty::LoopEdge& edge) {
   uncertainty::LoopEdge reversed;
   reversed.a = edge.b;
@@ -115,6 +122,8 @@ int CompatibleSubset::Support(const int index, const bool of_subset) const {
   std::vector<uncertainty::VertexId> vertices;
   for (int j = 0; j < num_clusters(); ++j) {
     if (j == index || (of_subset && !clusters_[j].in_subset) ||
+        (options_.scores_are_probabilities &&
+         clusters_[j].best_score < kConfirmingScore) ||
         relations_[std::max(index, j)][std::min(index, j)] !=
             Relation::kSupports) {
       continue;
@@ -138,6 +147,14 @@ int CompatibleSubset::Support(const int index, const bool of_subset) const {
   return static_cast<int>(places.size()) - 1;
 }
 
+double CompatibleSubset::Weight(const Cluster& cluster) const {
+  const double by_score =
+      options_.scores_are_probabilities
+          ? std::min(1., std::max(kLeastClusterWeight, cluster.best_score))
+          : 1.;
+  return cluster.accepted ? options_.accepted_weight * by_score : by_score;
+}
+
 void CompatibleSubset::Solve() {
   const int n = num_clusters();
   const auto relation = [this](const int i, const int j) {
@@ -146,7 +163,7 @@ void CompatibleSubset::Solve() {
   CompatibilityGraph graph(n);
   std::vector<double> weights(n);
   for (int i = 0; i < n; ++i) {
-    weights[i] = clusters_[i].accepted ? options_.accepted_weight : 1.;
+    weights[i] = Weight(clusters_[i]);
     for (int j = 0; j < i; ++j) {
       if (relation(i, j) != Relation::kContradicts) graph.AddEdge(i, j);
     }
@@ -173,8 +190,11 @@ void CompatibleSubset::Solve() {
   for (int i = 0; i < n; ++i) {
     clusters_[i].rival_support = -1;
     for (int j = 0; j < n; ++j) {
-      // A rival whose camp the subset outnumbers is beaten.
+      // A rival whose camp the subset outnumbers is beaten, and so is one that
+      // scores far worse.
       if (j != i && relation(i, j) == Relation::kContradicts &&
+          (!options_.scores_are_probabilities ||
+           clusters_[j].best_score >= kRivalScore * clusters_[i].best_score) &&
           clusters_[j].contradictions <= total_support[j] + 1) {
         clusters_[i].rival_support =
             std::max(clusters_[i].rival_support, total_support[j]);
@@ -228,6 +248,15 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
   return false;
 }
 
+bool CompatibleSubset::MayAcceptLoop(const Cluster& cluster,
+                                     const LoopEvidence& loop) const {
+  if (!options_.scores_are_probabilities) return true;
+  const int revisits =
+      std::min(cluster.support, options_.max_revisits_for_odds);
+  return loop.score * std::pow(options_.odds_per_revisit, revisits) >=
+         (1. - loop.score) * options_.odds_per_revisit;
+}
+
 void CompatibleSubset::Emit(
     const Cluster& cluster, const bool accepted, const SubsetReason reason,
     std::vector<SubsetDecision>* const decisions) const {
@@ -252,8 +281,16 @@ std::vector<SubsetDecision> CompatibleSubset::Decide() {
     for (Cluster& cluster : clusters_) {
       SubsetReason reason;
       if (cluster.undecided.empty() || !MayAccept(cluster, &reason)) continue;
+      const auto waiting = std::stable_partition(
+          cluster.undecided.begin(), cluster.undecided.end(),
+          [&](const LoopEvidence& loop) {
+            return MayAcceptLoop(cluster, loop);
+          });
+      if (waiting == cluster.undecided.begin()) continue;
+      std::vector<LoopEvidence> unlikely(waiting, cluster.undecided.end());
+      cluster.undecided.erase(waiting, cluster.undecided.end());
       Emit(cluster, true, reason, &decisions);
-      cluster.undecided.clear();
+      cluster.undecided = std::move(unlikely);
       cluster.accepted = true;
     }
   }
@@ -271,7 +308,7 @@ std::vector<SubsetDecision> CompatibleSubset::Flush() {
     if (!cluster.undecided.empty()) {
       SubsetReason reason;
       // Decide has accepted what may be accepted.
-      MayAccept(cluster, &reason);
+      if (MayAccept(cluster, &reason)) reason = SubsetReason::kUnsupported;
       Emit(cluster, false, reason, &decisions);
       cluster.undecided.clear();
     }
@@ -337,7 +374,14 @@ void CompatibleSubset::MakeRoom() {
     Solve();
     SubsetReason reason;
     const bool accept = MayAccept(cluster, &reason);
-    Emit(cluster, accept, reason, &overflow_);
+    for (const LoopEvidence& loop :
+         std::vector<LoopEvidence>(std::move(cluster.undecided))) {
+      cluster.undecided = {loop};
+      const bool accept_loop = accept && MayAcceptLoop(cluster, loop);
+      Emit(cluster, accept_loop,
+           accept && !accept_loop ? SubsetReason::kUnsupported : reason,
+           &overflow_);
+    }
   }
   Erase(oldest);
 }

@@ -15,7 +15,8 @@
 //              the pair is merely not in contradiction.
 //   subset     The maximum clique of the graph without the contradictions
 //              (eq. 21), every cluster counting once, those accepted before a
-//              little more.
+//              little more. Where scores are probabilities, a cluster counts
+//              by the best one of its loops, and unlikely ones confirm nobody.
 //   verdicts   A cluster is accepted when it is in the clique, has support from
 //              enough others, and no rival has as much. A rival is a cluster
 //              that contradicts it, unless more clusters of the subset
@@ -83,6 +84,15 @@ struct CompatibleSubsetOptions {
   // Both only of clusters with a loop of at least this score: one about which
   // nothing is known has to fit.
   double forgiven_score = 0.6;
+  // Scores are probabilities that the loop is true, and count as such: in the
+  // clique, among rivals, and for the loop itself, which needs the more support
+  // the less likely it is. Otherwise all loops count alike.
+  bool scores_are_probabilities = false;
+  // By which each of the first revisits that support a loop multiplies its
+  // odds, > 1; a loop needs these odds. Further ones are not independent of
+  // them.
+  double odds_per_revisit = 3.;
+  int max_revisits_for_odds = 3;
   double accepted_weight = 1.5;  // of a cluster accepted before, >= 1
   // Single strong loop: best score and number of loops in its cluster.
   bool single_strong_enabled = true;
@@ -182,8 +192,12 @@ class CompatibleSubset {
                   const uncertainty::LoopEdge& v) const;
   bool SameRevisit(const LoopEvidence& u, const LoopEvidence& v) const;
   int Support(int index, bool of_subset) const;
+  // In the clique: by the best score of its loops.
+  double Weight(const Cluster& cluster) const;
   void Solve();
   bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;
+  // Of a loop in a cluster that may be accepted.
+  bool MayAcceptLoop(const Cluster& cluster, const LoopEvidence& loop) const;
   void Emit(const Cluster& cluster, bool accepted, SubsetReason reason,
             std::vector<SubsetDecision>* decisions) const;
   void Erase(int index);

@@ -50,13 +50,23 @@ double PriorSigma(const LoopCandidate& candidate) {
   return std::min(sigma, offset);
 }
 
+CompatibleSubsetOptions SubsetOptions(const LoopOptions& options) {
+  CompatibleSubsetOptions subset = options.compatible_subset;
+  // The literal subset of the paper knows no scores.
+  subset.scores_are_probabilities =
+      options.fusion.enabled &&
+      options.fusion.mode == FusionMode::kLikelihoodRatio &&
+      subset.cycle.test != uncertainty::CycleTest::kFixedBound;
+  return subset;
+}
+
 }  // namespace
 
 LoopConsensus::LoopConsensus(const LoopOptions& options,
                              const uncertainty::PathUncertainty* const paths)
     : options_(options),
       paths_(CHECK_NOTNULL(paths)),
-      subset_(options.compatible_subset, paths) {}
+      subset_(SubsetOptions(options), paths) {}
 
 LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
   LoopEvidence evidence;

@@ -53,6 +53,10 @@ MixtureComponent Component(const Eigen::Vector2d& mean, const double sigma_grid,
 
 }  // namespace
 
+double ScoreOfCoordinate(const double coordinate) {
+  return 1. + kCostFloor - std::exp(-coordinate);
+}
+
 double TemporalCoordinate(const double temporal_score) {
   return -std::log(1. + kCostFloor - std::min(1., temporal_score));
 }
@@ -70,9 +74,10 @@ double LogWeightedDensity(const MixtureComponent& component,
 }
 
 LoopMixture::LoopMixture(const LoopMixtureOptions& options)
-    : options_(options), components_(options.prior) {
+    : options_(options), prior_(options.prior), components_(options.prior) {
   CHECK_GT(options.capacity, 0);
   CHECK_GT(options.prior_strength, 0.);
+  CHECK_GT(options.certain_prior_strength, 0.);
 }
 
 double LoopMixture::ProbabilityTrue(const double grid_score,
@@ -82,6 +87,17 @@ double LoopMixture::ProbabilityTrue(const double grid_score,
                              LogWeightedDensity(components_[1], scores)));
 }
 
+double LoopMixture::ProbabilityTrue(const double grid_score) const {
+  const auto log_density = [grid_score](const MixtureComponent& component) {
+    const double difference = grid_score - component.mean.x();
+    const double variance = component.covariance(0, 0);
+    return std::log(component.weight) - 0.5 * std::log(variance) -
+           0.5 * difference * difference / variance;
+  };
+  return 1. / (1. + std::exp(log_density(components_[0]) -
+                             log_density(components_[1])));
+}
+
 void LoopMixture::Add(const double grid_score, const double temporal_score) {
   scores_.emplace_back(grid_score, TemporalCoordinate(temporal_score));
   if (scores_.size() > static_cast<size_t>(options_.capacity)) {
@@ -89,10 +105,64 @@ void LoopMixture::Add(const double grid_score, const double temporal_score) {
   }
 }
 
+void LoopMixture::AddCertain(const double grid_score,
+                             const double temporal_score,
+                             const bool has_own_scans) {
+  std::deque<Eigen::Vector2d>& scores =
+      has_own_scans ? own_scores_ : certain_scores_;
+  scores.emplace_back(grid_score, TemporalCoordinate(temporal_score));
+  if (scores.size() > static_cast<size_t>(options_.capacity)) {
+    scores.pop_front();
+  }
+}
+
+double LoopMixture::temporal_scale() const {
+  return std::min(1., ScoreOfCoordinate(prior_[1].mean.y()) /
+                          ScoreOfCoordinate(options_.prior[1].mean.y()));
+}
+
+void LoopMixture::UpdatePrior() {
+  const MixtureComponent& general = options_.prior[1];
+  const double strength = options_.certain_prior_strength;
+  std::vector<Eigen::Vector2d> certain(certain_scores_.begin(),
+                                       certain_scores_.end());
+  for (auto it = own_scores_.rbegin();
+       it != own_scores_.rend() &&
+       static_cast<double>(certain.size()) < strength;
+       ++it) {
+    certain.push_back(*it);
+  }
+  const double mass = strength + static_cast<double>(certain.size());
+  MixtureComponent& of_run = prior_[1];
+  of_run.mean = strength * general.mean;
+  for (const Eigen::Vector2d& scores : certain) of_run.mean += scores;
+  of_run.mean /= mass;
+  const Eigen::Vector2d shift = general.mean - of_run.mean;
+  of_run.covariance =
+      strength * (general.covariance + shift * shift.transpose());
+  for (const Eigen::Vector2d& scores : certain) {
+    const Eigen::Vector2d difference = scores - of_run.mean;
+    of_run.covariance += difference * difference.transpose();
+  }
+  of_run.covariance /= mass;
+
+  const Eigen::Vector2d& wrong = options_.prior[0].mean;
+  const double temporal_ratio =
+      ScoreOfCoordinate(wrong.y()) / ScoreOfCoordinate(general.mean.y());
+  prior_[0].mean =
+      Eigen::Vector2d(wrong.x() / general.mean.x() * of_run.mean.x(),
+                      TemporalCoordinate(temporal_ratio *
+                                         ScoreOfCoordinate(of_run.mean.y())))
+          .cwiseMin(wrong);
+}
+
 int LoopMixture::Fit() {
   const double strength = options_.prior_strength;
   const double n = static_cast<double>(scores_.size());
-  if (scores_.empty()) return 0;
+  if (scores_.empty() && certain_scores_.empty() && own_scores_.empty()) {
+    return 0;
+  }
+  UpdatePrior();
   std::vector<double> of_true(scores_.size());
   double last = -std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
@@ -107,12 +177,12 @@ int LoopMixture::Fit() {
       const double top = std::max(log_false, log_true);
       total += top + std::log1p(std::exp(-std::abs(log_false - log_true)));
     }
-    total /= n;
+    total /= std::max(1., n);
     if (std::abs(total - last) < options_.tolerance) return iteration;
     last = total;
     // Maximisation with the priors as pseudo-observations.
     for (int c = 0; c < 2; ++c) {
-      const MixtureComponent& prior = options_.prior[c];
+      const MixtureComponent& prior = prior_[c];
       double mass = strength;
       Eigen::Vector2d mean = strength * prior.mean;
       for (size_t i = 0; i < scores_.size(); ++i) {

@@ -20,6 +20,13 @@
 // pseudo-observations) keep a component where it belongs when few candidates
 // were seen, keep covariances from collapsing and fix which component is which;
 // the true component's means are never below the false one's.
+//
+// What scans reach at the right place depends on the robot: walls blurred by
+// its local SLAM, people, a sparse laser. So the priors follow the run. Scores
+// at places that are certain, because the path to them is short or because
+// other loops confirm them, are samples of the true component; they replace its prior after some tens of them. A wrong
+// place is wrong for the same blurred scans: the false component keeps the
+// ratio of its mean scores to those of the true one.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_LOOP_MIXTURE_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_LOOP_MIXTURE_H_
 
@@ -33,6 +40,8 @@ namespace loop_closure {
 
 // u of a temporal score in [0, 1].
 double TemporalCoordinate(double temporal_score);
+// The inverse.
+double ScoreOfCoordinate(double coordinate);
 
 struct MixtureComponent {
   double weight = 0.5;
@@ -51,7 +60,10 @@ struct LoopMixtureOptions {
   // the prior above all that says what they are like; a weak one lets the
   // component of the false ones take over poor true ones.
   double prior_strength = 500.;
-  int capacity = 500;       // candidates remembered, > 0
+  // The same for what `prior` itself is worth against scores of places that are
+  // certain, > 0.
+  double certain_prior_strength = 20.;
+  int capacity = 500;       // candidates remembered, and certain ones, > 0
   int max_iterations = 50;  // of EM per fit
   double tolerance = 1e-6;  // change of the mean log-posterior that stops EM
 
@@ -66,8 +78,14 @@ class LoopMixture {
 
   // Posterior probability of "true" for (S_g, S_t) under the current fit.
   double ProbabilityTrue(double grid_score, double temporal_score) const;
+  // The same where only S_g is known.
+  double ProbabilityTrue(double grid_score) const;
   // Remembers the candidate; `Fit` uses it.
   void Add(double grid_score, double temporal_score);
+  // The same for one that is true for sure. Where scans compared are in the
+  // submap themselves (`has_own_scans`), scores are too good: such samples
+  // count only while there are hardly others.
+  void AddCertain(double grid_score, double temporal_score, bool has_own_scans);
   // Runs EM from the current parameters; returns the iterations used.
   int Fit();
 
@@ -75,11 +93,19 @@ class LoopMixture {
     return components_;
   }
   int size() const { return static_cast<int>(scores_.size()); }
+  // S_t at right places of this run over that of the prior, in (0, 1].
+  double temporal_scale() const;
 
  private:
+  // The priors of this run, from the scores that are certain.
+  void UpdatePrior();
+
   const LoopMixtureOptions options_;
+  std::array<MixtureComponent, 2> prior_;  // of this run
   std::array<MixtureComponent, 2> components_;
   std::deque<Eigen::Vector2d> scores_;  // (S_g, u)
+  std::deque<Eigen::Vector2d> certain_scores_;
+  std::deque<Eigen::Vector2d> own_scores_;  // certain, with own scans
 };
 
 }  // namespace loop_closure

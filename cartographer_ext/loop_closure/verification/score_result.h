@@ -18,6 +18,8 @@ struct TemporalScore {
   int window = 0;              // N of C eq. 4, nodes
   double threshold = 0.;       // tau of C eq. 1 in force
   double score_variance = 0.;  // of C eq. 2
+  // All nodes compared are newer than those of the submap.
+  bool is_beyond_submap = false;
 
   bool is_scored() const { return result.outcome == TemporalOutcome::kScored; }
 };

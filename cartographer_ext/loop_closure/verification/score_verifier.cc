@@ -63,6 +63,9 @@ void ScoreVerifier::ComputeTemporalScore(const NodeHistory& history,
                                 return node->node_index >=
                                        candidate->first_node_index;
                               }));
+  temporal.is_beyond_submap =
+      !sequence.empty() &&
+      sequence.front()->node_index > candidate->last_submap_node;
   temporal.result =
       VerifySequence(options_.temporal.comparison, sequence,
                      candidate->RefinedInTrackingFrame(), candidate->maps);
@@ -72,6 +75,11 @@ void ScoreVerifier::TestTemporalScore(LoopCandidate* const candidate) {
   if (!options_.threshold.enabled || !candidate->temporal.has_value()) return;
   TemporalScore& temporal = *candidate->temporal;
   temporal.threshold = threshold_.Current();
+  if (options_.threshold.direction ==
+      ThresholdDirection::kStricterWhenUnstable) {
+    // As printed, it is the same for every robot.
+    temporal.threshold *= mixture_.temporal_scale();
+  }
   temporal.score_variance = threshold_.Variance();
   if (!temporal.is_scored()) return;
   threshold_.AddScore(temporal.result.score);
@@ -98,17 +106,43 @@ void ScoreVerifier::FuseScores(LoopCandidate* const candidate) {
   }
 }
 
+bool ScoreVerifier::IsCertain(const LoopCandidate& candidate) const {
+  // The smallest window holds the true place, and no other.
+  return !candidate.is_inter_trajectory() && !candidate.relocalized &&
+         candidate.plan.translation_sigma > 0. &&
+         options_.search.window_sigmas * candidate.plan.translation_sigma <=
+             options_.search.min_linear_window;
+}
+
 void ScoreVerifier::FuseByLikelihoodRatio(const LoopCandidate& candidate,
                                           ScoreFusionResult* const result) {
   result->mixture = std::array<MixtureDescription, 2>{
       {Describe(mixture_.components()[0]), Describe(mixture_.components()[1])}};
-  result->final_score = kNeutralScore;
-  if (!IsScored(candidate)) return;
   const double grid_score = candidate.match.score;
+  if (!IsScored(candidate)) {
+    result->final_score =
+        std::min(kNeutralScore, mixture_.ProbabilityTrue(grid_score));
+    return;
+  }
   const double temporal_score = candidate.temporal->result.score;
   result->final_score = mixture_.ProbabilityTrue(grid_score, temporal_score);
-  mixture_.Add(grid_score, temporal_score);
+  if (IsCertain(candidate)) {
+    mixture_.AddCertain(grid_score, temporal_score,
+                        !candidate.temporal->is_beyond_submap);
+  } else {
+    mixture_.Add(grid_score, temporal_score);
+  }
   if (++num_mixture_candidates_ % kFitInterval == 0) mixture_.Fit();
+}
+
+void ScoreVerifier::Learn(const LoopCandidate& accepted) {
+  if (!options_.fusion.enabled ||
+      options_.fusion.mode != FusionMode::kLikelihoodRatio ||
+      !IsScored(accepted) || IsCertain(accepted)) {
+    return;
+  }
+  mixture_.AddCertain(accepted.match.score, accepted.temporal->result.score,
+                      false);
 }
 
 void ScoreVerifier::FuseByLambda(const LoopCandidate& candidate,

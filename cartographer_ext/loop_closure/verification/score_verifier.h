@@ -53,8 +53,12 @@ class ScoreVerifier {
   // S_final of eq. 5 to 7, into `fusion`; rejects what is too low. Also to be
   // called for candidates that were rejected: it learns from their scores.
   void FuseScores(LoopCandidate* candidate);
+  // What scores a loop has that others have confirmed.
+  void Learn(const LoopCandidate& accepted);
 
  private:
+  // Whether the path to the node is so short that the match is right.
+  bool IsCertain(const LoopCandidate& candidate) const;
   void FuseByLikelihoodRatio(const LoopCandidate& candidate,
                              ScoreFusionResult* result);
   void FuseByLambda(const LoopCandidate& candidate, ScoreFusionResult* result);

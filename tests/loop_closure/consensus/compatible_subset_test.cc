@@ -86,6 +86,44 @@ TEST_F(CompatibleSubsetTest, TwoRevisitsConfirmEachOther) {
   EXPECT_THAT(subset.Flush(), IsEmpty());
 }
 
+TEST_F(CompatibleSubsetTest, UnlikelyLoopsConfirmNobody) {
+  for (const bool probabilities : {false, true}) {
+    options_.scores_are_probabilities = probabilities;
+    CompatibleSubset subset(options_, &paths_);
+    subset.Add(Loop(1, 10, 0., 0.3));
+    subset.Add(Loop(2, 30, 0., 0.3));
+    EXPECT_EQ(Accepted(subset.Decide()).size(), probabilities ? 0u : 2u);
+  }
+}
+
+TEST_F(CompatibleSubsetTest, TheLessLikelyTheMoreRevisitsHaveToAgree) {
+  options_.scores_are_probabilities = true;
+  CompatibleSubset subset(options_, &paths_);
+  // Odds of 1/3, which two revisits raise to 3.
+  subset.Add(Loop(1, 10, 0., 0.25));
+  subset.Add(Loop(2, 30, 0., 0.9));
+  EXPECT_THAT(Accepted(subset.Decide()), IsEmpty());
+  subset.Add(Loop(3, 50, 0., 0.9));
+  EXPECT_THAT(Accepted(subset.Decide()), ElementsAre(1, 2, 3));
+  // Further ones are not independent: odds of 1/19 stay below.
+  subset.Add(Loop(4, 70, 0., 0.05));
+  EXPECT_THAT(Accepted(subset.Decide()), IsEmpty());
+  const auto decisions = subset.Flush();
+  ASSERT_EQ(decisions.size(), 1u);
+  EXPECT_EQ(decisions[0].reason, SubsetReason::kUnsupported);
+}
+
+TEST_F(CompatibleSubsetTest, OneThatScoresFarWorseIsNoRival) {
+  for (const bool probabilities : {false, true}) {
+    options_.scores_are_probabilities = probabilities;
+    options_.single_strong_enabled = true;
+    CompatibleSubset subset(options_, &paths_);
+    subset.Add(Loop(1, 60, 8., 0.3));
+    for (int i = 0; i < 4; ++i) subset.Add(Loop(10 + i, 60 + i, 0., 0.95));
+    EXPECT_EQ(Accepted(subset.Decide()).size(), probabilities ? 4u : 0u);
+  }
+}
+
 TEST_F(CompatibleSubsetTest, NeighbouringNodesAreOnePieceOfEvidence) {
   CompatibleSubset subset(options_, &paths_);
   for (int i = 0; i < 8; ++i) subset.Add(Loop(i, 10 + i, 0.));

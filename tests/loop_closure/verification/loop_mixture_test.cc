@@ -81,6 +81,58 @@ TEST(LoopMixtureTest, OnePopulationKeepsTheOrderOfTheComponents) {
   EXPECT_TRUE(std::isfinite(mixture.ProbabilityTrue(1e3, -1e3)));
 }
 
+TEST(LoopMixtureTest, PriorsFollowScoresThatAreCertainByHand) {
+  LoopMixture mixture((LoopMixtureOptions()));
+  EXPECT_EQ(mixture.temporal_scale(), 1.);
+  // As many as the prior is worth: half way from (0.72, 2.8).
+  for (int i = 0; i < 20; ++i) mixture.AddCertain(0.6, Score(1.8), false);
+  EXPECT_GE(mixture.Fit(), 1);
+  const MixtureComponent& right = mixture.components()[1];
+  EXPECT_NEAR(right.mean.x(), 0.66, 1e-9);
+  EXPECT_NEAR(right.mean.y(), 2.3, 1e-9);
+  // Half the variance of the prior and a quarter of the squared distance.
+  EXPECT_NEAR(right.covariance(1, 1), 0.5 * 0.25 + 0.25, 1e-9);
+  EXPECT_NEAR(mixture.temporal_scale(), Score(2.3) / Score(2.8), 1e-9);
+  // Wrong places keep the ratio of the scores.
+  const MixtureComponent& wrong = mixture.components()[0];
+  EXPECT_NEAR(wrong.mean.x(), 0.66 * 0.64 / 0.72, 1e-9);
+  EXPECT_NEAR(Score(wrong.mean.y()) / Score(right.mean.y()),
+              Score(1.3) / Score(2.8), 1e-9);
+  // What was unlikely is likely.
+  EXPECT_GT(
+      mixture.ProbabilityTrue(0.6, Score(1.8)),
+      2. *
+          LoopMixture((LoopMixtureOptions())).ProbabilityTrue(0.6, Score(1.8)));
+}
+
+TEST(LoopMixtureTest, BetterScoresThanThePriorMakeWrongOnesNoBetter) {
+  LoopMixture mixture((LoopMixtureOptions()));
+  for (int i = 0; i < 100; ++i) mixture.AddCertain(0.9, Score(3.5), false);
+  mixture.Fit();
+  // (20 * 2.8 + 100 * 3.5) / 120
+  EXPECT_NEAR(mixture.components()[1].mean.y(), 406. / 120., 1e-9);
+  EXPECT_NEAR(mixture.components()[0].mean.y(), 1.3, 1e-9);
+  EXPECT_EQ(mixture.temporal_scale(), 1.);
+}
+
+TEST(LoopMixtureTest, OwnScansCountWhileThereAreHardlyOthers) {
+  LoopMixture mixture((LoopMixtureOptions()));
+  for (int i = 0; i < 100; ++i) mixture.AddCertain(0.7, Score(2.4), true);
+  mixture.Fit();
+  EXPECT_NEAR(mixture.components()[1].mean.y(), 2.6, 1e-9);
+  for (int i = 0; i < 20; ++i) mixture.AddCertain(0.7, Score(1.8), false);
+  mixture.Fit();
+  EXPECT_NEAR(mixture.components()[1].mean.y(), 2.3, 1e-9);
+}
+
+TEST(LoopMixtureTest, ProbabilityOfTheGridScoreAloneByHand) {
+  const LoopMixture mixture((LoopMixtureOptions()));
+  // N(0.7; 0.64, 0.07) and N(0.7; 0.72, 0.09)
+  const double wrong = std::exp(-0.5 * 36. / 49.) / 0.07;
+  const double right = std::exp(-0.5 * 4. / 81.) / 0.09;
+  EXPECT_NEAR(mixture.ProbabilityTrue(0.7), right / (right + wrong), 1e-12);
+}
+
 TEST(LoopMixtureTest, MemoryIsBounded) {
   LoopMixtureOptions options;
   options.capacity = 10;

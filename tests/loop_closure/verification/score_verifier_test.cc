@@ -82,6 +82,33 @@ TEST(ScoreVerifierTest, FusionLearnsFromRejectedCandidates) {
   EXPECT_EQ(low.reason, LoopDecision::LOW_FINAL_SCORE);
 }
 
+TEST(ScoreVerifierTest, ScoresOfCertainPlacesLowerTheThreshold) {
+  for (const bool is_certain : {false, true}) {
+    ScoreVerifier verifier(Options(FusionMode::kLikelihoodRatio));
+    for (int i = 0; i < 40; ++i) {
+      LoopCandidate candidate = Scored(0.55, 0.7);
+      candidate.temporal->is_beyond_submap = true;
+      // Within the smallest window at three standard deviations, or not.
+      candidate.plan.translation_sigma = is_certain ? 0.3 : 0.4;
+      verifier.FuseScores(&candidate);
+    }
+    LoopCandidate candidate = Scored(0.55, 0.45);
+    verifier.TestTemporalScore(&candidate);
+    EXPECT_EQ(candidate.is_rejected(), !is_certain);
+  }
+}
+
+TEST(ScoreVerifierTest, ConfirmedLoopsTellWhatRightOnesScore) {
+  ScoreVerifier verifier(Options(FusionMode::kLikelihoodRatio));
+  LoopCandidate before = Scored(0.55, 0.7);
+  verifier.FuseScores(&before);
+  for (int i = 0; i < 40; ++i) verifier.Learn(Scored(0.55, 0.7));
+  // The mixture is fitted once in ten candidates.
+  LoopCandidate after = Scored(0.55, 0.7);
+  for (int i = 0; i < 11; ++i) verifier.FuseScores(&after);
+  EXPECT_GT(after.FinalScore(), 10. * before.FinalScore());
+}
+
 TEST(ScoreVerifierTest, StagesThatAreOffLeaveNoResult) {
   LoopOptions options = Options(FusionMode::kAsPrinted);
   options.temporal.enabled = false;

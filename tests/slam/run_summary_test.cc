@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/slam/run_summary.h"
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(RunSummaryTest, TellsTheDriftThatWasLearnt) {
+  SlamRun run;
+  EXPECT_EQ(ToJson(run).at("drift").at("cycles"), 0);
+  EXPECT_THAT(ToText(run), Not(HasSubstr("Drift")));  // nothing but the prior
+  run.drift.num_cycles = 7;
+  run.drift.mean.translation_per_metre = 0.1;
+  run.drift.common.mean = Eigen::Vector3d(DegToRad(0.5), 0.01, -0.03);
+  run.drift.common.covariance =
+      Eigen::Vector3d(DegToRad(0.1) * DegToRad(0.1), 1e-4, 4e-6).asDiagonal();
+  const auto drift = ToJson(run).at("drift");
+  EXPECT_EQ(drift.at("translation_per_metre"), 0.1);
+  EXPECT_EQ(drift.at("scale"), -0.03);
+  EXPECT_NEAR(drift.at("scale_sigma"), 0.002, 1e-12);
+  EXPECT_EQ(drift.at("cycles"), 7);
+  EXPECT_THAT(ToText(run),
+              HasSubstr("learnt from 7 cycles of loops: heading 0.50 +- 0.10 "
+                        "deg/m, turns 1.0 +- 1.0 %, scale -3.0 +- 0.2 %"));
+}
+
+}  // namespace
+}  // namespace evaluation
+}  // namespace cartographer_ext
