@@ -56,6 +56,7 @@ MotionPredictor::MotionPredictor(const MotionPredictorOptions& options)
       odometry_(options.odometry, options.time_offset, options.calibration),
       imu_(options.imu),
       monitor_(options.check),
+      noise_scale_(options.noise_scale),
       velocity_(options.constant_velocity, options.odometry.translation,
                 options.odometry.rotation) {}
 
@@ -213,7 +214,10 @@ Eigen::Matrix3d MotionPredictor::WideCovariance(const double interval) const {
 
 Eigen::Matrix3d MotionPredictor::OdometryMotionCovariance(
     const OdometryMotion& odometry, const double interval) const {
-  Eigen::Matrix3d covariance = odometry.covariance;
+  const double scale = std::sqrt(noise_scale_.scale());
+  const Eigen::Vector3d factors(scale, scale, 1.);
+  Eigen::Matrix3d covariance =
+      factors.asDiagonal() * odometry.covariance * factors.asDiagonal();
   // The end of the interval is extrapolated.
   if (odometry.is_late) covariance += WideCovariance(interval);
   return covariance;
@@ -238,6 +242,11 @@ bool MotionPredictor::IsStationary(const double time,
          std::abs(odometry.motion.theta) < kStationaryWheelMotion &&
          std::hypot(match.x, match.y) < kStationaryMatchTranslation &&
          std::abs(match.theta) < kStationaryMatchRotation;
+}
+
+void MotionPredictor::AddInnovation(const MatchInnovation& innovation) {
+  noise_scale_.Add(innovation.squared, innovation.match_variance,
+                   innovation.prediction_variance / noise_scale_.scale());
 }
 
 OdometryState MotionPredictor::AddMatch(const double time,

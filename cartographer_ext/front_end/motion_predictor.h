@@ -33,6 +33,7 @@
 #include "cartographer_ext/front_end/imu/imu_predictor.h"
 #include "cartographer_ext/front_end/odometry/odometry_calibration.h"
 #include "cartographer_ext/front_end/odometry/odometry_monitor.h"
+#include "cartographer_ext/front_end/odometry/odometry_noise_scale.h"
 #include "cartographer_ext/front_end/odometry/odometry_predictor.h"
 #include "cartographer_ext/front_end/velocity_filter.h"
 
@@ -44,6 +45,7 @@ struct MotionPredictorOptions {
   OdometryNoiseOptions odometry;
   TimeOffsetOptions time_offset;
   OdometryCalibrationOptions calibration;
+  OdometryNoiseScaleOptions noise_scale;
   ConstantVelocityOptions constant_velocity;
   OdometryCheckOptions check;
   ImuPredictorOptions imu;
@@ -83,6 +85,14 @@ struct MatchedMotion {
   bool from_velocity = false;
 };
 
+// A match against its prediction along one direction that the scan determines,
+// square metres.
+struct MatchInnovation {
+  double squared = 0.;
+  double match_variance = 0.;
+  double prediction_variance = 0.;
+};
+
 class MotionPredictor {
  public:
   explicit MotionPredictor(const MotionPredictorOptions& options);
@@ -100,9 +110,14 @@ class MotionPredictor {
   // interval.
   OdometryState AddMatch(double time, const MatchedMotion& matched);
 
+  // How a match, not one from a search, differed from a prediction by odometry.
+  void AddInnovation(const MatchInnovation& innovation);
+
   // The scan matched last was inserted into the map.
   void AddInsertion();
 
+  // Of the variance of odometry, see odometry_noise_scale.h.
+  double odometry_noise_scale() const { return noise_scale_.scale(); }
   double time_offset() const { return odometry_.time_offset(); }
   const OdometryCalibration& calibration() const {
     return odometry_.calibration();
@@ -146,6 +161,7 @@ class MotionPredictor {
   OdometryPredictor odometry_;
   ImuPredictor imu_;
   OdometryMonitor monitor_;
+  OdometryNoiseScale noise_scale_;
   bool has_match_ = false;
   double last_time_ = 0.;
   VelocityFilter velocity_;

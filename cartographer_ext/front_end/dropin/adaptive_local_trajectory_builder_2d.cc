@@ -62,6 +62,31 @@ Eigen::Matrix3d InFrameOf(const Pose2& pose,
   return rotation.transpose() * covariance * rotation;
 }
 
+// Along the direction of translation that the scan determines best; false where
+// it determines none.
+bool InnovationOf(const Pose2& last_pose, const MotionPrediction& prediction,
+                  const LocalMatch& match, MatchInnovation* innovation) {
+  const scan_matching::DegeneracyResult& degeneracy = match.report.degeneracy;
+  if (prediction.source != PredictionSource::kOdometry ||
+      prediction.is_uncertain || match.searched ||
+      degeneracy.translation_weights(1) < 1. ||
+      !(degeneracy.eigenvalues(1) > 0.)) {
+    return false;
+  }
+  const Pose2 predicted = last_pose * prediction.motion;
+  const Eigen::Vector2d direction = degeneracy.eigenvectors.col(1);
+  const Eigen::Vector2d off(match.report.match.x - predicted.x,
+                            match.report.match.y - predicted.y);
+  const Eigen::Matrix3d rotation = PlanarRotation(last_pose.theta);
+  const Eigen::Matrix3d covariance =
+      rotation * prediction.covariance * rotation.transpose();
+  innovation->squared = std::pow(direction.dot(off), 2);
+  innovation->match_variance = 1. / degeneracy.eigenvalues(1);
+  innovation->prediction_variance =
+      direction.dot(covariance.topLeftCorner<2, 2>() * direction);
+  return true;
+}
+
 PointCloud FeaturePoints(const AdaptiveFeatureOptions& options,
                          const PointCloud& cloud) {
   std::vector<Eigen::Vector2d> points;
@@ -266,6 +291,10 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
       (prediction.source == PredictionSource::kConstantVelocity ||
        prediction.source == PredictionSource::kImu) &&
       !match.relocated;
+  MatchInnovation innovation;
+  if (has_pose_ && InnovationOf(pose_, prediction, match, &innovation)) {
+    predictor_.AddInnovation(innovation);
+  }
   pose_ = match.pose;
   last_seconds_ = seconds;
   has_pose_ = true;

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How much better the odometry of a run is than the noise it is given credit
+// for: a variance component, estimated from the innovations of the scan
+// matches (Mehra 1970, innovation-based adaptive filtering).
+//
+// Along a direction that the scan determines, a match differs from the
+// prediction by an innovation of variance
+//
+//   E[v^2] = s P + R,
+//
+// R the variance of the match, P that of odometry by the options, s the scale
+// sought. With sums that forget,
+//
+//   s = (B_0 + sum (v^2 - R)) / (B_0 + sum P),   least <= s <= 1,
+//
+// where B_0 stands for `prior_samples` innovations as the options expect them.
+// A laser that sees a wide room hardly notices s: R is small against P either
+// way. One that sees 57 degrees of it errs by more than the wheels do from scan
+// to scan, and with s = 1 every match would be taken for better than it is.
+#ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_NOISE_SCALE_H_
+#define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_NOISE_SCALE_H_
+
+namespace cartographer_ext {
+namespace front_end {
+
+struct OdometryNoiseScaleOptions {
+  double prior_samples = 50.;
+  double memory = 500.;  // innovations after which one counts 1 / e
+  double least = 0.02;   // a seventh of the standard deviation
+};
+
+class OdometryNoiseScale {
+ public:
+  explicit OdometryNoiseScale(const OdometryNoiseScaleOptions& options)
+      : options_(options) {}
+
+  // Square metres. `odometry_variance` is P, without the scale.
+  void Add(double squared_innovation, double match_variance,
+           double odometry_variance);
+
+  // s, of the variance; 1 before the first innovation.
+  double scale() const { return scale_; }
+
+ private:
+  const OdometryNoiseScaleOptions options_;
+  double excess_ = 0.;    // sum of v^2 - R
+  double expected_ = 0.;  // sum of P
+  double weight_ = 0.;    // sum of ones
+  double scale_ = 1.;
+};
+
+}  // namespace front_end
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_NOISE_SCALE_H_
