@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tools/command_line.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/atomic_file.h"
@@ -38,6 +40,22 @@ std::string* MutableProgramName() {
 int* KeptStandardOutput() {
   static int descriptor = -1;
   return &descriptor;
+}
+
+// Flags of the main inputs of the command.
+std::vector<std::string>* InputFlags() {
+  static std::vector<std::string>* const flags = new std::vector<std::string>;
+  return flags;
+}
+
+// A file opened later must not take the place of a standard stream that the
+// caller closed: what is printed would end up in it. Using these fails.
+void OccupyClosedStandardStreams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) >= 0) continue;
+    // Takes the lowest free number.
+    open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
 }
 
 // Whatever is printed goes to standard error from now on, also by a real
@@ -89,8 +107,7 @@ void PrintWrapped(const std::string& text, const std::string& indent) {
 
 [[noreturn]] void PrintVersionAndExit() {
   std::cout << ProgramName() << " " << CARTOGRAPHER_EXT_VERSION << "\n";
-  std::cout.flush();
-  std::exit(kExitSuccess);
+  std::exit(ExitCode(absl::OkStatus()));
 }
 
 [[noreturn]] void PrintHelpAndExit(const std::string& description) {
@@ -104,8 +121,7 @@ void PrintWrapped(const std::string& text, const std::string& indent) {
     PrintWrapped(flag.description, "      ");
   }
   std::cout << "\nExit codes: 0 success, 1 bad input, 2 wrong usage.\n";
-  std::cout.flush();
-  std::exit(kExitSuccess);
+  std::exit(ExitCode(absl::OkStatus()));
 }
 
 // Number of letters to change, add or drop to get from one word to the other.
@@ -154,6 +170,72 @@ bool IsKnown(const std::string& name) {
   return gflags::GetCommandLineFlagInfo(name.c_str(), &info);
 }
 
+// Whether writing one replaces the other. Devices and pipes are not replaced.
+bool IsSameFile(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty() || a == "-" || b == "-") return false;
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error)) {
+    return std::filesystem::is_regular_file(a, error);
+  }
+  const auto first = std::filesystem::weakly_canonical(a, error);
+  if (error) return false;
+  const auto second = std::filesystem::weakly_canonical(b, error);
+  return !error && first == second && !std::filesystem::exists(first, error);
+}
+
+// The command's flags that name this file, alone or in a list with commas.
+std::vector<std::string> FlagsThatName(const std::string& filename) {
+  std::vector<std::string> names;
+  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
+    if (flag.type != "string") continue;
+    const std::vector<std::string> values =
+        absl::StrSplit(flag.current_value, ',');
+    if (IsSameFile(flag.current_value, filename) ||
+        std::any_of(values.begin(), values.end(),
+                    [&](const std::string& value) {
+                      return IsSameFile(value, filename);
+                    })) {
+      names.push_back(flag.name);
+    }
+  }
+  return names;
+}
+
+absl::Status CheckDistinct(const std::vector<std::string>& outputs,
+                           const std::vector<std::string>& inputs) {
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    const std::string& output = outputs[i];
+    if (output.empty() || output == "-") continue;
+    const std::vector<std::string> flags = FlagsThatName(output);
+    const bool is_input =
+        std::any_of(inputs.begin(), inputs.end(),
+                    [&](const std::string& input) {
+                      return IsSameFile(input, output);
+                    }) ||
+        std::any_of(flags.begin(), flags.end(), [](const std::string& flag) {
+          return std::count(InputFlags()->begin(), InputFlags()->end(),
+                            flag) > 0;
+        });
+    if (is_input) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(output, ": the output is the input, which would be ",
+                       "overwritten; name another output"));
+    }
+    const bool is_twice =
+        std::any_of(outputs.begin() + i + 1, outputs.end(),
+                    [&](const std::string& other) {
+                      return IsSameFile(output, other);
+                    });
+    if (is_twice || flags.size() > 1) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          output, ": an output and another file of the command have this name",
+          flags.empty() ? "" : " (-", absl::StrJoin(flags, ", -"),
+          flags.empty() ? "" : ")"));
+    }
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& description,
@@ -161,7 +243,9 @@ CommandLine::CommandLine(const std::string& description,
                          const std::string& second_input_flag)
     : description_(description),
       input_flag_(input_flag),
-      second_input_flag_(second_input_flag) {}
+      second_input_flag_(second_input_flag) {
+  *InputFlags() = {input_flag, second_input_flag};
+}
 
 void CommandLine::TakePositional(const std::string& argument) {
   if (input_flag_.empty() || argument == "-") {
@@ -188,6 +272,7 @@ void CommandLine::TakePositional(const std::string& argument) {
 
 void CommandLine::Parse(const int argc, char** const argv) {
   *MutableProgramName() = BaseName(argc > 0 ? argv[0] : "");
+  OccupyClosedStandardStreams();
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_ERROR;
   for (int i = 1; i < argc; ++i) {
@@ -266,12 +351,22 @@ int UsageError(const std::string& message) {
 }
 
 int ExitCode(const absl::Status& status) {
-  if (status.ok()) return kExitSuccess;
+  if (status.ok()) {
+    std::cout.flush();
+    if (std::cout.good() && std::fflush(stdout) == 0 && !std::ferror(stdout)) {
+      return kExitSuccess;
+    }
+    std::cerr << ProgramName() << ": cannot write standard output\n";
+    return kExitBadInput;
+  }
   std::cerr << ProgramName() << ": " << status.message() << "\n";
   return kExitBadInput;
 }
 
-absl::Status CheckWritable(const std::vector<std::string>& filenames) {
+absl::Status CheckWritable(const std::vector<std::string>& filenames,
+                           const std::vector<std::string>& inputs) {
+  const absl::Status distinct = CheckDistinct(filenames, inputs);
+  if (!distinct.ok()) return distinct;
   for (const std::string& filename : filenames) {
     if (filename.empty() || filename == "-") continue;
     // Goes away again, with nothing left behind.

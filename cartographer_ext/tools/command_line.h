@@ -68,7 +68,8 @@ std::string BaseName(const std::string& path);
 // Prints the message and returns kExitUsage.
 int UsageError(const std::string& message);
 
-// kExitSuccess, or prints the message and returns kExitBadInput.
+// kExitSuccess, or prints the message and returns kExitBadInput; that also when
+// standard output did not take what was printed (full, closed).
 int ExitCode(const absl::Status& status);
 
 // The folders of a flag, comma separated. For an empty one the folder with our
@@ -81,8 +82,12 @@ std::vector<std::string> ConfigurationDirectories(const std::string& flag);
 std::string ConfigurationDirectoryOf(const std::string& program);
 
 // Finds out at the start, rather than after an hour's work, that an output
-// cannot be written. Empty names and "-" are fine.
-absl::Status CheckWritable(const std::vector<std::string>& filenames);
+// cannot be written, or would replace an input or another output: one that is
+// among `inputs` or given by the flag of a main input, that two flags of the
+// command name, or that stands here twice. Links are followed. Empty names, "-",
+// devices and pipes are fine.
+absl::Status CheckWritable(const std::vector<std::string>& filenames,
+                           const std::vector<std::string>& inputs = {});
 
 // Indented, with a line end; atomically; "-" is standard output. Numbers that
 // are not finite become null.

@@ -110,7 +110,7 @@ int Run() {
     const absl::Status status = tools::WriteJson(json, FLAGS_json);
     if (!status.ok()) return tools::ExitCode(status);
   }
-  if (all_fine) return tools::kExitSuccess;
+  if (all_fine) return tools::ExitCode(absl::OkStatus());
   return tools::ExitCode(absl::DataLossError(
       first.problems.empty()
           ? absl::StrCat(FLAGS_other_pbstream_filename, " is not valid")

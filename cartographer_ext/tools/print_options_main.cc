@@ -58,7 +58,7 @@ int PrintReference(const std::vector<options::OptionBlock>& blocks) {
     effects = *std::move(parsed);
   }
   std::cout << evaluation::OptionReference(blocks, effects);
-  return tools::kExitSuccess;
+  return tools::ExitCode(absl::OkStatus());
 }
 
 int Run() {
@@ -88,7 +88,7 @@ int Run() {
     std::cout << (has_configuration ? options::ToLua(blocks)
                                     : options::ToLuaFile(blocks));
   }
-  return tools::kExitSuccess;
+  return tools::ExitCode(absl::OkStatus());
 }
 
 }  // namespace

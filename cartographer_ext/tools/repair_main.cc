@@ -3,8 +3,6 @@
 // LINK: repair_library
 //
 // cartographer_ext_repair: makes a better map of a finished one.
-#include <sys/stat.h>
-
 #include <iostream>
 #include <string>
 #include <vector>
@@ -75,12 +73,6 @@ better; a sound map is left alone. Nothing is written unless it is better than
 the input. Exit code 0 whether or not the map could be repaired; `written` and
 `after.verdict` of -json tell which.)";
 
-bool IsSameFile(const std::string& a, const std::string& b) {
-  struct stat first, second;
-  return stat(a.c_str(), &first) == 0 && stat(b.c_str(), &second) == 0 &&
-         first.st_dev == second.st_dev && first.st_ino == second.st_ino;
-}
-
 std::string PosesFilename() {
   if (!FLAGS_poses_filename.empty() || !FLAGS_keep_frame ||
       FLAGS_output_filename.empty() || FLAGS_dry_run) {
@@ -147,11 +139,6 @@ absl::Status Run(const std::string& command_line) {
       {FLAGS_dry_run ? "" : FLAGS_output_filename, FLAGS_report_filename,
        PosesFilename(), FLAGS_json});
   if (!writable.ok()) return writable;
-  if (IsSameFile(FLAGS_pbstream_filename, FLAGS_output_filename)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        FLAGS_output_filename,
-        ": the output is the input; a repair never overwrites its map"));
-  }
   auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
   if (!pbstream.ok()) return pbstream.status();
   const auto in_file = [](const absl::Status& status) {

@@ -6,7 +6,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -138,11 +137,6 @@ judged by cartographer_ext_evaluate_localization):
   cartographer_ext_slam -input_filename=later.clf -load_state_filename=run.pbstream
       -configuration_basename=localization.lua
       -online_trajectory_filename=later.tum [-initial_pose=12.5,3,90])";
-
-bool SameFile(const std::string& a, const std::string& b) {
-  std::error_code error;
-  return !a.empty() && !b.empty() && std::filesystem::equivalent(a, b, error);
-}
 
 absl::StatusOr<evaluation::StartingState> ReadStartingState() {
   evaluation::StartingState state;
@@ -329,7 +323,7 @@ absl::Status CheckOutputs() {
     outputs.push_back(FLAGS_map_filestem + ".pgm");
     outputs.push_back(FLAGS_map_filestem + ".yaml");
   }
-  return tools::CheckWritable(outputs);
+  return tools::CheckWritable(outputs, {FLAGS_load_state_filename});
 }
 
 io::SensorSourceOptions SourceOptions(
@@ -351,12 +345,6 @@ absl::Status Run(const std::string& command_line) {
   if (!configuration.ok()) return configuration.status();
   const absl::Status applied = ApplyFlags(&configuration->sensors);
   if (!applied.ok()) return applied;
-  if (SameFile(FLAGS_load_state_filename, FLAGS_pbstream_filename)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(FLAGS_load_state_filename,
-                     " is the map to start from and would be overwritten; name "
-                     "another -pbstream_filename or -output_filestem"));
-  }
   auto state = ReadStartingState();
   if (!state.ok()) return state.status();
   const auto source = evaluation::OpenRecording(

@@ -140,6 +140,27 @@ TEST(CommandLineTest, CheckWritableLeavesNothingBehind) {
   EXPECT_EQ(test::ReadFile(folder / "old"), "content");
 }
 
+TEST(CommandLineTest, OutputsReplaceNoInputAndNoOtherOutput) {
+  const test::TemporaryFolder folder;
+  const auto message = [](const absl::Status& status) {
+    return std::string(status.message());
+  };
+  // Not there yet, and written two ways.
+  EXPECT_THAT(message(CheckWritable({folder / "a", folder / "./a"})),
+              testing::HasSubstr("/a: an output and another file"));
+  EXPECT_TRUE(CheckWritable({folder / "a", folder / "b"}).ok());
+  test::WriteFile(folder / "in", "content");
+  std::filesystem::create_symlink(folder / "in", folder / "link");
+  EXPECT_TRUE(CheckWritable({folder / "b"}, {folder / "in"}).ok());
+  for (const char* name : {"in", "./in", "link"}) {
+    EXPECT_THAT(message(CheckWritable({folder / name}, {folder / "in"})),
+                testing::HasSubstr("the output is the input"))
+        << name;
+  }
+  EXPECT_TRUE(CheckWritable({"/dev/null", "/dev/null"}, {"/dev/null"}).ok());
+  EXPECT_TRUE(CheckWritable({"-", "-", "", ""}, {"-", ""}).ok());
+}
+
 TEST(CommandLineTest, JsonHasNoNan) {
   const test::TemporaryFolder folder;
   nlohmann::ordered_json json;

@@ -47,6 +47,40 @@ TEST(DumpMainTest, ComparesTwoMaps) {
   EXPECT_THAT(other.out, HasSubstr("difference: nodes: 0 only in the first"));
 }
 
+TEST(DumpMainTest, ReplacesNoInput) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "a", "one");
+  WriteFile(folder / "b", "two");
+  for (const char* name : {"a", "b"}) {
+    const CommandResult result =
+        RunCommand("dump", {folder / "a", "-other_pbstream_filename",
+                            folder / "b", "-json", folder / name});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr(folder / name + ": "));
+  }
+  EXPECT_EQ(ReadFile(folder / "a") + ReadFile(folder / "b"), "onetwo");
+}
+
+TEST(DumpMainTest, StandardOutputThatTakesNothingIsAnError) {
+  const TemporaryFolder folder;
+  WriteRoomMap(folder, 20);
+  const std::string command = std::string(CARTOGRAPHER_EXT_BIN_DIR) +
+                              "/cartographer_ext_dump " +
+                              (folder / "room.pbstream");
+  const auto exit_code = [&](const std::string& redirection) {
+    const int state = std::system(
+        (command + redirection + " 2> " + (folder / "error")).c_str());
+    return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+  };
+  EXPECT_EQ(exit_code(" > /dev/null"), 0);
+  EXPECT_EQ(exit_code(" >&-"), 1);
+  EXPECT_THAT(ReadFile(folder / "error"),
+              HasSubstr("cannot write standard output"));
+  if (access("/dev/full", W_OK) == 0) {
+    EXPECT_EQ(exit_code(" > /dev/full"), 1);
+  }
+}
+
 TEST(DumpMainTest, BrokenFilesAreListedAndRefused) {
   const TemporaryFolder folder;
   WriteRoomMap(folder, 20);
