@@ -51,6 +51,11 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
   json["cpu_seconds"] = run.cpu_seconds;
   json["front_end_cpu_seconds"] = run.front_end_cpu_seconds;
   json["final_optimization_wall_seconds"] = run.final_optimization_wall_seconds;
+  json["latency"] = {{"local_slam_milliseconds",
+                      {{"p50", run.latency.local_slam_p50},
+                       {"p99", run.latency.local_slam_p99},
+                       {"max", run.latency.local_slam_max}}},
+                     {"backlog_seconds", {{"max", run.latency.max_backlog}}}};
   json["peak_memory_bytes"] = run.peak_memory_bytes;
   json["loop_search"] = {
       {"count", run.loop_searches},
@@ -107,6 +112,14 @@ std::string ToText(const SlamRun& run) {
       "local SLAM; %.0f MB\n",
       run.wall_seconds, run.sensor_seconds, run.cpu_seconds,
       run.front_end_cpu_seconds, 1e-6 * run.peak_memory_bytes);
+  if (run.latency.scans > 0) {
+    absl::StrAppendFormat(
+        &text,
+        "Latency    local SLAM %.1f ms a scan (99 %% within %.1f, at most "
+        "%.1f); back end at most %.1f s behind\n",
+        run.latency.local_slam_p50, run.latency.local_slam_p99,
+        run.latency.local_slam_max, run.latency.max_backlog);
+  }
   if (run.drift.num_cycles > 0) {
     const uncertainty::CommonDrift& drift = run.drift.common;
     absl::StrAppendFormat(

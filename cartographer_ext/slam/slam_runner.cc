@@ -6,9 +6,12 @@
 #include <chrono>
 #include <limits>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/types/optional.h"
+#include "absl/types/variant.h"
 #include "cartographer/mapping/map_builder.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/pose_graph_context.h"
@@ -20,6 +23,7 @@
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/slam/back_end_metrics.h"
+#include "cartographer_ext/slam/latency_meter.h"
 #include "cartographer_ext/slam/metrics_collector.h"
 #include "cartographer_ext/slam/online_poses.h"
 #include "cartographer_ext/slam/resource_usage.h"
@@ -41,6 +45,12 @@ constexpr size_t kMaxDecisions = 2000000;
 constexpr size_t kMaxMatches = 2000000;
 // Longest wait for a queue that does not move.
 constexpr std::chrono::seconds kPatience(30);
+
+double Now() {
+  return std::chrono::duration<double>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
 
 double SecondsSince(const std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
@@ -201,9 +211,10 @@ class Runner {
     // Called from within AddSensorData, that is in this thread.
     auto* const local_scan_poses = &run_.local_scan_poses;
     const auto online = online_;
+    const auto latency = latency_;
     run_.trajectory_id = run_.map_builder->AddTrajectoryBuilder(
         sensors_, trajectory_options,
-        [local_scan_poses, online](
+        [local_scan_poses, online, latency](
             int /*trajectory_id*/, const cartographer::common::Time time,
             const cartographer::transform::Rigid3d& local_pose,
             const cartographer::sensor::RangeData& /*range_data_in_local*/,
@@ -212,6 +223,7 @@ class Runner {
           local_scan_poses->push_back(
               {FromHostTime(time), FromHostPose(local_pose)});
           if (inserted != nullptr) {
+            latency->AddNode(Now());
             online->AddNode(inserted->node_id.node_index, FromHostTime(time));
           }
         });
@@ -249,8 +261,15 @@ class Runner {
       const absl::StatusOr<bool> more = source_->Next(&event);
       if (!more.ok()) return more.status();
       if (!*more) return absl::OkStatus();
+      const bool is_scan = absl::holds_alternative<io::LaserScan>(event);
+      WaitUntilDue(event);
+      const double start = Now();
       absl::visit(feeder, event);
-      if (!absl::holds_alternative<io::LaserScan>(event)) continue;
+      latency_->AddReading(Now() - start, is_scan);
+      if (!is_scan) continue;
+      latency_->SetQueueLength(
+          static_cast<size_t>(std::max(0., metrics_->Sum(kQueueMetric))),
+          Now());
       if (options_.after_scan) {
         options_.after_scan(run_.scans + run_.skipped_scans, info_.num_scans,
                             run_.map_builder.get());
@@ -262,6 +281,22 @@ class Runner {
             static_cast<int64_t>(metrics_->Sum(kQueueMetric));
         options_.on_progress(progress_);
       }
+    }
+  }
+
+  void WaitUntilDue(const io::SensorEvent& event) {
+    if (options_.realtime_factor <= 0.) return;
+    const io::TimeNs time = absl::visit(
+        [](const auto& reading) -> io::TimeNs { return reading.time; }, event);
+    const double wall = Now();
+    if (!first_reading_.has_value()) {
+      first_reading_ = time;
+      first_fed_ = wall;
+    }
+    const double due = first_fed_ + io::ToSeconds(time - *first_reading_) /
+                                        options_.realtime_factor;
+    if (due > wall) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(due - wall));
     }
   }
 
@@ -307,6 +342,7 @@ class Runner {
 
   void Measure() {
     run_.wall_seconds = SecondsSince(wall_start_);
+    run_.latency = latency_->Summary();
     run_.cpu_seconds = ProcessCpuSeconds() - cpu_start_;
     run_.peak_memory_bytes = PeakMemoryBytes();
     run_.metrics = Difference(metrics_->Values(), metrics_before_);
@@ -339,6 +375,11 @@ class Runner {
       context_->Get<front_end::MatchRecorder>();
   // Outlives the run in the callbacks.
   const std::shared_ptr<OnlinePoses> online_ = std::make_shared<OnlinePoses>();
+
+  const std::shared_ptr<LatencyMeter> latency_ =
+      std::make_shared<LatencyMeter>();
+  absl::optional<io::TimeNs> first_reading_;
+  double first_fed_ = 0.;
 
   MetricsCollector* const metrics_ = MetricsCollector::Global();
   std::map<std::string, double> metrics_before_;

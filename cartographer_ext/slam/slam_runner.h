@@ -34,6 +34,7 @@
 #include "cartographer_ext/metrics/trajectory.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "cartographer_ext/slam/back_end_metrics.h"
+#include "cartographer_ext/slam/latency_meter.h"
 #include "cartographer_ext/slam/sensor_feeder.h"
 #include "cartographer_ext/slam/starting_state.h"
 #include "cartographer_ext/uncertainty/drift_model.h"
@@ -57,6 +58,9 @@ struct SlamRunOptions {
   StartingState state;
   // Feeding waits while the back end's queue is longer.
   int max_queue_length = 1000;
+  // Readings are fed when they would have come, this many times as fast; 0: as
+  // fast as possible.
+  double realtime_factor = 0.;
   // Called from the calling thread after each scan that was fed, with their
   // number so far and the number in the recording. May add to the pose graph.
   std::function<void(int64_t, int64_t,
@@ -97,6 +101,7 @@ struct SlamRun : FedReadings {
   // What it took. CPU seconds count all threads.
   double wall_seconds = 0.;
   double cpu_seconds = 0.;
+  LatencySummary latency;
   double front_end_cpu_seconds = 0.;  // of the feeding thread: local SLAM
   double final_optimization_wall_seconds = 0.;
   int64_t peak_memory_bytes = 0;  // of the process so far

@@ -6,6 +6,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -85,6 +86,9 @@ DEFINE_string(
 DEFINE_string(decisions_filename, "",
               "Output: CSV of the loop closures that were accepted, and which "
               "of them the optimisation has switched off.");
+DEFINE_double(realtime_factor, 0.,
+              "Replay the recording at this multiple of the time it took, to "
+              "see latencies as on a robot; 0: as fast as possible.");
 DEFINE_int32(num_background_threads, 0,
              "Threads of the back end; 0 takes the number from the "
              "configuration. The result is the same for any number.");
@@ -362,6 +366,7 @@ absl::Status Run(const std::string& command_line) {
   evaluation::SlamRunOptions run_options;
   run_options.state = *std::move(state);
   run_options.num_background_threads = FLAGS_num_background_threads;
+  run_options.realtime_factor = FLAGS_realtime_factor;
   evaluation::WrongLoopOptions wrong_loops;
   wrong_loops.count = FLAGS_wrong_loops;
   wrong_loops.seed = FLAGS_wrong_loops_seed;
@@ -423,6 +428,9 @@ int main(int argc, char** argv) {
   NameOutputs(FLAGS_output_filestem);
   if (FLAGS_input_filename.empty()) {
     return tools::UsageError("a recording is missing");
+  }
+  if (!(FLAGS_realtime_factor >= 0.) || std::isinf(FLAGS_realtime_factor)) {
+    return tools::UsageError("-realtime_factor must be a number >= 0");
   }
   if (FLAGS_num_background_threads < 0 || FLAGS_wrong_loops < 0) {
     return tools::UsageError(

@@ -31,6 +31,23 @@ TEST(RunSummaryTest, TellsTheDriftThatWasLearnt) {
                         "deg/m, turns 1.0 +- 1.0 %, scale -3.0 +- 0.2 %"));
 }
 
+TEST(RunSummaryTest, TellsTheLatency) {
+  SlamRun run;
+  EXPECT_THAT(ToText(run), Not(HasSubstr("Latency")));
+  run.latency.scans = 3;
+  run.latency.local_slam_p50 = 1.;
+  run.latency.local_slam_p99 = 2.5;
+  run.latency.local_slam_max = 4.;
+  run.latency.max_backlog = 0.3;
+  const auto latency = ToJson(run).at("latency");
+  EXPECT_EQ(latency.at("local_slam_milliseconds").at("p50"), 1.);
+  EXPECT_EQ(latency.at("local_slam_milliseconds").at("p99"), 2.5);
+  EXPECT_EQ(latency.at("local_slam_milliseconds").at("max"), 4.);
+  EXPECT_EQ(latency.at("backlog_seconds").at("max"), 0.3);
+  EXPECT_THAT(ToText(run), HasSubstr("1.0 ms a scan (99 % within 2.5, at most "
+                                     "4.0); back end at most 0.3 s behind"));
+}
+
 }  // namespace
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -46,12 +46,37 @@ TEST(SlamMainTest, WritesMapTrajectoriesAndNumbers) {
   EXPECT_GT(json["wall_seconds"], 0.);
   EXPECT_GT(json["cpu_seconds"], 0.);
   EXPECT_GT(json["peak_memory_bytes"], 1000000);
+  const auto& milliseconds = json["latency"]["local_slam_milliseconds"];
+  EXPECT_GT(milliseconds["p50"], 0.);
+  EXPECT_GE(milliseconds["p99"], milliseconds["p50"]);
+  EXPECT_GE(milliseconds["max"], milliseconds["p99"]);
+  EXPECT_GE(json["latency"]["backlog_seconds"]["max"], 0.);
+  EXPECT_EQ(json["drift"]["cycles"], 0);
   EXPECT_EQ(json["loop_search"]["count"], 0);
   EXPECT_LT(json["loop_search"]["cpu_seconds"].get<double>(),
             0.5 * json["cpu_seconds"].get<double>());
   // A pose at every scan but those before the first one could be matched.
   const std::string trajectory = ReadFile(folder / "global.tum");
   EXPECT_GE(std::count(trajectory.begin(), trajectory.end(), '\n'), 249);
+}
+
+TEST(SlamMainTest, ReplaysAtAMultipleOfRealTime) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 60);
+  const CommandResult result = RunCommand(
+      "slam", {"-input_filename", folder / "room.clf", "-pbstream_filename",
+               folder / "map.pbstream", "-realtime_factor", "10", "-json",
+               folder / "slam.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_GE(ParseJson(ReadFile(folder / "slam.json"))["wall_seconds"],
+            5.9 / 10.);
+  for (const char* const factor : {"-1", "nan", "inf"}) {
+    const CommandResult wrong = RunCommand(
+        "slam",
+        {"-input_filename", folder / "room.clf", "-realtime_factor", factor});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.error, HasSubstr("-realtime_factor"));
+  }
 }
 
 TEST(SlamMainTest, OursByDefaultFromAnyFolder) {
@@ -84,9 +109,9 @@ TEST(SlamMainTest, ARecordingAloneGivesEverything) {
   EXPECT_THAT(ReadFile(folder / "room.yaml"), HasSubstr("room.pgm"));
 
   // A flag of its own goes before the stem.
-  const CommandResult named = RunCommand(
-      "slam", {folder / "room.clf", "-output_filestem", folder / "a",
-               "-report_filename", folder / "b.html", "-json", "-"});
+  const CommandResult named =
+      RunCommand("slam", {folder / "room.clf", "-output_filestem", folder / "a",
+                          "-report_filename", folder / "b.html", "-json", "-"});
   ASSERT_EQ(named.exit_code, 0) << named.error;
   EXPECT_THAT(folder.Names(), testing::IsSupersetOf({"a.pbstream", "b.html"}));
   EXPECT_THAT(folder.Names(), testing::Not(testing::Contains("a.html")));
@@ -94,9 +119,9 @@ TEST(SlamMainTest, ARecordingAloneGivesEverything) {
 
   // The map to start from stays.
   const std::string map = ReadFile(folder / "a.pbstream");
-  const CommandResult same = RunCommand(
-      "slam", {folder / "room.clf", "-output_filestem", folder / "a",
-               "-load_state_filename", folder / "a.pbstream"});
+  const CommandResult same =
+      RunCommand("slam", {folder / "room.clf", "-output_filestem", folder / "a",
+                          "-load_state_filename", folder / "a.pbstream"});
   EXPECT_EQ(same.exit_code, 1);
   EXPECT_THAT(same.error, HasSubstr("would be overwritten"));
   EXPECT_TRUE(map == ReadFile(folder / "a.pbstream"));

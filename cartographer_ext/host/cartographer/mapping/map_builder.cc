@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/mapping/map_builder.h"
 
+#include <sys/stat.h>
+
 #include <cstdio>
 #include <fstream>
 #include <utility>
@@ -238,19 +240,26 @@ void MapBuilder::SerializeState(const bool include_unfinished_submaps,
 
 bool MapBuilder::SerializeStateToFile(const bool include_unfinished_submaps,
                                       const std::string& filename) {
-  // A file of this name is always a complete one.
-  const std::string partial = filename + ".partial";
-  if (!std::ofstream(partial, std::ios::binary).good()) {
+  // A file of this name is always a complete one. Devices and pipes are written
+  // to, not replaced.
+  struct stat existing;
+  const mode_t kind =
+      ::stat(filename.c_str(), &existing) == 0 ? existing.st_mode : 0;
+  const bool in_place = S_ISCHR(kind) || S_ISBLK(kind) || S_ISFIFO(kind);
+  const std::string partial = in_place ? filename : filename + ".partial";
+  // A pipe is opened once only: its reader takes the first end for the last.
+  if (!S_ISFIFO(kind) && !std::ofstream(partial, std::ios::binary).good()) {
     LOG(ERROR) << "cannot write " << partial;
     return false;
   }
   io::ProtoStreamWriter writer(partial);
   SerializeState(include_unfinished_submaps, &writer);
-  if (writer.Close() && std::rename(partial.c_str(), filename.c_str()) == 0) {
+  if (writer.Close() &&
+      (in_place || std::rename(partial.c_str(), filename.c_str()) == 0)) {
     return true;
   }
   LOG(ERROR) << "cannot write " << filename;
-  std::remove(partial.c_str());
+  if (!in_place) std::remove(partial.c_str());
   return false;
 }
 
