@@ -28,7 +28,9 @@ namespace front_end {
 struct OdometryNoiseScaleOptions {
   double prior_samples = 50.;
   double memory = 500.;  // innovations after which one counts 1 / e
-  double least = 0.02;   // a seventh of the standard deviation
+  // Innovations show what odometry errs from scan to scan, not the errors of
+  // scale and heading that add up over a submap: it is not trusted further.
+  double least = 0.5;
 };
 
 class OdometryNoiseScale {

@@ -12,11 +12,17 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
+OdometryNoiseScaleOptions AlmostUnbounded() {
+  OdometryNoiseScaleOptions options;
+  options.least = 0.02;
+  return options;
+}
+
 // Innovations of odometry whose variance is `truth` times the one assumed.
 double Estimate(const double truth, const double match_variance,
                 const int count) {
   constexpr double kAssumed = 1e-4;
-  OdometryNoiseScale scale((OdometryNoiseScaleOptions()));
+  OdometryNoiseScale scale(AlmostUnbounded());
   Random random(7);
   for (int i = 0; i != count; ++i) {
     const double innovation =
@@ -47,6 +53,9 @@ TEST(OdometryNoiseScaleTest, StaysInItsBounds) {
   OdometryNoiseScale scale(options);
   for (int i = 0; i != 2000; ++i) scale.Add(0., 1e-4, 1e-4);
   EXPECT_EQ(scale.scale(), 0.3);
+  OdometryNoiseScale usual((OdometryNoiseScaleOptions()));
+  for (int i = 0; i != 2000; ++i) usual.Add(0., 1e-4, 1e-4);
+  EXPECT_EQ(usual.scale(), 0.5);
 }
 
 TEST(OdometryNoiseScaleTest, IgnoresWhatIsNoInnovation) {
@@ -61,7 +70,7 @@ TEST(OdometryNoiseScaleTest, IgnoresWhatIsNoInnovation) {
 
 // What happened long ago counts less: wheels that begin to slip are found out.
 TEST(OdometryNoiseScaleTest, Forgets) {
-  OdometryNoiseScale scale((OdometryNoiseScaleOptions()));
+  OdometryNoiseScale scale(AlmostUnbounded());
   for (int i = 0; i != 3000; ++i) scale.Add(2e-5, 2e-5, 1e-4);
   EXPECT_LT(scale.scale(), 0.15);
   for (int i = 0; i != 1000; ++i) scale.Add(1.2e-4, 2e-5, 1e-4);
