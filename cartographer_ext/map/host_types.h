@@ -8,6 +8,7 @@
 #include "Eigen/Geometry"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/io/sensor_source.h"
@@ -39,6 +40,10 @@ inline io::TimeNs FromHostTime(const cartographer::common::Time time) {
 inline Eigen::Isometry3d FromHostPose(
     const cartographer::transform::Rigid3d& pose) {
   return Eigen::Translation3d(pose.translation()) * pose.rotation();
+}
+
+inline cartographer::transform::Rigid3d ToHostPose(const Pose2& pose) {
+  return cartographer::transform::Embed3D(ToRigid2d(pose));
 }
 
 // x, y and yaw of a spatial pose.

@@ -12,7 +12,6 @@
 #include "absl/types/optional.h"
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/mapping/internal/2d/local_trajectory_builder_2d.h"
-#include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/transform/transform.h"
@@ -28,7 +27,6 @@ using cartographer::mapping::Submap2D;
 using cartographer::mapping::TrajectoryNode;
 using cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D;
 using cartographer::mapping::proto::PoseGraph;
-using cartographer::transform::Rigid2d;
 using cartographer::transform::Rigid3d;
 using evaluation::GraphId;
 
@@ -51,11 +49,6 @@ Rigid3d Gravity(const cartographer::mapping::proto::Node& node) {
       cartographer::transform::ToEigen(node.node_data().gravity_alignment()));
 }
 
-Rigid3d Embed(const Pose2& pose) {
-  return cartographer::transform::Embed3D(
-      Rigid2d(Eigen::Vector2d(pose.x, pose.y), pose.theta));
-}
-
 // Submaps of one trajectory in the order in which they were begun.
 struct NewSubmaps {
   std::vector<std::shared_ptr<const Submap2D>> submaps;
@@ -76,7 +69,6 @@ class NodeMapper {
              const NodeMatching matching)
       : matching_(matching),
         builder_(options, {kSensor}),
-        matcher_(options.ceres_scan_matcher_options()),
         active_submaps_(options.submaps_options()) {}
 
   // The pose of the node (local <- gravity aligned) and, in `inserted`, the
@@ -104,7 +96,7 @@ class NodeMapper {
  private:
   void AddByFrontEnd(const TrajectoryNode::Data& node, const Pose2& chain,
                      const Pose2& predicted) {
-    builder_.AddOdometryData({node.time, Embed(chain)});
+    builder_.AddOdometryData({node.time, evaluation::ToHostPose(chain)});
     cartographer::sensor::TimedPointCloudData scan;
     scan.time = node.time;
     scan.origin = Eigen::Vector3f::Zero();
@@ -123,21 +115,11 @@ class NodeMapper {
     const auto& cloud = node.filtered_gravity_aligned_point_cloud;
     pose_ = predicted;
     if (cloud.empty()) return;
-    const auto submaps = active_submaps_.submaps();
-    if (matching_ == NodeMatching::kRefine && !submaps.empty()) {
-      const Rigid2d start({predicted.x, predicted.y}, predicted.theta);
-      Rigid2d matched;
-      ceres::Solver::Summary summary;
-      matcher_.Match(start.translation(), start, cloud,
-                     *submaps.front()->grid(), &matched, &summary);
-      pose_ = Pose2(matched.translation().x(), matched.translation().y(),
-                    NormalizeAngle(matched.rotation().angle()));
-    }
     cartographer::sensor::RangeData range_data{
         Eigen::Vector3f::Zero(), cloud, {}};
     Remember(active_submaps_.InsertRangeData(
-        cartographer::sensor::TransformRangeData(range_data,
-                                                 Embed(pose_).cast<float>())));
+        cartographer::sensor::TransformRangeData(
+            range_data, evaluation::ToHostPose(pose_).cast<float>())));
   }
 
   void Remember(const std::vector<std::shared_ptr<const Submap2D>>& inserted) {
@@ -149,7 +131,6 @@ class NodeMapper {
 
   const NodeMatching matching_;
   LocalTrajectoryBuilder2D builder_;
-  cartographer::mapping::scan_matching::CeresScanMatcher2D matcher_;
   cartographer::mapping::ActiveSubmaps2D active_submaps_;
   NewSubmaps submaps_;
   bool has_pose_ = false;
@@ -351,7 +332,7 @@ absl::StatusOr<io::Pbstream> RerunLocalSlam(
           "the first node ", evaluation::ToString(id),
           " has no cloud, so that local SLAM cannot be run again"));
     }
-    const Rigid3d local = Embed(pose) * Gravity(record);
+    const Rigid3d local = evaluation::ToHostPose(pose) * Gravity(record);
     local_poses[id] = local;
     *record.mutable_node_data()->mutable_local_pose() =
         cartographer::transform::ToProto(local);

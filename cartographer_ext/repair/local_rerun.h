@@ -29,7 +29,6 @@ namespace repair {
 // How a node is placed in the running submap.
 enum class NodeMatching {
   kFrontEnd,  // as local SLAM does, with search where the chain is doubtful
-  kRefine,    // the chain's motion, refined by the Ceres scan matcher only
   kNone,      // the chain's motion as it is: submaps are only built anew
 };
 

@@ -15,20 +15,16 @@ namespace repair {
 namespace {
 
 using cartographer::mapping::proto::PoseGraph;
-using cartographer::transform::Rigid2d;
 using cartographer::transform::Rigid3d;
 using cartographer::transform::ToProto;
 using cartographer::transform::ToRigid3;
 using evaluation::GraphId;
 
-Rigid3d Embed(const Pose2& pose) {
-  return cartographer::transform::Embed3D(
-      Rigid2d(Eigen::Vector2d(pose.x, pose.y), pose.theta));
-}
-
 // Height, roll and pitch of `pose` with another place and heading.
 Rigid3d Moved(const Rigid3d& pose, const Pose2& planar) {
-  return Embed(planar * evaluation::ToPlanarPose(pose).Inverse()) * pose;
+  return evaluation::ToHostPose(planar *
+                                evaluation::ToPlanarPose(pose).Inverse()) *
+         pose;
 }
 
 // The last node of the trajectory at or before the stamp of the last sight.
@@ -120,7 +116,7 @@ void StoreGraph(const evaluation::MapGraph& graph,
 }
 
 void MoveMap(const Pose2& new_from_old, io::Pbstream* const pbstream) {
-  const Rigid3d motion = Embed(new_from_old);
+  const Rigid3d motion = evaluation::ToHostPose(new_from_old);
   for (auto& trajectory : *pbstream->pose_graph.mutable_trajectory()) {
     for (auto& node : *trajectory.mutable_node()) {
       *node.mutable_pose() = ToProto(motion * ToRigid3(node.pose()));

@@ -6,7 +6,6 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/report/map_figure.h"
 #include "cartographer_ext/report/sections.h"
-#include "cartographer_ext/report/style.h"
 
 namespace cartographer_ext {
 namespace report {
@@ -55,17 +54,7 @@ void AddMoved(const MapComparison& comparison, Markup* const page) {
 void OpenPage(const std::string& title, Markup* const page) {
   page->Raw("<!DOCTYPE html>\n");
   page->Open("html", {{"lang", "en"}});
-  page->Open("head");
-  page->Raw("<meta charset=\"utf-8\">\n");
-  page->Raw(
-      "<meta name=\"viewport\" content=\"width=device-width, "
-      "initial-scale=1\">\n");
-  page->Raw("<link rel=\"icon\" href=\"data:,\">\n");
-  page->Element("title", {}, title);
-  page->Open("style");
-  page->Raw(StyleSheet());
-  page->Close();
-  page->Close();
+  AddHead(title, page);
   page->Open("body");
   page->Open("main");
   page->Element("h1", {}, title);

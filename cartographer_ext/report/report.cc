@@ -62,20 +62,6 @@ Prepared Prepare(const ReportData& data, ImageStore* const store) {
   return prepared;
 }
 
-void AddHead(const ReportData& data, Markup* const page) {
-  page->Open("head");
-  page->Raw("<meta charset=\"utf-8\">\n");
-  page->Raw(
-      "<meta name=\"viewport\" content=\"width=device-width, "
-      "initial-scale=1\">\n");
-  page->Raw("<link rel=\"icon\" href=\"data:,\">\n");
-  page->Element("title", {}, absl::StrCat(data.title, ": map report"));
-  page->Open("style");
-  page->Raw(StyleSheet());
-  page->Close();
-  page->Close();
-}
-
 void AddNavigation(Markup* const page) {
   page->Open("nav", {{"aria-label", "Parts of this report"}});
   for (const auto& part : std::vector<std::pair<std::string, std::string>>{
@@ -144,7 +130,7 @@ absl::StatusOr<std::string> MakeReport(const ReportData& data) {
   Markup page;
   page.Raw("<!DOCTYPE html>\n");
   page.Open("html", {{"lang", "en"}});
-  AddHead(data, &page);
+  AddHead(absl::StrCat(data.title, ": map report"), &page);
   page.Open("body");
   page.Raw(store.ToHtml());
   page.Open("main");

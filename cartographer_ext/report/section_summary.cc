@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/report/sections.h"
+#include "cartographer_ext/report/style.h"
 
 namespace cartographer_ext {
 namespace report {
@@ -135,6 +136,20 @@ std::vector<Row> Rows() {
 }
 
 }  // namespace
+
+void AddHead(const std::string& title, Markup* const page) {
+  page->Open("head");
+  page->Raw("<meta charset=\"utf-8\">\n");
+  page->Raw(
+      "<meta name=\"viewport\" content=\"width=device-width, "
+      "initial-scale=1\">\n");
+  page->Raw("<link rel=\"icon\" href=\"data:,\">\n");
+  page->Element("title", {}, title);
+  page->Open("style");
+  page->Raw(StyleSheet());
+  page->Close();
+  page->Close();
+}
 
 void AddHeading(const std::string& id, const std::string& text,
                 Markup* const page) {

@@ -29,6 +29,8 @@ struct Prepared {
 };
 
 void AddHeading(const std::string& id, const std::string& text, Markup* page);
+// The head of a page, with its style; no file beside it is needed.
+void AddHead(const std::string& title, Markup* page);
 
 // Verdict, figures, and all runs in one table.
 void AddSummary(const ReportData& data, Markup* page);

@@ -43,8 +43,8 @@ class LatencyMeter {
 
  private:
   double since_scan_ = 0.;
-  std::vector<float> scans_;  // milliseconds
-  std::deque<double> nodes_;  // that may wait, when they were handed over
+  std::vector<double> scans_;  // milliseconds
+  std::deque<double> nodes_;   // that may wait, when they were handed over
   double max_backlog_ = 0.;
 };
 

@@ -23,13 +23,6 @@ SensorId OdometrySensor() {
 
 SensorId ImuSensor() { return {SensorId::SensorType::IMU, kImuId}; }
 
-cartographer::transform::Rigid3d ToHostPose(const Pose2& pose) {
-  return cartographer::transform::Rigid3d(
-      Eigen::Vector3d(pose.x, pose.y, 0.),
-      Eigen::Quaterniond(
-          Eigen::AngleAxisd(pose.theta, Eigen::Vector3d::UnitZ())));
-}
-
 // By the host's clock, which has coarser ticks than the source.
 bool IsLater(const io::TimeNs time, cartographer::common::Time* const last) {
   const cartographer::common::Time host_time = ToHostTime(time);

@@ -46,14 +46,10 @@ constexpr size_t kMaxMatches = 2000000;
 // Longest wait for a queue that does not move.
 constexpr std::chrono::seconds kPatience(30);
 
+// Of a clock that never goes back, seconds.
 double Now() {
   return std::chrono::duration<double>(
              std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-double SecondsSince(const std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
       .count();
 }
 
@@ -187,7 +183,7 @@ class Runner {
     loop_cpu_before_ = MeasureLoopCpu(*metrics_);
     decision_recorder_->Start(kMaxDecisions);
     match_recorder_->Start(kMaxMatches);
-    wall_start_ = std::chrono::steady_clock::now();
+    wall_start_ = Now();
     cpu_start_ = ProcessCpuSeconds();
     thread_cpu_start_ = ThreadCpuSeconds();
   }
@@ -304,9 +300,9 @@ class Runner {
     progress_.stage = SlamProgress::Stage::kOptimizing;
     if (options_.on_progress) options_.on_progress(progress_);
     run_.front_end_cpu_seconds = ThreadCpuSeconds() - thread_cpu_start_;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = Now();
     run_.map_builder->pose_graph()->RunFinalOptimization();
-    run_.final_optimization_wall_seconds = SecondsSince(start);
+    run_.final_optimization_wall_seconds = Now() - start;
   }
 
   void CollectRecords() {
@@ -341,7 +337,7 @@ class Runner {
   }
 
   void Measure() {
-    run_.wall_seconds = SecondsSince(wall_start_);
+    run_.wall_seconds = Now() - wall_start_;
     run_.latency = latency_->Summary();
     run_.cpu_seconds = ProcessCpuSeconds() - cpu_start_;
     run_.peak_memory_bytes = PeakMemoryBytes();
@@ -386,7 +382,7 @@ class Runner {
   double searched_before_ = 0.;
   double found_before_ = 0.;
   LoopCpu loop_cpu_before_;
-  std::chrono::steady_clock::time_point wall_start_;
+  double wall_start_ = 0.;
   double cpu_start_ = 0.;
   double thread_cpu_start_ = 0.;
 

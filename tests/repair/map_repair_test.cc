@@ -132,7 +132,7 @@ TEST_F(MapRepairTest, LocalSlamRunsAgainFromTheClouds) {
       slam.trajectory_builder_options.trajectory_builder_2d_options();
   const evaluation::MapGraph before = evaluation::MakeMapGraph(*room_);
   for (const NodeMatching matching :
-       {NodeMatching::kFrontEnd, NodeMatching::kRefine, NodeMatching::kNone}) {
+       {NodeMatching::kFrontEnd, NodeMatching::kNone}) {
     const auto rerun = RerunLocalSlam(*room_, LocalChain(*room_), matching,
                                       OptionsForClouds(stored, stored));
     ASSERT_TRUE(rerun.ok()) << rerun.status();

@@ -257,10 +257,28 @@ bool CompatibleSubset::MayAcceptLoop(const Cluster& cluster,
          (1. - loop.score) * options_.odds_per_revisit;
 }
 
+std::vector<LoopEvidence> CompatibleSubset::TakeLikely(
+    Cluster* const cluster) const {
+  std::vector<LoopEvidence>& loops = cluster->undecided;
+  const auto unlikely = std::stable_partition(
+      loops.begin(), loops.end(),
+      [&](const LoopEvidence& loop) { return MayAcceptLoop(*cluster, loop); });
+  std::vector<LoopEvidence> likely(loops.begin(), unlikely);
+  loops.erase(loops.begin(), unlikely);
+  return likely;
+}
+
+SubsetReason CompatibleSubset::WhyNot(const Cluster& cluster) const {
+  SubsetReason reason;
+  // Of a cluster that may be accepted, the unlikely loops wait.
+  return MayAccept(cluster, &reason) ? SubsetReason::kUnsupported : reason;
+}
+
 void CompatibleSubset::Emit(
-    const Cluster& cluster, const bool accepted, const SubsetReason reason,
+    const Cluster& cluster, const std::vector<LoopEvidence>& loops,
+    const bool accepted, const SubsetReason reason,
     std::vector<SubsetDecision>* const decisions) const {
-  for (const LoopEvidence& loop : cluster.undecided) {
+  for (const LoopEvidence& loop : loops) {
     SubsetDecision decision;
     decision.id = loop.id;
     decision.accepted = accepted;
@@ -281,16 +299,9 @@ std::vector<SubsetDecision> CompatibleSubset::Decide() {
     for (Cluster& cluster : clusters_) {
       SubsetReason reason;
       if (cluster.undecided.empty() || !MayAccept(cluster, &reason)) continue;
-      const auto waiting = std::stable_partition(
-          cluster.undecided.begin(), cluster.undecided.end(),
-          [&](const LoopEvidence& loop) {
-            return MayAcceptLoop(cluster, loop);
-          });
-      if (waiting == cluster.undecided.begin()) continue;
-      std::vector<LoopEvidence> unlikely(waiting, cluster.undecided.end());
-      cluster.undecided.erase(waiting, cluster.undecided.end());
-      Emit(cluster, true, reason, &decisions);
-      cluster.undecided = std::move(unlikely);
+      const std::vector<LoopEvidence> likely = TakeLikely(&cluster);
+      if (likely.empty()) continue;
+      Emit(cluster, likely, true, reason, &decisions);
       cluster.accepted = true;
     }
   }
@@ -306,10 +317,7 @@ std::vector<SubsetDecision> CompatibleSubset::Flush() {
   for (int i = num_clusters() - 1; i >= 0; --i) {
     Cluster& cluster = clusters_[i];
     if (!cluster.undecided.empty()) {
-      SubsetReason reason;
-      // Decide has accepted what may be accepted.
-      if (MayAccept(cluster, &reason)) reason = SubsetReason::kUnsupported;
-      Emit(cluster, false, reason, &decisions);
+      Emit(cluster, cluster.undecided, false, WhyNot(cluster), &decisions);
       cluster.undecided.clear();
     }
     if (!cluster.accepted) Erase(i);
@@ -373,15 +381,10 @@ void CompatibleSubset::MakeRoom() {
   if (!cluster.undecided.empty()) {
     Solve();
     SubsetReason reason;
-    const bool accept = MayAccept(cluster, &reason);
-    for (const LoopEvidence& loop :
-         std::vector<LoopEvidence>(std::move(cluster.undecided))) {
-      cluster.undecided = {loop};
-      const bool accept_loop = accept && MayAcceptLoop(cluster, loop);
-      Emit(cluster, accept_loop,
-           accept && !accept_loop ? SubsetReason::kUnsupported : reason,
-           &overflow_);
+    if (MayAccept(cluster, &reason)) {
+      Emit(cluster, TakeLikely(&cluster), true, reason, &overflow_);
     }
+    Emit(cluster, cluster.undecided, false, WhyNot(cluster), &overflow_);
   }
   Erase(oldest);
 }
@@ -389,9 +392,7 @@ void CompatibleSubset::MakeRoom() {
 std::vector<SubsetDecision> CompatibleSubset::Undecided() const {
   std::vector<SubsetDecision> decisions;
   for (const Cluster& cluster : clusters_) {
-    SubsetReason reason;
-    MayAccept(cluster, &reason);
-    Emit(cluster, false, reason, &decisions);
+    Emit(cluster, cluster.undecided, false, WhyNot(cluster), &decisions);
   }
   std::stable_sort(decisions.begin(), decisions.end(),
                    [](const SubsetDecision& a, const SubsetDecision& b) {

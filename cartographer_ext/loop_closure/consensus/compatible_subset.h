@@ -198,7 +198,13 @@ class CompatibleSubset {
   bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;
   // Of a loop in a cluster that may be accepted.
   bool MayAcceptLoop(const Cluster& cluster, const LoopEvidence& loop) const;
-  void Emit(const Cluster& cluster, bool accepted, SubsetReason reason,
+  // Takes those that may be accepted out of the undecided ones of a cluster that
+  // may be.
+  std::vector<LoopEvidence> TakeLikely(Cluster* cluster) const;
+  // Why the undecided loops of a cluster are not accepted.
+  SubsetReason WhyNot(const Cluster& cluster) const;
+  void Emit(const Cluster& cluster, const std::vector<LoopEvidence>& loops,
+            bool accepted, SubsetReason reason,
             std::vector<SubsetDecision>* decisions) const;
   void Erase(int index);
   void MakeRoom();

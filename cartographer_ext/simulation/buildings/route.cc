@@ -13,18 +13,18 @@ namespace cartographer_ext {
 namespace simulation {
 namespace {
 
-// A place on the way: the node, and the one before it (-1 at the start).
+// A place on the path: the node, and the one before it (-1 at the start).
 using State = std::pair<int, int>;
 
 double Length(const FloorPlan& plan, const int a, const int b) {
   return (plan.nodes[b].position - plan.nodes[a].position).norm();
 }
 
-// Appends the shortest way from the last node of `way` to `target`.
+// Appends the shortest path from the last node of `path` to `target`.
 bool Continue(const FloorPlan& plan, const int target, const bool turns_back,
-              std::vector<int>* way) {
-  const State start(way->back(),
-                    way->size() < 2 ? -1 : (*way)[way->size() - 2]);
+              std::vector<int>* path) {
+  const State start(path->back(),
+                    path->size() < 2 ? -1 : (*path)[path->size() - 2]);
   std::map<State, std::pair<double, State>> best;
   using Entry = std::tuple<double, State, State>;  // length, here, from
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> open;
@@ -40,7 +40,7 @@ bool Continue(const FloorPlan& plan, const int target, const bool turns_back,
       for (State state = here; state != start; state = best.at(state).second) {
         piece.push_back(state.first);
       }
-      way->insert(way->end(), piece.rbegin(), piece.rend());
+      path->insert(path->end(), piece.rbegin(), piece.rend());
       return true;
     }
     for (const int next : plan.nodes[here.first].neighbours) {
@@ -57,22 +57,22 @@ bool Continue(const FloorPlan& plan, const int target, const bool turns_back,
 
 std::vector<int> RouteNodes(const FloorPlan& plan,
                             const RouteOptions& options) {
-  std::vector<int> way = {plan.round.front()};
+  std::vector<int> path = {plan.round.front()};
   for (int lap = 0; lap != options.laps; ++lap) {
     for (size_t i = 1; i < plan.round.size(); ++i) {
-      if (plan.round[i] == way.back()) continue;
-      if (!Continue(plan, plan.round[i], options.turns_back, &way)) return {};
+      if (plan.round[i] == path.back()) continue;
+      if (!Continue(plan, plan.round[i], options.turns_back, &path)) return {};
     }
   }
   // The beginning once more. It starts where the round ends; a robot that cannot
-  // turn back takes the first way round that leads into it.
+  // turn back takes the first path round that leads into it.
   double left = plan.overlap;
-  const size_t end = way.size();
+  const size_t end = path.size();
   for (size_t i = 1; i < end && left > 0.; ++i) {
-    left -= Length(plan, way[i - 1], way[i]);
-    if (!Continue(plan, way[i], options.turns_back, &way)) return {};
+    left -= Length(plan, path[i - 1], path[i]);
+    if (!Continue(plan, path[i], options.turns_back, &path)) return {};
   }
-  return way;
+  return path;
 }
 
 std::vector<Eigen::Vector2d> Waypoints(const FloorPlan& plan,

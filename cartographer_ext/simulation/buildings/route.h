@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The drive through a plan: shortest ways along its lanes from stop to stop of
+// The drive through a plan: shortest paths along its lanes from stop to stop of
 // the round (Dijkstra 1959), several laps of it, and at the end the beginning
 // once more, so that even a laser that looks forward only meets known places.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_ROUTE_H_
@@ -21,10 +21,10 @@ struct RouteOptions {
   bool turns_back = true;  // may go back along the lane it came
 };
 
-// The nodes passed, the overlap included; empty where no way leads on.
+// The nodes passed, the overlap included; empty where no path leads on.
 std::vector<int> RouteNodes(const FloorPlan& plan, const RouteOptions& options);
 
-// The same as waypoints in metres: only where the way bends, and between far
+// The same as waypoints in metres: only where the path bends, and between far
 // ones points that stray sideways by up to the plan's slack.
 std::vector<Eigen::Vector2d> Waypoints(const FloorPlan& plan,
                                        const std::vector<int>& nodes,
