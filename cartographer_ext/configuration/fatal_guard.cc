@@ -4,7 +4,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +21,8 @@ namespace evaluation {
 namespace {
 
 constexpr int kFatalExitCode = 93;
+// Of a child whose `body` returned, which 0 does not tell.
+constexpr int kReturnedExitCode = 94;
 
 // Forwards fatal messages to the parent.
 class FatalSink : public google::LogSink {
@@ -46,17 +50,23 @@ class FatalSink : public google::LogSink {
 [[noreturn]] void ExitAfterFatal() { _exit(kFatalExitCode); }
 
 [[noreturn]] void RunChild(const std::function<void()>& body,
-                           const int descriptor) {
+                           const int max_cpu_seconds, const int descriptor) {
   const int null_device = open("/dev/null", O_RDWR);
   if (null_device >= 0) {
     dup2(null_device, STDOUT_FILENO);
     dup2(null_device, STDERR_FILENO);
   }
+  // At the limit the system ends the child.
+  const rlimit limit = {static_cast<rlim_t>(max_cpu_seconds),
+                        static_cast<rlim_t>(max_cpu_seconds) + 1};
+  setrlimit(RLIMIT_CPU, &limit);
+  const rlimit no_core = {0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
   FatalSink sink(descriptor);
   google::AddLogSink(&sink);
   google::InstallFailureFunction(&ExitAfterFatal);
   body();
-  _exit(0);
+  _exit(kReturnedExitCode);
 }
 
 std::string ReadAll(const int descriptor) {
@@ -77,7 +87,8 @@ std::string Readable(const std::string& message) {
 
 }  // namespace
 
-absl::Status TryInChildProcess(const std::function<void()>& body) {
+absl::Status TryInChildProcess(const std::function<void()>& body,
+                               const int max_cpu_seconds) {
   int ends[2];
   if (pipe(ends) != 0) {
     return absl::InternalError(absl::StrCat("pipe: ", strerror(errno)));
@@ -91,7 +102,7 @@ absl::Status TryInChildProcess(const std::function<void()>& body) {
   }
   if (child == 0) {
     close(ends[0]);
-    RunChild(body, ends[1]);
+    RunChild(body, max_cpu_seconds, ends[1]);
   }
   close(ends[1]);
   const std::string message = ReadAll(ends[0]);
@@ -99,7 +110,16 @@ absl::Status TryInChildProcess(const std::function<void()>& body) {
   int state = 0;
   while (waitpid(child, &state, 0) < 0 && errno == EINTR) {
   }
-  if (WIFEXITED(state) && WEXITSTATUS(state) == 0) return absl::OkStatus();
+  if (WIFEXITED(state) && WEXITSTATUS(state) == kReturnedExitCode) {
+    return absl::OkStatus();
+  }
+  if (WIFEXITED(state) && WEXITSTATUS(state) == 0) {
+    return absl::InvalidArgumentError("it ended the program (os.exit)");
+  }
+  if (WIFSIGNALED(state) && WTERMSIG(state) == SIGXCPU) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "it does not end: more than ", max_cpu_seconds, " s of CPU time"));
+  }
   if (WIFEXITED(state) && WEXITSTATUS(state) == kFatalExitCode) {
     return absl::InvalidArgumentError(Readable(message));
   }

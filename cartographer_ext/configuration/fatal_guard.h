@@ -18,10 +18,13 @@ namespace evaluation {
 
 // Runs `body` in a child process without output and waits for it. OK when it
 // returned; InvalidArgument with the text of the failed check when it ended in
-// one; Internal when it crashed or no child could be made. Nothing `body`
+// one, ended the process itself with code 0 (os.exit of Lua) or took more than
+// `max_cpu_seconds` of all threads; Internal when it crashed or no child could
+// be made. Nothing `body`
 // changes in memory is seen by the caller. To be called while the process has
 // no other threads that might hold locks which `body` needs.
-absl::Status TryInChildProcess(const std::function<void()>& body);
+absl::Status TryInChildProcess(const std::function<void()>& body,
+                               int max_cpu_seconds = 60);
 
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -23,13 +23,41 @@ namespace {
 constexpr int kInstructionsBetweenChecks = 1000000;
 constexpr int kMaxChecks = 1000;
 constexpr int kMaxDepth = 60;
+constexpr int kMaxValues = 1000000;
+constexpr size_t kMaxMemory = 256 << 20;  // bytes
+constexpr size_t kMaxFileSize = 16 << 20;
+constexpr size_t kMaxPathLength = 80;  // in messages
+
+bool is_restricted = false;
 
 // What the functions given to the code need; found through the registry.
 struct Environment {
   std::vector<std::string> directories;
   std::vector<std::string> included;
   int checks = 0;
+  size_t memory = 0;
+  bool is_exhausted = false;  // one of the limits is reached
+  int values = 0;             // of the result so far
 };
+
+// lua_Alloc with a limit.
+void* Allocate(void* const environment, void* const block,
+               const size_t old_size, const size_t new_size) {
+  Environment& use = *static_cast<Environment*>(environment);
+  const size_t before = block == nullptr ? 0 : old_size;
+  if (new_size == 0) {
+    use.memory -= before;
+    std::free(block);
+    return nullptr;
+  }
+  if (new_size > before && use.memory - before + new_size > kMaxMemory) {
+    use.is_exhausted = true;
+    return nullptr;
+  }
+  void* const result = std::realloc(block, new_size);
+  if (result != nullptr) use.memory += new_size - before;
+  return result;
+}
 
 char registry_key = 0;
 
@@ -42,7 +70,11 @@ Environment* EnvironmentOf(lua_State* const lua) {
 }
 
 void CountInstructions(lua_State* const lua, lua_Debug* /*where*/) {
-  if (++EnvironmentOf(lua)->checks > kMaxChecks) {
+  Environment* const environment = EnvironmentOf(lua);
+  if (++environment->checks > kMaxChecks) {
+    environment->is_exhausted = true;
+    // So that code which catches the error does not go on.
+    lua_sethook(lua, CountInstructions, LUA_MASKCOUNT, 1);
     luaL_error(lua, "the code does not end");
   }
 }
@@ -98,9 +130,52 @@ int Choose(lua_State* const lua) {
   return 1;
 }
 
+int Exit(lua_State* const lua) {
+  return luaL_error(lua, "a configuration must not call os.exit");
+}
+
+// The libraries, and the functions of configurations.
+void OpenLibraries(lua_State* const lua) {
+  if (is_restricted) {
+    const luaL_Reg libraries[] = {{"_G", luaopen_base},
+                                  {"table", luaopen_table},
+                                  {"string", luaopen_string},
+                                  {"math", luaopen_math},
+                                  {"utf8", luaopen_utf8}};
+    for (const luaL_Reg& library : libraries) {
+      luaL_requiref(lua, library.name, library.func, 1);
+      lua_pop(lua, 1);
+    }
+    for (const char* const name : {"dofile", "loadfile"}) {
+      lua_pushnil(lua);
+      lua_setglobal(lua, name);
+    }
+  } else {
+    luaL_openlibs(lua);
+    lua_getglobal(lua, "os");
+    lua_pushcfunction(lua, Exit);
+    lua_setfield(lua, -2, "exit");
+    lua_pop(lua, 1);
+  }
+  lua_register(lua, "include", Include);
+  lua_register(lua, "read", Read);
+  lua_register(lua, "choose", Choose);
+}
+
+// For messages: only the beginning of a long path.
+std::string NameOf(const std::string& path) {
+  if (path.empty()) return "the result";
+  return path.size() <= kMaxPathLength
+             ? path
+             : absl::StrCat(path.substr(0, kMaxPathLength), "...");
+}
+
 absl::Status Unsuitable(const std::string& path, const std::string& what) {
-  return absl::InvalidArgumentError(
-      absl::StrCat(path.empty() ? "the result" : path, " ", what));
+  return absl::InvalidArgumentError(absl::StrCat(NameOf(path), " ", what));
+}
+
+absl::Status TooMuch(const std::string& path, const std::string& what) {
+  return absl::ResourceExhaustedError(absl::StrCat(NameOf(path), " ", what));
 }
 
 absl::StatusOr<nlohmann::json> ToJson(lua_State* lua, const std::string& path,
@@ -149,7 +224,10 @@ absl::StatusOr<nlohmann::json> ToJson(lua_State* const lua,
                                       const std::string& path,
                                       const int depth) {
   if (depth > kMaxDepth || !lua_checkstack(lua, 8)) {
-    return Unsuitable(path, "is nested too deeply");
+    return TooMuch(path, "is nested too deeply; does a table contain itself?");
+  }
+  if (++EnvironmentOf(lua)->values > kMaxValues) {
+    return TooMuch(path, "is part of too many values");
   }
   switch (lua_type(lua, -1)) {
     case LUA_TNIL:
@@ -178,11 +256,16 @@ absl::StatusOr<std::string> ReadFromDirectories(
     std::ifstream stream(absl::StrCat(directory, "/", basename),
                          std::ios::binary);
     if (!stream) continue;
-    std::string content((std::istreambuf_iterator<char>(stream)),
-                        std::istreambuf_iterator<char>());
-    if (!stream.bad()) return content;
+    std::string content(kMaxFileSize + 1, '\0');
+    stream.read(&content[0], static_cast<std::streamsize>(content.size()));
+    if (stream.bad()) continue;
+    content.resize(static_cast<size_t>(stream.gcount()));
+    if (content.size() <= kMaxFileSize) return content;
+    return absl::InvalidArgumentError(
+        absl::StrCat(directory, "/", basename, " has more than ",
+                     kMaxFileSize >> 20, " MB, which is no configuration"));
   }
-  return absl::InvalidArgumentError(
+  return absl::NotFoundError(
       absl::StrCat("cannot find or read '", basename, "' in ",
                    absl::StrJoin(directories, ", ")));
 }
@@ -192,16 +275,13 @@ absl::StatusOr<nlohmann::json> EvaluateLua(
     const std::vector<std::string>& directories) {
   Environment environment;
   environment.directories = directories;
-  const std::unique_ptr<lua_State, void (*)(lua_State*)> owner(luaL_newstate(),
-                                                               &lua_close);
+  const std::unique_ptr<lua_State, void (*)(lua_State*)> owner(
+      lua_newstate(Allocate, &environment), &lua_close);
   lua_State* const lua = owner.get();
   if (lua == nullptr) return absl::InternalError("no memory for Lua");
-  luaL_openlibs(lua);
   lua_pushlightuserdata(lua, &environment);
   lua_rawsetp(lua, LUA_REGISTRYINDEX, &registry_key);
-  lua_register(lua, "include", Include);
-  lua_register(lua, "read", Read);
-  lua_register(lua, "choose", Choose);
+  OpenLibraries(lua);
   lua_sethook(lua, CountInstructions, LUA_MASKCOUNT,
               kInstructionsBetweenChecks);
   if (luaL_loadbuffer(lua, code.data(), code.size(),
@@ -209,22 +289,29 @@ absl::StatusOr<nlohmann::json> EvaluateLua(
       lua_pcall(lua, 0, 1, 0) != LUA_OK) {
     const char* const message = lua_tostring(lua, -1);
     const std::string text = message == nullptr ? "Lua error" : message;
-    return absl::InvalidArgumentError(
+    return absl::Status(
+        environment.is_exhausted ? absl::StatusCode::kResourceExhausted
+                                 : absl::StatusCode::kInvalidArgument,
         absl::StrContains(text, name) ? text : absl::StrCat(name, ": ", text));
   }
   auto value = ToJson(lua, "", 0);
   if (!value.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": ", value.status().message()));
+    return absl::Status(value.status().code(),
+                        absl::StrCat(name, ": ", value.status().message()));
   }
   return value;
 }
+
+void RestrictLua(const bool restrict_it) { is_restricted = restrict_it; }
+
+bool IsLuaRestricted() { return is_restricted; }
 
 std::string ToLua(const nlohmann::json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
   if (value.is_number_integer()) return absl::StrCat(value.get<int64_t>());
   if (value.is_number()) {
     const double number = value.get<double>();
+    if (std::isnan(number)) return "0/0";
     if (std::isinf(number)) return number > 0. ? "math.huge" : "-math.huge";
     std::string text;
     for (int digits = 6; digits <= 17; ++digits) {
@@ -237,10 +324,39 @@ std::string ToLua(const nlohmann::json& value) {
     return absl::StrCat(
         "\"",
         absl::StrReplaceAll(value.get<std::string>(),
-                            {{"\\", "\\\\"}, {"\"", "\\\""}, {"\n", "\\n"}}),
+                            {{"\\", "\\\\"},
+                             {"\"", "\\\""},
+                             {"\n", "\\n"},
+                             {"\r", "\\r"}}),
         "\"");
   }
   return "nil";
+}
+
+namespace {
+
+void AppendLua(const nlohmann::json& value, std::string* const code) {
+  if (value.is_primitive()) {
+    *code += ToLua(value);
+    return;
+  }
+  *code += "{";
+  for (const auto& item : value.items()) {
+    if (value.is_object()) {
+      absl::StrAppend(code, "[", ToLua(nlohmann::json(item.key())), "]=");
+    }
+    AppendLua(item.value(), code);
+    *code += ",";
+  }
+  *code += "}";
+}
+
+}  // namespace
+
+std::string ToLuaCode(const nlohmann::json& value) {
+  std::string code = "return ";
+  AppendLua(value, &code);
+  return code;
 }
 
 }  // namespace evaluation

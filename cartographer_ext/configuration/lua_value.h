@@ -22,14 +22,28 @@ namespace evaluation {
 // the standard libraries and include, read and choose as configurations have;
 // files are searched in `directories`, the first that has one wins.
 //
-// Errors are InvalidArgument and name file and line where Lua does: code that
-// does not compile or fails, a missing file, a result with functions or mixed
-// keys, more than 10^9 instructions.
+// Errors name file and line where Lua does. ResourceExhausted: more than 10^9
+// instructions or 256 MB, a result with more than 10^6 values or tables nested
+// more than 60 times, as those that refer to themselves are; the code is no
+// configuration for anybody. InvalidArgument: code that does not compile or
+// fails, os.exit, a missing file or one above 16 MB, a result with functions or
+// mixed keys. What a library function does in one call is not limited: code of
+// unknown origin is tried in a child process first, see fatal_guard.h.
 absl::StatusOr<nlohmann::json> EvaluateLua(
     const std::string& code, const std::string& name,
     const std::vector<std::string>& directories);
 
-// The content of the first file of that name in the directories.
+// From now on code sees no libraries but table, string, math and utf8, and of
+// the base library nothing that reads files: for configurations of unknown
+// origin. Those of robots may read their environment.
+void RestrictLua(bool is_restricted);
+bool IsLuaRestricted();
+
+// Lua code that returns `value` without running anything.
+std::string ToLuaCode(const nlohmann::json& value);
+
+// The content of the first file of that name in the directories; NotFound when
+// none has it.
 absl::StatusOr<std::string> ReadFromDirectories(
     const std::string& basename, const std::vector<std::string>& directories);
 

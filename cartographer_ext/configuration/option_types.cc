@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
+#include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/lua_value.h"
 
 namespace cartographer_ext {
@@ -18,28 +19,6 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using nlohmann::json;
-
-// Null when there is none. The closer name wins: of x_options and x_options_3d
-// the first is meant by "x".
-const FieldDescriptor* FindField(const Descriptor& message,
-                                 const std::string& key) {
-  const FieldDescriptor* const same = message.FindFieldByName(key);
-  if (same != nullptr) return same;
-  const FieldDescriptor* similar = nullptr;
-  for (int i = 0; i != message.field_count(); ++i) {
-    const FieldDescriptor* const field = message.field(i);
-    const std::string name =
-        absl::StrReplaceAll(field->name(), {{"_options", ""}});
-    if (name == key) return field;
-    const bool has_options = name.size() != field->name().size();
-    if (has_options && similar == nullptr &&
-        (absl::StripSuffix(name, "_2d") == key ||
-         absl::StripSuffix(name, "_3d") == key)) {
-      similar = field;
-    }
-  }
-  return similar;
-}
 
 bool IsInteger(const double value) {
   return value == std::floor(value) &&
@@ -74,12 +53,48 @@ const char* Expected(const FieldDescriptor& field, const json& value) {
   return nullptr;
 }
 
+// Without "_options" and a number of dimensions.
+std::string KeyOf(const FieldDescriptor& field) {
+  const std::string name =
+      absl::StrReplaceAll(field.name(), {{"_options", ""}});
+  if (name.size() == field.name().size()) return name;
+  return std::string(absl::StripSuffix(absl::StripSuffix(name, "_2d"), "_3d"));
+}
+
+std::string SimilarKey(const Descriptor& message, const std::string& key) {
+  std::vector<std::string> names;
+  for (int i = 0; i != message.field_count(); ++i) {
+    names.push_back(KeyOf(*message.field(i)));
+  }
+  return SimilarWord(key, names);
+}
+
 }  // namespace
+
+const FieldDescriptor* FindOptionField(const Descriptor& message,
+                                       const std::string& key) {
+  const FieldDescriptor* const same = message.FindFieldByName(key);
+  if (same != nullptr) return same;
+  const FieldDescriptor* similar = nullptr;
+  for (int i = 0; i != message.field_count(); ++i) {
+    const FieldDescriptor* const field = message.field(i);
+    const std::string name =
+        absl::StrReplaceAll(field->name(), {{"_options", ""}});
+    if (name == key) return field;
+    const bool has_options = name.size() != field->name().size();
+    if (has_options && similar == nullptr &&
+        (absl::StripSuffix(name, "_2d") == key ||
+         absl::StripSuffix(name, "_3d") == key)) {
+      similar = field;
+    }
+  }
+  return similar;
+}
 
 absl::Status CheckOptionTypes(const json& table, const Descriptor& message,
                               const std::string& path) {
   for (const auto& item : table.items()) {
-    const FieldDescriptor* const field = FindField(message, item.key());
+    const FieldDescriptor* const field = FindOptionField(message, item.key());
     if (field == nullptr || field->is_repeated()) continue;
     const json& value = item.value();
     const std::string key = absl::StrCat(path, ".", item.key());
@@ -95,6 +110,26 @@ absl::Status CheckOptionTypes(const json& table, const Descriptor& message,
     if (!below.ok()) return below;
   }
   return absl::OkStatus();
+}
+
+std::vector<UnknownKey> FindUnknownKeys(const json& table,
+                                        const Descriptor& message,
+                                        const std::string& path) {
+  std::vector<UnknownKey> unknown;
+  for (const auto& item : table.items()) {
+    if (item.key() == "cartographer_ext") continue;
+    const FieldDescriptor* const field = FindOptionField(message, item.key());
+    if (field == nullptr) {
+      unknown.push_back({path, item.key(), SimilarKey(message, item.key())});
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE &&
+               !field->is_repeated() && item.value().is_object()) {
+      const auto below =
+          FindUnknownKeys(item.value(), *field->message_type(),
+                          absl::StrCat(path, ".", item.key()));
+      unknown.insert(unknown.end(), below.begin(), below.end());
+    }
+  }
+  return unknown;
 }
 
 }  // namespace evaluation

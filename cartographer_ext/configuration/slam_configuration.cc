@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/configuration/slam_configuration.h"
 
-#include <unistd.h>
-
 #include <memory>
 #include <set>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/string_view.h"
 #include "cartographer/common/configuration_file_resolver.h"
 #include "cartographer/common/lua_parameter_dictionary.h"
 #include "cartographer/mapping/map_builder.h"
@@ -17,6 +18,7 @@
 #include "cartographer/mapping/trajectory_builder_interface.h"
 #include "cartographer_ext/configuration/fatal_guard.h"
 #include "cartographer_ext/configuration/lua_value.h"
+#include "cartographer_ext/configuration/option_ranges.h"
 #include "cartographer_ext/configuration/option_types.h"
 #include "glog/logging.h"
 
@@ -27,6 +29,9 @@ namespace {
 using cartographer::common::ConfigurationFileResolver;
 using cartographer::common::LuaParameterDictionary;
 using cartographer::mapping::TrajectoryBuilderInterface;
+
+// Of reading a configuration, which takes a hundredth of a second.
+constexpr int kMaxLuaCpuSeconds = 20;
 
 const char* const kRosStrings[] = {"map_frame", "published_frame",
                                    "odom_frame"};
@@ -127,34 +132,97 @@ std::string ReadOrDie(const std::vector<std::string>& directories,
 void ConstructOrDie(const SlamConfiguration& configuration) {
   CHECK(configuration.map_builder_options.use_trajectory_builder_2d())
       << "map_builder.use_trajectory_builder_2d must be true: this is 2D SLAM";
-  const auto map_builder = cartographer::mapping::CreateMapBuilder(
-      configuration.map_builder_options);
+  auto* const map_builder = cartographer::mapping::CreateMapBuilder(
+                                configuration.map_builder_options)
+                                .release();
   map_builder->AddTrajectoryBuilder(
       {{TrajectoryBuilderInterface::SensorId::SensorType::RANGE, "scan"}},
       configuration.trajectory_builder_options, nullptr);
   // The child leaves without destroying it: there is nothing to wait for.
-  _exit(0);
+}
+
+// The part of the result with its message, and its name in Lua files.
+struct Part {
+  const char* key;
+  const char* lua_name;
+  const google::protobuf::Descriptor* message;
+};
+
+std::vector<Part> Parts() {
+  using cartographer::mapping::proto::MapBuilderOptions;
+  using cartographer::mapping::proto::TrajectoryBuilderOptions;
+  return {{"map_builder", "MAP_BUILDER", MapBuilderOptions::descriptor()},
+          {"trajectory_builder", "TRAJECTORY_BUILDER",
+           TrajectoryBuilderOptions::descriptor()}};
+}
+
+// As users write it: MAP_BUILDER.pose_graph is POSE_GRAPH.
+std::string InLuaFile(const std::string& text) {
+  return absl::StrReplaceAll(
+      text,
+      {{"MAP_BUILDER.pose_graph.", "POSE_GRAPH."},
+       {"TRAJECTORY_BUILDER.trajectory_builder_2d.", "TRAJECTORY_BUILDER_2D."}});
 }
 
 // What the host's reader may pass over or end the program for without a name.
-// Whatever else is wrong with the code, the host says better.
-absl::Status CheckTypes(const std::vector<std::string>& directories,
-                        const std::string& name, const std::string& code) {
-  const auto table = EvaluateLua(code, name, directories);
-  if (!table.ok() || !table->is_object()) return absl::OkStatus();
-  using cartographer::mapping::proto::MapBuilderOptions;
-  using cartographer::mapping::proto::TrajectoryBuilderOptions;
-  const std::pair<const char*, const google::protobuf::Descriptor*> parts[] = {
-      {"map_builder", MapBuilderOptions::descriptor()},
-      {"trajectory_builder", TrajectoryBuilderOptions::descriptor()}};
-  for (const auto& part : parts) {
-    const auto found = table->find(part.first);
-    if (found == table->end() || !found->is_object()) continue;
-    const absl::Status good =
-        CheckOptionTypes(*found, *part.second, part.first);
+// Whatever else is wrong with the table, the host says better.
+absl::Status CheckValues(const nlohmann::json& table,
+                         std::vector<std::string>* const warnings) {
+  for (const Part& part : Parts()) {
+    const auto found = table.find(part.key);
+    if (found == table.end() || !found->is_object()) continue;
+    absl::Status good = CheckOptionTypes(*found, *part.message, part.key);
     if (!good.ok()) return good;
+    good = CheckOptionRanges(*found, *part.message, part.lua_name, warnings);
+    if (!good.ok()) {
+      return absl::Status(good.code(), InLuaFile(std::string(good.message())));
+    }
   }
   return absl::OkStatus();
+}
+
+// What the host said, and where a name that it does not know is the cause, the
+// one that was probably meant.
+absl::Status Suggest(const absl::Status& status, const nlohmann::json& table) {
+  // The host quotes the key; in the lines that follow, the table it missed.
+  const absl::string_view said =
+      status.message().substr(0, status.message().find('\n'));
+  const auto is_meant = [said](const std::string& key) {
+    return !key.empty() && absl::StrContains(said, absl::StrCat(key, "'"));
+  };
+  for (const Part& part : Parts()) {
+    const auto found = table.find(part.key);
+    if (found == table.end() || !found->is_object()) continue;
+    for (const UnknownKey& unknown :
+         FindUnknownKeys(*found, *part.message, part.lua_name)) {
+      if (!is_meant(unknown.key) && !is_meant(unknown.similar)) continue;
+      return absl::InvalidArgumentError(absl::StrCat(
+          InLuaFile(absl::StrCat(unknown.table, ".", unknown.key)),
+          " is not an option",
+          unknown.similar.empty()
+              ? ""
+              : absl::StrCat(", did you mean '", unknown.similar, "'?")));
+    }
+  }
+  return status;
+}
+
+// The table that the code returns. Not an object when the host has to say what
+// is wrong with it. The first run is in a child process: code that calls one
+// function for hours cannot be interrupted.
+absl::StatusOr<nlohmann::json> Evaluate(
+    const std::vector<std::string>& directories, const std::string& name,
+    const std::string& code) {
+  const absl::Status ends = TryInChildProcess(
+      [&] { EvaluateLua(code, name, directories).status().IgnoreError(); },
+      kMaxLuaCpuSeconds);
+  if (ends.code() == absl::StatusCode::kInvalidArgument) return ends;
+  auto table = EvaluateLua(code, name, directories);
+  if (table.ok() || IsLuaRestricted() ||
+      table.status().code() == absl::StatusCode::kResourceExhausted) {
+    return table;
+  }
+  return nlohmann::json();
 }
 
 absl::Status Explain(const absl::Status& status, const std::string& name,
@@ -169,21 +237,37 @@ absl::Status Explain(const absl::Status& status, const std::string& name,
 
 absl::StatusOr<SlamConfiguration> LoadSlamConfiguration(
     const std::vector<std::string>& directories, const std::string& basename) {
-  const absl::Status readable =
-      TryInChildProcess([&] { ReadOrDie(directories, basename); });
-  if (!readable.ok()) return Explain(readable, basename, directories);
-  return ParseSlamConfiguration(directories, basename,
-                                ReadOrDie(directories, basename));
+  auto code = ReadFromDirectories(basename, directories);
+  if (code.status().code() == absl::StatusCode::kNotFound) {
+    // The host may have a folder of its own.
+    const absl::Status readable =
+        TryInChildProcess([&] { ReadOrDie(directories, basename); });
+    if (!readable.ok()) return Explain(readable, basename, directories);
+    code = ReadOrDie(directories, basename);
+  }
+  if (!code.ok()) return Explain(code.status(), basename, directories);
+  return ParseSlamConfiguration(directories, basename, *code);
 }
 
 absl::StatusOr<SlamConfiguration> ParseSlamConfiguration(
     const std::vector<std::string>& directories, const std::string& name,
     const std::string& code) {
-  absl::Status valid = CheckTypes(directories, name, code);
-  valid.Update(TryInChildProcess(
-      [&] { ConstructOrDie(ParseOrDie(directories, name, code)); }));
+  const auto table = Evaluate(directories, name, code);
+  if (!table.ok()) return Explain(table.status(), name, directories);
+  std::vector<std::string> warnings;
+  absl::Status valid = CheckValues(*table, &warnings);
   if (!valid.ok()) return Explain(valid, name, directories);
-  return ParseOrDie(directories, name, code);
+  // Restricted code is not run again by the host, which opens all libraries.
+  const std::string& host_code = IsLuaRestricted() ? ToLuaCode(*table) : code;
+  valid = TryInChildProcess(
+      [&] { ConstructOrDie(ParseOrDie(directories, name, host_code)); });
+  if (!valid.ok()) return Explain(Suggest(valid, *table), name, directories);
+  SlamConfiguration configuration = ParseOrDie(directories, name, host_code);
+  for (const std::string& warning : warnings) {
+    configuration.warnings.push_back(
+        absl::StrCat(name, ": ", InLuaFile(warning)));
+  }
+  return configuration;
 }
 
 }  // namespace evaluation

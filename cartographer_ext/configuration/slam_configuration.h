@@ -40,12 +40,15 @@ struct SlamConfiguration {
   cartographer::mapping::proto::TrajectoryBuilderOptions
       trajectory_builder_options;
   SensorSettings sensors;
+  // Values that hardly do what was meant.
+  std::vector<std::string> warnings;
 };
 
 // Reads `basename` and what it includes from the directories, the first that
 // has a file wins. Everything the host would end the program for becomes an
-// InvalidArgument error that names the file and the key; see fatal_guard.h for
-// what that asks of the caller.
+// error that names the file and the key, and so do values it could not work
+// with (option_ranges.h), code that does not end or takes too much memory, and
+// os.exit; see fatal_guard.h for what that asks of the caller.
 absl::StatusOr<SlamConfiguration> LoadSlamConfiguration(
     const std::vector<std::string>& directories, const std::string& basename);
 

@@ -143,6 +143,14 @@ class Runner {
       return absl::InvalidArgumentError(
           "no scan of the recording has a range within the limits");
     }
+    if (run_.local_scan_poses.empty()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "local SLAM used none of the ", run_.scans,
+          " scans, so there is no map: no range is within "
+          "TRAJECTORY_BUILDER_2D.min_range, max_range and min_z, max_z of ",
+          configuration_.name, ", or num_accumulated_range_data exceeds the "
+          "number of scans"));
+    }
     Optimize();
     CollectRecords();
     CollectPoses();

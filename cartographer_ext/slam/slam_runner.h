@@ -126,8 +126,8 @@ struct SlamRun : FedReadings {
   std::vector<std::string> warnings;
 };
 
-// Errors: the source's own, a recording without scans, IMU wanted but absent, a
-// map to start from that cannot be read.
+// Errors: the source's own, a recording without scans or of which local SLAM
+// used none, IMU wanted but absent, a map to start from that cannot be read.
 absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
                                 io::SensorSource* source,
                                 const SlamRunOptions& options);

@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <numeric>
 #include <system_error>
 
 #include "absl/strings/match.h"
@@ -19,8 +18,14 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/similar_word.h"
+#include "cartographer_ext/configuration/lua_value.h"
 #include "gflags/gflags.h"
 #include "glog/logging.h"
+
+DEFINE_bool(sandbox, false,
+            "Run the configuration without os, io and what else could touch "
+            "this computer: for files of unknown origin.");
 
 namespace cartographer_ext {
 namespace tools {
@@ -73,14 +78,24 @@ void KeepStandardOutput() {
   std::exit(kExitUsage);
 }
 
-// Flags defined in a *_main.cc, that is those of the command itself.
+bool IsKnown(const std::string& name) {
+  gflags::CommandLineFlagInfo info;
+  return gflags::GetCommandLineFlagInfo(name.c_str(), &info);
+}
+
+// Flags defined in a *_main.cc, that is those of the command itself, and where it
+// reads a configuration -sandbox.
 std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
+  const bool has_configuration = IsKnown("configuration_directory") ||
+                                 IsKnown("rerun_configuration_directory");
   flags.erase(std::remove_if(flags.begin(), flags.end(),
-                             [](const gflags::CommandLineFlagInfo& flag) {
+                             [&](const gflags::CommandLineFlagInfo& flag) {
                                return !absl::EndsWith(flag.filename,
-                                                      "_main.cc");
+                                                      "_main.cc") &&
+                                      !(has_configuration &&
+                                        flag.name == "sandbox");
                              }),
               flags.end());
   return flags;
@@ -124,33 +139,13 @@ void PrintWrapped(const std::string& text, const std::string& indent) {
   std::exit(ExitCode(absl::OkStatus()));
 }
 
-// Number of letters to change, add or drop to get from one word to the other.
-int EditDistance(const std::string& a, const std::string& b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = row[0];
-    row[0] = static_cast<int>(i);
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const int replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min(replaced, 1 + std::min(row[j - 1], row[j]));
-    }
-  }
-  return row[b.size()];
-}
-
 std::string Suggestion(const std::string& unknown) {
-  std::string best;
-  int best_distance = 1 + static_cast<int>(unknown.size()) / 3;
+  std::vector<std::string> names;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    const int distance = EditDistance(unknown, flag.name);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = flag.name;
-    }
+    names.push_back(flag.name);
   }
-  return best.empty() ? "" : absl::StrCat(", did you mean -", best, "?");
+  const std::string similar = SimilarWord(unknown, names);
+  return similar.empty() ? "" : absl::StrCat(", did you mean -", similar, "?");
 }
 
 void SetFlag(const std::string& name, const std::string& value) {
@@ -163,11 +158,6 @@ bool IsBool(const std::string& name) {
   gflags::CommandLineFlagInfo info;
   return gflags::GetCommandLineFlagInfo(name.c_str(), &info) &&
          info.type == "bool";
-}
-
-bool IsKnown(const std::string& name) {
-  gflags::CommandLineFlagInfo info;
-  return gflags::GetCommandLineFlagInfo(name.c_str(), &info);
 }
 
 // Whether writing one replaces the other. Devices and pipes are not replaced.
@@ -308,6 +298,7 @@ void CommandLine::Parse(const int argc, char** const argv) {
   if (gflags::GetCommandLineOption("json", &json) && json == "-") {
     KeepStandardOutput();
   }
+  evaluation::RestrictLua(FLAGS_sandbox);
   google::InitGoogleLogging(ProgramName().c_str());
 }
 
@@ -348,6 +339,10 @@ int UsageError(const std::string& message) {
   std::cerr << ProgramName() << ": " << message << "\n"
             << "Try " << ProgramName() << " -help\n";
   return kExitUsage;
+}
+
+void PrintNotes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
 }
 
 int ExitCode(const absl::Status& status) {

@@ -68,6 +68,9 @@ std::string BaseName(const std::string& path);
 // Prints the message and returns kExitUsage.
 int UsageError(const std::string& message);
 
+// On standard error, a line each.
+void PrintNotes(const std::vector<std::string>& notes);
+
 // kExitSuccess, or prints the message and returns kExitBadInput; that also when
 // standard output did not take what was printed (full, closed).
 int ExitCode(const absl::Status& status);

@@ -21,6 +21,7 @@
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/configuration/option_ranges.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/io/occupancy_map.h"
@@ -347,6 +348,7 @@ absl::Status Run(const std::string& command_line) {
   auto configuration = evaluation::LoadSlamConfiguration(
       directories, FLAGS_configuration_basename);
   if (!configuration.ok()) return configuration.status();
+  tools::PrintNotes(configuration->warnings);
   const absl::Status applied = ApplyFlags(&configuration->sensors);
   if (!applied.ok()) return applied;
   auto state = ReadStartingState();
@@ -357,9 +359,7 @@ absl::Status Run(const std::string& command_line) {
   // With the JSON on standard output nothing else may go there.
   std::ostream& out = FLAGS_json == "-" ? std::cerr : std::cout;
   PrintRecording((*source)->info(), out);
-  for (const std::string& warning : (*source)->info().warnings) {
-    std::cerr << "note: " << warning << "\n";
-  }
+  tools::PrintNotes((*source)->info().warnings);
 
   auto progress =
       std::make_unique<Progress>("mapping", (*source)->info().num_scans);
@@ -390,9 +390,7 @@ absl::Status Run(const std::string& command_line) {
         run.status().code(),
         absl::StrCat(FLAGS_input_filename, ": ", run.status().message()));
   }
-  for (const std::string& warning : run->warnings) {
-    std::cerr << "note: " << warning << "\n";
-  }
+  tools::PrintNotes(run->warnings);
   const absl::Status written = WriteResults(*run);
   if (!written.ok()) return written;
   out << evaluation::ToText(*run);
@@ -435,6 +433,11 @@ int main(int argc, char** argv) {
   if (FLAGS_num_background_threads < 0 || FLAGS_wrong_loops < 0) {
     return tools::UsageError(
         "-num_background_threads and -wrong_loops must not be negative");
+  }
+  if (FLAGS_num_background_threads > evaluation::kMaxBackgroundThreads) {
+    return tools::UsageError(
+        absl::StrCat("-num_background_threads must be at most ",
+                     evaluation::kMaxBackgroundThreads));
   }
   if (!FLAGS_initial_pose.empty() && FLAGS_load_state_filename.empty()) {
     return tools::UsageError("-initial_pose needs -load_state_filename");

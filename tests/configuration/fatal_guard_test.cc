@@ -53,6 +53,24 @@ TEST(FatalGuardTest, AnotherExitCodeIsAnErrorToo) {
   EXPECT_THAT(std::string(status.message()), testing::HasSubstr("7"));
 }
 
+TEST(FatalGuardTest, EndingTheProgramIsNoSuccess) {
+  const absl::Status status = TryInChildProcess([] { std::_Exit(0); });
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(status.message()), testing::HasSubstr("os.exit"));
+}
+
+TEST(FatalGuardTest, WorkThatDoesNotEndIsStopped) {
+  const absl::Status status = TryInChildProcess(
+      [] {
+        for (volatile int i = 0;; i = 1 - i) {
+        }
+      },
+      1);
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(status.message()),
+              testing::HasSubstr("more than 1 s"));
+}
+
 }  // namespace
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -73,8 +73,56 @@ TEST(LuaValueTest, UnsuitableResultsAreErrors) {
   EXPECT_THAT(ErrorOf("return { a = { 1, x = 2 } }"), HasSubstr("both names"));
   EXPECT_THAT(ErrorOf("return { a = { [true] = 1 } }"),
               HasSubstr("a has keys"));
-  EXPECT_THAT(ErrorOf("t = {} t.t = t return t"), HasSubstr("too deeply"));
-  EXPECT_THAT(ErrorOf("while true do end"), HasSubstr("does not end"));
+}
+
+TEST(LuaValueTest, BombsAreErrorsOfTheirOwnKind) {
+  const struct {
+    const char* code;
+    const char* hint;
+  } bombs[] = {
+      {"t = {} t.t = t return t", "contain itself"},
+      {"t = {} for i = 1, 40 do t = { x = t, y = t } end return t",
+       "too many values"},
+      {"while true do pcall(function() while true do end end) end",
+       "does not end"},
+      {"local t = {} for i = 1, 1e9 do t[i] = { i } end", "not enough memory"},
+      {"return string.rep('a', 1e9)", "not enough memory"},
+  };
+  for (const auto& bomb : bombs) {
+    const auto value = EvaluateLua(bomb.code, "test.lua", {});
+    EXPECT_EQ(value.status().code(), absl::StatusCode::kResourceExhausted)
+        << bomb.code;
+    EXPECT_THAT(std::string(value.status().message()), HasSubstr(bomb.hint));
+    EXPECT_LT(value.status().message().size(), 300u);
+  }
+}
+
+TEST(LuaValueTest, TheProgramIsNotEnded) {
+  EXPECT_THAT(ErrorOf("os.exit(0)"), HasSubstr("os.exit"));
+}
+
+TEST(LuaValueTest, RestrictedCodeSeesNoSystem) {
+  RestrictLua(true);
+  for (const char* const code :
+       {"return os.getenv('HOME')", "return io.open('/dev/null')",
+        "return dofile('/dev/null')", "return loadfile('/dev/null')",
+        "return require('x')", "return debug.getinfo(1)"}) {
+    EXPECT_THAT(ErrorOf(code), HasSubstr("nil value")) << code;
+  }
+  EXPECT_TRUE(EvaluateLua("return { math.rad(180.) }", "t", {}).ok());
+  RestrictLua(false);
+  EXPECT_TRUE(EvaluateLua("return { os.getenv('HOME') }", "t", {}).ok());
+}
+
+TEST(LuaValueTest, TablesReadBackFromTheirCode) {
+  const auto value = EvaluateLua(
+      "return { a = { 1, 2.5, 'x\\n\\r' }, ['b c'] = { d = true }, e = {}, "
+      "f = 1 / 0 }",
+      "t", {});
+  ASSERT_TRUE(value.ok()) << value.status();
+  const auto again = EvaluateLua(ToLuaCode(*value), "t", {});
+  ASSERT_TRUE(again.ok()) << again.status();
+  EXPECT_EQ(*again, *value);
 }
 
 TEST(LuaValueTest, WritesScalarsThatReadBack) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "cartographer_ext/configuration/lua_value.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -27,7 +28,7 @@ absl::StatusOr<SlamConfiguration> Parse(const std::string& changes,
 
 void ExpectError(const absl::StatusOr<SlamConfiguration>& configuration,
                  const std::string& hint) {
-  ASSERT_FALSE(configuration.ok());
+  ASSERT_FALSE(configuration.ok()) << hint;
   EXPECT_EQ(configuration.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(configuration.status().message()),
               HasSubstr("test.lua"));
@@ -115,6 +116,59 @@ TEST(SlamConfigurationTest, WhatTheHostWouldDieOfBecomesAnError) {
   ExpectError(Parse("", "sensors = { min_range = 2., max_range = 1. }"),
               "sensors.max_range");
   ExpectError(Parse("this is no Lua"), "");
+}
+
+TEST(SlamConfigurationTest, MisspeltStockKeysAreRecognised) {
+  ExpectError(Parse("POSE_GRAPH.constraint_builder.min_scoore = 0.5"),
+              "POSE_GRAPH.constraint_builder.min_scoore is not an option, did "
+              "you mean 'min_score'?");
+  ExpectError(Parse("TRAJECTORY_BUILDER_2D.max_rang = 3."),
+              "TRAJECTORY_BUILDER_2D.max_rang is not an option, did you mean "
+              "'max_range'?");
+  // What the renamed key misses is explained by the new name.
+  ExpectError(Parse("MAP_BUILDER.nun_background_threads = 4\n"
+                    "MAP_BUILDER.num_background_threads = nil"),
+              "did you mean 'num_background_threads'?");
+  ExpectError(Parse("POSE_GRAPH.zzz = 3"), "zzz");
+}
+
+TEST(SlamConfigurationTest, ValuesOutOfRangeNameTheKeyOfTheFile) {
+  ExpectError(Parse("TRAJECTORY_BUILDER_2D.max_range = -1"),
+              "TRAJECTORY_BUILDER_2D.max_range is -1, must be above 0");
+  ExpectError(Parse("POSE_GRAPH.constraint_builder.sampling_ratio = 0 / 0"),
+              "POSE_GRAPH.constraint_builder.sampling_ratio is not a number");
+  ExpectError(Parse("MAP_BUILDER.num_background_threads = 100000"),
+              "MAP_BUILDER.num_background_threads is 100000");
+  const auto odd = Parse("POSE_GRAPH.constraint_builder.min_score = 7");
+  ASSERT_TRUE(odd.ok()) << odd.status();
+  ASSERT_EQ(odd->warnings.size(), 1u);
+  EXPECT_THAT(odd->warnings[0],
+              HasSubstr("test.lua: POSE_GRAPH.constraint_builder.min_score is "
+                        "7, should be at least 0 and at most 1"));
+}
+
+TEST(SlamConfigurationTest, CodeThatHarmsIsRefused) {
+  ExpectError(Parse("os.exit(0)"), "os.exit");
+  ExpectError(Parse("pcall(os.exit, 0)"), "os.exit");
+  const auto itself = Parse("POSE_GRAPH.constraint_builder = POSE_GRAPH");
+  EXPECT_EQ(itself.status().code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(itself.status().message()),
+              HasSubstr("map_builder.pose_graph.constraint_builder"));
+}
+
+TEST(SlamConfigurationTest, RestrictedConfigurationsAreTheSame) {
+  const auto open = LoadSlamConfiguration({"configuration_files"}, "default.lua");
+  RestrictLua(true);
+  const auto restricted =
+      LoadSlamConfiguration({"configuration_files"}, "default.lua");
+  const auto harmful = Parse("HOME = os.getenv('HOME')");
+  RestrictLua(false);
+  ASSERT_TRUE(open.ok() && restricted.ok()) << restricted.status();
+  EXPECT_EQ(restricted->map_builder_options.SerializeAsString(),
+            open->map_builder_options.SerializeAsString());
+  EXPECT_EQ(restricted->trajectory_builder_options.SerializeAsString(),
+            open->trajectory_builder_options.SerializeAsString());
+  EXPECT_FALSE(harmful.ok());
 }
 
 TEST(SlamConfigurationTest, MissingFilesNameTheFolders) {

@@ -325,6 +325,17 @@ TEST_F(LuaTest, ImuWantedButAbsent) {
                 "use_imu_data");
 }
 
+TEST_F(LuaTest, ValuesThatGiveNoMap) {
+  const std::string local = head_ + "TRAJECTORY_BUILDER_2D.";
+  ExpectRefused(local + "min_range = 100." + tail_, "below max_range");
+  ExpectRefused(local + "submaps.grid_options_2d.resolution = 0" + tail_,
+                "TRAJECTORY_BUILDER_2D.submaps.grid_options_2d.resolution");
+  // Only the run shows that nothing is within these heights.
+  ExpectRefused(local + "min_z = 1." + tail_, "none of the 10 scans");
+}
+
+TEST_F(LuaTest, EndingTheProgram) { ExpectRefused("os.exit(0)", "os.exit"); }
+
 TEST_F(LuaTest, MissingFile) {
   WriteRoomLog(folder_ / "room.clf", 10);
   const CommandResult result =
