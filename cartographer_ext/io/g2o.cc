@@ -15,6 +15,8 @@ namespace io {
 namespace {
 
 constexpr size_t kMaxElements = 50000000;
+// Sums of chi-square stay finite.
+constexpr double kMaxInformation = 1e100;
 
 // Collects the elements; references are checked at the end, as the order of the
 // lines is free.
@@ -60,9 +62,9 @@ absl::Status At(const std::string& filename, int64_t line,
 }
 
 bool ParsePose(Tokens* tokens, Pose2* pose) {
-  if (!ParseFinite(tokens->Next(), &pose->x) ||
-      !ParseFinite(tokens->Next(), &pose->y) ||
-      !ParseFinite(tokens->Next(), &pose->theta)) {
+  if (!ParseCoordinate(tokens->Next(), &pose->x) ||
+      !ParseCoordinate(tokens->Next(), &pose->y) ||
+      !ParseCoordinate(tokens->Next(), &pose->theta)) {
     return false;
   }
   pose->theta = NormalizeAngle(pose->theta);
@@ -76,7 +78,7 @@ absl::Status G2oParser::ParseVertex(Tokens* tokens) {
     return Malformed("the id of the vertex is no integer");
   }
   if (!ParsePose(tokens, &pose)) {
-    return Malformed("a vertex needs three finite numbers x y theta");
+    return Malformed("a vertex needs three finite numbers up to 1e9, x y theta");
   }
   if (!graph.vertices.emplace(id, pose).second) {
     return Malformed(absl::StrCat("vertex ", id, " was defined before"));
@@ -92,14 +94,15 @@ absl::Status G2oParser::ParseEdge(Tokens* tokens, int64_t line_number) {
     return Malformed("the ids of the edge are no integers");
   }
   if (!ParsePose(tokens, &edge.measurement)) {
-    return Malformed("an edge needs three finite numbers dx dy dtheta");
+    return Malformed("an edge needs three finite numbers up to 1e9, dx dy dtheta");
   }
   for (int row = 0; row < 3; ++row) {
     for (int column = row; column < 3; ++column) {
       double value;
-      if (!ParseFinite(tokens->Next(), &value)) {
+      if (!ParseFinite(tokens->Next(), &value) ||
+          std::abs(value) > kMaxInformation) {
         return Malformed(
-            "an edge needs six finite numbers I11 I12 I13 I22 I23 I33");
+            "an edge needs six finite numbers up to 1e100, I11 I12 I13 I22 I23 I33");
       }
       edge.information(row, column) = edge.information(column, row) = value;
     }

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <exception>
@@ -13,17 +14,45 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "boost/iostreams/concepts.hpp"
 #include "boost/iostreams/device/file.hpp"
 #include "boost/iostreams/filter/bzip2.hpp"
 #include "boost/iostreams/filter/gzip.hpp"
 #include "boost/iostreams/filter/lzma.hpp"
 #include "boost/iostreams/filtering_streambuf.hpp"
+#include "boost/iostreams/read.hpp"
 
 namespace cartographer_ext {
 namespace io {
 namespace {
 
 constexpr size_t kReadSize = 1 << 16;
+constexpr int64_t kFreeExpansion = 64 << 20;  // bytes
+
+std::atomic<int64_t> max_expansion{50};
+
+class ExpandsTooMuch : public std::exception {
+ public:
+  const char* what() const noexcept override { return "expands too much"; }
+};
+
+// Behind a decompressor: ends the reading after `limit` bytes.
+class ExpansionLimit : public boost::iostreams::multichar_input_filter {
+ public:
+  explicit ExpansionLimit(const int64_t limit) : left_(limit) {}
+
+  template <typename Source>
+  std::streamsize read(Source& source, char* const to,
+                       const std::streamsize size) {
+    const std::streamsize count = boost::iostreams::read(source, to, size);
+    left_ -= std::max<std::streamsize>(0, count);
+    if (left_ < 0) throw ExpandsTooMuch();
+    return count;
+  }
+
+ private:
+  int64_t left_;
+};
 
 // Up to `size` bytes; exceptions of the decompressors become errors.
 absl::StatusOr<size_t> ReadSome(std::streambuf* content, char* to, size_t size,
@@ -31,6 +60,10 @@ absl::StatusOr<size_t> ReadSome(std::streambuf* content, char* to, size_t size,
   try {
     return static_cast<size_t>(
         std::max<std::streamsize>(0, content->sgetn(to, size)));
+  } catch (const ExpandsTooMuch&) {
+    return absl::ResourceExhaustedError(absl::StrCat(
+        filename, ": expands to more than ", max_expansion.load(),
+        " times its size; -max_expansion allows more"));
   } catch (const std::exception& exception) {
     return absl::DataLossError(
         absl::StrCat(filename, ": compressed data is damaged or truncated (",
@@ -39,6 +72,8 @@ absl::StatusOr<size_t> ReadSome(std::streambuf* content, char* to, size_t size,
 }
 
 }  // namespace
+
+void SetMaxExpansion(const int64_t factor) { max_expansion = factor; }
 
 absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
     const std::string& filename) {
@@ -63,13 +98,19 @@ absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
   try {
     std::unique_ptr<streams::filtering_istreambuf> result(
         new streams::filtering_istreambuf);
+    const ExpansionLimit limit(kFreeExpansion + max_expansion.load() *
+                                                    std::max<int64_t>(
+                                                        1, info.st_size));
     if (absl::StartsWith(head, "\x1f\x8b")) {
+      result->push(limit, kReadSize);
       result->push(streams::gzip_decompressor(), kReadSize);
     } else if (absl::StartsWith(head, "BZh")) {
+      result->push(limit, kReadSize);
       result->push(streams::bzip2_decompressor(), kReadSize);
     } else if (head == absl::string_view("\xfd"
                                          "7zXZ\0",
                                          6)) {
+      result->push(limit, kReadSize);
       result->push(streams::lzma_decompressor(), kReadSize);
     }
     result->push(streams::file_source(filename, std::ios::binary), kReadSize);
@@ -112,6 +153,7 @@ absl::Status LineReader::Fill() {
 
 absl::StatusOr<bool> LineReader::Next(absl::string_view* line) {
   truncated_ = false;
+  size_t skipped = 0;   // Bytes of the line that were dropped.
   size_t searched = 0;  // Bytes behind `begin_` known to hold no line end.
   while (true) {
     const char* const begin = buffer_.data() + begin_;
@@ -134,6 +176,12 @@ absl::StatusOr<bool> LineReader::Next(absl::string_view* line) {
     searched = end_ - begin_;
     if (searched > kMaxLineLength) {
       truncated_ = true;
+      skipped += searched - kMaxLineLength;
+      if (skipped > kMaxSkippedLength) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(filename_, ":", line_number_ + 1, ": a line of more than ",
+                         kMaxSkippedLength >> 20, " MB; this is no text file"));
+      }
       end_ = begin_ + kMaxLineLength;
       searched = kMaxLineLength;
     }

@@ -21,6 +21,11 @@
 namespace cartographer_ext {
 namespace io {
 
+// Bytes that a byte of a compressed file may expand to, in the mean and after
+// the first 64 MB; logs expand 3 to 30 times, bombs a thousand. For all files
+// that are opened from now on; above 0.
+void SetMaxExpansion(int64_t factor);
+
 // Decompressed content of `filename`; reading the stream buffer may throw on
 // damaged compressed data, so use LineReader or ReadFile where possible.
 absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
@@ -30,13 +35,16 @@ class LineReader {
  public:
   // Longer lines are cut off there; `truncated` is set.
   static constexpr size_t kMaxLineLength = 1 << 20;
+  // What is longer is no text but a device that never ends.
+  static constexpr size_t kMaxSkippedLength = 64 << 20;
 
   static absl::StatusOr<std::unique_ptr<LineReader>> Open(
       const std::string& filename);
 
   // False at the end of the file. The view lives until the next call; line
-  // ends (LF or CR LF) are stripped. Damaged or truncated compressed data and
-  // read errors are errors naming the file.
+  // ends (LF or CR LF) are stripped. Damaged or truncated compressed data, data
+  // that expand too much, lines beyond kMaxSkippedLength and read errors are
+  // errors naming the file.
   absl::StatusOr<bool> Next(absl::string_view* line);
 
   // Of the line last returned, from 1.

@@ -22,9 +22,9 @@ absl::Status ParseLine(Tokens* tokens, StampedRelation* relation) {
   }
   std::array<double, 6> values;
   for (double& value : values) {
-    if (!ParseFinite(tokens->Next(), &value)) {
+    if (!ParseCoordinate(tokens->Next(), &value)) {
       return absl::InvalidArgumentError(
-          "expected finite numbers: t1 t2 x y z roll pitch yaw");
+          "expected numbers up to 1e9: t1 t2 x y z roll pitch yaw");
     }
   }
   if (tokens->More()) return absl::InvalidArgumentError("too many words");

@@ -15,6 +15,7 @@ namespace io {
 namespace {
 
 constexpr double kMaxSeconds = 9e9;
+constexpr double kMaxCoordinate = 1e9;
 
 inline bool IsBlank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -95,6 +96,10 @@ bool ParseDouble(absl::string_view token, double* value) {
 
 bool ParseFinite(absl::string_view token, double* value) {
   return ParseDouble(token, value) && std::isfinite(*value);
+}
+
+bool ParseCoordinate(absl::string_view token, double* value) {
+  return ParseFinite(token, value) && std::abs(*value) <= kMaxCoordinate;
 }
 
 bool ParseInt(absl::string_view token, int64_t* value) {

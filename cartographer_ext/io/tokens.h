@@ -34,6 +34,9 @@ class Tokens {
 bool ParseDouble(absl::string_view token, double* value);
 // The same, but only finite numbers.
 bool ParseFinite(absl::string_view token, double* value);
+// The same, but only what sums and squares of metres, seconds and radians can
+// bear: up to 1e9 either way.
+bool ParseCoordinate(absl::string_view token, double* value);
 bool ParseInt(absl::string_view token, int64_t* value);
 
 // Seconds as decimal text, to the nanosecond (a double keeps only about 100 ns

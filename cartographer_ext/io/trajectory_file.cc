@@ -24,9 +24,9 @@ absl::Status ParseLine(Tokens* tokens, StampedPose* stamped) {
   }
   std::array<double, 7> values;
   for (double& value : values) {
-    if (!ParseFinite(tokens->Next(), &value)) {
+    if (!ParseCoordinate(tokens->Next(), &value)) {
       return absl::InvalidArgumentError(
-          "expected finite numbers: timestamp tx ty tz qx qy qz qw");
+          "expected numbers up to 1e9: timestamp tx ty tz qx qy qz qw");
     }
   }
   if (tokens->More()) return absl::InvalidArgumentError("too many words");

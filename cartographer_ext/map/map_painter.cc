@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 #include "absl/strings/str_format.h"
@@ -20,6 +21,10 @@ constexpr int kMaxCellValue = 32767;
 // Marks a cell that was touched in the current update; never meant for files.
 constexpr int kUpdateMarker = 1 << 15;
 constexpr double kMaxCells = 4e8;
+// Of a map with little in it: submaps that lie far apart would make a small file
+// take gigabytes. A thin corridor across the diagonal knows a fiftieth of it.
+constexpr double kFreeCells = 1.6e7;
+constexpr double kMaxCellsPerKnown = 64.;
 constexpr float kSurface = 0.9f;
 constexpr float kFree = 0.1f;
 
@@ -32,22 +37,24 @@ bool Decode(const int cell, const double lower, const double upper,
   return true;
 }
 
-// The known cells as corners in the map frame.
-void AddKnownCells(const PlacedGrid& placed, io::PictureBounds* bounds) {
+// The known cells as corners in the map frame. Returns their number.
+int64_t AddKnownCells(const PlacedGrid& placed, io::PictureBounds* bounds) {
   const auto& limits = placed.grid->limits();
   const int num_x = limits.cell_limits().num_x_cells();
   const int num_y = limits.cell_limits().num_y_cells();
   int min_x = num_x, max_x = -1, min_y = num_y, max_y = -1;
+  int64_t known = 0;
   for (int iy = 0; iy < num_y; ++iy) {
     for (int ix = 0; ix < num_x; ++ix) {
       if (std::isnan(Occupancy(*placed.grid, ix, iy))) continue;
+      ++known;
       min_x = std::min(min_x, ix);
       max_x = std::max(max_x, ix);
       min_y = std::min(min_y, iy);
       max_y = std::max(max_y, iy);
     }
   }
-  if (max_x < 0) return;
+  if (max_x < 0) return 0;
   // Cell ix runs against the y axis, iy against the x axis.
   const double resolution = limits.resolution();
   for (const int iy : {min_y, max_y + 1}) {
@@ -57,6 +64,7 @@ void AddKnownCells(const PlacedGrid& placed, io::PictureBounds* bounds) {
                                   limits.max().y() - resolution * ix));
     }
   }
+  return known;
 }
 
 float LogOdds(const float probability) {
@@ -157,10 +165,12 @@ absl::StatusOr<io::OccupancyMap> PaintMap(const std::vector<PlacedGrid>& grids,
         absl::StrFormat("resolution %g is not above 0", resolution));
   }
   io::PictureBounds bounds;
+  double known = 0.;  // in cells of the map
   for (const PlacedGrid& placed : grids) {
     const absl::Status status = CheckGrid(*placed.grid);
     if (!status.ok()) return status;
-    AddKnownCells(placed, &bounds);
+    known += static_cast<double>(AddKnownCells(placed, &bounds)) *
+             std::pow(placed.grid->limits().resolution() / resolution, 2);
   }
   if (bounds.min_x > bounds.max_x) {
     return absl::InvalidArgumentError("no submap has a known cell");
@@ -174,6 +184,13 @@ absl::StatusOr<io::OccupancyMap> PaintMap(const std::vector<PlacedGrid>& grids,
         absl::StrFormat("the map would have %.0f x %.0f cells of %g m, more "
                         "than %g in all: use a coarser resolution",
                         width, height, resolution, kMaxCells));
+  }
+  if (width * height > kFreeCells + kMaxCellsPerKnown * known) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("the map would have %.0f x %.0f cells of %g m, of which "
+                        "only %.0f are known: submaps lie too far apart, or use "
+                        "a coarser resolution",
+                        width, height, resolution, known));
   }
   io::OccupancyMap map =
       io::OccupancyMap::Make(std::max(1, static_cast<int>(width)),

@@ -35,7 +35,7 @@ float Occupancy(const cartographer::mapping::proto::Grid2D& grid, int ix,
 absl::Status CheckGrid(const cartographer::mapping::proto::Grid2D& grid);
 
 // Metres a cell. An error when nothing is known or the map would need more than
-// 4e8 cells. The map's edges lie on multiples of the resolution.
+// 4e8 cells, or 64 times as many as are known and 1.6e7. The map's edges lie on multiples of the resolution.
 absl::StatusOr<io::OccupancyMap> PaintMap(const std::vector<PlacedGrid>& grids,
                                           double resolution);
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include <system_error>
 
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
@@ -20,9 +22,12 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/lua_value.h"
+#include "cartographer_ext/io/line_reader.h"
 #include "gflags/gflags.h"
 #include "glog/logging.h"
 
+DEFINE_int32(max_expansion, 50,
+             "How many times its size a compressed input may expand to.");
 DEFINE_bool(sandbox, false,
             "Run the configuration without os, io and what else could touch "
             "this computer: for files of unknown origin.");
@@ -83,8 +88,8 @@ bool IsKnown(const std::string& name) {
   return gflags::GetCommandLineFlagInfo(name.c_str(), &info);
 }
 
-// Flags defined in a *_main.cc, that is those of the command itself, and where it
-// reads a configuration -sandbox.
+// Flags defined in a *_main.cc, that is those of the command itself, and those
+// here; -sandbox where there is a configuration.
 std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
@@ -94,6 +99,7 @@ std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
                              [&](const gflags::CommandLineFlagInfo& flag) {
                                return !absl::EndsWith(flag.filename,
                                                       "_main.cc") &&
+                                      flag.name != "max_expansion" &&
                                       !(has_configuration &&
                                         flag.name == "sandbox");
                              }),
@@ -148,7 +154,25 @@ std::string Suggestion(const std::string& unknown) {
   return similar.empty() ? "" : absl::StrCat(", did you mean -", similar, "?");
 }
 
+// No flag means something by a number that is none, and only those whose default
+// is negative by one below 0.
+bool IsSensible(const std::string& name, const std::string& value) {
+  gflags::CommandLineFlagInfo info;
+  double number = 0., default_number = 0.;
+  if (!gflags::GetCommandLineFlagInfo(name.c_str(), &info) ||
+      info.type == "string" || info.type == "bool" ||
+      !absl::SimpleAtod(value, &number) ||
+      !absl::SimpleAtod(info.default_value, &default_number)) {
+    return true;
+  }
+  return number >= 0. || (!std::isnan(number) && default_number < 0.);
+}
+
 void SetFlag(const std::string& name, const std::string& value) {
+  if (!IsSensible(name, value)) {
+    ExitWithUsageError(
+        absl::StrCat("-", name, " is \"", value, "\", must be a number >= 0"));
+  }
   if (gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
     ExitWithUsageError(absl::StrCat("-", name, " cannot be \"", value, "\""));
   }
@@ -298,6 +322,10 @@ void CommandLine::Parse(const int argc, char** const argv) {
   if (gflags::GetCommandLineOption("json", &json) && json == "-") {
     KeepStandardOutput();
   }
+  if (FLAGS_max_expansion < 1) {
+    ExitWithUsageError("-max_expansion must be at least 1");
+  }
+  io::SetMaxExpansion(FLAGS_max_expansion);
   evaluation::RestrictLua(FLAGS_sandbox);
   google::InitGoogleLogging(ProgramName().c_str());
 }

@@ -41,7 +41,40 @@ double Number(const nlohmann::json& json, const char* const key) {
   return found != json.end() && found->is_number() ? found->get<double>() : 0.;
 }
 
+// A line has the run, its values or metrics, and scalars. Deeper structures take
+// a stack as deep as they are once they exist, so they never do.
+nlohmann::json ParseLine(const std::string& content, const size_t begin,
+                         const size_t end) {
+  constexpr int kMaxDepth = 3;
+  bool is_too_deep = false;
+  auto json = nlohmann::json::parse(
+      content.begin() + static_cast<ptrdiff_t>(begin),
+      content.begin() + static_cast<ptrdiff_t>(end),
+      [&is_too_deep](const int depth, nlohmann::json::parse_event_t,
+                     nlohmann::json&) {
+        if (depth > kMaxDepth) is_too_deep = true;
+        return !is_too_deep;
+      },
+      false);
+  return is_too_deep ? nlohmann::json() : json;
+}
+
 }  // namespace
+
+void TakeAnswer(const nlohmann::json& answer, RunRecord* const record) {
+  record->ok = answer.value("ok", false);
+  record->killed = answer.value("killed", false);
+  record->message = answer.value("message", "");
+  record->wall_seconds = answer.value("wall_seconds", 0.);
+  record->cpu_seconds = answer.value("cpu_seconds", 0.);
+  record->metrics.clear();
+  if (!record->ok) return;
+  for (const auto& item : answer["metrics"].items()) {
+    if (item.value().is_number()) {
+      record->metrics[item.key()] = item.value().get<double>();
+    }
+  }
+}
 
 std::string RunKey(const RunRecord& record) {
   // Fidelities are a handful of fractions.
@@ -58,6 +91,7 @@ nlohmann::ordered_json ToJson(const RunRecord& record) {
   json["fidelity"] = record.fidelity;
   json["status"] = record.ok ? "ok" : "failed";
   if (!record.ok) json["message"] = record.message;
+  if (record.killed) json["killed"] = true;
   json["metrics"] = record.metrics;
   json["wall_seconds"] = record.wall_seconds;
   json["cpu_seconds"] = record.cpu_seconds;
@@ -81,6 +115,7 @@ absl::StatusOr<RunRecord> RunFromJson(const nlohmann::json& json) {
   record.input = json["input"].get<std::string>();
   record.fidelity = json["fidelity"].get<double>();
   record.ok = json["status"] == "ok";
+  record.killed = json.contains("killed") && json["killed"] == true;
   if (json.contains("message") && json["message"].is_string()) {
     record.message = json["message"].get<std::string>();
   }
@@ -143,9 +178,7 @@ absl::Status Journal::ReadAll(const std::string& fingerprint) {
   int line_number = 0;
   for (size_t begin = 0; begin < whole;) {
     const size_t end = content.find('\n', begin);
-    const auto json = nlohmann::json::parse(
-        content.begin() + static_cast<ptrdiff_t>(begin),
-        content.begin() + static_cast<ptrdiff_t>(end), nullptr, false);
+    const auto json = ParseLine(content, begin, end);
     ++line_number;
     begin = end + 1;
     if (line_number == 1) {

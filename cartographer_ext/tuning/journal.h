@@ -33,11 +33,17 @@ struct RunRecord {
 
   // What came out.
   bool ok = false;
+  // Ended from outside (out of memory, a scheduler): says nothing about the
+  // configuration, so that a search that goes on tries it again.
+  bool killed = false;
   std::string message;                    // why not
   std::map<std::string, double> metrics;  // relations, ate, cpu_seconds, ...
   double wall_seconds = 0.;
   double cpu_seconds = 0.;
 };
+
+// Fills in what came out from the answer of a worker.
+void TakeAnswer(const nlohmann::json& answer, RunRecord* record);
 
 // Identifies the run among all of a journal.
 std::string RunKey(const RunRecord& record);

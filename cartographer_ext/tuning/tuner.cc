@@ -17,6 +17,8 @@ namespace cartographer_ext {
 namespace tuning {
 namespace {
 
+// Of a run that something else ended.
+constexpr int kMaxRetries = 2;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kWaitSeconds = 0.2;
 // Of the time of a search, what is left for pruning.
@@ -58,6 +60,7 @@ Tuner::Tuner(TuneProblem problem, const TunerOptions& options,
       journal_(journal),
       start_(Now()) {
   for (const RunRecord& record : journal_->runs()) {
+    if (record.killed) continue;
     KnownRun& run = runs_[RunKey(record)];
     run.record = record;
     run.finished = true;
@@ -168,19 +171,12 @@ absl::Status Tuner::Pump() {
   if (found == running_.end()) return absl::OkStatus();
   KnownRun& run = runs_.at(found->second);
   running_.erase(found);
-  run.finished = true;
-  const nlohmann::json& answer = result->answer;
-  run.record.ok = answer.value("ok", false);
-  run.record.message = answer.value("message", "");
-  run.record.wall_seconds = answer.value("wall_seconds", 0.);
-  run.record.cpu_seconds = answer.value("cpu_seconds", 0.);
-  if (run.record.ok) {
-    for (const auto& item : answer["metrics"].items()) {
-      if (item.value().is_number()) {
-        run.record.metrics[item.key()] = item.value().get<double>();
-      }
-    }
+  TakeAnswer(result->answer, &run.record);
+  if (run.record.killed && ++run.kills <= kMaxRetries) {
+    queue_.push_back(RunKey(run.record));
+    return absl::OkStatus();
   }
+  run.finished = true;
   ++result_.num_runs;
   result_.cpu_seconds += run.record.cpu_seconds;
   return journal_->Append(run.record);

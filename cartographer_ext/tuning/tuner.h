@@ -191,6 +191,7 @@ class Tuner {
     RunRecord record;
     size_t input = 0;
     bool finished = false;
+    int kills = 0;  // times that it was ended from outside
   };
   std::map<std::string, KnownRun> runs_;  // by RunKey
   std::deque<std::string> queue_;         // keys of runs to start

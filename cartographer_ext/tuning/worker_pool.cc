@@ -73,11 +73,13 @@ std::string TellingLine(const std::string& messages) {
   return telling;
 }
 
-std::string HowItEnded(const int state, const std::string& messages) {
+std::string HowItEnded(const int state, const bool was_killed,
+                       const std::string& messages) {
   std::string text = "it ended without an answer";
   if (WIFSIGNALED(state)) {
-    text = WTERMSIG(state) == SIGXCPU || WTERMSIG(state) == SIGKILL
-               ? "it was ended (limit of CPU time or memory)"
+    text = was_killed ? "it was ended from outside (out of memory?)"
+           : WTERMSIG(state) == SIGXCPU || WTERMSIG(state) == SIGKILL
+               ? "it was ended (limit of CPU time)"
                : absl::StrCat("it crashed: ", strsignal(WTERMSIG(state)));
   } else if (WEXITSTATUS(state) != 0) {
     text = absl::StrCat("it ended with code ", WEXITSTATUS(state));
@@ -178,12 +180,20 @@ absl::optional<WorkerResult> LocalWorkerPool::Reap() {
     result.id = child.id;
     result.answer = nlohmann::json::parse(ReadFromStart(child.answer), nullptr,
                                           /*allow_exceptions=*/false);
+    const double cpu_seconds =
+        Seconds(usage.ru_utime) + Seconds(usage.ru_stime);
     if (!result.answer.is_object() || !result.answer.contains("ok")) {
-      result.answer = Failure(HowItEnded(state, ReadFromStart(child.messages)));
+      // The limit of CPU time ends a run with SIGXCPU, then with SIGKILL.
+      const bool was_killed =
+          WIFSIGNALED(state) &&
+          (WTERMSIG(state) == SIGKILL || WTERMSIG(state) == SIGTERM) &&
+          !(max_cpu_seconds_ > 0. && cpu_seconds >= max_cpu_seconds_);
+      result.answer = Failure(
+          HowItEnded(state, was_killed, ReadFromStart(child.messages)));
+      if (was_killed) result.answer["killed"] = true;
     }
     result.answer["wall_seconds"] = Now() - child.start;
-    result.answer["cpu_seconds"] =
-        Seconds(usage.ru_utime) + Seconds(usage.ru_stime);
+    result.answer["cpu_seconds"] = cpu_seconds;
     close(child.answer);
     close(child.messages);
     return result;

@@ -114,9 +114,13 @@ TEST(G2oTest, ErrorsNameTheLine) {
   EXPECT_THAT(ErrorOf(vertices + "VERTEX_SE2 1 2 2 2\n"),
               HasSubstr(":3: vertex 1 was defined before"));
   EXPECT_THAT(ErrorOf(vertices + "EDGE_SE2 0 1 nan 0 0 1 0 0 1 0 1\n"),
-              HasSubstr(":3: an edge needs three finite numbers"));
+              HasSubstr(":3: an edge needs three finite numbers up to 1e9"));
+  EXPECT_THAT(ErrorOf(vertices + "EDGE_SE2 0 1 1e308 0 0 1 0 0 1 0 1\n"),
+              HasSubstr(":3: an edge needs three finite numbers up to 1e9"));
+  EXPECT_THAT(ErrorOf(vertices + "EDGE_SE2 0 1 1 0 0 1e308 0 0 1 0 1\n"),
+              HasSubstr(":3: an edge needs six finite numbers up to 1e100"));
   EXPECT_THAT(ErrorOf(vertices + "EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"),
-              HasSubstr(":3: an edge needs six finite numbers"));
+              HasSubstr(":3: an edge needs six finite numbers up to 1e100"));
   for (const char* information :
        {"0 0 0 1 0 1", "1 0 0 -1 0 1", "1 2 0 1 0 1", "1 0 0 1 0 0"}) {
     EXPECT_THAT(ErrorOf(vertices + "EDGE_SE2 0 1 1 0 0 " + information),

@@ -118,6 +118,24 @@ TEST_P(CompressedTest, SurvivesMutations) {
   });
 }
 
+TEST_P(CompressedTest, BombsEnd) {
+  // 80 MB of a few KB.
+  test::TemporaryFile file(".txt");
+  test::WriteBytes(file.path(),
+                   Compress(std::string(80 << 20, '\n'), GetParam()));
+  auto reader = LineReader::Open(file.path());
+  ASSERT_TRUE(reader.ok());
+  absl::string_view line;
+  absl::StatusOr<bool> more = true;
+  while (more.ok() && *more) more = (*reader)->Next(&line);
+  EXPECT_EQ(more.status().code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(more.status().message()),
+              HasSubstr(file.path() + ": expands to more than 50 times"));
+  SetMaxExpansion(1 << 20);
+  EXPECT_EQ(ReadFile(file.path(), 81 << 20)->size(), size_t{80 << 20});
+  SetMaxExpansion(50);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, CompressedTest,
                          ::testing::Values("gz", "bz2", "xz"));
 
@@ -127,6 +145,13 @@ TEST(LineReaderTest, ReadFileIsBounded) {
   EXPECT_EQ(ReadFile(file.path(), 1 << 20)->size(), size_t{1} << 20);
   EXPECT_EQ(ReadFile(file.path(), 100).status().code(),
             absl::StatusCode::kOutOfRange);
+}
+
+TEST(LineReaderTest, DevicesAreNotReadForEver) {
+  const auto lines = Lines("/dev/zero");
+  EXPECT_EQ(lines.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(lines.status().message()),
+              HasSubstr("/dev/zero:1: a line of more than 64 MB"));
 }
 
 TEST(LineReaderTest, MissingFileAndFolder) {

@@ -64,6 +64,10 @@ TEST(TokensTest, ParsesSpecialNumbers) {
   EXPECT_FALSE(ParseFinite("inf", &value));
   EXPECT_FALSE(ParseFinite("nan", &value));
   EXPECT_TRUE(ParseFinite("0", &value));
+  EXPECT_TRUE(ParseCoordinate("-1e9", &value));
+  EXPECT_FALSE(ParseCoordinate("1.1e9", &value));
+  EXPECT_FALSE(ParseCoordinate("-1e308", &value));
+  EXPECT_FALSE(ParseCoordinate("nan", &value));
 }
 
 TEST(TokensTest, ParsesTimesToTheNanosecond) {

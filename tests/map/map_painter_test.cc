@@ -122,6 +122,20 @@ TEST(MapPainterTest, ChecksTheBoundsOfTheCosts) {
   EXPECT_TRUE(CheckGrid(SmallGrid()).ok());
 }
 
+TEST(MapPainterTest, TheMapOfFarSubmapsIsRefused) {
+  Grid2D grid = SmallGrid();
+  for (int i = 0; i < 6; ++i) grid.set_cells(i, 1);
+  const auto paint = [&](const double distance) {
+    return PaintMap({{&grid, Pose2()}, {&grid, Pose2(distance, distance, 0.)}},
+                    1.)
+        .status();
+  };
+  EXPECT_TRUE(paint(1000.).ok());
+  // 2.5e7 cells for the sake of 12.
+  EXPECT_THAT(std::string(paint(5000.).message()),
+              testing::HasSubstr("submaps lie too far apart"));
+}
+
 }  // namespace
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -14,6 +14,8 @@
 
 DEFINE_string(test_name, "", "A word.");
 DEFINE_int32(test_number, 3, "A number.");
+DEFINE_int32(test_index, -1, "A number, -1 for all.");
+DEFINE_double(test_length, 1., "A length.");
 DEFINE_bool(test_switch, true, "On or off.");
 
 namespace cartographer_ext {
@@ -58,7 +60,7 @@ void ParseAndFail(const std::vector<std::string>& arguments,
 TEST(CommandLineTest, TakesFlagsInAllForms) {
   ParseAndCheck({}, "", 3, true);
   ParseAndCheck({"-test_name", "x", "--test_number", "4"}, "x", 4, true);
-  ParseAndCheck({"--test_name=a=b", "-test_number=-5"}, "a=b", -5, true);
+  ParseAndCheck({"--test_name=a=b", "-test_number=5"}, "a=b", 5, true);
   ParseAndCheck({"-notest_switch"}, "", 3, false);
   ParseAndCheck({"--test_switch=false"}, "", 3, false);
   ParseAndCheck({"-test_switch", "-test_name", "-json"}, "-json", 3, true);
@@ -71,6 +73,15 @@ TEST(CommandLineTest, RefusesWhatItDoesNotKnow) {
   ParseAndFail({"-"}, "what is \"-\"");
   ParseAndFail({"-test_number", "many"}, "-test_number cannot be \"many\"");
   ParseAndFail({"-test_number"}, "-test_number needs a value");
+}
+
+TEST(CommandLineTest, RefusesNumbersThatMeanNothing) {
+  ParseAndFail({"-test_length", "nan"}, "-test_length is \"nan\", must be");
+  ParseAndFail({"-test_length=-0.5"}, "-test_length is \"-0.5\", must be");
+  ParseAndFail({"-test_number", "-5"}, "-test_number is \"-5\", must be");
+  ParseAndFail({"-max_expansion", "0"}, "-max_expansion must be at least 1");
+  // Its default is below 0.
+  ParseAndCheck({"-test_index", "-2", "-test_length", "inf"}, "", 3, true);
 }
 
 TEST(CommandLineTest, TakesTheInputWithoutItsFlag) {

@@ -94,6 +94,12 @@ TEST(JournalTest, RefusesWhatIsNoJournalOfThisSearch) {
   EXPECT_THAT(error(header + "{\"values\":{},\"input\":3,\"fidelity\":1,"
                              "\"status\":\"ok\",\"metrics\":{}}\n"),
               HasSubstr("line 2: not a run"));
+  // Deep enough to overflow a stack.
+  EXPECT_THAT(error(header + "{\"values\":{\"a\":" +
+                    std::string(1000000, '[') + std::string(1000000, ']') +
+                    "},\"input\":\"a\",\"fidelity\":1,"
+                    "\"status\":\"ok\",\"metrics\":{}}\n"),
+              HasSubstr("line 2: not a run"));
   EXPECT_FALSE(Journal::Open(folder.path(), "f").ok());  // a folder
   EXPECT_THAT(std::string(Journal::Open("/dev/null", "f").status().message()),
               HasSubstr("not a plain file"));

@@ -56,6 +56,12 @@ class FakePool : public WorkerPool {
         random_.UniformInt(0, static_cast<int64_t>(runs_.size()) - 1));
     const auto run = runs_[index];
     runs_.erase(runs_.begin() + static_cast<ptrdiff_t>(index));
+    if (kills > 0) {
+      --kills;
+      nlohmann::json answer = Failure("killed");
+      answer["killed"] = true;
+      return WorkerResult{run.first, answer};
+    }
     return WorkerResult{run.first, Answer(run.second)};
   }
 
@@ -67,6 +73,7 @@ class FakePool : public WorkerPool {
   int started = 0;
   int hang_after = 0;
   double fail_below_score = 0.;
+  int kills = 0;  // of the next runs
 
  private:
   nlohmann::json Answer(const nlohmann::json& request) const {
@@ -133,6 +140,7 @@ struct Case {
   std::string journal;
   std::vector<std::string> inputs = {"a", "b"};
   int* started = nullptr;
+  int kills = 0;
 };
 
 absl::StatusOr<TuneResult> Tune(const Case& c) {
@@ -150,6 +158,7 @@ absl::StatusOr<TuneResult> Tune(const Case& c) {
   FakePool pool(c.workers, c.order);
   pool.hang_after = c.hang_after;
   pool.fail_below_score = c.fail_below_score;
+  pool.kills = c.kills;
   Tuner tuner({*configuration, Parameters(), Objective(), Inputs(c.inputs),
                Inputs({"held out"})},
               options, &pool, journal->get());
@@ -296,6 +305,27 @@ TEST(TunerTest, AConfigurationThatFailsAsItIsIsAnError) {
   c.fail_below_score = 0.6;
   EXPECT_THAT(std::string(Tune(c).status().message()),
               HasSubstr("fails as it is: a: too low"));
+}
+
+TEST(TunerTest, RunsThatWereKilledAreTriedAgain) {
+  Case c;
+  const auto undisturbed = Tune(c);
+  c.kills = 2;
+  const auto result = Tune(c);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(Signature(*result), Signature(*undisturbed));
+}
+
+TEST(TunerTest, AKilledBaselineIsNotFailedForEver) {
+  const test::Folder folder;
+  Case c;
+  c.journal = folder.path() + "/journal";
+  c.kills = 30;
+  EXPECT_THAT(std::string(Tune(c).status().message()), HasSubstr("killed"));
+  c.kills = 0;
+  const auto resumed = Tune(c);
+  ASSERT_TRUE(resumed.ok()) << resumed.status();
+  EXPECT_TRUE(resumed->baseline.ok);
 }
 
 TEST(TunerTest, FoldsLeaveEachRecordingOutOnce) {

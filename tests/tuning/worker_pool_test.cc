@@ -24,6 +24,7 @@ nlohmann::json Act(const nlohmann::json& request) {
   const std::string what = request["what"].get<std::string>();
   if (what == "crash") raise(SIGSEGV);
   if (what == "exit") _exit(3);
+  if (what == "killed") raise(SIGKILL);
   if (what == "check") {
     google::InstallFailureFunction([]() { std::_Exit(1); });
     CHECK_GT(1, 2) << "of all things";
@@ -74,6 +75,7 @@ TEST(LocalWorkerPoolTest, WhatEndsARunIsItsFailure) {
   EXPECT_THAT(MessageOf("exit", 0.), HasSubstr("code 3"));
   EXPECT_THAT(MessageOf("check", 0.), HasSubstr("of all things"));
   EXPECT_THAT(MessageOf("spin", 1.), HasSubstr("limit of CPU time"));
+  EXPECT_THAT(MessageOf("killed", 0.), HasSubstr("from outside"));
   // A sanitizer turns the signal into an exit code.
   EXPECT_THAT(MessageOf("crash", 0.),
               testing::AnyOf(HasSubstr("it crashed"), HasSubstr("code")));

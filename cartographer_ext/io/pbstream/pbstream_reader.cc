@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/withdrawn_loops.h"
+#include "cartographer_ext/io/pbstream/message_size.h"
 #include "cartographer_ext/io/pbstream/pbstream_records.h"
 #include "cartographer_ext/io/pbstream/pbstream_validation.h"
 #include "google/protobuf/message.h"
@@ -79,9 +80,12 @@ class Parser {
         options_(options),
         limit_(options.limits),
         records_(content, name),
-        max_total_size_(std::max(options.limits.total_floor,
-                                 options.limits.max_expansion *
-                                     static_cast<int64_t>(content.size()))) {}
+        max_total_size_(options.limits.total_floor +
+                        options.limits.max_total_expansion *
+                            static_cast<int64_t>(content.size())),
+        max_memory_(options.limits.memory_floor +
+                    options.limits.max_memory_expansion *
+                        static_cast<int64_t>(content.size())) {}
 
   absl::StatusOr<Pbstream> Parse() {
     if (!records_.status().ok()) return records_.status();
@@ -166,6 +170,20 @@ class Parser {
     return absl::OkStatus();
   }
 
+  // Before the messages exist.
+  absl::Status CountMemory(const int kind, const absl::string_view message) {
+    const auto* const field = Data::descriptor()->FindFieldByNumber(kind);
+    if (field == nullptr) return absl::OkStatus();
+    memory_ += EstimateParsedSize(*field->message_type(), message,
+                                  max_memory_ - memory_);
+    if (memory_ <= max_memory_) return absl::OkStatus();
+    return records_.Error(
+        absl::StatusCode::kResourceExhausted,
+        absl::StrFormat("the contents of the file would take more than the %d "
+                        "bytes of memory that are allowed for its size",
+                        max_memory_));
+  }
+
   absl::Status TakeRecord(const std::string& record) {
     int kind;
     absl::string_view message;
@@ -192,6 +210,8 @@ class Parser {
                                        : "the trajectory options should be "
                                          "here");
     }
+    const absl::Status small_enough = CountMemory(kind, message);
+    if (!small_enough.ok()) return small_enough;
     switch (kind) {
       case Data::kPoseGraphFieldNumber:
         return Fill("pose graph", message, &pbstream_.pose_graph);
@@ -253,6 +273,8 @@ class Parser {
   PbstreamRecords records_;
   const int64_t max_total_size_;
   int64_t total_size_ = 0;
+  const int64_t max_memory_;
+  int64_t memory_ = 0;
   Pbstream pbstream_;
 };
 
@@ -269,7 +291,9 @@ absl::StatusOr<Pbstream> ReadPbstream(const std::string& filename,
   do {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     content.append(piece.data(), static_cast<size_t>(file.gcount()));
-    // Devices never end.
+    // Devices never end; nothing else is worth reading on.
+    const PbstreamRecords start(content, filename);
+    if (!start.status().ok()) return start.status();
     if (static_cast<int64_t>(content.size()) > options.limits.max_file_size) {
       return absl::ResourceExhaustedError(
           absl::StrFormat("%s: is larger than the %d bytes that are allowed",

@@ -284,6 +284,34 @@ TEST(PbstreamReaderTest, ZipBombs) {
               "expands to more than the 1048576 bytes");
 }
 
+// Two bytes of a file each, a hundred of memory.
+TEST(PbstreamReaderTest, ObjectBombs) {
+  using cartographer::mapping::proto::PoseGraph;
+  for (const int field : {PoseGraph::kConstraintFieldNumber,
+                          PoseGraph::kLandmarkPosesFieldNumber,
+                          PoseGraph::kTrajectoryFieldNumber}) {
+    std::string graph;
+    for (int i = 0; i != 2000000; ++i) {
+      graph += {static_cast<char>(field << 3 | 2), '\0'};
+    }
+    // 4000000 as a varint.
+    const std::string size = {'\x80', '\x92', '\xf4', '\x01'};
+    const std::string content =
+        FileOf({HeaderRecord(2), "\x0a" + size + graph});
+    PbstreamReaderOptions options;
+    options.limits.max_expansion = 1 << 20;
+    options.limits.max_total_expansion = 1 << 20;
+    ExpectError(Read(content, options), absl::StatusCode::kResourceExhausted,
+                "bytes of memory that are allowed for its size");
+  }
+}
+
+TEST(PbstreamReaderTest, DevicesAreNotReadOn) {
+  const auto zero = ReadPbstream("/dev/zero");
+  EXPECT_EQ(zero.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(zero.status().message()), HasSubstr("magic number"));
+}
+
 TEST(PbstreamReaderTest, ValidationCanBeLeftOut) {
   Pbstream example = ExamplePbstream();
   example.nodes.clear();
