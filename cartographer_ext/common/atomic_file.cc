@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/common/atomic_file.h"
 
+#include <dirent.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +15,8 @@
 #include <fstream>
 #include <iostream>
 
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 
 namespace cartographer_ext {
@@ -34,6 +38,45 @@ std::string ResolveLinks(const std::string& path) {
 
 // The content reaches the disk before the name does; otherwise a power failure
 // may leave an empty file under the new name.
+// The beginning of the temporary files of this computer for `path`.
+std::string TemporaryStem(const std::string& path) {
+  char host[256] = {};
+  ::gethostname(host, sizeof(host) - 1);
+  return absl::StrCat(path, ".", host, "-");
+}
+
+// Of processes that are no more. Their names end in PID.NUMBER.tmp.
+void RemoveAbandoned(const std::string& stem) {
+  const size_t slash = stem.rfind('/');
+  const std::string folder =
+      slash == std::string::npos ? "." : stem.substr(0, slash + 1);
+  const std::string beginning =
+      slash == std::string::npos ? stem : stem.substr(slash + 1);
+  DIR* const names = ::opendir(folder.c_str());
+  if (names == nullptr) return;
+  std::vector<std::string> abandoned;
+  while (const dirent* const entry = ::readdir(names)) {
+    const absl::string_view name = entry->d_name;
+    if (!absl::StartsWith(name, beginning) || !absl::EndsWith(name, ".tmp")) {
+      continue;
+    }
+    const absl::string_view rest = name.substr(beginning.size());
+    int pid = 0;
+    if (absl::SimpleAtoi(rest.substr(0, rest.find('.')), &pid) && pid > 0 &&
+        ::kill(pid, 0) != 0 && errno == ESRCH) {
+      abandoned.push_back(absl::StrCat(folder, "/", name));
+    }
+  }
+  ::closedir(names);
+  for (const std::string& name : abandoned) std::remove(name.c_str());
+}
+
+absl::Status Replace(const std::string& temporary, const std::string& path) {
+  return std::rename(temporary.c_str(), path.c_str()) == 0
+             ? absl::OkStatus()
+             : WriteError(path, errno);
+}
+
 absl::Status Synchronize(const std::string& file, const std::string& path) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return WriteError(path, errno);
@@ -63,8 +106,9 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
   } else {
     path_ = ResolveLinks(path);
     static std::atomic<int> counter{0};
-    temporary_path_ =
-        absl::StrCat(path_, ".", ::getpid(), ".", counter++, ".tmp");
+    const std::string stem = TemporaryStem(path_);
+    RemoveAbandoned(stem);
+    temporary_path_ = absl::StrCat(stem, ::getpid(), ".", counter++, ".tmp");
     const mode_t mode = exists ? (existing.st_mode & 0777) : 0666;
     const int descriptor =
         ::open(temporary_path_.c_str(),
@@ -113,12 +157,36 @@ absl::Status AtomicFile::Commit() {
   if (temporary_path_ != path_) {
     status_ = Synchronize(temporary_path_, path_);
     if (!status_.ok()) return status_;
-    if (std::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
-      status_ = WriteError(path_, errno);
-      return status_;
+    if (AtomicFileSet::Current() != nullptr) {
+      AtomicFileSet::Current()->waiting_.emplace_back(temporary_path_, path_);
+    } else {
+      status_ = Replace(temporary_path_, path_);
+      if (!status_.ok()) return status_;
     }
   }
   committed_ = true;
+  return absl::OkStatus();
+}
+
+AtomicFileSet::AtomicFileSet() { Current() = this; }
+
+AtomicFileSet::~AtomicFileSet() {
+  Current() = nullptr;
+  for (const auto& file : waiting_) std::remove(file.first.c_str());
+}
+
+AtomicFileSet*& AtomicFileSet::Current() {
+  static AtomicFileSet* current = nullptr;
+  return current;
+}
+
+absl::Status AtomicFileSet::Commit() {
+  while (!waiting_.empty()) {
+    const absl::Status status =
+        Replace(waiting_.front().first, waiting_.front().second);
+    if (!status.ok()) return status;
+    waiting_.erase(waiting_.begin());
+  }
   return absl::OkStatus();
 }
 

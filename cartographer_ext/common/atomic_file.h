@@ -3,13 +3,16 @@
 //
 // Output files that are either whole or absent: written to a temporary file in
 // the target's folder, flushed, then renamed. A full disk or an unwritable path
-// gives an error naming the path and leaves nothing behind.
+// gives an error naming the path and leaves nothing behind. What a killed process
+// of this computer left is removed when its file is written again.
 #ifndef CARTOGRAPHER_EXT_COMMON_ATOMIC_FILE_H_
 #define CARTOGRAPHER_EXT_COMMON_ATOMIC_FILE_H_
 
 #include <memory>
 #include <ostream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
@@ -38,6 +41,28 @@ class AtomicFile {
   absl::Status status_;
   std::unique_ptr<std::ostream> stream_;
   bool committed_ = false;
+};
+
+// While it lives, files that are committed wait for its own Commit, so that a
+// command writes all of its files or none. Without it they are removed. Not for
+// files that the command reads again; one at a time, used by one thread.
+class AtomicFileSet {
+ public:
+  AtomicFileSet();
+  ~AtomicFileSet();
+  AtomicFileSet(const AtomicFileSet&) = delete;
+  AtomicFileSet& operator=(const AtomicFileSet&) = delete;
+
+  // The first file that cannot be put in its place ends it.
+  absl::Status Commit();
+
+ private:
+  friend class AtomicFile;
+  // The set that lives, or null.
+  static AtomicFileSet*& Current();
+
+  // Temporary files and what they become.
+  std::vector<std::pair<std::string, std::string>> waiting_;
 };
 
 // The whole content in one call. "-" writes to standard output.

@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/delimited_messages.h"
+#include "cartographer_ext/common/host_ticks.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -25,8 +26,6 @@ constexpr char kHead[] =
     "disagreement_theta_degrees,chi_square,odometry,source,searched,score,"
     "time_offset,interval,way_scale,way_scale_sigma,turn_scale,"
     "turn_scale_sigma,turn_per_metre_degrees,turn_per_metre_sigma_degrees\n";
-constexpr int64_t kTicksPerSecond = 10000000;
-constexpr int64_t kUnixEpochSeconds = 719162LL * 86400LL;
 
 MatchRecord::Degeneracy ToProto(const DegeneracyState state) {
   switch (state) {
@@ -168,11 +167,10 @@ std::string RecordCsvRows(const std::vector<MatchRecord>& records) {
   for (const MatchRecord& record : records) {
     const Eigen::Matrix3d covariance = Covariance(record);
     const Ellipse ellipse = PositionEllipse(covariance);
-    const int64_t seconds = record.time() / kTicksPerSecond;
     absl::StrAppendFormat(
-        &rows, "%d,%d.%07d,%d,%.6f,%.6f,%.5f,%.5g,%.5g,%.2f,%.5g,%s,%.2f,",
-        record.builder(), seconds - kUnixEpochSeconds,
-        record.time() % kTicksPerSecond, record.is_node() ? 1 : 0, record.x(),
+        &rows, "%d,%s,%d,%.6f,%.6f,%.5f,%.5g,%.5g,%.2f,%.5g,%s,%.2f,",
+        record.builder(), UnixSecondsOfTicks(record.time()),
+        record.is_node() ? 1 : 0, record.x(),
         record.y(), RadToDeg(record.theta()), ellipse.long_axis,
         ellipse.short_axis, RadToDeg(ellipse.direction),
         RadToDeg(std::sqrt(std::max(0., covariance(2, 2)))),

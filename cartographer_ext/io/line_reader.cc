@@ -164,6 +164,7 @@ absl::StatusOr<bool> LineReader::Next(absl::string_view* line) {
             : nullptr;
     if (newline != nullptr || at_end_) {
       if (newline == nullptr && begin_ == end_) return false;
+      unterminated_ = newline == nullptr;
       size_t length = newline != nullptr ? newline - begin : end_ - begin_;
       begin_ += length + (newline != nullptr ? 1 : 0);
       // The head of an overlong line was kept; the rest of it is dropped.

@@ -50,6 +50,8 @@ class LineReader {
   // Of the line last returned, from 1.
   int64_t line_number() const { return line_number_; }
   bool truncated() const { return truncated_; }
+  // Whether the file ended without a line end behind it.
+  bool unterminated() const { return unterminated_; }
   const std::string& filename() const { return filename_; }
   // "file:12", for messages.
   std::string Location() const;
@@ -67,6 +69,7 @@ class LineReader {
   size_t end_ = 0;
   bool at_end_ = false;
   bool truncated_ = false;
+  bool unterminated_ = false;
   int64_t line_number_ = 0;
 };
 

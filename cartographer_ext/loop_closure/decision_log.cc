@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/delimited_messages.h"
+#include "cartographer_ext/common/host_ticks.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -62,7 +63,7 @@ std::string CsvLine(const LoopDecision& decision) {
   line.Integer(decision.submap_index());
   line.Integer(decision.node_trajectory_id());
   line.Integer(decision.node_index());
-  line.Integer(decision.node_time());
+  line.Text(UnixSecondsOfTicks(decision.node_time()));
   line.Text(EnumText(LoopDecision::Verdict_Name(decision.verdict()),
                      decision.verdict()));
   line.Text(EnumText(LoopDecision::Reason_Name(decision.reason()),

@@ -4,7 +4,8 @@
 // Decision records as bytes and as a table. The bytes are length-delimited
 // messages one after the other (a varint length, then the message), which any
 // protobuf library reads; the table is CSV with a head line, one candidate a
-// line, empty cells where a stage did not run.
+// line, empty cells where a stage did not run. docs/side_files.md has the
+// columns; times are Unix seconds.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_LOG_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_LOG_H_
 

@@ -53,5 +53,32 @@ std::vector<StampedPose> OnlinePoses::At(
   return poses;
 }
 
+void OnlinePoses::SetLocalized(const int node_index) {
+  const absl::MutexLock lock(&mutex_);
+  if (!localized_node_.has_value()) localized_node_ = node_index;
+}
+
+bool OnlinePoses::is_localized() const {
+  const absl::MutexLock lock(&mutex_);
+  return localized_node_.has_value();
+}
+
+absl::optional<StampedPose> OnlinePoses::LocalizedAt(
+    const std::vector<StampedPose>& local_scans) const {
+  absl::optional<io::TimeNs> time;
+  {
+    const absl::MutexLock lock(&mutex_);
+    if (!localized_node_.has_value()) return absl::nullopt;
+    const auto node = node_times_.find(*localized_node_);
+    if (node == node_times_.end()) return absl::nullopt;
+    time = node->second;
+  }
+  // The optimisation acts from the scan after its node on.
+  for (const StampedPose& pose : At(local_scans)) {
+    if (pose.time > *time) return pose;
+  }
+  return absl::nullopt;
+}
+
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -20,6 +20,7 @@
 #include "Eigen/Geometry"
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
+#include "absl/types/optional.h"
 #include "cartographer_ext/metrics/trajectory.h"
 
 namespace cartographer_ext {
@@ -41,6 +42,15 @@ class OnlinePoses {
   void AddOptimization(int node_index, const Eigen::Isometry3d& map_from_local)
       ABSL_LOCKS_EXCLUDED(mutex_);
 
+  // That an optimisation up to and with this node has tied it to a loaded map.
+  // The first counts.
+  void SetLocalized(int node_index) ABSL_LOCKS_EXCLUDED(mutex_);
+  bool is_localized() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // (map <- robot) at the first scan from that node on; none when never.
+  absl::optional<StampedPose> LocalizedAt(
+      const std::vector<StampedPose>& local_scans) const
+      ABSL_LOCKS_EXCLUDED(mutex_);
+
   // (map <- robot) at each of the scans, which are (local <- robot) in order of
   // time. An optimisation of a node that was never added has no effect.
   std::vector<StampedPose> At(const std::vector<StampedPose>& local_scans) const
@@ -50,6 +60,7 @@ class OnlinePoses {
   mutable absl::Mutex mutex_;
   Eigen::Isometry3d start_ ABSL_GUARDED_BY(mutex_) =
       Eigen::Isometry3d::Identity();
+  absl::optional<int> localized_node_ ABSL_GUARDED_BY(mutex_);
   std::map<int, io::TimeNs> node_times_ ABSL_GUARDED_BY(mutex_);
   std::vector<std::pair<int, Eigen::Isometry3d>> optimizations_
       ABSL_GUARDED_BY(mutex_);

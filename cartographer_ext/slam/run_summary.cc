@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/slam/decision_files.h"
@@ -31,6 +32,34 @@ nlohmann::ordered_json ToJson(const uncertainty::DriftEstimate& drift) {
           {"scale", drift.common.mean(2)},
           {"scale_sigma", Sigma(drift.common, 2)},
           {"cycles", drift.num_cycles}};
+}
+
+// Seconds from the first scan to the one whose place in the map is known.
+double SecondsUntilLocalized(const SlamRun& run) {
+  return io::ToSeconds(run.localized_at->time -
+                       run.local_scan_poses.front().time);
+}
+
+// Null when never.
+nlohmann::ordered_json LocalizedToJson(const SlamRun& run) {
+  if (!run.localized_at.has_value()) return nullptr;
+  const Pose2 pose = ToPose2(run.localized_at->pose);
+  return {{"time", io::ToSeconds(run.localized_at->time)},
+          {"seconds", SecondsUntilLocalized(run)},
+          {"x", pose.x},
+          {"y", pose.y},
+          {"theta", pose.theta}};
+}
+
+std::string LocalizedToText(const SlamRun& run) {
+  if (!run.localized_at.has_value()) {
+    return "Localised  never: no loop ties the recording to the map\n";
+  }
+  const Pose2 pose = ToPose2(run.localized_at->pose);
+  return absl::StrFormat(
+      "Localised  after %.1f s, at x = %.1f m, y = %.1f m, %.0f degrees of the "
+      "map\n",
+      SecondsUntilLocalized(run), pose.x, pose.y, RadToDeg(pose.theta));
 }
 
 }  // namespace
@@ -89,6 +118,7 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
                               {"undecided", counts.undecided},
                               {"skipped", counts.skipped}};
   }
+  if (run.loaded_nodes > 0) json["localized"] = LocalizedToJson(run);
   json["drift"] = ToJson(run.drift);
   const optimization::SwitchedLoops& switched = run.switched_loops;
   json["optimizations"] = {
@@ -106,6 +136,7 @@ std::string ToText(const SlamRun& run) {
   absl::StrAppendFormat(
       &text, "Map        %d nodes, %d submaps, %d loops from %d searches\n",
       run.nodes, run.submaps, run.inter_constraints, run.loop_searches);
+  if (run.loaded_nodes > 0) absl::StrAppend(&text, LocalizedToText(run));
   absl::StrAppendFormat(
       &text,
       "Took       %.1f s for %.1f s of sensor data; CPU %.1f s, of it %.1f s "

@@ -155,6 +155,11 @@ class Runner {
     CollectRecords();
     CollectPoses();
     Measure();
+    if (configuration_.sensors.use_odometry && run_.odometry_readings == 0) {
+      run_.warnings.push_back(
+          "no odometry: corridors may come out too short or too long, and "
+          "loops are searched farther around");
+    }
     if (run_.skipped_scans > 0) {
       run_.warnings.push_back(absl::StrCat(
           run_.skipped_scans,
@@ -242,8 +247,9 @@ class Runner {
     const auto online = online_;
     online->Start(
         FromHostPose(pose_graph->GetLocalToGlobalTransform(trajectory_id)));
+    const bool has_map = run_.loaded_nodes > 0;
     pose_graph->SetGlobalSlamOptimizationCallback(
-        [online, pose_graph, trajectory_id](
+        [online, pose_graph, trajectory_id, has_map](
             const std::map<int, cartographer::mapping::SubmapId>& /*submaps*/,
             const std::map<int, cartographer::mapping::NodeId>& nodes) {
           const auto newest = nodes.find(trajectory_id);
@@ -252,6 +258,10 @@ class Runner {
               newest->second.node_index,
               FromHostPose(
                   pose_graph->GetLocalToGlobalTransform(trajectory_id)));
+          if (has_map && !online->is_localized() &&
+              IsTiedToOthers(*pose_graph, trajectory_id)) {
+            online->SetLocalized(newest->second.node_index);
+          }
         });
   }
 
@@ -336,6 +346,7 @@ class Runner {
     run_.drift =
         context_->Get<uncertainty::DriftModel>()->Of(run_.trajectory_id);
     run_.online_scan_poses = online_->At(run_.local_scan_poses);
+    run_.localized_at = online_->LocalizedAt(run_.local_scan_poses);
     run_.global_scan_poses =
         GlobalScanPoses(run_.local_scan_poses,
                         CollectNodePoses(pose_graph, run_.trajectory_id));

@@ -26,6 +26,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/types/optional.h"
 #include "cartographer/mapping/map_builder_interface.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/io/sensor_source.h"
@@ -97,6 +98,10 @@ struct SlamRun : FedReadings {
   std::vector<StampedPose> global_scan_poses;
   // (map <- tracking) as it was known when the scan came, see online_poses.h.
   std::vector<StampedPose> online_scan_poses;
+
+  // In a loaded map: the first scan of which the place in it is known, from an
+  // optimisation with a loop to the map on. None when never, or without a map.
+  absl::optional<StampedPose> localized_at;
 
   // What it took. CPU seconds count all threads.
   double wall_seconds = 0.;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/starting_state.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "absl/strings/str_split.h"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
 
 namespace cartographer_ext {
@@ -71,6 +73,21 @@ absl::Status SetInitialPose(
   initial->set_timestamp(
       cartographer::common::ToUniversal(first.data.constant_pose_data->time));
   return absl::OkStatus();
+}
+
+bool IsTiedToOthers(const PoseGraphInterface& pose_graph,
+                    const int trajectory_id) {
+  auto constraints = pose_graph.constraints();
+  RemoveWithdrawnLoops(&constraints);
+  return std::any_of(
+      constraints.begin(), constraints.end(), [&](const auto& constraint) {
+        const int submap_trajectory = constraint.submap_id.trajectory_id;
+        const int node_trajectory = constraint.node_id.trajectory_id;
+        return constraint.tag == PoseGraphInterface::Constraint::INTER_SUBMAP &&
+               submap_trajectory != node_trajectory &&
+               (submap_trajectory == trajectory_id ||
+                node_trajectory == trajectory_id);
+      });
 }
 
 }  // namespace evaluation

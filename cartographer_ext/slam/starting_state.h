@@ -12,6 +12,7 @@
 #include "absl/status/statusor.h"
 #include "absl/types/optional.h"
 #include "cartographer/mapping/map_builder_interface.h"
+#include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/proto/trajectory_builder_options.pb.h"
 #include "cartographer_ext/common/pose2.h"
 
@@ -43,6 +44,11 @@ absl::Status SetInitialPose(
     const Pose2& initial_pose, int to_trajectory_id,
     const cartographer::mapping::PoseGraphInterface& pose_graph,
     cartographer::mapping::proto::TrajectoryBuilderOptions* options);
+
+// Whether a loop in force connects the trajectory with another one.
+bool IsTiedToOthers(
+    const cartographer::mapping::PoseGraphInterface& pose_graph,
+    int trajectory_id);
 
 }  // namespace evaluation
 }  // namespace cartographer_ext

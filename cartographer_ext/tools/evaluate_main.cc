@@ -301,15 +301,20 @@ absl::Status ReadDecisionsBeside(evaluation::LoopStatistics* const loops,
   return absl::OkStatus();
 }
 
-absl::Status Run(const std::string& command_line) {
+absl::Status CheckOutputs() {
   std::vector<std::string> outputs = {FLAGS_constraints_filename,
                                       FLAGS_relation_errors_filename,
                                       FLAGS_json, FLAGS_report_filename};
   if (!FLAGS_report_filename.empty()) {
     outputs.push_back(BesideReport(".json"));
   }
-  const absl::Status writable = tools::CheckWritable(outputs);
+  return tools::CheckWritable(outputs);
+}
+
+absl::Status Run(const std::string& command_line) {
+  const absl::Status writable = CheckOutputs();
   if (!writable.ok()) return writable;
+  AtomicFileSet files;
   Inputs inputs;
   const absl::Status read = ReadInputs(&inputs);
   if (!read.ok()) return read;
@@ -379,6 +384,7 @@ absl::Status Run(const std::string& command_line) {
     if (!status.ok()) return status;
   }
   if (!FLAGS_json.empty()) status = tools::WriteJson(json, FLAGS_json);
+  if (status.ok()) status = files.Commit();
   return status.ok() ? run_again : status;
 }
 

@@ -196,5 +196,8 @@ int main(int argc, char** argv) {
     return tools::UsageError(
         "-output_pbstream_filename needs -switched_loops_filename");
   }
-  return tools::ExitCode(Run());
+  AtomicFileSet files;
+  absl::Status status = Run();
+  if (status.ok()) status = files.Commit();
+  return tools::ExitCode(status);
 }

@@ -340,5 +340,8 @@ int main(int argc, char** argv) {
                                           ", expected one of ",
                                           absl::StrJoin(names, " ")));
   }
-  return tools::ExitCode(Run());
+  AtomicFileSet files;
+  absl::Status status = Run();
+  if (status.ok()) status = files.Commit();
+  return tools::ExitCode(status);
 }

@@ -142,6 +142,10 @@ absl::StatusOr<Setup> ReadSetup() {
     return absl::InvalidArgumentError(
         "there is nothing to search on: -inputs, or inputs in the search file");
   }
+  for (const auto* const some : {&setup.inputs, &setup.holdout}) {
+    const absl::Status known = tuning::CheckTruth(*some, setup.spec.objective);
+    if (!known.ok()) return known;
+  }
   for (const tuning::TuneInput& held_out : setup.holdout) {
     for (const tuning::TuneInput& input : setup.inputs) {
       if (held_out.name == input.name) {

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/tuning/objective.h"
 #include "cartographer_ext/tuning/sensitivity.h"
 
 namespace cartographer_ext {
@@ -37,6 +38,18 @@ std::string ToText(const ComparableTrials& trials) {
           ? "whole recordings"
           : absl::StrFormat("the first %.0f %% of the recordings",
                             100. * trials.fidelity));
+}
+
+void KeepIfConfirmed(const double least_gain, TuneResult* const result) {
+  if (result->keys.empty()) return;
+  const Trial& after = *result->best_holdout;
+  result->not_confirmed =
+      after.ok ? WhyNotBetter(result->baseline_holdout->objectives,
+                              after.objectives, least_gain)
+               : after.message;
+  if (result->not_confirmed.empty()) return;
+  result->best = result->baseline;
+  result->keys.clear();
 }
 
 }  // namespace tuning

@@ -29,6 +29,10 @@ ComparableTrials SelectComparable(const std::vector<Trial>& trials);
 // "27 trials on the first 33 % of the recordings"
 std::string ToText(const ComparableTrials& trials);
 
+// The baseline becomes the result where the held-out recordings do not confirm
+// what was found.
+void KeepIfConfirmed(double least_gain, TuneResult* result);
+
 }  // namespace tuning
 }  // namespace cartographer_ext
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -119,7 +120,9 @@ std::string Bytes(const evaluation::SlamConfiguration& configuration) {
 // What is tried of a parameter before the search.
 std::vector<Value> Probes(const Parameter& parameter) {
   if (parameter.kind == Parameter::Kind::kChoice) return parameter.choices;
-  return {parameter.FromUnit(0.), parameter.FromUnit(1.)};
+  // Ends may be integers where a key wants them, what is between is not.
+  return {parameter.FromUnit(0.), parameter.FromUnit(0.37),
+          parameter.FromUnit(1.)};
 }
 
 }  // namespace
@@ -245,7 +248,13 @@ absl::Status BaseConfiguration::CheckParameters(
       if (!configuration.ok()) {
         return absl::InvalidArgumentError(
             absl::StrCat(parameter.key, " = ", evaluation::ToLua(probe), ": ",
-                         configuration.status().message()));
+                         configuration.status().message(),
+                         parameter.kind == Parameter::Kind::kReal &&
+                                 absl::StrContains(
+                                     configuration.status().message(),
+                                     "must be an integer")
+                             ? "; give it integer = true"
+                             : ""));
       }
       changes |= Bytes(*configuration) != base_bytes;
     }

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/objective.h"
 
+#include <cstddef>
 #include <algorithm>
 #include <cmath>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/types/optional.h"
@@ -30,6 +32,15 @@ absl::Status CheckWeights(const std::map<std::string, double>& weights) {
     }
   }
   return absl::OkStatus();
+}
+
+// 95 % quantile of Student's t with so many degrees of freedom, from 2 on; the
+// last one stands for all above.
+double Quantile(const size_t degrees_of_freedom) {
+  constexpr double kQuantiles[] = {2.920, 2.353, 2.132, 2.015, 1.943,
+                                   1.895, 1.860, 1.833, 1.812};
+  constexpr size_t kLast = sizeof(kQuantiles) / sizeof(kQuantiles[0]) - 1;
+  return kQuantiles[std::min(degrees_of_freedom - 2, kLast)];
 }
 
 }  // namespace
@@ -157,6 +168,37 @@ double PrecisionAtRecall(const double precision, const double recall,
                          const double target) {
   if (recall >= target) return 1. - precision;
   return 2. - recall / target;
+}
+
+std::string WhyNotBetter(const std::vector<double>& before,
+                         const std::vector<double>& after,
+                         const double least_gain) {
+  const size_t count = std::min(before.size(), after.size());
+  if (count == 0) return "no held-out recording could be judged";
+  std::vector<double> gains;
+  double mean = 0.;
+  for (size_t i = 0; i != count; ++i) {
+    const double scale = std::max(std::abs(before[i]), std::abs(after[i]));
+    gains.push_back(scale > 0. ? (before[i] - after[i]) / scale : 0.);
+    mean += gains.back() / static_cast<double>(count);
+  }
+  const std::string gain = absl::StrFormat("%+.1f %%", -100. * mean);
+  if (!(mean > least_gain)) {
+    return absl::StrFormat("held-out recordings change by %s", gain);
+  }
+  if (count < 3) {
+    if (*std::min_element(gains.begin(), gains.end()) > 0.) return "";
+    return absl::StrFormat(
+        "held-out recordings change by %s, but not each of them gains", gain);
+  }
+  double squares = 0.;
+  for (const double one : gains) squares += (one - mean) * (one - mean);
+  const double error =
+      std::sqrt(squares / static_cast<double>(count * (count - 1)));
+  if (mean > Quantile(count - 1) * error) return "";
+  return absl::StrFormat(
+      "held-out recordings change by %s +- %.1f %%, which may be chance", gain,
+      100. * error);
 }
 
 }  // namespace tuning

@@ -78,6 +78,15 @@ double Aggregate(const Objective& objective, const std::vector<double>& values);
 // 1 - precision where recall reaches the target, else 2 - (recall / target).
 double PrecisionAtRecall(double precision, double recall, double target);
 
+// Is what a search found better on recordings that it did not see?
+// Compares the objectives of the same held-out recordings, smaller being
+// better, by their relative gains 1 - after / before. From three recordings on
+// the mean gain has to differ from zero by a one-sided t-test at 5 %; with one
+// or two, which have no spread, each has to gain. Always the mean has to exceed
+// `least_gain`. Empty when what was found is better, else why not.
+std::string WhyNotBetter(const std::vector<double>& before,
+                         const std::vector<double>& after, double least_gain);
+
 }  // namespace tuning
 }  // namespace cartographer_ext
 

@@ -66,6 +66,14 @@ std::string Gain(const KeyResult& key, const Trial& best,
       key.better_on, num_inputs);
 }
 
+std::string NothingText(const TuneResult& result) {
+  return result.not_confirmed.empty()
+             ? "Nothing was better than the configuration as it is."
+             : absl::StrCat("Nothing is changed: what was better on the "
+                            "recordings searched on is not confirmed, ",
+                            result.not_confirmed, ".");
+}
+
 nlohmann::ordered_json TrialJson(const std::vector<Parameter>& parameters,
                                  const Trial& trial) {
   nlohmann::ordered_json json;
@@ -127,8 +135,7 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
                           fold.held_out.size(), fold.before, fold.after);
   }
   if (result.keys.empty()) {
-    return text +
-           "--\n-- Nothing was better than the configuration as it is.\n";
+    return absl::StrCat(text, "--\n-- ", NothingText(result), "\n");
   }
   std::set<std::string> copied;
   std::string assignments;
@@ -197,8 +204,7 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
     absl::StrAppend(&text, "\n");
   }
   if (result.keys.empty()) {
-    absl::StrAppend(&text,
-                    "Nothing was better than the configuration as it is.\n");
+    absl::StrAppend(&text, NothingText(result), "\n");
   }
   for (const KeyResult& key : result.keys) {
     absl::StrAppend(&text, "\n", key.key, "\n  ", evaluation::ToLua(key.before),
@@ -257,6 +263,7 @@ nlohmann::ordered_json ToJson(const TuneResult& result,
                   {"holdout", OrNull(ObjectiveOf(result.best_holdout))},
                   {"keys", keys}};
   json["changes"] = details;
+  json["not_confirmed"] = result.not_confirmed;
   json["trials"] = result.trials.size();
   json["runs"] = result.num_runs;
   json["runs_from_journal"] = result.num_known_runs;

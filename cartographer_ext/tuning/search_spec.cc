@@ -213,5 +213,31 @@ absl::StatusOr<std::vector<TuneInput>> ParseInputs(
   return inputs;
 }
 
+absl::Status CheckTruth(const std::vector<TuneInput>& inputs,
+                        const Objective& objective) {
+  for (const TuneInput& input : inputs) {
+    if (input.is_world) continue;
+    for (const auto& weight : objective.weights) {
+      const std::string& metric = weight.first;
+      const bool needs_relations = absl::StartsWith(metric, "relations") ||
+                                   metric == "broken_fraction";
+      const bool needs_reference = metric == "ate" || metric == "rpe";
+      if (needs_relations && input.relations_filename.empty()) {
+        return absl::InvalidArgumentError(absl::StrCat(
+            input.recording, ": no '", metric,
+            "' without reference relations: give FILE=TRUTH.relations or put "
+            "them beside it; the objective self_consistency needs none"));
+      }
+      if (needs_reference && input.reference_filename.empty()) {
+        return absl::InvalidArgumentError(absl::StrCat(
+            input.recording, ": no '", metric,
+            "' without a reference trajectory: give FILE=TRUTH.tum or put it "
+            "beside it; the objective self_consistency needs none"));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace tuning
 }  // namespace cartographer_ext

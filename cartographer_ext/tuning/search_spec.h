@@ -72,6 +72,11 @@ absl::StatusOr<TuneInput> ParseInput(const std::string& text);
 absl::StatusOr<std::vector<TuneInput>> ParseInputs(
     const std::vector<std::string>& texts);
 
+// That every input has the truth that the objective needs. Errors name the
+// recording and what it lacks.
+absl::Status CheckTruth(const std::vector<TuneInput>& inputs,
+                        const Objective& objective);
+
 }  // namespace tuning
 }  // namespace cartographer_ext
 

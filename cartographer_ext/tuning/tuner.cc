@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/tuning/comparable_trials.h"
 #include "cartographer_ext/tuning/trial_run.h"
 #include "glog/logging.h"
 
@@ -437,6 +438,7 @@ absl::StatusOr<TuneResult> Tuner::Run() {
     const auto trial = EvaluateNow(result_.best.point, held_out);
     if (!trial.ok()) return trial.status();
     result_.best_holdout = *trial;
+    KeepIfConfirmed(options_.least_gain, &result_);
   }
   return result_;
 }

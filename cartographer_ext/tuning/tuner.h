@@ -93,7 +93,11 @@ struct TuneResult {
   // included.
   std::vector<Trial> trials;
   Trial best;  // after pruning; the baseline when nothing is better
+  // Of what the search found, also when it is not the result.
   absl::optional<Trial> best_holdout;
+  // Why what was better is not the result: the held-out recordings do not
+  // confirm it (WhyNotBetter). Empty when they do, or there are none.
+  std::string not_confirmed;
   std::vector<KeyResult> keys;  // that differ from the baseline
   std::vector<FoldResult> folds;
   // Counted in runs.

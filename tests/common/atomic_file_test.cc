@@ -4,12 +4,14 @@
 
 #include <dirent.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -134,6 +136,48 @@ TEST_F(AtomicFileTest, DashIsStandardOutput) {
   const absl::Status status = WriteFileAtomically("-", "to stdout\n");
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "to stdout\n");
   EXPECT_TRUE(status.ok());
+}
+
+TEST_F(AtomicFileTest, ASetIsWrittenAsAWholeOrNotAtAll) {
+  const std::string first = folder_ + "/first", second = folder_ + "/second";
+  {
+    AtomicFileSet files;
+    ASSERT_TRUE(WriteFileAtomically(first, "1").ok());
+    ASSERT_TRUE(WriteFileAtomically(second, "2").ok());
+    EXPECT_NE(::access(first.c_str(), F_OK), 0);
+  }
+  EXPECT_TRUE(List().empty());
+  {
+    AtomicFileSet files;
+    ASSERT_TRUE(WriteFileAtomically(first, "1").ok());
+    ASSERT_TRUE(WriteFileAtomically(second, "2").ok());
+    EXPECT_TRUE(files.Commit().ok());
+  }
+  EXPECT_EQ(Read(first), "1");
+  EXPECT_EQ(Read(second), "2");
+  EXPECT_EQ(List().size(), 2u);
+  // Behind the set files are written at once again.
+  ASSERT_TRUE(WriteFileAtomically(first, "3").ok());
+  EXPECT_EQ(Read(first), "3");
+}
+
+TEST_F(AtomicFileTest, WhatAKilledProcessLeftIsRemoved) {
+  const std::string path = folder_ + "/out";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    AtomicFile file(path);
+    ::_exit(0);  // without the destructor
+  }
+  int state;
+  ASSERT_EQ(::waitpid(child, &state, 0), child);
+  ASSERT_EQ(List().size(), 1u);
+  {
+    // Of this process, which lives, and of a file with a similar name.
+    AtomicFile alive(folder_ + "/out.2");
+    ASSERT_TRUE(WriteFileAtomically(path, "whole").ok());
+    EXPECT_EQ(List().size(), 2u);
+  }
+  EXPECT_EQ(List(), std::vector<std::string>{"out"});
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 #include "cartographer_ext/front_end/match_record.h"
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "Eigen/LU"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -45,6 +48,16 @@ MatchRecord Example() {
   calibration.rotation_per_metre = kPi / 180.;
   SetCalibration(OdometryCalibration(calibration), &record);
   return record;
+}
+
+TEST(MatchRecordTest, EveryColumnIsDocumented) {
+  std::ifstream stream("docs/side_files.md");
+  const std::string page((std::istreambuf_iterator<char>(stream)), {});
+  for (const absl::string_view column :
+       absl::StrSplit(absl::StripSuffix(RecordCsvHead(), "\n"), ',')) {
+    EXPECT_NE(page.find("`" + std::string(column) + "`"), std::string::npos)
+        << column;
+  }
 }
 
 TEST(MatchRecordTest, KeepsTheCovariance) {

@@ -3,11 +3,14 @@
 #include "cartographer_ext/loop_closure/decision_log.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "gmock/gmock.h"
 #include "google/protobuf/io/zero_copy_stream_impl_lite.h"
 #include "google/protobuf/util/delimited_message_util.h"
@@ -44,6 +47,25 @@ std::map<std::string, std::string> Row(const std::string& csv, int line) {
     EXPECT_TRUE(row.emplace(names[k], cells[k]).second) << names[k];
   }
   return row;
+}
+
+TEST(DecisionLogTest, TimesAreUnixSeconds) {
+  LoopDecision decision = Example(1);
+  // 2005-12-18 00:10:29.8951823 UTC.
+  decision.set_node_time((INT64_C(1134864629) + INT64_C(62135596800)) *
+                             10000000 +
+                         8951823);
+  EXPECT_EQ(Row(DecisionCsv({decision}), 1)["node_time"],
+            "1134864629.8951823");
+}
+
+TEST(DecisionLogTest, EveryColumnIsDocumented) {
+  std::ifstream stream("docs/side_files.md");
+  const std::string page((std::istreambuf_iterator<char>(stream)), {});
+  for (const absl::string_view column :
+       absl::StrSplit(absl::StripSuffix(DecisionCsvHead(), "\n"), ',')) {
+    EXPECT_THAT(page, HasSubstr("`" + std::string(column) + "`"));
+  }
 }
 
 TEST(DecisionLogTest, BytesComeBack) {

@@ -55,6 +55,24 @@ TEST(OnlinePosesTest, AnOptimizationShowsInTheScansAfterItsNode) {
   }
 }
 
+TEST(OnlinePosesTest, LocalizedIsTheFirstScanBehindTheNode) {
+  OnlinePoses poses;
+  EXPECT_FALSE(poses.is_localized());
+  EXPECT_FALSE(poses.LocalizedAt(Scans()).has_value());
+  poses.AddNode(1, 300);
+  poses.AddNode(2, 400);
+  poses.AddOptimization(1, ToIsometry(Pose2(0., 5., 0.)));
+  poses.SetLocalized(1);
+  poses.SetLocalized(2);  // too late to count
+  EXPECT_TRUE(poses.is_localized());
+  const auto pose = poses.LocalizedAt(Scans());
+  ASSERT_TRUE(pose.has_value());
+  EXPECT_EQ(pose->time, 400);
+  EXPECT_NEAR(pose->pose.translation().y(), 5., 1e-12);
+  // The last scan is the node itself.
+  EXPECT_FALSE(poses.LocalizedAt({Scans()[0], Scans()[3]}).has_value());
+}
+
 TEST(OnlinePosesTest, TakesWordFromSeveralThreads) {
   OnlinePoses poses;
   std::vector<std::thread> threads;

@@ -31,6 +31,23 @@ TEST(RunSummaryTest, TellsTheDriftThatWasLearnt) {
                         "deg/m, turns 1.0 +- 1.0 %, scale -3.0 +- 0.2 %"));
 }
 
+TEST(RunSummaryTest, TellsWhenAndWhereItWasLocalized) {
+  SlamRun run;
+  EXPECT_FALSE(ToJson(run).contains("localized"));
+  EXPECT_THAT(ToText(run), testing::Not(testing::HasSubstr("Localised")));
+  run.loaded_nodes = 5;
+  EXPECT_TRUE(ToJson(run)["localized"].is_null());
+  EXPECT_THAT(ToText(run), testing::HasSubstr("Localised  never"));
+  run.local_scan_poses.push_back(io::MakeStampedPose(1000000000, Pose2()));
+  run.localized_at =
+      io::MakeStampedPose(14400000000, Pose2(3., -2., 0.5 * kPi));
+  EXPECT_NEAR(ToJson(run)["localized"]["seconds"].get<double>(), 13.4, 1e-9);
+  EXPECT_NEAR(ToJson(run)["localized"]["y"].get<double>(), -2., 1e-9);
+  EXPECT_THAT(ToText(run),
+              testing::HasSubstr("Localised  after 13.4 s, at x = 3.0 m, y = "
+                                 "-2.0 m, 90 degrees of the map"));
+}
+
 TEST(RunSummaryTest, TellsTheLatency) {
   SlamRun run;
   EXPECT_THAT(ToText(run), Not(HasSubstr("Latency")));

@@ -148,6 +148,8 @@ TEST(SlamMainTest, LocalizesInAMap) {
   EXPECT_EQ(json["loaded"]["frozen"], true);
   EXPECT_GT(json["loaded"]["nodes"], 50);
   EXPECT_GE(json["loaded"]["submaps"], 1);
+  EXPECT_TRUE(json.contains("localized"));
+  EXPECT_THAT(result.out, HasSubstr("Localised  "));
   const std::string online = ReadFile(folder / "online.tum");
   EXPECT_GE(std::count(online.begin(), online.end(), '\n'), 299);
   EXPECT_EQ(online, ReadFile(folder / "all.tum"));

@@ -175,6 +175,10 @@ TEST_F(BaseConfigurationTest, ValuesThatAreNotAllowedAreNamed) {
   EXPECT_THAT(
       ErrorOf(Stock(), Range("POSE_GRAPH.optimize_every_n_nodes", 0.5, 20.)),
       HasSubstr("optimize_every_n_nodes"));
+  // Ends that are integers hide it no longer.
+  EXPECT_THAT(
+      ErrorOf(Stock(), Range("POSE_GRAPH.optimize_every_n_nodes", 1., 20.)),
+      HasSubstr("give it integer = true"));
 }
 
 TEST_F(BaseConfigurationTest, BadFilesAreErrors) {

@@ -76,6 +76,31 @@ TEST(ObjectiveTest, AggregatesOverRecordings) {
   EXPECT_NEAR(Aggregate(objective, {0.1, 10.}), 1., 1e-12);
 }
 
+TEST(WhyNotBetterTest, ClearGainsAreBelieved) {
+  EXPECT_EQ(WhyNotBetter({1.}, {0.9}, 0.005), "");
+  EXPECT_EQ(WhyNotBetter({1., 2.}, {0.9, 1.9}, 0.005), "");
+  EXPECT_EQ(WhyNotBetter({1., 2., 3.}, {0.9, 1.7, 2.6}, 0.005), "");
+}
+
+TEST(WhyNotBetterTest, NothingAndLossesAreNot) {
+  EXPECT_THAT(WhyNotBetter({1.}, {1.}, 0.005), HasSubstr("change by -0.0 %"));
+  EXPECT_THAT(WhyNotBetter({1.}, {1.1}, 0.005), HasSubstr("+9.1 %"));
+  EXPECT_THAT(WhyNotBetter({1.}, {0.998}, 0.005), HasSubstr("-0.2 %"));
+  EXPECT_THAT(WhyNotBetter({1., 1.}, {0.5, 1.01}, 0.005), HasSubstr("each"));
+  EXPECT_THAT(WhyNotBetter({}, {}, 0.005), HasSubstr("could be judged"));
+  EXPECT_THAT(WhyNotBetter({0.}, {0.}, 0.005), HasSubstr("change by"));
+}
+
+TEST(WhyNotBetterTest, ChanceIsNot) {
+  // -1.2 % in the mean, of gains and losses.
+  EXPECT_THAT(WhyNotBetter({1., 1., 1., 1.}, {0.9, 1.05, 0.95, 1.052}, 0.005),
+              HasSubstr("may be chance"));
+  // t = 2.4 at three degrees of freedom: above 2.353; at two below 2.920.
+  EXPECT_EQ(WhyNotBetter({1., 1., 1., 1.}, {0.98, 0.98, 0.98, 1.0}, 0.005), "");
+  EXPECT_THAT(WhyNotBetter({1., 1., 1.}, {0.98, 0.98, 1.0}, 0.005),
+              HasSubstr("may be chance"));
+}
+
 }  // namespace
 }  // namespace tuning
 }  // namespace cartographer_ext

@@ -99,6 +99,12 @@ TEST(ResultWriterTest, SaysWhenNothingWasBetter) {
   result.keys.clear();
   EXPECT_THAT(ToLuaFile(result, Context()), HasSubstr("Nothing was better"));
   EXPECT_THAT(ToText(result, Context()), HasSubstr("Nothing was better"));
+  result.not_confirmed = "held-out recordings change by +3.0 %";
+  for (const std::string& text :
+       {ToLuaFile(result, Context()), ToText(result, Context())}) {
+    EXPECT_THAT(text, HasSubstr("is not confirmed, held-out recordings change "
+                                "by +3.0 %."));
+  }
 }
 
 TEST(ResultWriterTest, Confidence) {

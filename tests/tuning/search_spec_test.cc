@@ -94,6 +94,26 @@ TEST(SearchSpecTest, WorldsHaveSeedsAndMapsAreKnown) {
   EXPECT_TRUE(map->is_pbstream);
 }
 
+TEST(SearchSpecTest, MissingTruthIsNoticedBeforehand) {
+  TuneInput log;
+  log.recording = "run.clf";
+  Objective objective;
+  objective.weights = {{"relations", 1.}};
+  EXPECT_THAT(std::string(CheckTruth({log}, objective).message()),
+              HasSubstr("run.clf: no 'relations' without"));
+  log.relations_filename = "run.relations";
+  EXPECT_TRUE(CheckTruth({log}, objective).ok());
+  objective.weights = {{"ate", 1.}};
+  EXPECT_THAT(std::string(CheckTruth({log}, objective).message()),
+              HasSubstr("run.clf: no 'ate' without"));
+  objective.weights = {{"self_consistency", 1.}, {"cpu_seconds", 1.}};
+  EXPECT_TRUE(CheckTruth({log}, objective).ok());
+  TuneInput world;
+  world.is_world = true;
+  objective.weights = {{"ate", 1.}, {"relations_loop", 1.}};
+  EXPECT_TRUE(CheckTruth({world}, objective).ok());
+}
+
 TEST(SearchSpecTest, BadInputsAreErrors) {
   const test::Folder folder;
   const std::string log = folder.Write("run.clf", "1");

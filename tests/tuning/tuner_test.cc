@@ -139,6 +139,7 @@ struct Case {
   bool no_input_worse = false;
   std::string journal;
   std::vector<std::string> inputs = {"a", "b"};
+  std::vector<std::string> holdout = {"held out"};
   int* started = nullptr;
   int kills = 0;
 };
@@ -160,7 +161,7 @@ absl::StatusOr<TuneResult> Tune(const Case& c) {
   pool.fail_below_score = c.fail_below_score;
   pool.kills = c.kills;
   Tuner tuner({*configuration, Parameters(), Objective(), Inputs(c.inputs),
-               Inputs({"held out"})},
+               Inputs(c.holdout)},
               options, &pool, journal->get());
   auto result = tuner.Run();
   if (c.started != nullptr) *c.started = pool.started;
@@ -198,6 +199,19 @@ TEST(TunerTest, FindsTheMinimumAndPrunesWhatGainsNothing) {
   EXPECT_FALSE(result->keys.empty());
   // The pruned point is what the keys say.
   EXPECT_EQ(result->best.point[2], result->baseline.point[2]);
+}
+
+TEST(TunerTest, WhatHeldOutRecordingsDenyIsNotTheResult) {
+  Case c;
+  c.holdout = {"c"};  // worse with a higher score
+  const auto result = Tune(c);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_TRUE(result->keys.empty());
+  EXPECT_EQ(result->best.objective, result->baseline.objective);
+  EXPECT_THAT(result->not_confirmed, HasSubstr("held-out recordings change"));
+  ASSERT_TRUE(result->best_holdout.has_value());
+  EXPECT_GT(result->best_holdout->objective,
+            result->baseline_holdout->objective);
 }
 
 TEST(TunerTest, NoRecordingNeedBeWorse) {

@@ -121,6 +121,7 @@ void ParseFrontLaser(Tokens* tokens, CarmenLine* line) {
   if (!ParseTime(tail.words[num_values], &line->time)) {
     return Fail("an invalid stamp", line);
   }
+  line->num_stamp_words = tail.num_words - num_values;
   line->kind = CarmenKind::kFrontLaser;
 }
 
@@ -178,6 +179,7 @@ void ParseNewLaser(bool has_poses, Tokens* tokens, CarmenLine* line) {
   if (!ParseTime(tail.words[num_values], &line->time)) {
     return Fail("an invalid stamp", line);
   }
+  line->num_stamp_words = tail.num_words - num_values;
   line->kind = has_poses ? CarmenKind::kRobotLaser : CarmenKind::kRawLaser;
 }
 
@@ -192,6 +194,7 @@ void ParseOdometry(Tokens* tokens, CarmenLine* line) {
     if (!ParseTime(tail.words[num_values], &line->time)) {
       return Fail("an invalid stamp", line);
     }
+    line->num_stamp_words = tail.num_words - num_values;
     line->kind = CarmenKind::kOdometry;
     return;
   }

@@ -51,6 +51,7 @@ struct CarmenLine {
   CarmenKind kind = CarmenKind::kIgnored;
   const char* error = "";
   TimeNs time = 0;
+  size_t num_stamp_words = 0;  // the stamp, the host, the stamp of the logger
   std::string name;
   std::string value;
 

@@ -11,6 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/io/carmen/range_histogram.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/tokens.h"
 
@@ -21,9 +22,6 @@ namespace {
 constexpr size_t kMaxLines = 20000000;
 constexpr size_t kMaxReorderWindow = 1 << 16;
 
-constexpr double kRangeBin = 0.01;
-constexpr int kNumRangeBins = 1 << 14;
-
 // Poses in logs are rounded, and some loggers interpolate one of the two.
 constexpr double kOffsetTolerance = 0.02;  // metres, radians
 constexpr double kMaxOffset = 5.;          // metres
@@ -31,47 +29,16 @@ constexpr double kMaxOffset = 5.;          // metres
 // Of all messages; clocks that step now and then stay below it.
 constexpr double kMaxBackwardShare = 0.01;
 
+// Messages with a gap of this length on both sides do not belong to the log,
+// if they are so few: a stamp that was cut off or is none.
+constexpr TimeNs kImplausibleGap = int64_t{3600} * 1000000000;
+constexpr int64_t kMaxImplausible = 10;
+
 struct LineKey {
-  CarmenKind kind;
-  TimeNs time;
-};
-
-// Counts of readings by centimetre.
-class RangeHistogram {
- public:
-  RangeHistogram() : bins_(kNumRangeBins, 0) {}
-
-  void Add(const std::vector<float>& ranges) {
-    for (const float range : ranges) {
-      if (!(range > 0.f) || !(range < kNumRangeBins * kRangeBin)) continue;
-      ++bins_[std::min<int>(kNumRangeBins - 1, range / kRangeBin)];
-      max_ = std::max(max_, range);
-    }
-  }
-
-  // Just below the code for "no return", infinity if there is none.
-  double RangeMax() const {
-    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-    if (max_ <= 0.f) return kNoLimit;
-    const double below = std::nextafter(max_, 0.f);
-    // The laser counts to 2^n - 1 in its unit and reserves the last nine
-    // values.
-    for (const double reserved : {8.183, 16.375, 32.759, 81.83}) {
-      const double unit = reserved > 80. ? 0.01 : 0.001;
-      if (max_ > reserved - 0.5 * unit && max_ < reserved + 8.5 * unit) {
-        return reserved - unit;
-      }
-    }
-    const int bin = std::min<int>(kNumRangeBins - 1, max_ / kRangeBin);
-    int64_t near = 0;
-    for (int i = std::max(0, bin - 50); i < bin; ++i) near += bins_[i];
-    const bool saturated = bins_[bin] >= 10 && bins_[bin] > 4 * near;
-    return saturated ? below : kNoLimit;
-  }
-
- private:
-  std::vector<int64_t> bins_;
-  float max_ = 0.f;
+  TimeNs time = 0;
+  int64_t number = 0;  // of the line
+  CarmenKind kind = CarmenKind::kIgnored;
+  bool plausible = true;
 };
 
 double Median(std::vector<double> values) {
@@ -112,6 +79,7 @@ class Survey {
   absl::StatusOr<CarmenPlan> Plan(const std::string& odometry_source) const;
 
  private:
+  void MarkImplausible();
   void WarnOfIgnored(CarmenPlan* plan) const;
   // Which lines the odometry is taken from; `disordered` messages have an
   // earlier stamp than the one before them.
@@ -138,6 +106,10 @@ class Survey {
   Pose2 parameter_offset_;
   int64_t num_malformed_ = 0;
   std::string first_malformed_;
+  std::map<CarmenKind, size_t> stamp_words_;  // of the last line so far
+  bool is_cut_ = false;                       // the last line, behind its stamp
+  int64_t num_implausible_ = 0;
+  size_t first_implausible_ = 0;  // of lines_
 };
 
 void Survey::AddParameter(const CarmenLine& line) {
@@ -160,7 +132,7 @@ absl::Status Survey::Read() {
   while (true) {
     const auto more = (*reader)->Next(&text);
     if (!more.ok()) return more.status();
-    if (!*more) return absl::OkStatus();
+    if (!*more) break;
     ParseCarmenLine(text, &line);
     switch (line.kind) {
       case CarmenKind::kIgnored:
@@ -187,13 +159,43 @@ absl::Status Survey::Read() {
         ABSL_FALLTHROUGH_INTENDED;
       case CarmenKind::kOdometry:
         ++counts_[line.kind];
-        lines_.push_back(LineKey{line.kind, line.time});
+        lines_.push_back(LineKey{line.time, (*reader)->line_number(),
+                                 line.kind, true});
+        if ((*reader)->unterminated() &&
+            line.num_stamp_words < stamp_words_[line.kind]) {
+          lines_.back().plausible = false;
+          is_cut_ = true;
+        }
+        stamp_words_[line.kind] = line.num_stamp_words;
     }
     if (lines_.size() > kMaxLines) {
       return absl::OutOfRangeError(absl::StrCat((*reader)->Location(),
                                                 ": more than ", kMaxLines,
                                                 " messages; split the log"));
     }
+  }
+  MarkImplausible();
+  return absl::OkStatus();
+}
+
+void Survey::MarkImplausible() {
+  size_t begin = 0;
+  for (size_t end = 1; end <= lines_.size(); ++end) {
+    if (end != lines_.size() && std::abs(lines_[end].time -
+                                         lines_[end - 1].time) <=
+                                    kImplausibleGap) {
+      continue;
+    }
+    const auto count = static_cast<int64_t>(end - begin);
+    const bool is_few =
+        count <= kMaxImplausible &&
+        static_cast<double>(count) <=
+            kMaxBackwardShare * static_cast<double>(lines_.size());
+    for (size_t i = begin; is_few && i != end; ++i) {
+      lines_[i].plausible = false;
+      if (num_implausible_++ == 0) first_implausible_ = i;
+    }
+    begin = end;
   }
 }
 
@@ -211,7 +213,7 @@ bool Survey::OdometryLinesCoverScans(CarmenKind scan_kind) const {
     TimeNs* const bounds = line.kind == scan_kind               ? scans
                            : line.kind == CarmenKind::kOdometry ? odometry
                                                                 : nullptr;
-    if (bounds == nullptr) continue;
+    if (bounds == nullptr || !line.plausible) continue;
     bounds[0] = std::min(bounds[0], line.time);
     bounds[1] = std::max(bounds[1], line.time);
   }
@@ -244,7 +246,7 @@ int64_t Survey::CountBackwards(CarmenKind kind) const {
   int64_t count = 0;
   TimeNs last = 0;
   for (const LineKey& line : lines_) {
-    if (line.kind != kind) continue;
+    if (line.kind != kind || !line.plausible) continue;
     if (line.time < last) ++count;
     last = line.time;
   }
@@ -258,6 +260,19 @@ void Survey::WarnOfIgnored(CarmenPlan* const plan) const {
                                          num_malformed_ == 1
                                              ? " malformed line skipped"
                                              : " malformed lines skipped"));
+  }
+  if (is_cut_) {
+    info.warnings.push_back(absl::StrCat(
+        filename_, ":", lines_.back().number,
+        ": the last line is cut off in or behind its stamp; dropped"));
+  }
+  if (num_implausible_ > 0) {
+    const LineKey& first = lines_[first_implausible_];
+    info.warnings.push_back(absl::StrFormat(
+        "%s:%d: the stamp %s s is more than an hour from those around it; %d %s "
+        "dropped",
+        filename_, first.number, FormatTime(first.time), num_implausible_,
+        num_implausible_ == 1 ? "message" : "messages"));
   }
   int64_t num_other_lasers = Count(CarmenKind::kRearLaser);
   for (const CarmenKind kind :
@@ -306,12 +321,19 @@ void Survey::ChooseOdometry(const std::string& odometry_source,
 void Survey::OrderEvents(CarmenPlan* const plan) const {
   SensorSourceInfo& info = plan->info;
   std::vector<EventKey> keys;
+  std::vector<int64_t> implausible;
   int64_t ordinal = 0;
   CarmenEvent events[2];
   for (const LineKey& line : lines_) {
     const int n =
         CarmenEventsOfLine(*plan, line.kind, line.time, &ordinal, events);
-    for (int i = 0; i < n; ++i) keys.push_back(events[i].key);
+    for (int i = 0; i < n; ++i) {
+      if (line.plausible) {
+        keys.push_back(events[i].key);
+      } else {
+        implausible.push_back(events[i].key.ordinal);
+      }
+    }
   }
   plan->reordering = PlanReordering(keys, kMaxReorderWindow);
   if (!plan->reordering.dropped.empty()) {
@@ -332,6 +354,9 @@ void Survey::OrderEvents(CarmenPlan* const plan) const {
     info.begin = std::min(info.begin, key.time);
     info.end = std::max(info.end, key.time);
   }
+  std::vector<int64_t>& dropped = plan->reordering.dropped;
+  dropped.insert(dropped.end(), implausible.begin(), implausible.end());
+  std::sort(dropped.begin(), dropped.end());
 }
 
 absl::StatusOr<CarmenPlan> Survey::Plan(

@@ -271,7 +271,7 @@ absl::Status RosRecording::ReadKeys(std::vector<EventKey>* keys) {
   }
   for (const auto& topic : damaged) {
     info_.warnings.push_back(
-        absl::StrCat(filename_, ": ", topic.second, " messages on ", topic.first, " cannot be decoded; skipped"));
+        absl::StrCat(filename_, ": ", topic.second, " messages on ", topic.first, " are damaged or have values that are no numbers; skipped"));
   }
   return absl::OkStatus();
 }

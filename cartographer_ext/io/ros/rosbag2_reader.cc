@@ -102,7 +102,11 @@ class Db3Container : public RosContainer {
   absl::Status Error() const {
     const int code = sqlite3_errcode(database_.get());
     const std::string text = absl::StrCat(filename_, ": ", sqlite3_errmsg(database_.get()));
-    if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) return absl::DataLossError(text);
+    if (code == SQLITE_NOTADB) return absl::DataLossError(text);
+    if (code == SQLITE_CORRUPT) {
+      return absl::DataLossError(absl::StrCat(
+          text, "; the file is cut off or damaged: try sqlite3 FILE .recover | sqlite3 NEW, then ros2 bag reindex"));
+    }
     return absl::InvalidArgumentError(absl::StrCat(text, " (not a database of rosbag2?)"));
   }
 

@@ -228,12 +228,17 @@ std::string ToText(const Evaluation& evaluation) {
   }
   if (evaluation.loops.has_value()) {
     const LoopStatistics& loops = *evaluation.loops;
-    absl::StrAppendFormat(
-        &text,
-        "Loops   %d accepted, precision %s (%d judged), recall %s (%d of %d "
-        "revisits)\n",
-        loops.accepted, Percent(loops.precision), loops.judged,
-        Percent(loops.recall), loops.revisits_closed, loops.revisits);
+    absl::StrAppendFormat(&text, "Loops   %d accepted", loops.accepted);
+    if (loops.judged > 0) {
+      absl::StrAppendFormat(&text, ", precision %s (%d judged)",
+                            Percent(loops.precision), loops.judged);
+    }
+    if (loops.revisits > 0) {
+      absl::StrAppendFormat(&text, ", recall %s (%d of %d revisits)",
+                            Percent(loops.recall), loops.revisits_closed,
+                            loops.revisits);
+    }
+    absl::StrAppend(&text, "\n");
     absl::StrAppendFormat(&text,
                           "        residuals in the map: mean %.4f m, max %.4f "
                           "m, mean %.3f deg\n",

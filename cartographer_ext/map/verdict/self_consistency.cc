@@ -260,16 +260,21 @@ std::string ToText(const SelfConsistency& consistency) {
       "Self-consistency   rays contradicted %.2f %%, severe %.2f %% of %d "
       "nodes, entropy %.3f,\n"
       "        walls %.1f cm (one visit %.1f cm, all %.1f cm), open cycles "
-      "%.1f %% of %d,\n"
-      "        odometry %.3f m %.3f deg a node\n",
+      "%.1f %% of %d,\n",
       100. * consistency.contradictions.ray_fraction(),
       100. * consistency.severe_share, consistency.contradictions.judged_nodes,
       sharpness.mean_entropy, 100. * sharpness.wall_thickness.mean,
       100. * sharpness.single_visit_thickness.mean,
       100. * sharpness.revisited_thickness.mean,
-      100. * consistency.cycles.fraction(), consistency.cycles.cycles,
-      consistency.motion.odometry_translation.mean,
-      consistency.motion.odometry_rotation_degrees.mean);
+      100. * consistency.cycles.fraction(), consistency.cycles.cycles);
+  const MotionDisagreement& motion = consistency.motion;
+  if (motion.odometry_translation.count == 0) {
+    absl::StrAppend(&text, "        no odometry\n");
+  } else {
+    absl::StrAppendFormat(&text, "        odometry %.3f m %.3f deg a node\n",
+                          motion.odometry_translation.mean,
+                          motion.odometry_rotation_degrees.mean);
+  }
   return text;
 }
 

@@ -204,6 +204,60 @@ TEST(CarmenReaderTest, SortsStablyAndCounts) {
   EXPECT_THAT(log->info.warnings[0], HasSubstr("stamps of 2 scans"));
 }
 
+// Scans a second apart.
+std::string LongLog(const int num_scans) {
+  std::string text;
+  for (int i = 0; i < num_scans; ++i) {
+    absl::StrAppend(&text, "ODOM ", i, " 0 0 0 0 0 ", 1134864000 + i,
+                    " h 1\n");
+    absl::StrAppend(&text, "FLASER 2 1 2 ", i, " 0 0 ", i, " 0 0 ",
+                    1134864000 + i, ".5 h 1\n");
+  }
+  return text;
+}
+
+TEST(CarmenReaderTest, StampsThatDoNotBelongToTheLogAreDropped) {
+  const std::string text = LongLog(200);
+  const std::string odd = "FLASER 2 1 2 0 0 0 0 0 0 603 h 1\n";
+  const size_t middle = text.find("ODOM 100 ");
+  for (const std::string& log_text :
+       {odd + text, text.substr(0, middle) + odd + text.substr(middle),
+        text + odd}) {
+    const auto log = ReadText(log_text);
+    ASSERT_TRUE(log.ok()) << log.status();
+    EXPECT_EQ(log->info.num_scans, 200);
+    EXPECT_EQ(log->Scans().size(), 200u);
+    EXPECT_NEAR(ToSeconds(log->info.end - log->info.begin), 199.5, 1e-6);
+    ASSERT_EQ(log->info.warnings.size(), 1u);
+    EXPECT_THAT(log->info.warnings[0],
+                HasSubstr("the stamp 603.000000000 s is more than an hour from "
+                          "those around it; 1 message dropped"));
+  }
+  EXPECT_THAT(ReadText(text + odd)->info.warnings[0], HasSubstr(":401: "));
+  // A pause is none: both sides are logs.
+  std::string paused = text;
+  for (int i = 0; i < 100; ++i) {
+    absl::StrAppend(&paused, "FLASER 2 1 2 0 0 0 0 0 0 ", 1134964000 + i,
+                    " h 1\n");
+  }
+  EXPECT_EQ(ReadText(paused)->info.num_scans, 300);
+}
+
+TEST(CarmenReaderTest, ALastLineThatIsCutOffIsDropped) {
+  const std::string text = LongLog(200);
+  // Whole but for the line end; cut in the logger's stamp, behind the host's
+  // name, and in the scan's stamp.
+  EXPECT_EQ(ReadText(text.substr(0, text.size() - 1))->info.num_scans, 200);
+  for (const size_t missing : {3, 5, 7, 12}) {
+    const auto log = ReadText(text.substr(0, text.size() - missing));
+    ASSERT_TRUE(log.ok());
+    EXPECT_EQ(log->info.num_scans, 199) << missing;
+    EXPECT_EQ(log->Scans().size(), 199u);
+    ASSERT_EQ(log->info.warnings.size(), 1u) << missing;
+    EXPECT_THAT(log->info.warnings[0], HasSubstr(":400: the last line is cut"));
+  }
+}
+
 TEST(CarmenReaderTest, NoReturnCodes) {
   const auto range_max = [](const std::string& reading, int count) {
     std::string text = "FLASER 1 7.0 0 0 0 0 0 0 1 h 1\n";
