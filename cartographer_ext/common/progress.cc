@@ -37,7 +37,9 @@ std::string FormatProgress(const std::string& label, int64_t done,
                            int64_t total, double elapsed_seconds,
                            const std::string& note) {
   std::string line = absl::StrCat(label, " ", done);
-  if (total > 0) {
+  if (total <= 0 && done == 0) {
+    line = absl::StrCat(label, " ...");
+  } else if (total > 0) {
     const double share =
         std::min(1., std::max(0., static_cast<double>(done) / total));
     absl::StrAppendFormat(&line, "/%d %3.0f %%", total, 100. * share);

@@ -23,7 +23,8 @@ std::string FormatProgress(const std::string& label, int64_t done,
 
 class Progress {
  public:
-  // `total` <= 0: unknown, shows counts and elapsed time only.
+  // `total` <= 0: unknown, shows counts and elapsed time only, and before
+  // anything is counted the label alone: a step that is drawn once.
   Progress(std::string label, int64_t total);
   // Clears the line.
   ~Progress();

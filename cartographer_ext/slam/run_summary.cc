@@ -127,7 +127,10 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
       {"selection_cpu_seconds", switched.selection_cpu_seconds},
       {"solution_cpu_seconds", switched.solution_cpu_seconds}};
   json["metrics"] = run.metrics;
-  json["warnings"] = run.warnings;
+  json["warnings"] = run.input_warnings;
+  for (const std::string& warning : run.warnings) {
+    json["warnings"].push_back(warning);
+  }
   return json;
 }
 

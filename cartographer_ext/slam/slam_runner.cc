@@ -131,6 +131,9 @@ class Runner {
   absl::StatusOr<SlamRun> Run() {
     const absl::Status suitable = CheckRecording();
     if (!suitable.ok()) return suitable;
+    run_.input_warnings = configuration_.warnings;
+    run_.input_warnings.insert(run_.input_warnings.end(),
+                               info_.warnings.begin(), info_.warnings.end());
     StartMeasuring();
     const absl::Status started = StartTrajectory();
     if (!started.ok()) return started;

@@ -129,6 +129,8 @@ struct SlamRun : FedReadings {
   std::vector<proto::MatchRecord> matches;
 
   std::vector<std::string> warnings;
+  // What was odd about the recording and the configuration.
+  std::vector<std::string> input_warnings;
 };
 
 // Errors: the source's own, a recording without scans or of which local SLAM

@@ -22,6 +22,7 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/lua_value.h"
+#include "cartographer_ext/configuration/option_ranges.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "gflags/gflags.h"
 #include "glog/logging.h"
@@ -168,7 +169,20 @@ bool IsSensible(const std::string& name, const std::string& value) {
   return number >= 0. || (!std::isnan(number) && default_number < 0.);
 }
 
+// Of the flags that say how many threads or processes there shall be.
+void CheckNumberOfThreads(const std::string& name, const std::string& value) {
+  int64_t number = 0;
+  if ((name == "num_background_threads" || name == "threads" ||
+       name == "workers") &&
+      absl::SimpleAtoi(value, &number) &&
+      number > evaluation::kMaxBackgroundThreads) {
+    ExitWithUsageError(absl::StrCat("-", name, " must be at most ",
+                                    evaluation::kMaxBackgroundThreads));
+  }
+}
+
 void SetFlag(const std::string& name, const std::string& value) {
+  CheckNumberOfThreads(name, value);
   if (!IsSensible(name, value)) {
     ExitWithUsageError(
         absl::StrCat("-", name, " is \"", value, "\", must be a number >= 0"));

@@ -21,7 +21,6 @@
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
-#include "cartographer_ext/configuration/option_ranges.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/io/occupancy_map.h"
@@ -214,9 +213,12 @@ absl::Status WriteReport(const std::string& command_line,
                          nlohmann::ordered_json* const json,
                          std::ostream& out) {
   if (FLAGS_report_filename.empty()) return absl::OkStatus();
+  Progress progress("judging the map", 0);
+  progress.Update(0);
   const auto report =
       report::ReportMap(FLAGS_pbstream_filename,
                         tools::BaseName(FLAGS_input_filename), command_line);
+  progress.Finish();
   if (!report.ok()) return report.status();
   out << evaluation::ToText(report->evaluation);
   (*json)["evaluation"] = evaluation::ToJson(report->evaluation);
@@ -375,7 +377,9 @@ absl::Status Run(const std::string& command_line) {
   if (FLAGS_wrong_loops > 0) run_options.after_scan = injector.Callback();
   run_options.on_progress = [&](const evaluation::SlamProgress& now) {
     if (now.stage == evaluation::SlamProgress::Stage::kOptimizing) {
-      progress->Update(now.total_scans, "closing loops, last optimisation");
+      progress = std::make_unique<Progress>("closing loops, last optimisation",
+                                            0);
+      progress->Update(0);
     } else {
       progress->Update(now.scans, now.queue_length > 10
                                       ? absl::StrCat("queue ", now.queue_length)
@@ -433,11 +437,6 @@ int main(int argc, char** argv) {
   if (FLAGS_num_background_threads < 0 || FLAGS_wrong_loops < 0) {
     return tools::UsageError(
         "-num_background_threads and -wrong_loops must not be negative");
-  }
-  if (FLAGS_num_background_threads > evaluation::kMaxBackgroundThreads) {
-    return tools::UsageError(
-        absl::StrCat("-num_background_threads must be at most ",
-                     evaluation::kMaxBackgroundThreads));
   }
   if (!FLAGS_initial_pose.empty() && FLAGS_load_state_filename.empty()) {
     return tools::UsageError("-initial_pose needs -load_state_filename");

@@ -31,6 +31,8 @@ TEST(ProgressTest, FormatsLines) {
   EXPECT_EQ(FormatProgress("scans", 100, 100, 40., "done"),
             "scans 100/100 100 %, 0:40, done");
   EXPECT_EQ(FormatProgress("scans", 7, 0, 61., "x"), "scans 7, 1:01, x");
+  EXPECT_EQ(FormatProgress("judging the map", 0, 0, 3., ""),
+            "judging the map ...");
 }
 
 TEST(ProgressTest, SilentWithoutTerminal) {

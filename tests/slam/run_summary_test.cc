@@ -48,6 +48,16 @@ TEST(RunSummaryTest, TellsWhenAndWhereItWasLocalized) {
                                  "-2.0 m, 90 degrees of the map"));
 }
 
+TEST(RunSummaryTest, HasTheWarningsOfAll) {
+  SlamRun run;
+  EXPECT_TRUE(ToJson(run)["warnings"].empty());
+  run.input_warnings = {"two lasers; taking /scan"};
+  run.warnings = {"no odometry"};
+  EXPECT_EQ(ToJson(run)["warnings"].size(), 2u);
+  EXPECT_EQ(ToJson(run)["warnings"][0], "two lasers; taking /scan");
+  EXPECT_EQ(ToJson(run)["warnings"][1], "no odometry");
+}
+
 TEST(RunSummaryTest, TellsTheLatency) {
   SlamRun run;
   EXPECT_THAT(ToText(run), Not(HasSubstr("Latency")));

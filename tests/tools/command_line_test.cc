@@ -15,6 +15,7 @@
 DEFINE_string(test_name, "", "A word.");
 DEFINE_int32(test_number, 3, "A number.");
 DEFINE_int32(test_index, -1, "A number, -1 for all.");
+DEFINE_int32(num_background_threads, 2, "Threads.");
 DEFINE_double(test_length, 1., "A length.");
 DEFINE_bool(test_switch, true, "On or off.");
 
@@ -80,6 +81,8 @@ TEST(CommandLineTest, RefusesNumbersThatMeanNothing) {
   ParseAndFail({"-test_length=-0.5"}, "-test_length is \"-0.5\", must be");
   ParseAndFail({"-test_number", "-5"}, "-test_number is \"-5\", must be");
   ParseAndFail({"-max_expansion", "0"}, "-max_expansion must be at least 1");
+  ParseAndFail({"-num_background_threads", "100000"},
+               "-num_background_threads must be at most 4096");
   // Its default is below 0.
   ParseAndCheck({"-test_index", "-2", "-test_length", "inf"}, "", 3, true);
 }
