@@ -29,6 +29,7 @@ set(level_experiments 11)
 set(level_navigation 11)
 set(level_tuning 11)
 set(level_repair 12)
+set(level_collection 12)
 set(level_tools 13)
 
 # The name of the layer that a path below cartographer_ext/ is in.

@@ -90,5 +90,17 @@ absl::StatusOr<RelationsMetric> ComputeRelationsMetric(
   return metric;
 }
 
+std::string RelationErrorTable(const RelationsMetric& metric) {
+  std::string table =
+      "time1,time2,is_loop,translation_error,rotation_error_degrees\n";
+  for (const RelationError& error : metric.errors) {
+    absl::StrAppendFormat(&table, "%.6f,%.6f,%d,%.6f,%.6f\n",
+                          io::ToSeconds(error.time1),
+                          io::ToSeconds(error.time2), error.is_loop ? 1 : 0,
+                          error.translation, RadToDeg(error.rotation));
+  }
+  return table;
+}
+
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -20,6 +20,7 @@
 #ifndef CARTOGRAPHER_EXT_METRICS_RELATIONS_METRIC_H_
 #define CARTOGRAPHER_EXT_METRICS_RELATIONS_METRIC_H_
 
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -68,6 +69,9 @@ struct RelationsMetricOptions {
 absl::StatusOr<RelationsMetric> ComputeRelationsMetric(
     const Trajectory& trajectory, const std::vector<Relation>& relations,
     const RelationsMetricOptions& options);
+
+// CSV with a head line: the error of every relation.
+std::string RelationErrorTable(const RelationsMetric& metric);
 
 }  // namespace evaluation
 }  // namespace cartographer_ext

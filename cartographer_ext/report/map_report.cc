@@ -17,57 +17,79 @@
 namespace cartographer_ext {
 namespace report {
 
-absl::StatusOr<MapReport> ReportMap(const std::string& pbstream_filename,
-                                    const std::string& title,
-                                    const std::string& command_line) {
-  const auto pbstream = io::ReadPbstream(pbstream_filename);
+namespace {
+
+absl::Status InFile(const std::string& filename, const absl::Status& status) {
+  return absl::Status(status.code(),
+                      absl::StrCat(filename, ": ", status.message()));
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<const JudgedMap>> JudgeMap(
+    const std::string& pbstream_filename) {
+  auto judged = std::make_unique<JudgedMap>();
+  judged->filename = pbstream_filename;
+  auto pbstream = io::ReadPbstream(pbstream_filename);
   if (!pbstream.ok()) return pbstream.status();
-  const evaluation::MapGraph graph = evaluation::MakeMapGraph(*pbstream);
-  const evaluation::MapContents contents =
-      evaluation::ReadMapContents(*pbstream, {});
+  judged->pbstream = *std::move(pbstream);
+  judged->graph = evaluation::MakeMapGraph(judged->pbstream);
+  judged->contents = evaluation::ReadMapContents(judged->pbstream, {});
   const std::map<int, evaluation::Trajectory> odometry =
-      evaluation::ReadOdometry(*pbstream);
+      evaluation::ReadOdometry(judged->pbstream);
   evaluation::MapToEvaluate map;
-  map.graph = &graph;
-  map.contents = &contents;
+  map.graph = &judged->graph;
+  map.contents = &judged->contents;
   map.odometry = &odometry;
-  const auto in_file = [&](const absl::Status& status) {
-    return absl::Status(
-        status.code(), absl::StrCat(pbstream_filename, ": ", status.message()));
-  };
   evaluation::MapEvaluationOptions options;
-  if (!graph.nodes.empty()) {
-    options.trajectory_id = graph.nodes.begin()->first.trajectory_id;
+  if (!judged->graph.nodes.empty()) {
+    options.trajectory_id = judged->graph.nodes.begin()->first.trajectory_id;
   }
   auto evaluation = evaluation::EvaluateMap(map, {}, options);
-  if (!evaluation.ok()) return in_file(evaluation.status());
+  if (!evaluation.ok()) return InFile(pbstream_filename, evaluation.status());
+  judged->evaluation = *std::move(evaluation);
+  return std::unique_ptr<const JudgedMap>(std::move(judged));
+}
 
+absl::StatusOr<std::string> MakeMapPage(const JudgedMap& map,
+                                        const std::string& title,
+                                        const std::string& command_line) {
   ReportData data;
   data.title = title;
   data.command_line = command_line;
   data.versions = Versions();
-  data.pbstream = &*pbstream;
-  data.contents = &contents;
+  data.pbstream = &map.pbstream;
+  data.contents = &map.contents;
   RunInputs inputs;
-  inputs.graph = &graph;
-  data.runs.push_back(StoredRun(inputs, *evaluation));
+  inputs.graph = &map.graph;
+  data.runs.push_back(StoredRun(inputs, map.evaluation));
   auto decisions = evaluation::ReadDecisions(
-      evaluation::DecisionRecordsFilename(pbstream_filename));
+      evaluation::DecisionRecordsFilename(map.filename));
   if (decisions.ok()) {
     data.runs.back().stored_decisions = *std::move(decisions);
   } else if (!absl::IsNotFound(decisions.status())) {
     return decisions.status();
   }
   auto degeneracy =
-      ReadDegeneracy(evaluation::MatchRecordsFilename(pbstream_filename));
+      ReadDegeneracy(evaluation::MatchRecordsFilename(map.filename));
   if (degeneracy.ok()) {
     data.degeneracy = *std::move(degeneracy);
   } else if (!absl::IsNotFound(degeneracy.status())) {
     return degeneracy.status();
   }
   auto page = MakeReport(data);
-  if (!page.ok()) return in_file(page.status());
-  return MapReport{*std::move(evaluation), *std::move(page)};
+  if (!page.ok()) return InFile(map.filename, page.status());
+  return page;
+}
+
+absl::StatusOr<MapReport> ReportMap(const std::string& pbstream_filename,
+                                    const std::string& title,
+                                    const std::string& command_line) {
+  const auto map = JudgeMap(pbstream_filename);
+  if (!map.ok()) return map.status();
+  auto page = MakeMapPage(**map, title, command_line);
+  if (!page.ok()) return page.status();
+  return MapReport{(*map)->evaluation, *std::move(page)};
 }
 
 }  // namespace report

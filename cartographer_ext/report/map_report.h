@@ -6,22 +6,44 @@
 #ifndef CARTOGRAPHER_EXT_REPORT_MAP_REPORT_H_
 #define CARTOGRAPHER_EXT_REPORT_MAP_REPORT_H_
 
+#include <memory>
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+#include "cartographer_ext/map/map_contents.h"
+#include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/map/verdict/evaluation_report.h"
 
 namespace cartographer_ext {
 namespace report {
+
+// A map of a file and what it says of itself.
+struct JudgedMap {
+  std::string filename;
+  io::Pbstream pbstream;
+  evaluation::MapGraph graph;
+  evaluation::MapContents contents;
+  evaluation::Evaluation evaluation;
+};
+
+// Errors name the file.
+absl::StatusOr<std::unique_ptr<const JudgedMap>> JudgeMap(
+    const std::string& pbstream_filename);
+
+// The page of a map, with the records of loop closure and local SLAM beside it
+// where they are there. `title` and `command_line` stand in the page. Errors
+// name the file.
+absl::StatusOr<std::string> MakeMapPage(const JudgedMap& map,
+                                        const std::string& title,
+                                        const std::string& command_line);
 
 struct MapReport {
   evaluation::Evaluation evaluation;
   std::string page;  // HTML
 };
 
-// Reads the map and, where they are there, the records of loop closure and
-// local SLAM beside it. `title` and `command_line` stand in the page. Errors
-// name the file.
+// Both.
 absl::StatusOr<MapReport> ReportMap(const std::string& pbstream_filename,
                                     const std::string& title,
                                     const std::string& command_line);

@@ -173,6 +173,31 @@ ordered_json RunsToJson(const ReportData& data) {
   return runs;
 }
 
+std::string RunsToText(const ReportData& data) {
+  std::string text;
+  for (const ReportRun& run : data.runs) {
+    if (!run.against_stored.has_value()) continue;
+    const evaluation::LoopComparison& comparison = *run.against_stored;
+    absl::StrAppendFormat(
+        &text,
+        "Run \"%s\"   %d loops, %d of the %d stored ones again (%.1f %%; with "
+        "other nodes of the visit %.1f %%)\n",
+        run.name, comparison.second, comparison.common, comparison.first,
+        100. * comparison.fraction_of_first,
+        comparison.first == 0
+            ? 100.
+            : 100. * (comparison.common + comparison.neighbour_instead) /
+                  comparison.first);
+    const std::string missing = evaluation::ExplainMissing(comparison);
+    if (!missing.empty()) absl::StrAppend(&text, "  missing: ", missing, "\n");
+    absl::StrAppend(&text, evaluation::ToText(run.evaluation));
+  }
+  for (const std::string& assumption : data.assumptions) {
+    absl::StrAppend(&text, "Assumed: ", assumption, "\n");
+  }
+  return text;
+}
+
 std::string LoopsToCsv(const ReportData& data) {
   std::string csv =
       "run,submap_trajectory_id,submap_index,node_trajectory_id,node_index,"

@@ -22,6 +22,9 @@ absl::StatusOr<std::string> MakeReport(const ReportData& data);
 // evaluation, comparison, times.
 nlohmann::ordered_json RunsToJson(const ReportData& data);
 
+// The runs over the stored map for people, several lines; none without runs.
+std::string RunsToText(const ReportData& data);
+
 // The loops of all runs with their evidence as CSV, with a head line.
 std::string LoopsToCsv(const ReportData& data);
 

@@ -89,22 +89,21 @@ bool IsKnown(const std::string& name) {
   return gflags::GetCommandLineFlagInfo(name.c_str(), &info);
 }
 
-// Flags defined in a *_main.cc, that is those of the command itself, and those
-// here; -sandbox where there is a configuration.
+// Flags defined in the sources of the command itself, and those here; -sandbox
+// where there is a configuration.
 std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
   const bool has_configuration = IsKnown("configuration_directory") ||
                                  IsKnown("rerun_configuration_directory");
-  flags.erase(std::remove_if(flags.begin(), flags.end(),
-                             [&](const gflags::CommandLineFlagInfo& flag) {
-                               return !absl::EndsWith(flag.filename,
-                                                      "_main.cc") &&
-                                      flag.name != "max_expansion" &&
-                                      !(has_configuration &&
-                                        flag.name == "sandbox");
-                             }),
-              flags.end());
+  flags.erase(
+      std::remove_if(flags.begin(), flags.end(),
+                     [&](const gflags::CommandLineFlagInfo& flag) {
+                       return !absl::StrContains(flag.filename,
+                                                 "cartographer_ext/tools/") ||
+                              (!has_configuration && flag.name == "sandbox");
+                     }),
+      flags.end());
   return flags;
 }
 
@@ -132,6 +131,13 @@ void PrintWrapped(const std::string& text, const std::string& indent) {
   std::exit(ExitCode(absl::OkStatus()));
 }
 
+// Whether the command ends with kExitVerdict where a map is not good enough.
+bool HasVerdict() {
+  gflags::CommandLineFlagInfo info;
+  return gflags::GetCommandLineFlagInfo("fail_on", &info) ||
+         ProgramName() == "cartographer_ext_repair";
+}
+
 [[noreturn]] void PrintHelpAndExit(const std::string& description) {
   std::cout << description << "\n\nFlags:\n";
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
@@ -142,7 +148,8 @@ void PrintWrapped(const std::string& text, const std::string& indent) {
     std::cout << ")\n";
     PrintWrapped(flag.description, "      ");
   }
-  std::cout << "\nExit codes: 0 success, 1 bad input, 2 wrong usage.\n";
+  std::cout << "\nExit codes: 0 success, 1 bad input, 2 wrong usage"
+            << (HasVerdict() ? ", 3 by the verdict" : "") << ".\n";
   std::exit(ExitCode(absl::OkStatus()));
 }
 
@@ -241,19 +248,17 @@ absl::Status CheckDistinct(const std::vector<std::string>& outputs,
                       return IsSameFile(input, output);
                     }) ||
         std::any_of(flags.begin(), flags.end(), [](const std::string& flag) {
-          return std::count(InputFlags()->begin(), InputFlags()->end(),
-                            flag) > 0;
+          return std::count(InputFlags()->begin(), InputFlags()->end(), flag) >
+                 0;
         });
     if (is_input) {
       return absl::InvalidArgumentError(
           absl::StrCat(output, ": the output is the input, which would be ",
                        "overwritten; name another output"));
     }
-    const bool is_twice =
-        std::any_of(outputs.begin() + i + 1, outputs.end(),
-                    [&](const std::string& other) {
-                      return IsSameFile(output, other);
-                    });
+    const bool is_twice = std::any_of(
+        outputs.begin() + i + 1, outputs.end(),
+        [&](const std::string& other) { return IsSameFile(output, other); });
     if (is_twice || flags.size() > 1) {
       return absl::InvalidArgumentError(absl::StrCat(
           output, ": an output and another file of the command have this name",
@@ -290,6 +295,10 @@ void CommandLine::TakePositional(const std::string& argument) {
     if (!second_input_flag_.empty() && !is_set(second_input_flag_)) {
       SetFlag(second_input_flag_, argument);
       second_input_flag_.clear();
+      return;
+    }
+    if (takes_many_) {
+      more_inputs_.push_back(argument);
       return;
     }
     ExitWithUsageError(absl::StrCat("\"", argument, "\" is a second input"));
@@ -387,11 +396,11 @@ void PrintNotes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
 }
 
-int ExitCode(const absl::Status& status) {
+int ExitCode(const absl::Status& status, const bool verdict_fails) {
   if (status.ok()) {
     std::cout.flush();
     if (std::cout.good() && std::fflush(stdout) == 0 && !std::ferror(stdout)) {
-      return kExitSuccess;
+      return verdict_fails ? kExitVerdict : kExitSuccess;
     }
     std::cerr << ProgramName() << ": cannot write standard output\n";
     return kExitBadInput;

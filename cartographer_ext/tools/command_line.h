@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the commands share: how flags are read, errors are reported and results
-// are written. Exit codes: 0 success, 1 bad input, 2 wrong usage.
+// are written. Exit codes: 0 success, 1 bad input, 2 wrong usage; 3 where a
+// command judges maps and the verdict is not the one that was asked for.
 //
 //   DEFINE_string(input_filename, "", "what to read");
 //   int main(int argc, char** argv) {
@@ -29,6 +30,7 @@ namespace tools {
 constexpr int kExitSuccess = 0;
 constexpr int kExitBadInput = 1;
 constexpr int kExitUsage = 2;
+constexpr int kExitVerdict = 3;
 
 // Sets the gflags of a command. `-flag value`, `-flag=value` with one or two
 // dashes, `-flag` and `-noflag` for booleans. One argument that is no flag is
@@ -45,10 +47,14 @@ class CommandLine {
   explicit CommandLine(const std::string& description,
                        const std::string& input_flag = "",
                        const std::string& second_input_flag = "");
+  // Takes any number of inputs: those behind the first are more_inputs().
+  void TakeMany() { takes_many_ = true; }
   void Parse(int argc, char** argv);
 
   // Whether the main input stood there without its flag.
   bool has_positional_input() const { return has_positional_input_; }
+
+  const std::vector<std::string>& more_inputs() const { return more_inputs_; }
 
  private:
   void TakePositional(const std::string& argument);
@@ -57,6 +63,8 @@ class CommandLine {
   const std::string input_flag_;
   std::string second_input_flag_;  // empty once it was taken
   bool has_positional_input_ = false;
+  bool takes_many_ = false;
+  std::vector<std::string> more_inputs_;
 };
 
 // The name the program was called by, without folders.
@@ -72,8 +80,9 @@ int UsageError(const std::string& message);
 void PrintNotes(const std::vector<std::string>& notes);
 
 // kExitSuccess, or prints the message and returns kExitBadInput; that also when
-// standard output did not take what was printed (full, closed).
-int ExitCode(const absl::Status& status);
+// standard output did not take what was printed (full, closed). With
+// `verdict_fails` success becomes kExitVerdict.
+int ExitCode(const absl::Status& status, bool verdict_fails = false);
 
 // The folders of a flag, comma separated. For an empty one the folder with our
 // Lua files that belongs to this program, wherever it is called from: that

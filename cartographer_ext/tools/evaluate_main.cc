@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-// LINK: report
+// LINK: collection
+// SOURCES: evaluate_many.cc
 //
 // cartographer_ext_evaluate: how good is a map?
 #include <iostream>
@@ -16,6 +17,8 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "cartographer_ext/collection/collection_run.h"
+#include "cartographer_ext/collection/map_files.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
@@ -31,12 +34,14 @@
 #include "cartographer_ext/slam/decision_files.h"
 #include "cartographer_ext/slam/match_files.h"
 #include "cartographer_ext/tools/command_line.h"
+#include "cartographer_ext/tools/evaluate_many.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
 
 DEFINE_string(pbstream_filename, "",
               "Map to judge. Its poses are those of the nodes, interpolated in "
-              "time between them, as Cartographer's own tool does.");
+              "time between them, as Cartographer's own tool does. A folder, a "
+              "pattern, or several maps without the flag: all are judged.");
 DEFINE_string(trajectory_filename, "",
               "Estimated trajectory (TUM) with a pose at every scan, as "
               "cartographer_ext_slam writes. Stamps are matched to the nearest "
@@ -77,7 +82,7 @@ DEFINE_string(match_records_filename, "",
               "without it those beside the map (MAP.nodes.pb), if any.");
 DEFINE_string(report_filename, "",
               "Output: report as one HTML file; beside it the numbers (.json) "
-              "and the loops with their evidence (.loops.csv).");
+              "and the loops with their evidence (.loop_evidence.csv).");
 DEFINE_bool(times, true,
             "Tell times and memory. Without them the same input gives the same "
             "bytes.");
@@ -86,6 +91,10 @@ DEFINE_string(constraints_filename, "",
               "is truth, verdicts.");
 DEFINE_string(relation_errors_filename, "",
               "Output: CSV of the error of every relation.");
+DEFINE_string(fail_on, "",
+              "Exit code 3 where a map is broken, or with doubtful also where "
+              "one is doubtful, or with worse where one has become worse since "
+              "-baseline.");
 DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
 
 namespace cartographer_ext {
@@ -102,6 +111,7 @@ constexpr char kDescription[] =
   cartographer_ext_evaluate -pbstream_filename=map.pbstream
       -rerun_configuration_directory=configuration_files
       -report_filename=map.html
+  cartographer_ext_evaluate maps/ -report_filename=overview.html -fail_on=broken
 
 Without ground truth the map is checked for consistency: scans against what
 other visits mapped, loops against each other, local SLAM against odometry. The
@@ -162,18 +172,6 @@ evaluation::MapEvaluationOptions EvaluationOptions(
   return options;
 }
 
-std::string RelationErrorTable(const evaluation::RelationsMetric& metric) {
-  std::string table =
-      "time1,time2,is_loop,translation_error,rotation_error_degrees\n";
-  for (const evaluation::RelationError& error : metric.errors) {
-    absl::StrAppendFormat(&table, "%.6f,%.6f,%d,%.6f,%.6f\n",
-                          io::ToSeconds(error.time1),
-                          io::ToSeconds(error.time2), error.is_loop ? 1 : 0,
-                          error.translation, RadToDeg(error.rotation));
-  }
-  return table;
-}
-
 // "map.html" -> "map" + `ending`.
 std::string BesideReport(const std::string& ending) {
   return absl::StrCat(absl::StripSuffix(FLAGS_report_filename, ".html"),
@@ -190,7 +188,7 @@ absl::Status WriteTables(const Inputs& inputs,
   }
   if (FLAGS_relation_errors_filename.empty()) return absl::OkStatus();
   return WriteFileAtomically(FLAGS_relation_errors_filename,
-                             RelationErrorTable(*result.relations));
+                             evaluation::RelationErrorTable(*result.relations));
 }
 
 absl::Status ReadDegeneracy(report::ReportData* const data) {
@@ -213,7 +211,7 @@ absl::Status WriteReport(const report::ReportData& data,
   if (!page.ok()) return page.status();
   absl::Status status = WriteFileAtomically(FLAGS_report_filename, *page);
   if (status.ok()) {
-    status = WriteFileAtomically(BesideReport(".loops.csv"),
+    status = WriteFileAtomically(BesideReport(".loop_evidence.csv"),
                                  report::LoopsToCsv(data));
   }
   if (status.ok()) status = tools::WriteJson(json, BesideReport(".json"));
@@ -262,31 +260,6 @@ absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data,
   return absl::OkStatus();
 }
 
-std::string RunsToText(const report::ReportData& data) {
-  std::string text;
-  for (const report::ReportRun& run : data.runs) {
-    if (!run.against_stored.has_value()) continue;
-    const evaluation::LoopComparison& comparison = *run.against_stored;
-    absl::StrAppendFormat(
-        &text,
-        "Run \"%s\"   %d loops, %d of the %d stored ones again (%.1f %%; with "
-        "other nodes of the visit %.1f %%)\n",
-        run.name, comparison.second, comparison.common, comparison.first,
-        100. * comparison.fraction_of_first,
-        comparison.first == 0
-            ? 100.
-            : 100. * (comparison.common + comparison.neighbour_instead) /
-                  comparison.first);
-    const std::string missing = evaluation::ExplainMissing(comparison);
-    if (!missing.empty()) absl::StrAppend(&text, "  missing: ", missing, "\n");
-    absl::StrAppend(&text, evaluation::ToText(run.evaluation));
-  }
-  for (const std::string& assumption : data.assumptions) {
-    absl::StrAppend(&text, "Assumed: ", assumption, "\n");
-  }
-  return text;
-}
-
 // The records beside the map, if any; counts what was not accepted.
 absl::Status ReadDecisionsBeside(evaluation::LoopStatistics* const loops,
                                  std::vector<proto::LoopDecision>* decisions) {
@@ -311,7 +284,7 @@ absl::Status CheckOutputs() {
   return tools::CheckWritable(outputs);
 }
 
-absl::Status Run(const std::string& command_line) {
+absl::Status RunOne(const std::string& command_line, bool* const fails) {
   const absl::Status writable = CheckOutputs();
   if (!writable.ok()) return writable;
   AtomicFileSet files;
@@ -339,6 +312,7 @@ absl::Status Run(const std::string& command_line) {
                                              : FLAGS_trajectory_filename,
                                      ": ", result.status().message()));
   }
+  *fails = collection::FailsOn(evaluation::Judge(*result).word, FLAGS_fail_on);
   absl::Status status;
   std::vector<proto::LoopDecision> decisions;
   if (has_map && result->loops.has_value()) {
@@ -369,11 +343,10 @@ absl::Status Run(const std::string& command_line) {
     if (!status.ok()) return status;
   }
   if (FLAGS_json != "-") {
-    std::cout << evaluation::ToText(*result) << RunsToText(data);
+    std::cout << evaluation::ToText(*result) << report::RunsToText(data);
   }
-  nlohmann::ordered_json json;
-  json["pbstream"] = FLAGS_pbstream_filename;
-  json["trajectory"] = FLAGS_trajectory_filename;
+  nlohmann::ordered_json json = {{"pbstream", FLAGS_pbstream_filename},
+                                 {"trajectory", FLAGS_trajectory_filename}};
   json.update(evaluation::ToJson(*result));
   if (data.runs.size() > 1) {
     json["runs"] = report::RunsToJson(data);
@@ -388,52 +361,66 @@ absl::Status Run(const std::string& command_line) {
   return status.ok() ? run_again : status;
 }
 
+// A message, or empty.
+std::string WrongUsage(const bool many) {
+  const std::string wrong = tools::WrongUsageOfMany(many);
+  if (many || !wrong.empty()) return wrong;
+  if (FLAGS_pbstream_filename.empty() && FLAGS_trajectory_filename.empty()) {
+    return "-pbstream_filename or -trajectory_filename is needed";
+  }
+  if (FLAGS_pbstream_filename.empty() && FLAGS_relations_filename.empty() &&
+      FLAGS_reference_trajectory_filename.empty()) {
+    return "a trajectory alone cannot be judged: -relations_filename or "
+           "-reference_trajectory_filename is needed";
+  }
+  if (!FLAGS_constraints_filename.empty() && FLAGS_pbstream_filename.empty()) {
+    return "-constraints_filename needs -pbstream_filename";
+  }
+  if (!FLAGS_relation_errors_filename.empty() &&
+      FLAGS_relations_filename.empty()) {
+    return "-relation_errors_filename needs -relations_filename";
+  }
+  if (FLAGS_pbstream_filename.empty() &&
+      (!FLAGS_report_filename.empty() ||
+       !FLAGS_rerun_configuration_directory.empty())) {
+    return "-report_filename and -rerun_configuration_directory need "
+           "-pbstream_filename";
+  }
+  if (FLAGS_rerun_configuration_directory.empty() &&
+      (!FLAGS_rerun_configuration_basename.empty() ||
+       !FLAGS_rerun_stock_configuration_basename.empty())) {
+    return "-rerun_configuration_basename needs -rerun_configuration_directory";
+  }
+  if (FLAGS_num_background_threads < 1) {
+    return "-num_background_threads must be above 0";
+  }
+  if (!(FLAGS_stamp_tolerance >= 0.) || !(FLAGS_rpe_distance > 0.) ||
+      !(FLAGS_loop_tolerance > 0.)) {
+    return "-stamp_tolerance must not be negative, -rpe_distance and "
+           "-loop_tolerance must be above 0";
+  }
+  return "";
+}
+
 }  // namespace
 }  // namespace cartographer_ext
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
   const std::string command_line = absl::StrJoin(argv, argv + argc, " ");
-  tools::CommandLine(kDescription, "pbstream_filename").Parse(argc, argv);
-  if (FLAGS_pbstream_filename.empty() && FLAGS_trajectory_filename.empty()) {
-    return tools::UsageError(
-        "-pbstream_filename or -trajectory_filename is needed");
+  tools::CommandLine arguments(kDescription, "pbstream_filename");
+  arguments.TakeMany();
+  arguments.Parse(argc, argv);
+  std::vector<std::string> inputs = arguments.more_inputs();
+  const bool many =
+      !inputs.empty() || collection::NamesMany(FLAGS_pbstream_filename);
+  const std::string wrong = WrongUsage(many);
+  if (!wrong.empty()) return tools::UsageError(wrong);
+  bool fails = false;
+  if (!many) {
+    const absl::Status status = RunOne(command_line, &fails);
+    return tools::ExitCode(status, fails);
   }
-  if (FLAGS_pbstream_filename.empty() && FLAGS_relations_filename.empty() &&
-      FLAGS_reference_trajectory_filename.empty()) {
-    return tools::UsageError(
-        "a trajectory alone cannot be judged: -relations_filename or "
-        "-reference_trajectory_filename is needed");
-  }
-  if (!FLAGS_constraints_filename.empty() && FLAGS_pbstream_filename.empty()) {
-    return tools::UsageError("-constraints_filename needs -pbstream_filename");
-  }
-  if (!FLAGS_relation_errors_filename.empty() &&
-      FLAGS_relations_filename.empty()) {
-    return tools::UsageError(
-        "-relation_errors_filename needs -relations_filename");
-  }
-  if (FLAGS_pbstream_filename.empty() &&
-      (!FLAGS_report_filename.empty() ||
-       !FLAGS_rerun_configuration_directory.empty())) {
-    return tools::UsageError(
-        "-report_filename and -rerun_configuration_directory need "
-        "-pbstream_filename");
-  }
-  if (FLAGS_rerun_configuration_directory.empty() &&
-      (!FLAGS_rerun_configuration_basename.empty() ||
-       !FLAGS_rerun_stock_configuration_basename.empty())) {
-    return tools::UsageError(
-        "-rerun_configuration_basename needs -rerun_configuration_directory");
-  }
-  if (FLAGS_num_background_threads < 1) {
-    return tools::UsageError("-num_background_threads must be above 0");
-  }
-  if (!(FLAGS_stamp_tolerance >= 0.) || !(FLAGS_rpe_distance > 0.) ||
-      !(FLAGS_loop_tolerance > 0.)) {
-    return tools::UsageError(
-        "-stamp_tolerance must not be negative, -rpe_distance and "
-        "-loop_tolerance must be above 0");
-  }
-  return tools::ExitCode(Run(command_line));
+  inputs.push_back(FLAGS_pbstream_filename);
+  return tools::EvaluateMany(inputs, &argc, &argv);
 }

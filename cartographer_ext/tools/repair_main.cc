@@ -70,8 +70,7 @@ constexpr char kDescription[] =
 Loops are judged again, loop closure is run again, and local SLAM is run again
 from the clouds of the nodes. A step is kept only if the verdict finds its map
 better; a sound map is left alone. Nothing is written unless it is better than
-the input. Exit code 0 whether or not the map could be repaired; `written` and
-`after.verdict` of -json tell which.)";
+the input. Exit code 3 where the map is doubtful or broken still.)";
 
 std::string PosesFilename() {
   if (!FLAGS_poses_filename.empty() || !FLAGS_keep_frame ||
@@ -134,7 +133,7 @@ absl::Status WriteOutputs(const repair::MapRepair& repair, const bool written,
   return tools::WriteJson(json, FLAGS_json);
 }
 
-absl::Status Run(const std::string& command_line) {
+absl::Status Run(const std::string& command_line, bool* const fails) {
   const absl::Status writable = tools::CheckWritable(
       {FLAGS_dry_run ? "" : FLAGS_output_filename, FLAGS_report_filename,
        PosesFilename(), FLAGS_json});
@@ -160,6 +159,8 @@ absl::Status Run(const std::string& command_line) {
   const auto repair = repair::RepairMap(*std::move(pbstream), *options);
   progress.Finish();
   if (!repair.ok()) return in_file(repair.status());
+  const std::string& verdict = repair->after.consistency.word;
+  *fails = verdict == "doubtful" || verdict == "broken";
   const bool written = repair->changed() && !FLAGS_dry_run;
   const absl::Status status = WriteOutputs(*repair, written, command_line);
   if (!status.ok()) return status;
@@ -194,5 +195,7 @@ int main(int argc, char** argv) {
   if (FLAGS_num_background_threads < 1) {
     return tools::UsageError("-num_background_threads must be above 0");
   }
-  return tools::ExitCode(Run(command_line));
+  bool fails = false;
+  const absl::Status status = Run(command_line, &fails);
+  return tools::ExitCode(status, fails);
 }

@@ -7,7 +7,6 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -178,18 +177,6 @@ std::string ObjectiveText(const tuning::Objective& objective) {
   return absl::StrJoin(parts, " + ");
 }
 
-std::unique_ptr<tuning::WorkerPool> CreatePool(
-    const tuning::MpiSession& session) {
-  auto pool = tuning::CreateMpiWorkerPool(session);
-  if (pool != nullptr) return pool;
-  const int workers =
-      FLAGS_workers > 0
-          ? FLAGS_workers
-          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return std::unique_ptr<tuning::WorkerPool>(
-      new tuning::LocalWorkerPool(workers, FLAGS_max_run_cpu_seconds));
-}
-
 absl::Status WriteResults(const tuning::TuneResult& result,
                           const tuning::ResultContext& context) {
   if (!FLAGS_output_filename.empty()) {
@@ -235,7 +222,8 @@ absl::Status Run(const tuning::MpiSession& session) {
               << ": the last line was half written and is dropped\n";
   }
 
-  const std::unique_ptr<tuning::WorkerPool> pool = CreatePool(session);
+  const std::unique_ptr<tuning::WorkerPool> pool = tuning::CreateWorkerPool(
+      session, FLAGS_workers, FLAGS_max_run_cpu_seconds);
   tuning::Tuner tuner({*configuration, setup->spec.parameters,
                        setup->spec.objective, setup->inputs, setup->holdout},
                       setup->options, pool.get(), journal->get());

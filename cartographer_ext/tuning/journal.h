@@ -1,14 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What has been run, on disk: a line of JSON for each finished run, appended
-// and flushed to the disk at once. A search that is started again with the same
-// journal finds every run there instead of doing it again; as the list of
-// trials depends on results only, it goes on as if nothing had happened.
-//
-// The first line says what was tuned. A power cut or kill -9 can leave half a
-// line at the end, which is cut off; half a line anywhere else is an error. A
-// lock keeps two searches from writing into one journal.
+// What has been run, on disk (line_journal.h): a line for each finished run. A
+// search that is started again with the same journal finds every run there
+// instead of doing it again; as the list of trials depends on results only, it
+// goes on as if nothing had happened.
 #ifndef CARTOGRAPHER_EXT_TUNING_JOURNAL_H_
 #define CARTOGRAPHER_EXT_TUNING_JOURNAL_H_
 
@@ -19,6 +15,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "cartographer_ext/io/line_journal.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_ext {
@@ -59,28 +56,21 @@ class Journal {
   // that is not kept.
   static absl::StatusOr<std::unique_ptr<Journal>> Open(
       const std::string& filename, const std::string& fingerprint);
-  ~Journal();
-  Journal(const Journal&) = delete;
-  Journal& operator=(const Journal&) = delete;
 
   // The runs it held when it was opened, in the order of the file.
   const std::vector<RunRecord>& runs() const { return runs_; }
 
   // Whether half a line was cut off its end.
-  bool was_torn() const { return was_torn_; }
+  bool was_torn() const { return lines_->was_torn(); }
 
   // On disk when it returns OK.
   absl::Status Append(const RunRecord& record);
 
  private:
-  Journal(std::string filename, int descriptor);
-  absl::Status ReadAll(const std::string& fingerprint);
-  absl::Status WriteLine(const std::string& line);
+  Journal() = default;
 
-  const std::string filename_;
-  const int descriptor_;  // -1: not kept
+  std::unique_ptr<io::LineJournal> lines_;
   std::vector<RunRecord> runs_;
-  bool was_torn_ = false;
 };
 
 }  // namespace tuning

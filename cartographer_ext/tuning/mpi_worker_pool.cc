@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/mpi_worker_pool.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <string>
 #include <thread>
+#include <utility>
 
 #ifdef CARTOGRAPHER_EXT_HAS_MPI
 // The C interface only.
@@ -133,8 +135,8 @@ MpiSession::~MpiSession() {
   MPI_Finalize();
 }
 
-void MpiSession::Serve(const double max_cpu_seconds) {
-  LocalWorkerPool pool(1, max_cpu_seconds);
+void MpiSession::Serve(const double max_cpu_seconds, RunFunction run) {
+  LocalWorkerPool pool(1, max_cpu_seconds, std::move(run));
   while (true) {
     int rank = 0, tag = 0;
     std::string text;
@@ -174,12 +176,26 @@ bool HasMpi() { return false; }
 
 MpiSession::MpiSession(int* /*argc*/, char*** /*argv*/) {}
 MpiSession::~MpiSession() = default;
-void MpiSession::Serve(double /*max_cpu_seconds*/) {}
+void MpiSession::Serve(double /*max_cpu_seconds*/, RunFunction /*run*/) {}
 std::unique_ptr<WorkerPool> CreateMpiWorkerPool(const MpiSession& /*session*/) {
   return nullptr;
 }
 
 #endif
+
+std::unique_ptr<WorkerPool> CreateWorkerPool(const MpiSession& session,
+                                             const int num_workers,
+                                             const double max_cpu_seconds,
+                                             RunFunction run) {
+  auto pool = CreateMpiWorkerPool(session);
+  if (pool != nullptr) return pool;
+  const int workers =
+      num_workers > 0
+          ? num_workers
+          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return std::unique_ptr<WorkerPool>(
+      new LocalWorkerPool(workers, max_cpu_seconds, std::move(run)));
+}
 
 }  // namespace tuning
 }  // namespace cartographer_ext

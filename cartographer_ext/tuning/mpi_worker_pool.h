@@ -39,7 +39,7 @@ class MpiSession {
   int size() const { return size_; }
 
   // On all ranks but 0: does what rank 0 sends until that is over.
-  void Serve(double max_cpu_seconds);
+  void Serve(double max_cpu_seconds, RunFunction run = &AnswerRequest);
 
  private:
   bool started_ = false;
@@ -49,6 +49,13 @@ class MpiSession {
 
 // On rank 0 of a job of at least two ranks; null otherwise.
 std::unique_ptr<WorkerPool> CreateMpiWorkerPool(const MpiSession& session);
+
+// That of the job under MPI, else `num_workers` processes of this machine (0: one
+// for each of its threads).
+std::unique_ptr<WorkerPool> CreateWorkerPool(const MpiSession& session,
+                                             int num_workers,
+                                             double max_cpu_seconds,
+                                             RunFunction run = &AnswerRequest);
 
 }  // namespace tuning
 }  // namespace cartographer_ext
