@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/sensor_feeder.h"
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "cartographer/sensor/imu_data.h"
 #include "cartographer/sensor/odometry_data.h"
 #include "cartographer_ext/map/host_types.h"
@@ -32,6 +34,37 @@ bool IsLater(const io::TimeNs time, cartographer::common::Time* const last) {
 }
 
 }  // namespace
+
+std::vector<std::string> WarningsOf(const FedReadings& fed,
+                                    const bool wants_odometry) {
+  std::vector<std::string> warnings;
+  if (wants_odometry && fed.odometry_readings == 0) {
+    warnings.push_back(
+        "no odometry: corridors may come out too short or too long, and "
+        "loops are searched farther around");
+  }
+  if (fed.skipped_scans > 0) {
+    warnings.push_back(absl::StrCat(
+        fed.skipped_scans,
+        " scans left out: without a valid range or not later than the one "
+        "before"));
+  }
+  if (fed.skipped_readings > 0) {
+    warnings.push_back(absl::StrCat(
+        fed.skipped_readings,
+        " odometry and IMU readings left out: not later than the one "
+        "before"));
+  }
+  const io::OdometryJumps& jumps = fed.odometry_jumps;
+  if (jumps.count() > 0) {
+    warnings.push_back(absl::StrFormat(
+        "the odometry jumps %d times, first by %.1f m at %.3f s; no robot does, "
+        "so it is taken to stand",
+        jumps.count(), jumps.first_distance(),
+        io::ToSeconds(jumps.first_time())));
+  }
+  return warnings;
+}
 
 std::set<SensorId> SensorFeeder::Sensors(const std::vector<std::string>& lasers,
                                          const bool use_odometry,
@@ -85,7 +118,9 @@ void SensorFeeder::operator()(const io::OdometryReading& reading) {
   ++fed_->odometry_readings;
   builder_->AddSensorData(
       kOdometryId, cartographer::sensor::OdometryData{
-                       ToHostTime(reading.time), ToHostPose(reading.pose)});
+                       ToHostTime(reading.time),
+                       ToHostPose(fed_->odometry_jumps.Remove(
+                           reading.time, reading.pose))});
 }
 
 void SensorFeeder::operator()(const io::ImuReading& reading) {

@@ -14,6 +14,7 @@
 #include "cartographer/common/time.h"
 #include "cartographer/mapping/trajectory_builder_interface.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
+#include "cartographer_ext/io/odometry_jumps.h"
 #include "cartographer_ext/io/sensor_source.h"
 
 namespace cartographer_ext {
@@ -28,8 +29,13 @@ struct FedReadings {
   int64_t skipped_scans = 0;
   // Odometry and IMU readings not later than the one before.
   int64_t skipped_readings = 0;
+  io::OdometryJumps odometry_jumps;  // taken out of the odometry
   double sensor_seconds = 0.;  // first to last scan
 };
+
+// A line for everything odd about them.
+std::vector<std::string> WarningsOf(const FedReadings& fed,
+                                    bool wants_odometry);
 
 // A visitor of sensor events.
 class SensorFeeder {

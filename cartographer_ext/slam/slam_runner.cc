@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/types/optional.h"
 #include "absl/types/variant.h"
 #include "cartographer/mapping/map_builder.h"
@@ -158,22 +159,9 @@ class Runner {
     CollectRecords();
     CollectPoses();
     Measure();
-    if (configuration_.sensors.use_odometry && run_.odometry_readings == 0) {
-      run_.warnings.push_back(
-          "no odometry: corridors may come out too short or too long, and "
-          "loops are searched farther around");
-    }
-    if (run_.skipped_scans > 0) {
-      run_.warnings.push_back(absl::StrCat(
-          run_.skipped_scans,
-          " scans left out: without a valid range or not later than the one "
-          "before"));
-    }
-    if (run_.skipped_readings > 0) {
-      run_.warnings.push_back(absl::StrCat(
-          run_.skipped_readings,
-          " odometry and IMU readings left out: not later than the one "
-          "before"));
+    for (std::string& warning :
+         WarningsOf(run_, configuration_.sensors.use_odometry)) {
+      run_.warnings.push_back(std::move(warning));
     }
     return std::move(run_);
   }

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/test_data.h"
@@ -197,6 +200,28 @@ TEST(SlamMainTest, TheNumberOfThreadsDoesNotMatter) {
   EXPECT_GT(one.size(), 1000u);
   EXPECT_TRUE(one == ReadFile(folder / "2.pbstream"));
   EXPECT_TRUE(one == ReadFile(folder / "3.pbstream"));
+}
+
+// One damaged line made stock's grids grow beyond memory.
+TEST(SlamMainTest, AJumpOfOdometryIsTakenOut) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 60);
+  const std::string good = ReadFile(folder / "room.clf");
+  const std::vector<std::string> lines = absl::StrSplit(good, '\n');
+  std::string bad;
+  int count = 0;
+  for (const std::string& line : lines) {
+    std::vector<std::string> words = absl::StrSplit(line, ' ');
+    if (words[0] == "ODOM" && ++count == 30) words[1] = "100000";
+    absl::StrAppend(&bad, absl::StrJoin(words, " "), "\n");
+  }
+  ASSERT_GE(count, 30);
+  WriteFile(folder / "bad.clf", bad);
+  const CommandResult result = RunCommand(
+      "slam", {"-input_filename", folder / "bad.clf", "-configuration_basename",
+               "stock.lua", "-trajectory_filename", folder / "bad.tum"});
+  EXPECT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.error, HasSubstr("the odometry jumps 2 times"));
 }
 
 TEST(SlamMainTest, WrongUsageIsExitCodeTwo) {
