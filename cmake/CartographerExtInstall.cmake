@@ -63,10 +63,12 @@ set(CPACK_PACKAGE_NAME cartographer-ext)
 # A role at a host that cannot exist (RFC 2606): Debian refuses a maintainer without an address.
 set(CPACK_PACKAGE_CONTACT "The cartographer_ext authors <authors@cartographer-ext.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Loop closure, scan matching and back ends for 2D SLAM: command line tools")
-set(CPACK_PACKAGE_DESCRIPTION "\
-Maps recordings of a planar laser (CARMEN logs, ROS 1 bags, ROS 2 recordings), judges finished maps with and without ground
-truth, repairs, exports and compares them, simulates robots, and optimises pose graphs. Reads and writes the files of
-Cartographer; needs neither ROS nor Cartographer.")
+set(CPACK_COMPONENT_TOOLS_DESCRIPTION "\
+Maps recordings of a planar laser (CARMEN logs, ROS 1 bags, ROS 2
+recordings), judges finished maps with and without ground truth, repairs,
+exports and compares them, simulates robots, and optimises pose graphs.
+Reads and writes the files of Cartographer; needs neither ROS nor
+Cartographer.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL tools)
