@@ -64,25 +64,6 @@ class Growth {
   }
 
  private:
-  // Logarithm of the volume of all relative poses, in whitened units of an
-  // edge, over (2 pi)^(3/2).
-  double LogVolume(const int i) const {
-    return log_area_ + std::log(2. * kPi) +
-           std::log(std::abs(edges_[i].whitening.determinant())) -
-           1.5 * std::log(2. * kPi);
-  }
-
-  void MeasureArea() {
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    for (const Pose2& pose : poses_) mean += pose.translation();
-    mean /= poses_.size();
-    double sum = 0.;
-    for (const Pose2& pose : poses_) {
-      sum += (pose.translation() - mean).squaredNorm();
-    }
-    log_area_ = std::log(kPi * std::max(1e-6, 2. * sum / poses_.size()));
-  }
-
   std::vector<int> Candidates() const {
     std::vector<int> result;
     for (const int i : open_) {
@@ -105,13 +86,13 @@ class Growth {
     const std::vector<Innovation> innovations =
         PredictLoops(candidates, weights_, poses_, &solver_);
     if (innovations.empty()) return {};
-    MeasureArea();
+    const double log_area = LogArea(poses_);
     std::vector<double> scores(edges_.size(),
                                -std::numeric_limits<double>::infinity());
     for (size_t k = 0; k != candidates.size(); ++k) {
       if (innovations[k].chi2 >= options_.gate) continue;
       scores[candidates[k]] =
-          LogVolume(candidates[k]) -
+          LogVolume(edges_[candidates[k]], log_area) -
           0.5 * (innovations[k].chi2 + innovations[k].log_determinant);
     }
     int best = -1;
@@ -130,7 +111,8 @@ class Growth {
       // Given this loop the others of its group are sharply predicted.
       const double score =
           scores[i] + std::min(support, options_.max_support) *
-                          std::max(0., LogVolume(i) - 0.5 * options_.gate);
+                          std::max(0., LogVolume(edges_[i], log_area) -
+                                           0.5 * options_.gate);
       if (score > highest) {
         highest = score;
         best = i;
@@ -177,7 +159,6 @@ class Growth {
   std::vector<int> open_;
   std::vector<bool> banned_;
   double cost_ = 0.;
-  double log_area_ = 0.;
 };
 
 }  // namespace
@@ -210,6 +191,23 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
     result.push_back(innovation);
   }
   return result;
+}
+
+double LogArea(const std::vector<Pose2>& poses) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Pose2& pose : poses) mean += pose.translation();
+  mean /= poses.size();
+  double sum = 0.;
+  for (const Pose2& pose : poses) {
+    sum += (pose.translation() - mean).squaredNorm();
+  }
+  return std::log(kPi * std::max(1e-6, 2. * sum / poses.size()));
+}
+
+double LogVolume(const WhitenedEdge& edge, const double log_area) {
+  return log_area + std::log(2. * kPi) +
+         std::log(std::abs(edge.whitening.determinant())) -
+         1.5 * std::log(2. * kPi);
 }
 
 bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,

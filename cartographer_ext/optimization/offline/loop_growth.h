@@ -53,6 +53,14 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
                                      const std::vector<Pose2>& poses,
                                      RobustSolver* solver);
 
+// Logarithm of the area (square metres) that poses are spread over.
+double LogArea(const std::vector<Pose2>& poses);
+
+// Logarithm of the volume of all relative poses within an area, in whitened
+// units of `edge`, over (2 pi)^(3/2): what a wrong loop's density is compared
+// with.
+double LogVolume(const WhitenedEdge& edge, double log_area);
+
 // Replaces `poses` by a solution with the loops that grew in; `weights`, one
 // per edge, tells which. `solver` is that of `edges`. Odometry must reach all
 // poses.

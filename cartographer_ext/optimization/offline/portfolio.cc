@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/joined_trajectories.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
@@ -31,6 +32,8 @@ constexpr int kMaxPossible = 2;
 constexpr size_t kSupported = 2;
 // Poses of a graph on which each solution counts.
 constexpr size_t kLargeGraph = 30000;
+// Groups of a large graph that are forced in.
+constexpr int kMaxTrialsOnLargeGraph = 4;
 // A graph of fewer poses times loops is searched from all starts in any case.
 constexpr double kSmallGraph = 2.5e5;
 // Multiplications of one factorisation that are worth it while the search is
@@ -237,25 +240,30 @@ void Portfolio::AddGrowth(const std::vector<Pose2>& start) {
   AddKernel("growth, ", KernelType::kDcs, poses);
 }
 
-void Portfolio::AddSupported(const size_t min_support) {
-  std::vector<double> weights(edges_.size(), 1.);
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    if (edges_[i].is_loop) {
-      weights[i] = support().agreeing[i].size() >= min_support ? 1. : 0.;
-    }
+bool Portfolio::AddCertain() {
+  std::vector<Pose2> poses = ChainOdometry(graph_);
+  std::vector<double> weights;
+  if (GrowCertainLoops(graph_, CertainGrowthOptions(), &solver_, &poses,
+                       &weights) == 0) {
+    return false;
   }
-  std::vector<Pose2> poses = graph_.poses;
-  if (ChordalPoses(edges_, weights, &poses)) {
-    AddKernel("supported, ", KernelType::kDcs, poses);
+  Add("certain", std::move(poses));
+  if (RejectedContradict()) return true;
+  // Right groups may be kept out by one wrong loop.
+  ForceOptions force;
+  force.max_trials = kMaxTrialsOnLargeGraph;
+  force.min_members = kSupported + 1;
+  poses = best().poses;
+  if (ForceGroups(support(), force, &edges_, &solver_, &poses, &alternatives_) >
+      0) {
+    Add("certain, groups", std::move(poses));
   }
+  return true;
 }
 
 void Portfolio::Run() {
-  // On a large graph the loops that agree with their neighbours settle most.
-  if (graph_.poses.size() > kLargeGraph) {
-    AddSupported(1);
-    if (!members_.empty() && RejectedContradict()) return;
-  }
+  // What else there is would take minutes on a large graph.
+  if (graph_.poses.size() > kLargeGraph && AddCertain()) return;
   RunQuick();
   const bool settled = IsSettled();
   const double size = static_cast<double>(graph_.poses.size()) * num_loops_;
@@ -264,7 +272,11 @@ void Portfolio::Run() {
   // solvers that keep them all are far off.
   RunStarts(FullWork() <= kAffordableWork &&
             (!settled || CountRejected() <= 0.25 * num_loops_));
-  if (!settled && size <= kMaxGrowthWork) RunGroups();
+  if (!settled && size <= kMaxGrowthWork) {
+    RunGroups();
+  } else if (!settled) {
+    AddCertain();
+  }
   Improve();
 }
 

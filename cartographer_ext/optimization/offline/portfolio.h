@@ -18,6 +18,10 @@
 //           spanning tree over the loops in force, groups forced in one by one
 //           (decision_moves.h).
 //
+// A graph of tens of thousands of poses is grown by the loops that are certain
+// (certain_growth.h) and polished, and that is all. Where a smaller one has too
+// many poses and loops for the search by groups, this takes its place.
+//
 // Solvers that keep all loops in their equations are left to graphs where that
 // is affordable: the fill of thousands of wrong loops is not.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_PORTFOLIO_H_
@@ -85,9 +89,8 @@ class Portfolio {
                   const std::vector<Pose2>& start, bool with_full_kernels);
   void AddGnc(const std::string& start_name, const std::vector<Pose2>& start);
   void AddReplays();
-  // From a chordal relaxation of odometry and the loops with so many agreeing
-  // neighbours.
-  void AddSupported(size_t min_support);
+  // False where no loop is certain.
+  bool AddCertain();
   void AddGrowth(const std::vector<Pose2>& start);
   // Work of one factorisation with all loops, in multiplications.
   double FullWork();

@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/certain_growth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "Eigen/Cholesky"
+#include "Eigen/LU"
+#include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+// Odds against any wrong loop in a round: a hundred to one while that brings
+// loops in, then ten to one, then one to one.
+const double kFirstLogOdds = std::log(100.);
+// A round that brings in less than this share of what is in force is the last
+// with these odds.
+constexpr double kProgress = 1e-3;
+
+// Ad_T, which turns twists of a pose into twists of the map.
+Eigen::Matrix3d Adjoint(const Pose2& pose) {
+  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+  return (Eigen::Matrix3d() << c, -s, pose.y, s, c, -pose.x, 0., 0., 1.)
+      .finished();
+}
+
+struct Candidate {
+  int edge = 0;
+  double score = 0.;  // log likelihood ratio
+  double chi2 = 0.;   // of the innovation
+};
+
+class CertainGrowth {
+ public:
+  CertainGrowth(const PoseGraph& graph, const CertainGrowthOptions& options,
+                RobustSolver* const solver, std::vector<Pose2>* const poses,
+                std::vector<double>* const weights)
+      : options_(options),
+        solver_(*solver),
+        edges_(solver->edges()),
+        poses_(*poses),
+        weights_(*weights),
+        covariances_(PredictAlongChain(graph, edges_, *poses)) {}
+
+  int Run() {
+    weights_.assign(edges_.size(), 1.);
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (edges_[i].is_loop) weights_[i] = 0.;
+    }
+    if (covariances_.empty()) return 0;
+    given_up_.assign(edges_.size(), 0);
+    int in_force = 0;
+    double log_odds = kFirstLogOdds;
+    for (int round = 0; round != options_.max_rounds; ++round) {
+      const int entered = TakeInCertain(log_odds);
+      const int before = in_force;
+      if (entered > 0) {
+        Solve();
+        in_force = LetGo();
+      }
+      if (in_force - before <= kProgress * before) {
+        if (log_odds <= 0.) break;
+        log_odds -= 0.5 * kFirstLogOdds;
+      }
+      if (entered > 0) PredictByFactor();
+    }
+    return in_force;
+  }
+
+ private:
+  std::vector<Candidate> OpenLoops() const {
+    const double log_area = LogArea(poses_);
+    std::vector<Candidate> result;
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (!edges_[i].is_loop || weights_[i] > 0. || given_up_[i] > 1) continue;
+      const Eigen::Vector3d residual =
+          Residual(edges_[i], poses_[edges_[i].from], poses_[edges_[i].to]);
+      const Eigen::LLT<Eigen::Matrix3d> root(covariances_[i]);
+      const double chi2 = residual.dot(root.solve(residual));
+      const double log_determinant =
+          2. * root.matrixLLT().diagonal().array().log().sum();
+      result.push_back(
+          {static_cast<int>(i),
+           LogVolume(edges_[i], log_area) - 0.5 * (chi2 + log_determinant),
+           chi2});
+    }
+    return result;
+  }
+
+  int TakeInCertain(const double log_odds) {
+    const std::vector<Candidate> candidates = OpenLoops();
+    const double enough = std::log(candidates.size()) + log_odds;
+    int entered = 0;
+    for (const Candidate& candidate : candidates) {
+      if (!(candidate.chi2 < options_.gate) || candidate.score < enough) {
+        continue;
+      }
+      weights_[candidate.edge] = 1.;
+      ++entered;
+    }
+    return entered;
+  }
+
+  void Solve() {
+    SolverOptions options;
+    options.kernel = DefaultKernel(KernelType::kDcs);
+    options.kernel.parameter = options_.gate;
+    options.edge_weights = weights_;
+    options.max_iterations = 10;
+    options.cost_tolerance = 1e-3;
+    options.initial_lambda = 1e-8;
+    solver_.Solve(options, &poses_);
+  }
+
+  // Returns the number of loops that stay in force.
+  int LetGo() {
+    int result = 0;
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (!edges_[i].is_loop || weights_[i] == 0.) continue;
+      if (Chi2(edges_[i], poses_[edges_[i].from], poses_[edges_[i].to]) >=
+          options_.gate) {
+        weights_[i] = 0.;
+        ++given_up_[i];
+      } else {
+        ++result;
+      }
+    }
+    return result;
+  }
+
+  // Covariances of those open loops that contradict the last ones least.
+  void PredictByFactor() {
+    std::vector<Candidate> candidates = OpenLoops();
+    const size_t limit = options_.max_predictions;
+    if (candidates.size() > limit) {
+      std::nth_element(
+          candidates.begin(), candidates.begin() + limit, candidates.end(),
+          [](const Candidate& a, const Candidate& b) {
+            return a.chi2 != b.chi2 ? a.chi2 < b.chi2 : a.edge < b.edge;
+          });
+      candidates.resize(limit);
+    }
+    Eigen::VectorXd rhs;
+    const BlockLdlt* const factorised = solver_.Factor(poses_, weights_, &rhs);
+    if (factorised == nullptr) return;
+    IncrementalFactor factor;
+    factor.Reset(*factorised, rhs);
+    for (const Candidate& candidate : candidates) {
+      const WhitenedEdge& edge = edges_[candidate.edge];
+      LinearFactor linear;
+      linear.a = edge.from - 1;
+      linear.b = edge.to - 1;
+      Linearize(edge, poses_[edge.from], poses_[edge.to], &linear.jacobian_a,
+                &linear.jacobian_b);
+      covariances_[candidate.edge] =
+          Eigen::Matrix3d::Identity() + factor.PredictedCovariance(linear);
+    }
+  }
+
+  const CertainGrowthOptions& options_;
+  RobustSolver& solver_;
+  const std::vector<WhitenedEdge>& edges_;
+  std::vector<Pose2>& poses_;
+  std::vector<double>& weights_;
+  std::vector<Eigen::Matrix3d> covariances_;  // S per edge
+  std::vector<int> given_up_;                 // how often, per edge
+};
+
+}  // namespace
+
+std::vector<Eigen::Matrix3d> PredictAlongChain(
+    const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
+    const std::vector<Pose2>& poses) {
+  std::vector<Eigen::Matrix3d> sums(poses.size(), Eigen::Matrix3d::Zero());
+  std::vector<bool> reached(poses.size(), false);
+  for (const PoseGraphEdge& edge : graph.edges) {
+    if (edge.is_loop || std::abs(edge.to - edge.from) != 1) continue;
+    // The noise is in the frame of the measured end.
+    const Eigen::Matrix3d adjoint = Adjoint(poses[edge.to]);
+    const int later = std::max(edge.from, edge.to);
+    if (reached[later]) continue;
+    reached[later] = true;
+    sums[later] = adjoint * edge.information.inverse() * adjoint.transpose();
+  }
+  for (size_t k = 1; k < poses.size(); ++k) {
+    if (!reached[k]) return {};
+    sums[k] += sums[k - 1];
+  }
+  std::vector<Eigen::Matrix3d> result(edges.size(),
+                                      Eigen::Matrix3d::Identity());
+  for (size_t i = 0; i != edges.size(); ++i) {
+    const WhitenedEdge& edge = edges[i];
+    if (!edge.is_loop) continue;
+    Eigen::Matrix3d of_from, of_to;
+    Linearize(edge, poses[edge.from], poses[edge.to], &of_from, &of_to);
+    const int early = std::min(edge.from, edge.to);
+    const int late = std::max(edge.from, edge.to);
+    // d(pose) / d(twist of the map).
+    Eigen::Matrix3d motion = Eigen::Matrix3d::Identity();
+    motion(0, 2) = -poses[late].y;
+    motion(1, 2) = poses[late].x;
+    const Eigen::Matrix3d jacobian =
+        (late == edge.to ? of_to : of_from) * motion;
+    result[i] += jacobian * (sums[late] - sums[early]) * jacobian.transpose();
+  }
+  return result;
+}
+
+int GrowCertainLoops(const PoseGraph& graph,
+                     const CertainGrowthOptions& options,
+                     RobustSolver* const solver,
+                     std::vector<Pose2>* const poses,
+                     std::vector<double>* const weights) {
+  return CertainGrowth(graph, options, solver, poses, weights).Run();
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Growth (loop_growth.h) for large graphs: many loops a round instead of one
+// group, and only what can have changed is worked out again.
+//
+// A loop is certain when the likelihood of its innovation r with covariance S,
+// compared with that of a loop which may lead anywhere in the map, outweighs
+// the number n of open loops:
+//
+//   log N(r; 0, S) - log 1 / (2 pi A det W^-1)  >  log n + log k,
+//
+// so that of all that are taken in at once 1 / k is expected to be wrong; k
+// falls from 100 to 1 where no more come in. First these are loops over short stretches of odometry; with them in
+// force the next ones are sharply predicted.
+//
+// Before the first round S follows from sums along the chain of odometry: with
+// Ad_k the adjoint of pose k and C_k the covariance of the step to it,
+//
+//   W_k = sum_(i <= k) Ad_i C_i Ad_i'
+//
+// W_b - W_a is the covariance of (a <- b) as a twist of the map. Later S comes
+// from the factor, for the open loops that contradict their last S least: over
+// long chains, where headings are lost, the first one is only roughly right,
+// and most wrong loops contradict any.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_CERTAIN_GROWTH_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_CERTAIN_GROWTH_H_
+
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/solvers/kernels.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct CertainGrowthOptions {
+  double gate = kChi2Gate;  // of the innovation
+  int max_rounds = 25;
+  // Open loops that are predicted by the factor in one round.
+  int max_predictions = 4000;
+};
+
+// Covariance S = I + J C J' of the whitened innovation of each loop with regard
+// to odometry alone, identity for other edges; `poses` are chained odometry.
+// Empty unless odometry leads from each pose to the next.
+std::vector<Eigen::Matrix3d> PredictAlongChain(
+    const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
+    const std::vector<Pose2>& poses);
+
+// Replaces `poses`, chained odometry, by a solution with the certain loops;
+// `weights`, one per edge, tells which. `solver` is that of the graph's edges.
+// Returns the number of loops in force, 0 where odometry is no chain.
+int GrowCertainLoops(const PoseGraph& graph,
+                     const CertainGrowthOptions& options, RobustSolver* solver,
+                     std::vector<Pose2>* poses, std::vector<double>* weights);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_CERTAIN_GROWTH_H_

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/certain_growth.h"
+
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "gmock/gmock.h"
+#include "tests/optimization/test_graphs.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+test::GridWorld GridWithOutliers(const uint64_t seed, const int outliers) {
+  test::GridWorld world = test::MakeGridWorld(1500, 14, seed);
+  OutlierOptions options;
+  options.count = outliers;
+  options.seed = seed;
+  test::AppendOutliers(world.graph, options, &world.graph.edges);
+  return world;
+}
+
+// Number of the first odometry edge from this one on.
+int FirstStep(const PoseGraph& graph, int edge) {
+  while (graph.edges[edge].is_loop) ++edge;
+  return edge;
+}
+
+TEST(CertainGrowthTest, SumsAlongTheChainPredictAsTheFactorDoes) {
+  test::GridWorld world = GridWithOutliers(1, 100);
+  // A step written backwards and a loop written backwards.
+  PoseGraphEdge* const step = &world.graph.edges[FirstStep(world.graph, 20)];
+  std::swap(step->from, step->to);
+  step->measurement = step->measurement.Inverse();
+  PoseGraphEdge* const loop = &world.graph.edges.back();
+  std::swap(loop->from, loop->to);
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  const std::vector<Pose2> poses = DeadReckoning(world.graph);
+  const std::vector<Eigen::Matrix3d> covariances =
+      PredictAlongChain(world.graph, edges, poses);
+  ASSERT_EQ(covariances.size(), edges.size());
+  RobustSolver solver(edges);
+  std::vector<double> weights(edges.size());
+  std::vector<int> loops;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    weights[i] = edges[i].is_loop ? 0. : 1.;
+    if (edges[i].is_loop) loops.push_back(i);
+  }
+  const std::vector<Innovation> expected =
+      PredictLoops(loops, weights, poses, &solver);
+  ASSERT_EQ(expected.size(), loops.size());
+  for (size_t k = 0; k != loops.size(); ++k) {
+    const WhitenedEdge& edge = edges[loops[k]];
+    const Eigen::Vector3d residual =
+        Residual(edge, poses[edge.from], poses[edge.to]);
+    const Eigen::Matrix3d& covariance = covariances[loops[k]];
+    EXPECT_NEAR(residual.dot(covariance.inverse() * residual), expected[k].chi2,
+                1e-5 * (1. + expected[k].chi2));
+    EXPECT_NEAR(std::log(covariance.determinant()), expected[k].log_determinant,
+                1e-5);
+  }
+}
+
+TEST(CertainGrowthTest, FindsTheRightLoopsAmongAsManyWrongOnes) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    const size_t clean = test::MakeGridWorld(1500, 14, seed).graph.edges.size();
+    const test::GridWorld world = GridWithOutliers(seed, clean - 1499);
+    const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+    RobustSolver solver(edges);
+    std::vector<Pose2> poses = DeadReckoning(world.graph);
+    std::vector<double> weights;
+    const int in_force = GrowCertainLoops(world.graph, CertainGrowthOptions(),
+                                          &solver, &poses, &weights);
+    int right = 0, right_in_force = 0, wrong_in_force = 0;
+    for (size_t i = 0; i != edges.size(); ++i) {
+      if (!edges[i].is_loop) {
+        EXPECT_EQ(weights[i], 1.);
+      } else if (i < clean) {
+        ++right;
+        right_in_force += weights[i] > 0.;
+      } else {
+        wrong_in_force += weights[i] > 0.;
+      }
+    }
+    EXPECT_EQ(in_force, right_in_force + wrong_in_force);
+    EXPECT_GE(right_in_force, 0.95 * right) << seed;
+    EXPECT_LE(wrong_in_force, 0.01 * in_force) << seed;
+    EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 0.3) << seed;
+  }
+}
+
+TEST(CertainGrowthTest, NeedsAChain) {
+  test::GridWorld world = GridWithOutliers(1, 0);
+  world.graph.edges.erase(world.graph.edges.begin() +
+                          FirstStep(world.graph, 20));
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  std::vector<Pose2> poses = world.truth;
+  const double before = poses[100].x;
+  std::vector<double> weights;
+  EXPECT_EQ(GrowCertainLoops(world.graph, CertainGrowthOptions(), &solver,
+                             &poses, &weights),
+            0);
+  EXPECT_EQ(poses[100].x, before);
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext
