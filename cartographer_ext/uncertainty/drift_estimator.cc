@@ -25,6 +25,9 @@ constexpr double kFirstStep = 0.6931471805599453;
 constexpr double kStepInSigmas = 0.75;
 constexpr double kLeastStep = 0.03;
 
+// Levels of the share of wrong cycles, equidistant within (0, 1).
+constexpr int kShares = 8;
+
 constexpr int kReweightings = 5;
 constexpr int kAlternations = 3;
 
@@ -49,6 +52,8 @@ Eigen::Matrix3d Moved(const Eigen::Matrix3d& covariance, const Pose2& pose) {
   const Eigen::Matrix3d adjoint = Adjoint(pose);
   return adjoint * covariance * adjoint.transpose();
 }
+
+double ShareOf(const int level) { return (level + 0.5) / kShares; }
 
 DriftFactors FactorsOf(const Eigen::Vector3d& logarithms) {
   DriftFactors factors;
@@ -86,8 +91,7 @@ DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path) {
 }
 
 DriftEstimator::DriftEstimator(const DriftEstimatorOptions& options)
-    : options_(options),
-      log_outlier_(std::log(options.outlier_share * options.outlier_density)) {
+    : options_(options) {
   CHECK_GT(options.prior_sigma, 0.);
   CHECK_GT(options.max_cycles, 0u);
 }
@@ -99,8 +103,10 @@ void DriftEstimator::Add(const DriftCycle& cycle) {
   if (cycles_.size() > options_.max_cycles) cycles_.pop_front();
 }
 
-CommonDrift DriftEstimator::FitCommon(const DriftFactors& factors) const {
-  const double log_inlier = std::log1p(-options_.outlier_share);
+CommonDrift DriftEstimator::FitCommon(const DriftFactors& factors,
+                                      const double wrong_share) const {
+  const double log_right = std::log1p(-wrong_share);
+  const double log_wrong = std::log(wrong_share * options_.outlier_density);
   const Eigen::Vector3d prior_sigma(
       options_.prior_heading, options_.prior_turning, options_.prior_scale);
   CommonDrift common;
@@ -113,10 +119,10 @@ CommonDrift DriftEstimator::FitCommon(const DriftFactors& factors) const {
           Symmetric(cycle.parts.Total(factors, Eigen::Matrix3d::Zero())));
       if (factor.info() != Eigen::Success) continue;
       const double density =
-          log_inlier +
+          log_right +
           LogNormalDensity(cycle.error + cycle.parts.common * common.mean,
                            factor);
-      const double weight = 1. / (1. + std::exp(log_outlier_ - density));
+      const double weight = 1. / (1. + std::exp(log_wrong - density));
       const Eigen::Matrix3d effects =
           cycle.parts.common * prior_sigma.asDiagonal();
       information += weight * effects.transpose() * factor.solve(effects);
@@ -160,55 +166,64 @@ double DriftEstimator::Marginal::Quantile(const double quantile) const {
   return LogFactor(kLevels - 1) + 0.5 * step;
 }
 
-void DriftEstimator::FitFactors(const CommonDrift& common,
-                                std::array<Marginal, 3>* const grid) const {
-  const double log_inlier = std::log1p(-options_.outlier_share);
+double DriftEstimator::FitFactors(const CommonDrift& common,
+                                  std::array<Marginal, 3>* const grid) const {
   std::vector<DriftCycle> residuals(cycles_.begin(), cycles_.end());
   for (DriftCycle& cycle : residuals) {
     cycle.error += cycle.parts.common * common.mean;
   }
+  // Of one point of the grid: for each share, the logarithm.
   const auto log_posterior = [&](const Eigen::Vector3d& logarithms) {
     const DriftFactors factors = FactorsOf(logarithms);
-    double sum =
-        -0.5 * logarithms.squaredNorm() / Squared(options_.prior_sigma);
+    std::array<double, kShares> sums;
+    sums.fill(-0.5 * logarithms.squaredNorm() / Squared(options_.prior_sigma));
     for (const DriftCycle& cycle : residuals) {
       const Eigen::LLT<Eigen::Matrix3d> factor(
           Symmetric(cycle.parts.Total(factors, common.covariance)));
-      const double density =
-          log_inlier + LogNormalDensity(cycle.error, factor);
-      const double top = std::max(density, log_outlier_);
-      sum += top + std::log1p(std::exp(-std::abs(density - log_outlier_)));
+      const double density = std::exp(LogNormalDensity(cycle.error, factor));
+      for (int k = 0; k < kShares; ++k) {
+        const double share = ShareOf(k);
+        sums[k] +=
+            std::log((1. - share) * density + share * options_.outlier_density);
+      }
     }
-    return sum;
+    return sums;
   };
   std::array<Marginal, 3>& axes = *grid;
-  std::vector<double> values;
+  std::vector<std::array<double, kShares>> values;
+  double top = -std::numeric_limits<double>::infinity();
   for (int t = 0; t < kLevels; ++t) {
     for (int r = 0; r < kLevels; ++r) {
       for (int u = 0; u < kLevels; ++u) {
         values.push_back(log_posterior(Eigen::Vector3d(
             axes[0].LogFactor(t), axes[1].LogFactor(r), axes[2].LogFactor(u))));
+        top = std::max(
+            top, *std::max_element(values.back().begin(), values.back().end()));
       }
     }
   }
-  const double top = *std::max_element(values.begin(), values.end());
   for (Marginal& axis : axes) axis.mass.assign(kLevels, 0.);
   double total = 0.;
+  double share = 0.;
   size_t index = 0;
   for (int t = 0; t < kLevels; ++t) {
     for (int r = 0; r < kLevels; ++r) {
-      for (int u = 0; u < kLevels; ++u) {
-        const double mass = std::exp(values[index++] - top);
-        axes[0].mass[t] += mass;
-        axes[1].mass[r] += mass;
-        axes[2].mass[u] += mass;
-        total += mass;
+      for (int u = 0; u < kLevels; ++u, ++index) {
+        for (int k = 0; k < kShares; ++k) {
+          const double mass = std::exp(values[index][k] - top);
+          axes[0].mass[t] += mass;
+          axes[1].mass[r] += mass;
+          axes[2].mass[u] += mass;
+          share += mass * ShareOf(k);
+          total += mass;
+        }
       }
     }
   }
   for (Marginal& axis : axes) {
     for (double& mass : axis.mass) mass /= total;
   }
+  return share / total;
 }
 
 DriftFit DriftEstimator::Fit() const {
@@ -222,8 +237,8 @@ DriftFit DriftEstimator::Fit() const {
                         : std::max(kLeastStep, kStepInSigmas * axis.Sigma());
       axis.center = center;
     }
-    fit.common = FitCommon(fit.mean);
-    FitFactors(fit.common, &grid);
+    fit.common = FitCommon(fit.mean, fit.wrong_share);
+    fit.wrong_share = FitFactors(fit.common, &grid);
     fit.mean = FactorsOf(
         Eigen::Vector3d(grid[0].Mean(), grid[1].Mean(), grid[2].Mean()));
   }

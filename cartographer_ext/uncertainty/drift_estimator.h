@@ -16,13 +16,17 @@
 // are wrong, which says nothing about the drift, so the likelihood of a cycle
 // is that of a mixture with a uniform density:
 //
-//   p(E | c, f) = (1 - w) N(E; -A c, C(f)) + w u.
+//   p(E | c, f, w) = (1 - w) N(E; -A c, C(f)) + w u.
 //
-// Given f, c has a normal prior and is found by reweighted least squares, where
-// a cycle weighs what it is likely to be right. Given c, the posterior of
-// (ln f_t, ln f_r, ln f_u) is computed on a grid, with a normal prior around
-// zero that allows for a factor of ten within two standard deviations. Both
-// alternate a fixed number of times, the grid closing in on the posterior.
+// The share w of wrong cycles is not known either: of a blurred map most may be
+// wrong. A share assumed too small would have the noise explain them.
+//
+// Given f and w, c has a normal prior and is found by reweighted least squares,
+// where a cycle weighs what it is likely to be right. Given c, the posterior of
+// (ln f_t, ln f_r, ln f_u, w) is computed on a grid, with a normal prior around
+// zero that allows for a factor of ten within two standard deviations, and a
+// uniform one of w. Both alternate a fixed number of times, the grid of the
+// factors closing in on the posterior.
 //
 // The bound from above is a quantile of each factor: far above the mean while
 // few cycles are known, close to it later.
@@ -69,7 +73,6 @@ struct DriftEstimatorOptions {
   double prior_heading = 0.002;  // radians per metre
   double prior_turning = 0.03;
   double prior_scale = 0.02;
-  double outlier_share = 0.1;     // w, in (0, 1)
   double outlier_density = 0.01;  // u, over 10 m by 10 m by 1 rad
   double upper_quantile = 0.9;    // in (0.5, 1)
   size_t max_cycles = 400;        // oldest forgotten first, > 0
@@ -80,6 +83,7 @@ struct DriftFit {
   DriftFactors mean;
   DriftFactors upper;
   CommonDrift common;
+  double wrong_share = 0.5;  // w, of the cycles
 };
 
 class DriftEstimator {
@@ -105,13 +109,12 @@ class DriftEstimator {
     double Quantile(double quantile) const;
   };
 
-  CommonDrift FitCommon(const DriftFactors& factors) const;
-  // Of the levels in `grid`, which says where they are.
-  void FitFactors(const CommonDrift& common,
-                  std::array<Marginal, 3>* grid) const;
+  CommonDrift FitCommon(const DriftFactors& factors, double wrong_share) const;
+  // Of the levels in `grid`, which says where they are. Returns the mean of w.
+  double FitFactors(const CommonDrift& common,
+                    std::array<Marginal, 3>* grid) const;
 
   const DriftEstimatorOptions options_;
-  const double log_outlier_;  // ln(w u)
   std::deque<DriftCycle> cycles_;
   int num_cycles_ = 0;
 };

@@ -122,6 +122,29 @@ TEST(DriftEstimatorTest, WrongLoopsDoNotCount) {
   EXPECT_LT(estimator.Fit().mean.translation, 1.3);
 }
 
+TEST(DriftEstimatorTest, MostLoopsMayBeWrong) {
+  for (const double truth : {0.7, 5.}) {
+    DriftEstimator estimator{DriftEstimatorOptions()};
+    Random random(12);
+    DriftFactors factors;
+    factors.translation = truth;
+    for (int i = 0; i < 100; ++i) {
+      DriftCycle cycle = Draw(factors, &random);
+      // Four of five lie anywhere within some metres.
+      if (i % 5 != 0) {
+        cycle.error =
+            Eigen::Vector3d(random.Uniform(-4., 4.), random.Uniform(-4., 4.),
+                            random.Uniform(-0.5, 0.5));
+      }
+      estimator.Add(cycle);
+    }
+    const DriftFit fit = estimator.Fit();
+    EXPECT_NEAR(std::log(fit.mean.translation / truth), 0., 0.5) << truth;
+    EXPECT_LT(fit.mean.turning, 2.5) << truth;
+    EXPECT_NEAR(fit.wrong_share, 0.8, 0.15) << truth;
+  }
+}
+
 TEST(DriftEstimatorTest, CyclesHaveTheCovarianceOfTheCycleTest) {
   const Pose2 a_v(1., 2., 0.3), a_u(2., 2.5, 0.6), b_u(7., -1., 2.),
       b_v(8., -2., 1.5);

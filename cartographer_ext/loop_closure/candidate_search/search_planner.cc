@@ -99,10 +99,9 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
       paths_->drift_version() > 0
           ? Between(path->pose, HostPrediction(*paths_, candidate))
           : Pose2();
-  plan->linear_window =
-      std::min(std::max(wanted, options_.min_linear_window) +
-                   offset.translation().norm(),
-               options_.max_linear_window);
+  plan->linear_window = std::min(std::max(wanted, options_.min_linear_window) +
+                                     offset.translation().norm(),
+                                 options_.max_linear_window);
   plan->angular_window =
       std::min(kPi, std::max(options_.min_angular_window,
                              options_.window_sigmas * plan->rotation_sigma) +
@@ -178,7 +177,8 @@ void SearchPlanner::ApplyCap(
     const LoopCandidate& candidate = *candidates[indices[k]];
     SearchPlan& plan = (*plans)[indices[k]];
     if (num_searched < cap &&
-        (!plan.full_submap || num_searched_fully < kFullSearchesPerNode)) {
+        (!plan.full_submap || num_searched_fully < kFullSearchesPerNode) &&
+        credit_.Pay(plan)) {
       ++num_searched;
       if (plan.full_submap) ++num_searched_fully;
       continue;
@@ -194,6 +194,7 @@ std::vector<SearchPlan> SearchPlanner::Plan(
   std::vector<SearchPlan> plans(candidates.size());
   std::map<uncertainty::NodeId, std::vector<size_t>> of_node;
   for (size_t i = 0; i < candidates.size(); ++i) {
+    credit_.AddNode(candidates[i]->node);
     // One by one, since the searches of a burst space each other out.
     plans[i] = PlanAlone(*candidates[i]);
     if (plans[i].out_of_reach || plans[i].skipped != LoopDecision::NONE) {
@@ -210,11 +211,11 @@ std::vector<SearchPlan> SearchPlanner::Plan(
   return plans;
 }
 
-void SearchPlanner::AddAcceptedLoop(const uncertainty::SubmapId& submap,
-                                    const uncertainty::LoopEdge& loop,
-                                    const int64_t node_time) {
-  Nodes& accepted = submaps_[submap].accepted;
-  accepted.emplace(loop.b, node_time);
+void SearchPlanner::AddAcceptedLoop(const LoopCandidate& candidate,
+                                    const uncertainty::LoopEdge& loop) {
+  credit_.Reward(candidate.plan);
+  Nodes& accepted = submaps_[candidate.submap].accepted;
+  accepted.emplace(loop.b, candidate.node_time);
   if (accepted.size() > kMaxNodesPerSubmap) accepted.erase(accepted.begin());
   least_uncertain_paths_.Add(loop);
 }

@@ -15,7 +15,8 @@
 //              the path to it is less uncertain than a loop would be.
 //   cap        Of the candidates of one node that remain the most promising are
 //              searched: those with much to gain that are near enough to
-//              overlap.
+//              overlap; wide windows only while there is credit for them
+//              (search_credit.h).
 //
 // The plans depend on what was proposed and decided before, in this order, and
 // on nothing else. Not thread-safe.
@@ -28,6 +29,7 @@
 #include <vector>
 
 #include "Eigen/Core"
+#include "cartographer_ext/loop_closure/candidate_search/search_credit.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_result.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/uncertainty/ids.h"
@@ -88,9 +90,9 @@ class SearchPlanner {
   std::vector<SearchPlan> Plan(
       const std::vector<const LoopCandidate*>& candidates);
 
-  // (anchor <- node) of a loop that was accepted.
-  void AddAcceptedLoop(const uncertainty::SubmapId& submap,
-                       const uncertainty::LoopEdge& loop, int64_t node_time);
+  // (anchor <- node) of a candidate that was accepted.
+  void AddAcceptedLoop(const LoopCandidate& accepted,
+                       const uncertainty::LoopEdge& loop);
   // Accepted loops of nodes of a trajectory up to an index with submaps of
   // another one no longer locate its nodes.
   void ForgetLoops(int trajectory_id, int submap_trajectory_id,
@@ -134,6 +136,7 @@ class SearchPlanner {
   const double default_angular_window_;
   const uncertainty::PathUncertainty* const paths_;
   std::map<uncertainty::SubmapId, SubmapMemory> submaps_;
+  SearchCredit credit_;
   uncertainty::LeastUncertainPaths least_uncertain_paths_;
 };
 

@@ -199,7 +199,7 @@ bool PairPlanner::AddAcceptedLoop(
     const LoopCandidate& accepted,
     const absl::optional<uncertainty::LoopEdge>& loop) {
   if (loop.has_value()) {
-    search_planner_.AddAcceptedLoop(accepted.submap, *loop, accepted.node_time);
+    search_planner_.AddAcceptedLoop(accepted, *loop);
   }
   return accepted.is_inter_trajectory() &&
          localization_.AddAcceptedLoop(accepted.node,

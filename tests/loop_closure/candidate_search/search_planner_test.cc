@@ -62,6 +62,13 @@ class SearchPlannerTest : public testing::Test {
     return pair;
   }
 
+  static LoopCandidate Accepted(const int submap, const int64_t node_time) {
+    LoopCandidate accepted;
+    accepted.submap.submap_index = submap;
+    accepted.node_time = node_time;
+    return accepted;
+  }
+
   SearchPlan PlanOne(const LoopCandidate& pair) {
     return planner_->Plan({&pair}).front();
   }
@@ -140,7 +147,7 @@ TEST_F(SearchPlannerTest, AcceptedLoopsNarrowTheWindowAndRestTheSubmap) {
   loop.a = uncertainty::NodeId{0, 10};
   loop.b = uncertainty::NodeId{0, 150};
   loop.pose.covariance = LoopCovariance();
-  planner_->AddAcceptedLoop(uncertainty::SubmapId{0, 7}, loop, 0);
+  planner_->AddAcceptedLoop(Accepted(7, 0), loop);
   // 10 m before the loop, 9 m behind it, and the loop itself.
   const SearchPlan plan = PlanOne(Pair(1, 0, 159, 3.));
   EXPECT_NEAR(plan.translation_sigma, std::sqrt(0.1 + 0.09 + 0.01), 1e-12);
@@ -165,7 +172,7 @@ TEST_F(SearchPlannerTest, AfterSomeTimeASubmapIsSearchedAgain) {
   loop.a = uncertainty::NodeId{0, 10};
   loop.b = uncertainty::NodeId{0, 150};
   loop.pose.covariance = LoopCovariance();
-  planner_->AddAcceptedLoop(uncertainty::SubmapId{0, 7}, loop, 1000000000);
+  planner_->AddAcceptedLoop(Accepted(7, 1000000000), loop);
   pair = Pair(7, 10, 153, 3.);
   pair.node_time = 1100000000;
   EXPECT_EQ(PlanOne(pair).skipped, LoopDecision::SKIPPED_REDUNDANT);
@@ -201,7 +208,7 @@ TEST_F(SearchPlannerTest, LoopsOfADeletedTrajectoryNoLongerPredict) {
   loop.a = uncertainty::NodeId{0, 10};
   loop.b = uncertainty::NodeId{0, 150};
   loop.pose.covariance = LoopCovariance();
-  planner_->AddAcceptedLoop(uncertainty::SubmapId{0, 7}, loop, 0);
+  planner_->AddAcceptedLoop(Accepted(7, 0), loop);
   planner_->DeleteTrajectory(1);
   EXPECT_LT(PlanOne(Pair(1, 0, 159, 3.)).translation_sigma, 0.5);
   planner_->DeleteTrajectory(0);
@@ -226,7 +233,7 @@ TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
   loop.a = submap;
   loop.b = uncertainty::NodeId{1, 10};
   loop.pose.covariance = LoopCovariance();
-  planner_->AddAcceptedLoop(uncertainty::SubmapId{0, 0}, loop, 0);
+  planner_->AddAcceptedLoop(Accepted(0, 0), loop);
   pair.node = uncertainty::NodeId{1, 20};
   EXPECT_LT(PlanOne(pair).linear_window, 2.);
   // Not up to there, or of another map.
