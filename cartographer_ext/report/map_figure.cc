@@ -92,14 +92,17 @@ void MapFigure::Path(const std::vector<Eigen::Vector2d>& points,
 }
 
 void MapFigure::Line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                     const std::string& style, const std::string& hover) {
+                     const std::string& style, const std::string& hover,
+                     const Attributes& more) {
   if (!from.allFinite() || !to.allFinite()) return;
   const Eigen::Vector2d a = ToUnits(from), b = ToUnits(to);
-  body_.Open("line", {{"class", absl::StrCat("loop ", style)},
-                      {"x1", Number(a.x(), 1)},
-                      {"y1", Number(a.y(), 1)},
-                      {"x2", Number(b.x(), 1)},
-                      {"y2", Number(b.y(), 1)}});
+  Attributes attributes = {{"class", absl::StrCat("loop ", style)},
+                           {"x1", Number(a.x(), 1)},
+                           {"y1", Number(a.y(), 1)},
+                           {"x2", Number(b.x(), 1)},
+                           {"y2", Number(b.y(), 1)}};
+  attributes.insert(attributes.end(), more.begin(), more.end());
+  body_.Open("line", attributes);
   body_.Element("title", {}, hover);
   body_.Close();
 }
@@ -136,7 +139,7 @@ void MapFigure::Ring(const Eigen::Vector2d& center, const double radius,
 }
 
 void MapFigure::Legend(const std::string& label, const std::string& style) {
-  legend_.Open("span", {{"class", "entry"}});
+  legend_.Open("span", {{"class", "entry"}, {"data-style", style}});
   legend_.Element("span", {{"class", absl::StrCat("swatch ", style)}}, "");
   legend_.Text(label);
   legend_.Close();
@@ -150,7 +153,11 @@ std::string MapFigure::ToHtml() const {
                       {"viewBox", absl::StrCat("0 0 ", Number(width, 1), " ",
                                                Number(height, 1))},
                       {"role", "img"},
-                      {"aria-label", title_}});
+                      {"aria-label", title_},
+                      // For the script: units a metre, and the corner.
+                      {"data-units", Number(units_, 6)},
+                      {"data-x", Number(bounds_.min_x, 4)},
+                      {"data-y", Number(bounds_.max_y, 4)}});
   markup.Empty("rect", {{"class", "unknown"},
                         {"width", Number(width, 1)},
                         {"height", Number(height, 1)}});

@@ -39,8 +39,10 @@ class MapFigure {
   // Breaks the line at points that are not finite.
   void Path(const std::vector<Eigen::Vector2d>& points,
             const std::string& style);
+  // `more`: attributes for the script.
   void Line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-            const std::string& style, const std::string& hover);
+            const std::string& style, const std::string& hover,
+            const Attributes& more = {});
   void Dots(const std::vector<Eigen::Vector2d>& points,
             const std::string& style);
   // A ring with a label beside it; `radius` in metres.

@@ -146,8 +146,10 @@ absl::StatusOr<std::string> MakeReport(const ReportData& data) {
   AddTiming(data, &page);
   AddOrigin(data, &page);
   page.Close();
+  AddScans(data, prepared, &page);
   page.Open("script");
   page.Raw(Script());
+  page.Raw(ViewerScript());
   page.Close();
   page.Close();
   page.Close();

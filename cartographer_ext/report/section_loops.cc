@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -20,18 +21,76 @@ using evaluation::LoopVerdict;
 // Lines in one figure; of more loops the good ones are thinned out.
 constexpr size_t kMaxLines = 1500;
 
+// The scans that a click shows: centimetres, at most so many bytes in all.
+constexpr size_t kMaxScanBytes = 1500000;
+constexpr size_t kPointBytes = 10;
+constexpr size_t kMaxScanPoints = 160;
+constexpr size_t kMinScanPoints = 30;
+constexpr double kMaxScanRange = 1000.;  // metres
+
 std::string StyleOf(const LoopEvidence& evidence) {
   if (!evidence.accepted) return "s6 bad";
   if (evidence.suspicious()) return "s2 bad";
   return evidence.truth == LoopVerdict::kCorrect ? "s3" : "s5";
 }
 
-void AddLoopFigure(const ReportRun& run, const std::string& image_id,
+std::string PoseText(const Pose2& pose) {
+  return absl::StrCat(Number(pose.x, 3), " ", Number(pose.y, 3), " ",
+                      Number(pose.theta, 4));
+}
+
+// What a click on the loop shows: its ids, its node's scan, and where the loop
+// and the map put that.
+Attributes LoopAttributes(const LoopEvidence& loop,
+                          const evaluation::GraphSubmap& submap,
+                          const evaluation::GraphNode& node,
+                          const io::TimeNs start) {
+  return {
+      {"data-id",
+       absl::StrCat(loop.submap_id.trajectory_id, ":", loop.submap_id.index,
+                    ":", loop.node_id.trajectory_id, ":", loop.node_id.index)},
+      {"data-t", Number(io::ToSeconds(node.time - start), 1)},
+      {"data-loop", PoseText(submap.global_pose * loop.relative_pose)},
+      {"data-map", PoseText(node.global_pose)}};
+}
+
+// Stretches that contradict the map, and nodes with a degenerate scan.
+void AddTrouble(const ReportData& data, const ReportRun& run,
+                MapFigure* const figure) {
+  if (run.evaluation.consistency.has_value() &&
+      !run.evaluation.consistency->severe.empty()) {
+    for (const auto& stretch : run.evaluation.consistency->severe) {
+      std::vector<Eigen::Vector2d> path;
+      for (auto node = run.graph.nodes.find(stretch.first_node);
+           node != run.graph.nodes.end() && !(stretch.last_node < node->first);
+           ++node) {
+        path.push_back(node->second.global_pose.translation());
+      }
+      figure->Path(path, "s4");
+    }
+    figure->Legend("scans that contradict the map", "s4");
+  }
+  const evaluation::Trajectory trajectory = run.graph.GlobalTrajectory();
+  std::vector<Eigen::Vector2d> degenerate;
+  for (const DegeneracySample& sample : data.degeneracy) {
+    if (!sample.degenerate) continue;
+    const auto pose = trajectory.Lookup(sample.time, 0);
+    if (!pose.has_value()) continue;
+    degenerate.emplace_back(pose->translation().x(), pose->translation().y());
+  }
+  if (degenerate.empty()) return;
+  figure->Dots(degenerate, "s6");
+  figure->Legend("scans that do not determine the place", "s6");
+}
+
+void AddLoopFigure(const ReportData& data, const ReportRun& run,
+                   const std::string& image_id,
                    const std::vector<LoopEvidence>& evidence,
                    const Prepared& prepared, Markup* const page) {
   MapFigure figure(absl::StrCat("Loops, ", run.name), prepared.bounds);
   if (!image_id.empty()) figure.Image(image_id);
   figure.Path(NodePath(run.graph), "s7 thin");
+  AddTrouble(data, run, &figure);
   size_t good = 0;
   for (const LoopEvidence& loop : evidence) {
     if (loop.accepted && !loop.suspicious()) ++good;
@@ -52,9 +111,10 @@ void AddLoopFigure(const ReportRun& run, const std::string& image_id,
       }
       const std::string style = StyleOf(loop);
       styles.insert(style);
-      figure.Line(submap->second.global_pose.translation(),
-                  node->second.global_pose.translation(), style,
-                  Describe(loop));
+      figure.Line(
+          submap->second.global_pose.translation(),
+          node->second.global_pose.translation(), style, Describe(loop),
+          LoopAttributes(loop, submap->second, node->second, prepared.start));
     }
   }
   figure.Legend("path", "s7");
@@ -75,7 +135,9 @@ void AddLoopFigure(const ReportRun& run, const std::string& image_id,
   page->Element("figcaption", {},
                 absl::StrCat("Loops, ", run.name,
                              ": from the submap's origin to the node. Point at "
-                             "a line for its evidence.",
+                             "a line for its evidence, click it to see its "
+                             "scan where the loop puts it (blue) and where "
+                             "the map has it (orange).",
                              step > 1 ? absl::StrCat(" Of the good ones every ",
                                                      step, "th is drawn.")
                                       : ""));
@@ -133,9 +195,44 @@ void AddLoops(const ReportData& data, const Prepared& prepared,
               Markup* const page) {
   AddHeading("loops", "Loops", page);
   for (size_t i = 0; i < data.runs.size(); ++i) {
-    AddLoopFigure(data.runs[i], prepared.image_ids[i], prepared.evidence[i],
-                  prepared, page);
+    AddLoopFigure(data, data.runs[i], prepared.image_ids[i],
+                  prepared.evidence[i], prepared, page);
   }
+}
+
+void AddScans(const ReportData& data, const Prepared& prepared,
+              Markup* const page) {
+  std::set<GraphId> nodes;
+  for (const auto& evidence : prepared.evidence) {
+    for (const LoopEvidence& loop : evidence) nodes.insert(loop.node_id);
+  }
+  if (nodes.empty()) return;
+  const size_t max_points = std::min(
+      kMaxScanPoints,
+      std::max(kMinScanPoints, kMaxScanBytes / kPointBytes / nodes.size()));
+  // Of more nodes than the room is for, evenly as many as there is room for.
+  const size_t room = kMaxScanBytes / kPointBytes / kMinScanPoints;
+  const size_t step = 1 + nodes.size() / room;
+  page->Open("script", {{"type", "application/json"}, {"id", "scans"}});
+  std::string json = "{";
+  size_t position = 0;
+  for (const GraphId& id : nodes) {
+    const auto scan = data.contents->scans.find(id);
+    if (position++ % step != 0 || scan == data.contents->scans.end()) continue;
+    absl::StrAppend(&json, json.size() > 1 ? ",\n" : "", "\"", id.trajectory_id,
+                    ":", id.index, "\":[");
+    const size_t every = 1 + scan->second.size() / max_points;
+    for (size_t i = 0; i < scan->second.size(); i += every) {
+      const Eigen::Vector2d& point = scan->second[i];
+      if (!point.allFinite() || point.norm() > kMaxScanRange) continue;
+      absl::StrAppend(&json, json.back() == '[' ? "" : ",",
+                      std::lround(100. * point.x()), ",",
+                      std::lround(100. * point.y()));
+    }
+    json += "]";
+  }
+  page->Raw(json + "}");
+  page->Close();
 }
 
 void AddComparison(const ReportData& data, Markup* const page) {

@@ -38,6 +38,9 @@ void AddSummary(const ReportData& data, Markup* page);
 void AddMaps(const ReportData& data, const Prepared& prepared, Markup* page);
 // Loops on the map, coloured by verdict.
 void AddLoops(const ReportData& data, const Prepared& prepared, Markup* page);
+// The scans of the loops' nodes as data for the script: { "trajectory:node":
+// [x, y, ...] }, centimetres in the frame of the node.
+void AddScans(const ReportData& data, const Prepared& prepared, Markup* page);
 // Histograms of scores and residuals, and the two scores against each other.
 void AddScores(const ReportData& data, const Prepared& prepared, Markup* page);
 // What is known along the path: contradiction, odometry, degeneracy.

@@ -110,6 +110,26 @@ tbody th{font-weight:400}
 pre{background:var(--panel);border-radius:6px;padding:10px 12px;overflow:auto;
 font-size:.85rem;white-space:pre-wrap;overflow-wrap:anywhere}
 .print-only{display:none}
+.viewer{position:relative}.viewer svg{cursor:grab}
+.viewer svg:focus-visible{outline:2px solid var(--blue)}
+.viewer.zoomed svg{touch-action:none}
+.tools{position:absolute;right:8px;top:8px;display:flex;gap:4px;z-index:1}
+.tools button,.evidence button{font:inherit;min-width:2.2em;padding:2px 8px;
+background:var(--ground);color:var(--ink);border:1px solid var(--rule);
+border-radius:4px;cursor:pointer}
+.viewer .loop{cursor:pointer;pointer-events:stroke}
+.viewer .loop.chosen{stroke-width:6;stroke-opacity:1}
+button.entry{all:unset;display:inline-flex;align-items:center;gap:6px;
+cursor:pointer}button.entry:focus-visible{outline:2px solid var(--blue)}
+button.entry[aria-pressed=false]{opacity:.4;text-decoration:line-through}
+.off{display:none}
+.scan{fill:none;stroke-width:3;stroke-linecap:round;
+vector-effect:non-scaling-stroke;pointer-events:none}
+.scan.loop-scan{stroke:#0072b2}.scan.map-scan{stroke:#e05000}
+.evidence{background:var(--panel);border-radius:6px;padding:10px 14px;
+margin:8px 0;white-space:pre-wrap}
+.evidence code{user-select:all}
+@media print{.tools,.evidence,.time{display:none}}
 @media (max-width:720px){.pair{grid-template-columns:1fr}}
 @media print{:root{color-scheme:light;--ground:#fff;--panel:#f4f4f4;--ink:#000;
 --soft:#444;--rule:#bbb;--map-filter:none}body{font-size:10.5pt}

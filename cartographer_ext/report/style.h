@@ -12,9 +12,14 @@ namespace report {
 
 const char* StyleSheet();
 
-// Moves the dividing line of the picture comparison. All the script there is;
-// without it the two pictures are side by side.
+// Moves the dividing line of the picture comparison; without it the two pictures
+// are side by side.
 const char* Script();
+
+// Makes the figures of maps answer: moving and zooming by mouse, touch and keys,
+// layers by their legend, a slider of time, and the evidence of a loop at a
+// click. Without it they are pictures with hover texts.
+const char* ViewerScript();
 
 }  // namespace report
 }  // namespace cartographer_ext

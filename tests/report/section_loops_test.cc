@@ -28,6 +28,24 @@ TEST(SectionLoopsTest, LinesByVerdict) {
   EXPECT_THAT(html, Not(HasSubstr("th is drawn")));
 }
 
+TEST(SectionLoopsTest, ALoopHasWhatAClickShows) {
+  ReportData data = test::ExampleData(false);
+  evaluation::MapContents contents;
+  contents.scans[{0, 3}] = {{1.234, -0.5}, {2., 0.}};
+  contents.scans[{0, 0}] = {{7., 7.}};  // of no loop
+  data.contents = &contents;
+  const Prepared prepared = test::Prepare(data);
+  Markup page;
+  AddLoops(data, prepared, &page);
+  AddScans(data, prepared, &page);
+  const std::string& html = page.str();
+  // The second loop: two metres off where the map has its node.
+  EXPECT_THAT(html, HasSubstr("data-id=\"0:0:0:3\" data-t=\"3\" "
+                              "data-loop=\"3 2 0\" data-map=\"3 0 0\""));
+  EXPECT_THAT(html, HasSubstr("{\"0:3\":[123,-50,200,0]}"));
+  EXPECT_THAT(html, Not(HasSubstr("700")));
+}
+
 TEST(SectionLoopsTest, LoopsOfWhatIsNotThereAreLeftOut) {
   ReportData data = test::ExampleData(false);
   data.runs[0].graph.constraints[0].node_id = {3, 3};

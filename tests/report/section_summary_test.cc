@@ -67,6 +67,52 @@ TEST(SectionSummaryTest, TruthAndVerdict) {
   EXPECT_THAT(html, HasSubstr("loop cycles that stay open"));
 }
 
+// Headline, reasons and JSON say one verdict whatever truth and the map itself
+// say.
+TEST(SectionSummaryTest, OneVerdictOneVoice) {
+  const std::vector<std::string> words = {"unknown", "sound", "doubtful",
+                                          "broken"};
+  const std::string otherwise = "without ground truth it would be called ";
+  for (const std::string& by_map : words) {
+    for (const double fraction : {-1., 0., 0.01, 0.5}) {
+      ReportData data = test::ExampleData(false);
+      evaluation::Evaluation& evaluation = data.runs[0].evaluation;
+      evaluation.consistency = test::ExampleConsistency();
+      evaluation.consistency->word = by_map;
+      evaluation.consistency->reasons = {"the headline", "a figure"};
+      if (fraction >= 0.) {
+        evaluation.relations.emplace();
+        evaluation.relations->loop.count = 100;
+        evaluation.relations->loop.fraction_above_half_metre = fraction;
+      }
+      const std::string word = evaluation::Judge(evaluation).word;
+      EXPECT_EQ(word, fraction < 0.    ? by_map
+                      : fraction == 0. ? "sound"
+                      : fraction < 0.1 ? "doubtful"
+                                       : "broken");
+      const auto json = evaluation::ToJson(evaluation);
+      EXPECT_EQ(json["verdict"], word);
+      Markup page;
+      AddSummary(data, &page);
+      EXPECT_THAT(page.str(), HasSubstr("<div class=\"verdict " + word));
+      EXPECT_THAT(page.str(), HasSubstr("Map " + word));
+      bool is_named = false;
+      for (std::string reason : json["reasons"]) {
+        EXPECT_THAT(page.str(), HasSubstr("<li>" + reason));
+        if (reason.rfind(otherwise, 0) == 0) {
+          is_named = true;
+          EXPECT_EQ(reason, otherwise + by_map + ": the headline");
+          continue;
+        }
+        for (const std::string& other : words) {
+          EXPECT_THAT(reason, Not(HasSubstr(other)));
+        }
+      }
+      EXPECT_EQ(is_named, word != by_map);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace report
 }  // namespace cartographer_ext

@@ -20,6 +20,7 @@ constexpr double kDoubtfulRmse = 0.5;   // metres
 constexpr double kLargeResidual = 0.5;  // metres
 
 enum Severity { kUnknown, kSound, kDoubtful, kBroken };
+constexpr const char* kWords[] = {"unknown", "sound", "doubtful", "broken"};
 
 ordered_json ToJson(const RelationsSummary& summary) {
   ordered_json json;
@@ -133,8 +134,15 @@ Verdict Judge(const Evaluation& evaluation) {
             : consistency.word == "sound"    ? kSound
                                              : kUnknown);
     }
+    const size_t headline = verdict.reasons.size();
     verdict.reasons.insert(verdict.reasons.end(), consistency.reasons.begin(),
                            consistency.reasons.end());
+    if (consistency.word != kWords[severity] &&
+        headline < verdict.reasons.size()) {
+      verdict.reasons[headline] =
+          absl::StrCat("without ground truth it would be called ",
+                       consistency.word, ": ", verdict.reasons[headline]);
+    }
   }
   if (evaluation.loops.has_value() && evaluation.loops->accepted > 0) {
     const auto& loops = evaluation.loops->loops;
@@ -159,8 +167,6 @@ Verdict Judge(const Evaluation& evaluation) {
                           evaluation.loops->correct, evaluation.loops->judged));
     }
   }
-  static constexpr const char* kWords[] = {"unknown", "sound", "doubtful",
-                                           "broken"};
   verdict.word = kWords[severity];
   return verdict;
 }

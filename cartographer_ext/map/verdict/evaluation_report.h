@@ -44,6 +44,10 @@ struct Verdict {
 // Without any truth the self-consistency of the map decides, where it is known;
 // else the map is doubtful when more than 2 % of the loops disagree with the
 // optimised graph by more than half a metre.
+//
+// There is one verdict: where the map by itself would be called otherwise than
+// truth has it, the reasons say so in these words, and no reason says another
+// verdict.
 Verdict Judge(const Evaluation& evaluation);
 
 nlohmann::ordered_json ToJson(const Statistics& statistics);

@@ -59,7 +59,7 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result) {
   if (!result.severe.empty()) {
     sentence = absl::StrCat(
         result.word == "broken"
-            ? "the map is broken: parts of it lie across each other, most at "
+            ? "parts of the map lie across each other, most at "
             : "parts of the map lie across each other at ",
         Place(result.severe.front().center));
   }

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/report/style.h"
+
+namespace cartographer_ext {
+namespace report {
+
+namespace {
+
+constexpr char kViewerScript[] = R"js(
+(function(){
+var space='http://www.w3.org/2000/svg',data=document.getElementById('scans');
+var scans=data?JSON.parse(data.textContent):{};
+function make(name,parent,text){var e=document.createElement(name);
+if(text)e.textContent=text;parent.appendChild(e);return e;}
+function view(svg){
+var box=svg.viewBox.baseVal,home=[box.x,box.y,box.width,box.height];
+var frame=document.createElement('div'),at=home.slice(),fingers={},moved=0;
+frame.className='viewer';svg.parentNode.insertBefore(frame,svg);
+frame.appendChild(svg);svg.tabIndex=0;
+function show(){svg.setAttribute('viewBox',at.join(' '));
+frame.classList.toggle('zoomed',at[2]<home[2]*.999);}
+function place(x,y){var r=svg.getBoundingClientRect();
+var s=Math.max(at[2]/r.width,at[3]/r.height);
+return [at[0]+at[2]/2+(x-r.left-r.width/2)*s,
+at[1]+at[3]/2+(y-r.top-r.height/2)*s,s];}
+function limit(){for(var i=0;i<2;i++){
+at[i]=Math.min(Math.max(at[i],home[i]-at[i+2]/2),
+home[i]+home[i+2]-at[i+2]/2);}}
+function zoom(f,p){var w=Math.min(home[2],Math.max(home[2]/400,at[2]*f));
+f=w/at[2];at=[p[0]-(p[0]-at[0])*f,p[1]-(p[1]-at[1])*f,w,at[3]*f];
+if(w>=home[2])at=home.slice();limit();show();}
+function middle(){return [at[0]+at[2]/2,at[1]+at[3]/2];}
+function go(x,y,w){var f=Math.min(1,w/home[2]);
+at=[x-home[2]*f/2,y-home[3]*f/2,home[2]*f,home[3]*f];limit();show();}
+function shift(x,y){at[0]+=x;at[1]+=y;limit();show();}
+function reset(){at=home.slice();show();}
+svg.addEventListener('wheel',function(e){
+if(!e.ctrlKey&&document.activeElement!==svg)return;
+e.preventDefault();zoom(Math.pow(1.0015,e.deltaY),place(e.clientX,e.clientY));
+},{passive:false});
+svg.addEventListener('pointerdown',function(e){
+fingers[e.pointerId]=[e.clientX,e.clientY];moved=0;});
+svg.addEventListener('pointermove',function(e){
+var was=fingers[e.pointerId],ids=Object.keys(fingers);if(!was)return;
+var now=[e.clientX,e.clientY],s=place(0,0)[2];
+if(ids.length===2){
+var o=fingers[ids[0]===String(e.pointerId)?ids[1]:ids[0]];
+var a=Math.hypot(was[0]-o[0],was[1]-o[1]),b=Math.hypot(now[0]-o[0],now[1]-o[1]);
+if(a>0&&b>0)zoom(a/b,place((now[0]+o[0])/2,(now[1]+o[1])/2));moved=9;
+}else if(at[2]<home[2]*.999){
+shift((was[0]-now[0])*s,(was[1]-now[1])*s);
+}
+moved+=Math.hypot(now[0]-was[0],now[1]-was[1]);fingers[e.pointerId]=now;});
+['pointerup','pointercancel','pointerleave'].forEach(function(name){
+svg.addEventListener(name,function(e){delete fingers[e.pointerId];});});
+svg.addEventListener('dblclick',function(e){
+zoom(.5,place(e.clientX,e.clientY));});
+svg.addEventListener('keydown',function(e){
+var step={ArrowLeft:[-1,0],ArrowRight:[1,0],ArrowUp:[0,-1],ArrowDown:[0,1]}
+[e.key];
+if(step)shift(step[0]*at[2]*.1,step[1]*at[3]*.1);
+else if(e.key==='+'||e.key==='=')zoom(.7,middle());
+else if(e.key==='-')zoom(1/.7,middle());
+else if(e.key==='0')reset();
+else return;
+e.preventDefault();});
+var tools=make('div',frame);tools.className='tools';
+[['+','Closer',function(){zoom(.7,middle());}],
+['\u2212','Farther',function(){zoom(1/.7,middle());}],
+['\u2922','All of it',reset]].forEach(function(t){
+var b=make('button',tools,t[0]);b.type='button';
+b.setAttribute('aria-label',t[1]);b.title=t[1];b.addEventListener('click',t[2]);});
+layers(svg,frame);
+var loops=svg.querySelectorAll('.loop[data-loop]');
+if(loops.length){time(svg,frame,loops);
+choose(svg,frame,loops,go,function(){return moved<5;});}}
+function layers(svg,frame){
+var legend=frame.nextElementSibling;
+if(!legend||!legend.classList.contains('legend'))return;
+var entries=Array.prototype.slice.call(legend.children);
+entries.forEach(function(old){
+var style=(old.dataset.style||'').split(' ').map(function(c){
+return '.'+c;}).join(''),b=document.createElement('button');
+b.type='button';b.className='entry';b.innerHTML=old.innerHTML;
+b.setAttribute('aria-pressed','true');legend.replaceChild(b,old);
+b.addEventListener('click',function(){
+var on=b.getAttribute('aria-pressed')==='false';
+b.setAttribute('aria-pressed',on);
+svg.querySelectorAll(style).forEach(function(e){
+e.classList.toggle('off',!on);});});});
+var maps=svg.querySelectorAll('use.map');
+if(!maps.length)return;
+var b=make('button',legend,'map');b.type='button';b.className='entry';
+b.setAttribute('aria-pressed','true');
+b.addEventListener('click',function(){
+var on=b.getAttribute('aria-pressed')==='false';
+b.setAttribute('aria-pressed',on);
+maps.forEach(function(e){e.classList.toggle('off',!on);});});}
+function time(svg,frame,loops){
+var last=0;loops.forEach(function(l){last=Math.max(last,+l.dataset.t);});
+if(!(last>0))return;
+var label=make('label',frame);label.className='slider time';
+make('span',label,'Loops until');
+var input=make('input',label);input.type='range';input.min=0;
+input.max=Math.ceil(last);input.value=input.max;
+var text=make('span',label);
+function set(){text.textContent=input.value+' s';
+loops.forEach(function(l){
+l.style.visibility=+l.dataset.t<=+input.value?'':'hidden';});}
+input.addEventListener('input',set);set();}
+function dots(svg,points,pose,kind){
+var u=+svg.dataset.units,x0=+svg.dataset.x,y0=+svg.dataset.y,d='';
+var c=Math.cos(pose[2]),s=Math.sin(pose[2]);
+for(var i=0;i+1<points.length;i+=2){
+var x=points[i]/100,y=points[i+1]/100;
+d+='M'+((pose[0]+c*x-s*y-x0)*u).toFixed(2)+' '+
+((y0-pose[1]-s*x-c*y)*u).toFixed(2)+'h0';}
+var path=document.createElementNS(space,'path');
+path.setAttribute('class','scan '+kind);path.setAttribute('d',d);
+svg.appendChild(path);}
+function choose(svg,frame,loops,go,still){
+var panel=make('div',frame);panel.className='evidence off';
+panel.setAttribute('aria-live','polite');
+function clear(){svg.querySelectorAll('.scan').forEach(function(e){e.remove();});
+loops.forEach(function(l){l.classList.remove('chosen');});
+panel.textContent='';panel.classList.add('off');}
+function numbers(t){return t.split(' ').map(Number);}
+function open(line){
+clear();line.classList.add('chosen');
+var id=line.dataset.id,node=id.split(':').slice(2).join(':');
+var loop=numbers(line.dataset.loop),map=numbers(line.dataset.map);
+make('div',panel,line.querySelector('title').textContent);
+if(scans[node]){dots(svg,scans[node],loop,'loop-scan');
+dots(svg,scans[node],map,'map-scan');
+make('div',panel,'Scan: blue where the loop puts it, orange where the map '+
+'has it.');}
+else make('div',panel,'Its scan is not in this page.');
+if(!line.classList.contains('s6')){
+make('div',panel,'Leave it out: ').appendChild(
+document.createElement('code')).textContent='-drop_loops '+id;}
+var u=+svg.dataset.units,near=make('button',panel,'Go there');
+near.type='button';near.addEventListener('click',function(){
+go((map[0]-(+svg.dataset.x))*u,(+svg.dataset.y-map[1])*u,30*u);});
+var close=make('button',panel,'Close');close.type='button';
+close.addEventListener('click',clear);
+panel.classList.remove('off');}
+loops.forEach(function(line){
+line.addEventListener('click',function(){if(still())open(line);});});}
+document.querySelectorAll('svg.map-figure').forEach(view);
+})();
+)js";
+
+}  // namespace
+
+const char* ViewerScript() { return kViewerScript; }
+
+}  // namespace report
+}  // namespace cartographer_ext
