@@ -9,7 +9,7 @@ namespace {
 
 constexpr char kViewerScript[] = R"js(
 (function(){
-var space='http://www.w3.org/2000/svg',data=document.getElementById('scans');
+var space=(document.querySelector('svg')||document.body).namespaceURI,data=document.getElementById('scans');
 var scans=data?JSON.parse(data.textContent):{};
 function make(name,parent,text){var e=document.createElement(name);
 if(text)e.textContent=text;parent.appendChild(e);return e;}
