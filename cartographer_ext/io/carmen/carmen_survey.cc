@@ -192,6 +192,7 @@ void Survey::MarkImplausible() {
         static_cast<double>(count) <=
             kMaxBackwardShare * static_cast<double>(lines_.size());
     for (size_t i = begin; is_few && i != end; ++i) {
+      if (!lines_[i].plausible) continue;  // the line that is cut off
       lines_[i].plausible = false;
       if (num_implausible_++ == 0) first_implausible_ = i;
     }

@@ -72,7 +72,7 @@ TEST(RosRecordingTest, WarningsOfTheContainerAndDamagedMessagesAreReported) {
   auto source = OpenRosRecording("memory", std::move(container), {});
   ASSERT_TRUE(source.ok()) << source.status();
   EXPECT_EQ((*source)->info().num_scans, 1);
-  EXPECT_THAT((*source)->info().warnings, ElementsAre(HasSubstr("1 messages on scan cannot be decoded; skipped"),
+  EXPECT_THAT((*source)->info().warnings, ElementsAre(HasSubstr("1 messages on scan are damaged or have values that are no numbers; skipped"),
                                                       "memory: rather short"));
 }
 
