@@ -36,8 +36,6 @@ std::string ResolveLinks(const std::string& path) {
   return result;
 }
 
-// The content reaches the disk before the name does; otherwise a power failure
-// may leave an empty file under the new name.
 // The beginning of the temporary files of this computer for `path`.
 std::string TemporaryStem(const std::string& path) {
   char host[256] = {};
@@ -77,6 +75,8 @@ absl::Status Replace(const std::string& temporary, const std::string& path) {
              : WriteError(path, errno);
 }
 
+// The content reaches the disk before the name does; otherwise a power failure
+// may leave an empty file under the new name.
 absl::Status Synchronize(const std::string& file, const std::string& path) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return WriteError(path, errno);

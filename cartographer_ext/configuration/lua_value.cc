@@ -265,9 +265,9 @@ absl::StatusOr<std::string> ReadFromDirectories(
         absl::StrCat(directory, "/", basename, " has more than ",
                      kMaxFileSize >> 20, " MB, which is no configuration"));
   }
-  return absl::NotFoundError(
-      absl::StrCat("cannot find or read '", basename, "' in ",
-                   absl::StrJoin(directories, ", ")));
+  return absl::NotFoundError(absl::StrCat("cannot find or read '", basename,
+                                          "' in ",
+                                          absl::StrJoin(directories, ", ")));
 }
 
 absl::StatusOr<nlohmann::json> EvaluateLua(
@@ -323,11 +323,9 @@ std::string ToLua(const nlohmann::json& value) {
   if (value.is_string()) {
     return absl::StrCat(
         "\"",
-        absl::StrReplaceAll(value.get<std::string>(),
-                            {{"\\", "\\\\"},
-                             {"\"", "\\\""},
-                             {"\n", "\\n"},
-                             {"\r", "\\r"}}),
+        absl::StrReplaceAll(
+            value.get<std::string>(),
+            {{"\\", "\\\\"}, {"\"", "\\\""}, {"\n", "\\n"}, {"\r", "\\r"}}),
         "\"");
   }
   return "nil";

@@ -85,11 +85,12 @@ const Rule kRules[] = {
      "it is the edge of a cell in metres, and ten metres of smaller cells do "
      "not fit into memory"},
     {"GridOptions2D.resolution", Bound::kAtLeast, 0.005, 1., Otherwise::kWarn,
-     "it is the edge of a cell in metres: smaller ones need much memory, larger "
+     "it is the edge of a cell in metres: smaller ones need much memory, "
+     "larger "
      "ones show no walls"},
     {"ProbabilityGridRangeDataInserterOptions2D.hit_probability", Bound::kAbove,
-     0.5, 1., Otherwise::kRefuse, "a hit makes a cell more likely to be occupied",
-     true},
+     0.5, 1., Otherwise::kRefuse,
+     "a hit makes a cell more likely to be occupied", true},
     {"ProbabilityGridRangeDataInserterOptions2D.miss_probability",
      Bound::kAtLeast, 0., 0.5, Otherwise::kRefuse,
      "a miss makes a cell less likely to be occupied", true},
@@ -124,7 +125,8 @@ const Rule kRules[] = {
      Bound::kAtLeast, 0., 100., Otherwise::kRefuse, kSearchMemory},
     {"FastCorrelativeScanMatcherOptions2D.angular_search_window",
      Bound::kAtLeast, 0., 3.15, Otherwise::kWarn,
-     "it is the half width in radians, and what is beyond pi is searched twice"},
+     "it is the half width in radians, and what is beyond pi is searched "
+     "twice"},
     {"OptimizationProblemOptions.huber_scale", Bound::kAbove, 0., kInfinity,
      Otherwise::kWarn, "loops would have no effect"},
     {"OptimizationProblemOptions.local_slam_pose_translation_weight",
@@ -149,16 +151,16 @@ absl::optional<double> NumberOf(const json& value) {
 }
 
 std::string Text(const double number) {
-  return std::isnan(number) ? "not a number"
-                            : ToLua(json(number == std::floor(number) &&
-                                                 std::abs(number) < 1e9
-                                             ? json(static_cast<int64_t>(number))
-                                             : json(number)));
+  return std::isnan(number)
+             ? "not a number"
+             : ToLua(json(number == std::floor(number) && std::abs(number) < 1e9
+                              ? json(static_cast<int64_t>(number))
+                              : json(number)));
 }
 
 bool IsIn(const Rule& rule, const double number) {
-  const bool is_high_enough = rule.bound == Bound::kAbove ? number > rule.low
-                                                          : number >= rule.low;
+  const bool is_high_enough =
+      rule.bound == Bound::kAbove ? number > rule.low : number >= rule.low;
   return is_high_enough &&
          (rule.below_high ? number < rule.high : number <= rule.high);
 }
@@ -166,10 +168,10 @@ bool IsIn(const Rule& rule, const double number) {
 std::string Explain(const Rule& rule) {
   return absl::StrCat(
       rule.bound == Bound::kAbove ? "above " : "at least ", Text(rule.low),
-      rule.high == kInfinity ? ""
-                             : absl::StrCat(rule.below_high ? " and below "
-                                                            : " and at most ",
-                                            Text(rule.high)));
+      rule.high == kInfinity
+          ? ""
+          : absl::StrCat(rule.below_high ? " and below " : " and at most ",
+                         Text(rule.high)));
 }
 
 absl::Status CheckNumber(const FieldDescriptor& field, const std::string& key,
@@ -185,9 +187,9 @@ absl::Status CheckNumber(const FieldDescriptor& field, const std::string& key,
   for (const Rule& rule : kRules) {
     if (name != rule.field || IsIn(rule, number)) continue;
     const bool warns = rule.otherwise == Otherwise::kWarn;
-    const std::string text =
-        absl::StrCat(key, " is ", Text(number), warns ? ", should be " : ", must be ",
-                     Explain(rule), ": ", rule.reason);
+    const std::string text = absl::StrCat(key, " is ", Text(number),
+                                          warns ? ", should be " : ", must be ",
+                                          Explain(rule), ": ", rule.reason);
     if (!warns) return absl::InvalidArgumentError(text);
     warnings->push_back(text);
   }

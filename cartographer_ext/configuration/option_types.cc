@@ -123,9 +123,8 @@ std::vector<UnknownKey> FindUnknownKeys(const json& table,
       unknown.push_back({path, item.key(), SimilarKey(message, item.key())});
     } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE &&
                !field->is_repeated() && item.value().is_object()) {
-      const auto below =
-          FindUnknownKeys(item.value(), *field->message_type(),
-                          absl::StrCat(path, ".", item.key()));
+      const auto below = FindUnknownKeys(item.value(), *field->message_type(),
+                                         absl::StrCat(path, ".", item.key()));
       unknown.insert(unknown.end(), below.begin(), below.end());
     }
   }

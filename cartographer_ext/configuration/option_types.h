@@ -41,7 +41,7 @@ absl::Status CheckOptionTypes(const nlohmann::json& table,
 // none does. Blocks of our own are passed over. What such keys do the host
 // decides: it may know more than its messages.
 struct UnknownKey {
-  std::string table;    // path
+  std::string table;  // path
   std::string key;
   std::string similar;
 };

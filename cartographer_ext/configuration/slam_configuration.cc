@@ -132,9 +132,9 @@ std::string ReadOrDie(const std::vector<std::string>& directories,
 void ConstructOrDie(const SlamConfiguration& configuration) {
   CHECK(configuration.map_builder_options.use_trajectory_builder_2d())
       << "map_builder.use_trajectory_builder_2d must be true: this is 2D SLAM";
-  auto* const map_builder = cartographer::mapping::CreateMapBuilder(
-                                configuration.map_builder_options)
-                                .release();
+  auto* const map_builder =
+      cartographer::mapping::CreateMapBuilder(configuration.map_builder_options)
+          .release();
   map_builder->AddTrajectoryBuilder(
       {{TrajectoryBuilderInterface::SensorId::SensorType::RANGE, "scan"}},
       configuration.trajectory_builder_options, nullptr);
@@ -158,10 +158,10 @@ std::vector<Part> Parts() {
 
 // As users write it: MAP_BUILDER.pose_graph is POSE_GRAPH.
 std::string InLuaFile(const std::string& text) {
-  return absl::StrReplaceAll(
-      text,
-      {{"MAP_BUILDER.pose_graph.", "POSE_GRAPH."},
-       {"TRAJECTORY_BUILDER.trajectory_builder_2d.", "TRAJECTORY_BUILDER_2D."}});
+  return absl::StrReplaceAll(text,
+                             {{"MAP_BUILDER.pose_graph.", "POSE_GRAPH."},
+                              {"TRAJECTORY_BUILDER.trajectory_builder_2d.",
+                               "TRAJECTORY_BUILDER_2D."}});
 }
 
 // What the host's reader may pass over or end the program for without a name.

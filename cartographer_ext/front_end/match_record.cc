@@ -170,9 +170,9 @@ std::string RecordCsvRows(const std::vector<MatchRecord>& records) {
     absl::StrAppendFormat(
         &rows, "%d,%s,%d,%.6f,%.6f,%.5f,%.5g,%.5g,%.2f,%.5g,%s,%.2f,",
         record.builder(), UnixSecondsOfTicks(record.time()),
-        record.is_node() ? 1 : 0, record.x(),
-        record.y(), RadToDeg(record.theta()), ellipse.long_axis,
-        ellipse.short_axis, RadToDeg(ellipse.direction),
+        record.is_node() ? 1 : 0, record.x(), record.y(),
+        RadToDeg(record.theta()), ellipse.long_axis, ellipse.short_axis,
+        RadToDeg(ellipse.direction),
         RadToDeg(std::sqrt(std::max(0., covariance(2, 2)))),
         absl::AsciiStrToLower(
             MatchRecord::Degeneracy_Name(record.degeneracy())),

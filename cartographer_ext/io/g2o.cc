@@ -78,7 +78,8 @@ absl::Status G2oParser::ParseVertex(Tokens* tokens) {
     return Malformed("the id of the vertex is no integer");
   }
   if (!ParsePose(tokens, &pose)) {
-    return Malformed("a vertex needs three finite numbers up to 1e9, x y theta");
+    return Malformed(
+        "a vertex needs three finite numbers up to 1e9, x y theta");
   }
   if (!graph.vertices.emplace(id, pose).second) {
     return Malformed(absl::StrCat("vertex ", id, " was defined before"));
@@ -94,7 +95,8 @@ absl::Status G2oParser::ParseEdge(Tokens* tokens, int64_t line_number) {
     return Malformed("the ids of the edge are no integers");
   }
   if (!ParsePose(tokens, &edge.measurement)) {
-    return Malformed("an edge needs three finite numbers up to 1e9, dx dy dtheta");
+    return Malformed(
+        "an edge needs three finite numbers up to 1e9, dx dy dtheta");
   }
   for (int row = 0; row < 3; ++row) {
     for (int column = row; column < 3; ++column) {
@@ -102,7 +104,8 @@ absl::Status G2oParser::ParseEdge(Tokens* tokens, int64_t line_number) {
       if (!ParseFinite(tokens->Next(), &value) ||
           std::abs(value) > kMaxInformation) {
         return Malformed(
-            "an edge needs six finite numbers up to 1e100, I11 I12 I13 I22 I23 I33");
+            "an edge needs six finite numbers up to 1e100, I11 I12 I13 I22 I23 "
+            "I33");
       }
       edge.information(row, column) = edge.information(column, row) = value;
     }

@@ -61,9 +61,9 @@ absl::StatusOr<size_t> ReadSome(std::streambuf* content, char* to, size_t size,
     return static_cast<size_t>(
         std::max<std::streamsize>(0, content->sgetn(to, size)));
   } catch (const ExpandsTooMuch&) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        filename, ": expands to more than ", max_expansion.load(),
-        " times its size; -max_expansion allows more"));
+    return absl::ResourceExhaustedError(
+        absl::StrCat(filename, ": expands to more than ", max_expansion.load(),
+                     " times its size; -max_expansion allows more"));
   } catch (const std::exception& exception) {
     return absl::DataLossError(
         absl::StrCat(filename, ": compressed data is damaged or truncated (",
@@ -98,9 +98,9 @@ absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
   try {
     std::unique_ptr<streams::filtering_istreambuf> result(
         new streams::filtering_istreambuf);
-    const ExpansionLimit limit(kFreeExpansion + max_expansion.load() *
-                                                    std::max<int64_t>(
-                                                        1, info.st_size));
+    const ExpansionLimit limit(kFreeExpansion +
+                               max_expansion.load() *
+                                   std::max<int64_t>(1, info.st_size));
     if (absl::StartsWith(head, "\x1f\x8b")) {
       result->push(limit, kReadSize);
       result->push(streams::gzip_decompressor(), kReadSize);
@@ -179,9 +179,9 @@ absl::StatusOr<bool> LineReader::Next(absl::string_view* line) {
       truncated_ = true;
       skipped += searched - kMaxLineLength;
       if (skipped > kMaxSkippedLength) {
-        return absl::InvalidArgumentError(
-            absl::StrCat(filename_, ":", line_number_ + 1, ": a line of more than ",
-                         kMaxSkippedLength >> 20, " MB; this is no text file"));
+        return absl::InvalidArgumentError(absl::StrCat(
+            filename_, ":", line_number_ + 1, ": a line of more than ",
+            kMaxSkippedLength >> 20, " MB; this is no text file"));
       }
       end_ = begin_ + kMaxLineLength;
       searched = kMaxLineLength;

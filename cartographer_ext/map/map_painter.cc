@@ -186,11 +186,11 @@ absl::StatusOr<io::OccupancyMap> PaintMap(const std::vector<PlacedGrid>& grids,
                         width, height, resolution, kMaxCells));
   }
   if (width * height > kFreeCells + kMaxCellsPerKnown * known) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("the map would have %.0f x %.0f cells of %g m, of which "
-                        "only %.0f are known: submaps lie too far apart, or use "
-                        "a coarser resolution",
-                        width, height, resolution, known));
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "the map would have %.0f x %.0f cells of %g m, of which "
+        "only %.0f are known: submaps lie too far apart, or use "
+        "a coarser resolution",
+        width, height, resolution, known));
   }
   io::OccupancyMap map =
       io::OccupancyMap::Make(std::max(1, static_cast<int>(width)),

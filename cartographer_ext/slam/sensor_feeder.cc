@@ -57,11 +57,12 @@ std::vector<std::string> WarningsOf(const FedReadings& fed,
   }
   const io::OdometryJumps& jumps = fed.odometry_jumps;
   if (jumps.count() > 0) {
-    warnings.push_back(absl::StrFormat(
-        "the odometry jumps %d times, first by %.1f m at %.3f s; no robot does, "
-        "so it is taken to stand",
-        jumps.count(), jumps.first_distance(),
-        io::ToSeconds(jumps.first_time())));
+    warnings.push_back(
+        absl::StrFormat("the odometry jumps %d times, first by %.1f m at %.3f "
+                        "s; no robot does, "
+                        "so it is taken to stand",
+                        jumps.count(), jumps.first_distance(),
+                        io::ToSeconds(jumps.first_time())));
   }
   return warnings;
 }
@@ -117,10 +118,10 @@ void SensorFeeder::operator()(const io::OdometryReading& reading) {
   }
   ++fed_->odometry_readings;
   builder_->AddSensorData(
-      kOdometryId, cartographer::sensor::OdometryData{
-                       ToHostTime(reading.time),
-                       ToHostPose(fed_->odometry_jumps.Remove(
-                           reading.time, reading.pose))});
+      kOdometryId,
+      cartographer::sensor::OdometryData{
+          ToHostTime(reading.time),
+          ToHostPose(fed_->odometry_jumps.Remove(reading.time, reading.pose))});
 }
 
 void SensorFeeder::operator()(const io::ImuReading& reading) {

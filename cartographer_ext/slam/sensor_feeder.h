@@ -30,7 +30,7 @@ struct FedReadings {
   // Odometry and IMU readings not later than the one before.
   int64_t skipped_readings = 0;
   io::OdometryJumps odometry_jumps;  // taken out of the odometry
-  double sensor_seconds = 0.;  // first to last scan
+  double sensor_seconds = 0.;        // first to last scan
 };
 
 // A line for everything odd about them.

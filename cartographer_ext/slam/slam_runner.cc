@@ -152,7 +152,8 @@ class Runner {
           "local SLAM used none of the ", run_.scans,
           " scans, so there is no map: no range is within "
           "TRAJECTORY_BUILDER_2D.min_range, max_range and min_z, max_z of ",
-          configuration_.name, ", or num_accumulated_range_data exceeds the "
+          configuration_.name,
+          ", or num_accumulated_range_data exceeds the "
           "number of scans"));
     }
     Optimize();

@@ -46,9 +46,8 @@ absl::Status SetInitialPose(
     cartographer::mapping::proto::TrajectoryBuilderOptions* options);
 
 // Whether a loop in force connects the trajectory with another one.
-bool IsTiedToOthers(
-    const cartographer::mapping::PoseGraphInterface& pose_graph,
-    int trajectory_id);
+bool IsTiedToOthers(const cartographer::mapping::PoseGraphInterface& pose_graph,
+                    int trajectory_id);
 
 }  // namespace evaluation
 }  // namespace cartographer_ext

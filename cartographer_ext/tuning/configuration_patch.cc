@@ -246,15 +246,14 @@ absl::Status BaseConfiguration::CheckParameters(
       const auto configuration = evaluation::ParseSlamConfiguration(
           directories_, name_, CodeWith({{parameter.key, probe}}));
       if (!configuration.ok()) {
-        return absl::InvalidArgumentError(
-            absl::StrCat(parameter.key, " = ", evaluation::ToLua(probe), ": ",
-                         configuration.status().message(),
-                         parameter.kind == Parameter::Kind::kReal &&
-                                 absl::StrContains(
-                                     configuration.status().message(),
-                                     "must be an integer")
-                             ? "; give it integer = true"
-                             : ""));
+        return absl::InvalidArgumentError(absl::StrCat(
+            parameter.key, " = ", evaluation::ToLua(probe), ": ",
+            configuration.status().message(),
+            parameter.kind == Parameter::Kind::kReal &&
+                    absl::StrContains(configuration.status().message(),
+                                      "must be an integer")
+                ? "; give it integer = true"
+                : ""));
       }
       changes |= Bytes(*configuration) != base_bytes;
     }

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/objective.h"
 
-#include <cstddef>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"

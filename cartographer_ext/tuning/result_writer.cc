@@ -69,9 +69,10 @@ std::string Gain(const KeyResult& key, const Trial& best,
 std::string NothingText(const TuneResult& result) {
   return result.not_confirmed.empty()
              ? "Nothing was better than the configuration as it is."
-             : absl::StrCat("Nothing is changed: what was better on the "
-                            "recordings searched on is not confirmed, ",
-                            result.not_confirmed, ".");
+             : absl::StrCat(
+                   "Nothing is changed: what was better on the "
+                   "recordings searched on is not confirmed, ",
+                   result.not_confirmed, ".");
 }
 
 nlohmann::ordered_json TrialJson(const std::vector<Parameter>& parameters,

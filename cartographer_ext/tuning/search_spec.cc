@@ -219,8 +219,8 @@ absl::Status CheckTruth(const std::vector<TuneInput>& inputs,
     if (input.is_world) continue;
     for (const auto& weight : objective.weights) {
       const std::string& metric = weight.first;
-      const bool needs_relations = absl::StartsWith(metric, "relations") ||
-                                   metric == "broken_fraction";
+      const bool needs_relations =
+          absl::StartsWith(metric, "relations") || metric == "broken_fraction";
       const bool needs_reference = metric == "ate" || metric == "rpe";
       if (needs_relations && input.relations_filename.empty()) {
         return absl::InvalidArgumentError(absl::StrCat(

@@ -188,8 +188,8 @@ absl::optional<WorkerResult> LocalWorkerPool::Reap() {
           WIFSIGNALED(state) &&
           (WTERMSIG(state) == SIGKILL || WTERMSIG(state) == SIGTERM) &&
           !(max_cpu_seconds_ > 0. && cpu_seconds >= max_cpu_seconds_);
-      result.answer = Failure(
-          HowItEnded(state, was_killed, ReadFromStart(child.messages)));
+      result.answer =
+          Failure(HowItEnded(state, was_killed, ReadFromStart(child.messages)));
       if (was_killed) result.answer["killed"] = true;
     }
     result.answer["wall_seconds"] = Now() - child.start;

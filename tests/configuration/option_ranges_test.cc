@@ -22,18 +22,18 @@ struct Result {
 };
 
 Result Check(const std::string& changes) {
-  const auto table = EvaluateLua(
-      "include 'common_2d.lua'\n" + changes +
-          "\nreturn { map_builder = MAP_BUILDER, "
-          "trajectory_builder = TRAJECTORY_BUILDER }",
-      "test.lua", {"configuration_files"});
+  const auto table =
+      EvaluateLua("include 'common_2d.lua'\n" + changes +
+                      "\nreturn { map_builder = MAP_BUILDER, "
+                      "trajectory_builder = TRAJECTORY_BUILDER }",
+                  "test.lua", {"configuration_files"});
   EXPECT_TRUE(table.ok()) << table.status();
   using cartographer::mapping::proto::MapBuilderOptions;
   using cartographer::mapping::proto::TrajectoryBuilderOptions;
   Result result;
-  absl::Status status =
-      CheckOptionRanges((*table)["map_builder"],
-                        *MapBuilderOptions::descriptor(), "M", &result.warnings);
+  absl::Status status = CheckOptionRanges((*table)["map_builder"],
+                                          *MapBuilderOptions::descriptor(), "M",
+                                          &result.warnings);
   status.Update(CheckOptionRanges((*table)["trajectory_builder"],
                                   *TrajectoryBuilderOptions::descriptor(), "T",
                                   &result.warnings));
@@ -81,7 +81,8 @@ TEST(OptionRangesTest, ValuesCartographerCannotWorkWith) {
        "M.num_background_threads is 100000, must be at least 1 and at most "
        "4096: each is a thread of the system"},
       // As the host, reads numbers that are written as strings.
-      {"MAP_BUILDER.num_background_threads = '0'", "num_background_threads is 0"},
+      {"MAP_BUILDER.num_background_threads = '0'",
+       "num_background_threads is 0"},
   };
   for (const auto& one : cases) {
     EXPECT_THAT(Check(one.change).error, HasSubstr(one.key)) << one.change;
@@ -124,9 +125,10 @@ TEST(OptionRangesTest, WhatIsNotUsedIsNotJudged) {
     EXPECT_THAT(Check(change).warnings, IsEmpty()) << change;
   }
   EXPECT_THAT(
-      Check("TRAJECTORY_BUILDER_2D.use_online_correlative_scan_matching = true\n"
-            "TRAJECTORY_BUILDER_2D.real_time_correlative_scan_matcher."
-            "linear_search_window = -1")
+      Check(
+          "TRAJECTORY_BUILDER_2D.use_online_correlative_scan_matching = true\n"
+          "TRAJECTORY_BUILDER_2D.real_time_correlative_scan_matcher."
+          "linear_search_window = -1")
           .error,
       HasSubstr("linear_search_window"));
 }

@@ -157,7 +157,8 @@ TEST(SlamConfigurationTest, CodeThatHarmsIsRefused) {
 }
 
 TEST(SlamConfigurationTest, RestrictedConfigurationsAreTheSame) {
-  const auto open = LoadSlamConfiguration({"configuration_files"}, "default.lua");
+  const auto open =
+      LoadSlamConfiguration({"configuration_files"}, "default.lua");
   RestrictLua(true);
   const auto restricted =
       LoadSlamConfiguration({"configuration_files"}, "default.lua");

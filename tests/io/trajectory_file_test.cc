@@ -81,10 +81,12 @@ TEST(TrajectoryFileTest, ErrorsNameTheLine) {
   };
   EXPECT_THAT(message(""), HasSubstr("no pose"));
   EXPECT_THAT(message("x 0 0 0 0 0 0 1\n"), HasSubstr(".tum:1: invalid stamp"));
-  EXPECT_THAT(message("1 0 0 0 0 0 0\n"), HasSubstr(".tum:1: expected numbers up to 1e9"));
+  EXPECT_THAT(message("1 0 0 0 0 0 0\n"),
+              HasSubstr(".tum:1: expected numbers up to 1e9"));
   EXPECT_THAT(message("1 0 1e308 0 0 0 0 1\n"),
               HasSubstr("expected numbers up to 1e9"));
-  EXPECT_THAT(message("1 0 nan 0 0 0 0 1\n"), HasSubstr("expected numbers up to 1e9"));
+  EXPECT_THAT(message("1 0 nan 0 0 0 0 1\n"),
+              HasSubstr("expected numbers up to 1e9"));
   EXPECT_THAT(message("1 0 0 0 0 0 0 1 5\n"), HasSubstr("too many words"));
   EXPECT_THAT(message("1 0 0 0 0 0 0 0.5\n"), HasSubstr("unit length"));
   EXPECT_THAT(message("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"),

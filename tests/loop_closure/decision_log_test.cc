@@ -52,11 +52,9 @@ std::map<std::string, std::string> Row(const std::string& csv, int line) {
 TEST(DecisionLogTest, TimesAreUnixSeconds) {
   LoopDecision decision = Example(1);
   // 2005-12-18 00:10:29.8951823 UTC.
-  decision.set_node_time((INT64_C(1134864629) + INT64_C(62135596800)) *
-                             10000000 +
-                         8951823);
-  EXPECT_EQ(Row(DecisionCsv({decision}), 1)["node_time"],
-            "1134864629.8951823");
+  decision.set_node_time(
+      (INT64_C(1134864629) + INT64_C(62135596800)) * 10000000 + 8951823);
+  EXPECT_EQ(Row(DecisionCsv({decision}), 1)["node_time"], "1134864629.8951823");
 }
 
 TEST(DecisionLogTest, EveryColumnIsDocumented) {

@@ -112,7 +112,8 @@ TEST_F(EvaluateMainTest, RunsAgainAndReports) {
   EXPECT_GT(json["assumptions"].size(), 0u);
   EXPECT_THAT(ReadFile(File("room.html")), HasSubstr("<!DOCTYPE html>"));
   EXPECT_EQ(ParseJson(ReadFile(File("room.json")))["verdict"], json["verdict"]);
-  EXPECT_THAT(ReadFile(File("room.loop_evidence.csv")), HasSubstr("run,submap"));
+  EXPECT_THAT(ReadFile(File("room.loop_evidence.csv")),
+              HasSubstr("run,submap"));
 }
 
 TEST_F(EvaluateMainTest, SameReportForAnyNumberOfThreads) {

@@ -95,8 +95,8 @@ TEST(JournalTest, RefusesWhatIsNoJournalOfThisSearch) {
                              "\"status\":\"ok\",\"metrics\":{}}\n"),
               HasSubstr("line 2: not a run"));
   // Deep enough to overflow a stack.
-  EXPECT_THAT(error(header + "{\"values\":{\"a\":" +
-                    std::string(1000000, '[') + std::string(1000000, ']') +
+  EXPECT_THAT(error(header + "{\"values\":{\"a\":" + std::string(1000000, '[') +
+                    std::string(1000000, ']') +
                     "},\"input\":\"a\",\"fidelity\":1,"
                     "\"status\":\"ok\",\"metrics\":{}}\n"),
               HasSubstr("line 2: not a run"));

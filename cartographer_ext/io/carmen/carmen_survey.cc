@@ -159,8 +159,8 @@ absl::Status Survey::Read() {
         ABSL_FALLTHROUGH_INTENDED;
       case CarmenKind::kOdometry:
         ++counts_[line.kind];
-        lines_.push_back(LineKey{line.time, (*reader)->line_number(),
-                                 line.kind, true});
+        lines_.push_back(
+            LineKey{line.time, (*reader)->line_number(), line.kind, true});
         if ((*reader)->unterminated() &&
             line.num_stamp_words < stamp_words_[line.kind]) {
           lines_.back().plausible = false;
@@ -181,9 +181,8 @@ absl::Status Survey::Read() {
 void Survey::MarkImplausible() {
   size_t begin = 0;
   for (size_t end = 1; end <= lines_.size(); ++end) {
-    if (end != lines_.size() && std::abs(lines_[end].time -
-                                         lines_[end - 1].time) <=
-                                    kImplausibleGap) {
+    if (end != lines_.size() &&
+        std::abs(lines_[end].time - lines_[end - 1].time) <= kImplausibleGap) {
       continue;
     }
     const auto count = static_cast<int64_t>(end - begin);
@@ -270,7 +269,8 @@ void Survey::WarnOfIgnored(CarmenPlan* const plan) const {
   if (num_implausible_ > 0) {
     const LineKey& first = lines_[first_implausible_];
     info.warnings.push_back(absl::StrFormat(
-        "%s:%d: the stamp %s s is more than an hour from those around it; %d %s "
+        "%s:%d: the stamp %s s is more than an hour from those around it; %d "
+        "%s "
         "dropped",
         filename_, first.number, FormatTime(first.time), num_implausible_,
         num_implausible_ == 1 ? "message" : "messages"));

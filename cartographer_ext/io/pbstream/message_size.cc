@@ -121,8 +121,8 @@ class Estimator {
     const google::protobuf::Message* const prototype =
         google::protobuf::MessageFactory::generated_factory()->GetPrototype(
             &type);
-    const int64_t size =
-        prototype == nullptr ? 0
+    const int64_t size = prototype == nullptr
+                             ? 0
                              : static_cast<int64_t>(prototype->SpaceUsedLong());
     object_sizes_[&type] = size;
     return size;

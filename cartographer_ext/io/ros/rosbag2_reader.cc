@@ -25,7 +25,9 @@ namespace {
 constexpr int kMaxMessageSize = 1 << 28;
 
 struct FinalizeStatement {
-  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  void operator()(sqlite3_stmt* statement) const {
+    sqlite3_finalize(statement);
+  }
 };
 using Statement = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
 
@@ -40,11 +42,14 @@ class Db3Container : public RosContainer {
 
   absl::Status Open() {
     sqlite3* raw = nullptr;
-    const int code = sqlite3_open_v2(filename_.c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, nullptr);
+    const int code =
+        sqlite3_open_v2(filename_.c_str(), &raw,
+                        SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, nullptr);
     database_.reset(raw);
     if (code != SQLITE_OK) return Error();
     sqlite3_limit(raw, SQLITE_LIMIT_LENGTH, kMaxMessageSize);
-    auto statement = Prepare("SELECT name, type, serialization_format FROM topics ORDER BY id");
+    auto statement = Prepare(
+        "SELECT name, type, serialization_format FROM topics ORDER BY id");
     if (!statement.ok()) return statement.status();
     int step;
     while ((step = sqlite3_step(statement->get())) == SQLITE_ROW) {
@@ -69,10 +74,12 @@ class Db3Container : public RosContainer {
     names_.clear();
     int step;
     while ((step = sqlite3_step(statement->get())) == SQLITE_ROW) {
-      names_[sqlite3_column_int64(statement->get(), 0)] = Text(statement->get(), 1);
+      names_[sqlite3_column_int64(statement->get(), 0)] =
+          Text(statement->get(), 1);
     }
     if (step != SQLITE_DONE) return Error();
-    auto messages = Prepare("SELECT topic_id, timestamp, data FROM messages ORDER BY id");
+    auto messages =
+        Prepare("SELECT topic_id, timestamp, data FROM messages ORDER BY id");
     if (!messages.ok()) return messages.status();
     messages_ = std::move(*messages);
     return absl::OkStatus();
@@ -93,7 +100,8 @@ class Db3Container : public RosContainer {
       message->received = sqlite3_column_int64(messages_.get(), 1);
       const void* data = sqlite3_column_blob(messages_.get(), 2);
       const int size = sqlite3_column_bytes(messages_.get(), 2);
-      message->data.assign(static_cast<const char*>(data), data == nullptr ? 0 : static_cast<size_t>(size));
+      message->data.assign(static_cast<const char*>(data),
+                           data == nullptr ? 0 : static_cast<size_t>(size));
       return true;
     }
   }
@@ -101,18 +109,24 @@ class Db3Container : public RosContainer {
  private:
   absl::Status Error() const {
     const int code = sqlite3_errcode(database_.get());
-    const std::string text = absl::StrCat(filename_, ": ", sqlite3_errmsg(database_.get()));
+    const std::string text =
+        absl::StrCat(filename_, ": ", sqlite3_errmsg(database_.get()));
     if (code == SQLITE_NOTADB) return absl::DataLossError(text);
     if (code == SQLITE_CORRUPT) {
-      return absl::DataLossError(absl::StrCat(
-          text, "; the file is cut off or damaged: try sqlite3 FILE .recover | sqlite3 NEW, then ros2 bag reindex"));
+      return absl::DataLossError(
+          absl::StrCat(text,
+                       "; the file is cut off or damaged: try sqlite3 FILE "
+                       ".recover | sqlite3 NEW, then ros2 bag reindex"));
     }
-    return absl::InvalidArgumentError(absl::StrCat(text, " (not a database of rosbag2?)"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(text, " (not a database of rosbag2?)"));
   }
 
   absl::StatusOr<Statement> Prepare(const char* sql) {
     sqlite3_stmt* raw = nullptr;
-    if (sqlite3_prepare_v2(database_.get(), sql, -1, &raw, nullptr) != SQLITE_OK) return Error();
+    if (sqlite3_prepare_v2(database_.get(), sql, -1, &raw, nullptr) !=
+        SQLITE_OK)
+      return Error();
     return Statement(raw);
   }
 
@@ -127,8 +141,10 @@ class Db3Container : public RosContainer {
 // The files of a folder one after another.
 class SplitContainer : public RosContainer {
  public:
-  explicit SplitContainer(std::vector<std::unique_ptr<RosContainer>> parts) : parts_(std::move(parts)) {
-    for (const auto& part : parts_) topics_.insert(part->topics().begin(), part->topics().end());
+  explicit SplitContainer(std::vector<std::unique_ptr<RosContainer>> parts)
+      : parts_(std::move(parts)) {
+    for (const auto& part : parts_)
+      topics_.insert(part->topics().begin(), part->topics().end());
   }
 
   std::string format() const override { return parts_.front()->format(); }
@@ -137,7 +153,8 @@ class SplitContainer : public RosContainer {
   std::vector<std::string> warnings() const override {
     std::vector<std::string> all;
     for (const auto& part : parts_) {
-      for (const std::string& warning : part->warnings()) all.push_back(warning);
+      for (const std::string& warning : part->warnings())
+        all.push_back(warning);
     }
     return all;
   }
@@ -172,30 +189,37 @@ bool BeforeByNumber(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<RosContainer>> OpenDb3(const std::string& filename) {
+absl::StatusOr<std::unique_ptr<RosContainer>> OpenDb3(
+    const std::string& filename) {
   auto container = absl::make_unique<Db3Container>(filename);
   const absl::Status status = container->Open();
   if (!status.ok()) return status;
   return std::unique_ptr<RosContainer>(std::move(container));
 }
 
-absl::StatusOr<std::unique_ptr<RosContainer>> OpenRosbag2Folder(const std::string& folder) {
+absl::StatusOr<std::unique_ptr<RosContainer>> OpenRosbag2Folder(
+    const std::string& folder) {
   std::vector<std::string> names;
   std::vector<std::string> compressed;
-  const std::unique_ptr<DIR, int (*)(DIR*)> directory(opendir(folder.c_str()), &closedir);
-  if (directory == nullptr) return absl::InvalidArgumentError(absl::StrCat(folder, ": cannot be read"));
+  const std::unique_ptr<DIR, int (*)(DIR*)> directory(opendir(folder.c_str()),
+                                                      &closedir);
+  if (directory == nullptr)
+    return absl::InvalidArgumentError(absl::StrCat(folder, ": cannot be read"));
   while (const dirent* entry = readdir(directory.get())) {
     const std::string name = entry->d_name;
-    if (absl::EndsWith(name, ".db3") || absl::EndsWith(name, ".mcap")) names.push_back(name);
+    if (absl::EndsWith(name, ".db3") || absl::EndsWith(name, ".mcap"))
+      names.push_back(name);
     if (absl::EndsWith(name, ".zstd")) compressed.push_back(name);
   }
   if (names.empty() && !compressed.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(folder, ": its files are compressed as a whole (",
-                                                   compressed.front(), "); unpack them with unzstd first"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(folder, ": its files are compressed as a whole (",
+                     compressed.front(), "); unpack them with unzstd first"));
   }
   if (names.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(folder, ": a folder without .db3 and .mcap files, so no recording of rosbag2"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        folder,
+        ": a folder without .db3 and .mcap files, so no recording of rosbag2"));
   }
   std::sort(names.begin(), names.end(), BeforeByNumber);
   std::vector<std::unique_ptr<RosContainer>> parts;
@@ -205,7 +229,8 @@ absl::StatusOr<std::unique_ptr<RosContainer>> OpenRosbag2Folder(const std::strin
     if (!part.ok()) return part.status();
     parts.push_back(std::move(*part));
   }
-  return std::unique_ptr<RosContainer>(absl::make_unique<SplitContainer>(std::move(parts)));
+  return std::unique_ptr<RosContainer>(
+      absl::make_unique<SplitContainer>(std::move(parts)));
 }
 
 }  // namespace io

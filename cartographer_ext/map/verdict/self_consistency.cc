@@ -57,11 +57,11 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result) {
   }
   std::string sentence;
   if (!result.severe.empty()) {
-    sentence = absl::StrCat(
-        result.word == "broken"
-            ? "parts of the map lie across each other, most at "
-            : "parts of the map lie across each other at ",
-        Place(result.severe.front().center));
+    sentence =
+        absl::StrCat(result.word == "broken"
+                         ? "parts of the map lie across each other, most at "
+                         : "parts of the map lie across each other at ",
+                     Place(result.severe.front().center));
   }
   if (!result.wrong_turns.empty()) {
     const MotionStep& step = result.wrong_turns.front();

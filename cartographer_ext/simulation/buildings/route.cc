@@ -94,11 +94,11 @@ std::vector<Eigen::Vector2d> Waypoints(const FloorPlan& plan,
   std::vector<Eigen::Vector2d> points = {bends.front()};
   for (size_t i = 1; i < bends.size(); ++i) {
     const Eigen::Vector2d step = bends[i] - bends[i - 1];
-    const Eigen::Vector2d left = Eigen::Vector2d(-step.y(), step.x()).normalized();
+    const Eigen::Vector2d left =
+        Eigen::Vector2d(-step.y(), step.x()).normalized();
     const int pieces = static_cast<int>(step.norm() / kSpacing);
     for (int k = 1; k < pieces; ++k) {
-      const double aside =
-          plan.lateral_slack * random->Uniform(-1., 1.);
+      const double aside = plan.lateral_slack * random->Uniform(-1., 1.);
       points.push_back(bends[i - 1] + (static_cast<double>(k) / pieces) * step +
                        aside * left);
     }

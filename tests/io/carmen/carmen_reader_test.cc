@@ -208,8 +208,7 @@ TEST(CarmenReaderTest, SortsStablyAndCounts) {
 std::string LongLog(const int num_scans) {
   std::string text;
   for (int i = 0; i < num_scans; ++i) {
-    absl::StrAppend(&text, "ODOM ", i, " 0 0 0 0 0 ", 1134864000 + i,
-                    " h 1\n");
+    absl::StrAppend(&text, "ODOM ", i, " 0 0 0 0 0 ", 1134864000 + i, " h 1\n");
     absl::StrAppend(&text, "FLASER 2 1 2 ", i, " 0 0 ", i, " 0 0 ",
                     1134864000 + i, ".5 h 1\n");
   }

@@ -287,9 +287,9 @@ TEST(PbstreamReaderTest, ZipBombs) {
 // Two bytes of a file each, a hundred of memory.
 TEST(PbstreamReaderTest, ObjectBombs) {
   using cartographer::mapping::proto::PoseGraph;
-  for (const int field : {PoseGraph::kConstraintFieldNumber,
-                          PoseGraph::kLandmarkPosesFieldNumber,
-                          PoseGraph::kTrajectoryFieldNumber}) {
+  for (const int field :
+       {PoseGraph::kConstraintFieldNumber, PoseGraph::kLandmarkPosesFieldNumber,
+        PoseGraph::kTrajectoryFieldNumber}) {
     std::string graph;
     for (int i = 0; i != 2000000; ++i) {
       graph += {static_cast<char>(field << 3 | 2), '\0'};

@@ -51,7 +51,8 @@ TEST(SelfConsistencyTest, FoldedMapIsBrokenAndNamesThePlace) {
       AssessSelfConsistency(world.graph, world.contents, {}, {});
   EXPECT_EQ(result.word, "broken");
   EXPECT_GT(result.severe_share, 0.3);
-  EXPECT_THAT(result.reasons.front(), HasSubstr("parts of the map lie across each other, most at"));
+  EXPECT_THAT(result.reasons.front(),
+              HasSubstr("parts of the map lie across each other, most at"));
   EXPECT_THAT(result.reasons,
               Contains(HasSubstr("nodes (0, 60) to (0, 99) (60.0 s to 99.0 s "
                                  "after the start)")));
