@@ -158,7 +158,7 @@ absl::Status AtomicFile::Commit() {
     status_ = Synchronize(temporary_path_, path_);
     if (!status_.ok()) return status_;
     if (AtomicFileSet::Current() != nullptr) {
-      AtomicFileSet::Current()->waiting_.emplace_back(temporary_path_, path_);
+      AtomicFileSet::Current()->Add(temporary_path_, path_);
     } else {
       status_ = Replace(temporary_path_, path_);
       if (!status_.ok()) return status_;
@@ -172,7 +172,28 @@ AtomicFileSet::AtomicFileSet() { Current() = this; }
 
 AtomicFileSet::~AtomicFileSet() {
   Current() = nullptr;
-  for (const auto& file : waiting_) std::remove(file.first.c_str());
+  for (const auto& file : waiting_) {
+    if (!file.first.empty()) std::remove(file.first.c_str());
+  }
+}
+
+void AtomicFileSet::Add(const std::string& temporary, const std::string& path) {
+  for (auto& file : waiting_) {
+    if (file.second != path) continue;
+    if (!file.first.empty()) std::remove(file.first.c_str());
+    file.first = temporary;
+    return;
+  }
+  waiting_.emplace_back(temporary, path);
+}
+
+std::string AtomicFileSet::NameToRead(const std::string& path) {
+  if (Current() == nullptr) return path;
+  const std::string resolved = ResolveLinks(path);
+  for (const auto& file : Current()->waiting_) {
+    if (file.second == resolved) return file.first;
+  }
+  return path;
 }
 
 AtomicFileSet*& AtomicFileSet::Current() {
@@ -182,12 +203,24 @@ AtomicFileSet*& AtomicFileSet::Current() {
 
 absl::Status AtomicFileSet::Commit() {
   while (!waiting_.empty()) {
-    const absl::Status status =
-        Replace(waiting_.front().first, waiting_.front().second);
-    if (!status.ok()) return status;
+    const auto& file = waiting_.front();
+    if (file.first.empty()) {
+      std::remove(file.second.c_str());
+    } else {
+      const absl::Status status = Replace(file.first, file.second);
+      if (!status.ok()) return status;
+    }
     waiting_.erase(waiting_.begin());
   }
   return absl::OkStatus();
+}
+
+void RemoveWithSet(const std::string& path) {
+  if (AtomicFileSet::Current() == nullptr) {
+    std::remove(path.c_str());
+  } else {
+    AtomicFileSet::Current()->Add("", ResolveLinks(path));
+  }
 }
 
 absl::Status WriteFileAtomically(const std::string& path,

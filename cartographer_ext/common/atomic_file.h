@@ -44,8 +44,8 @@ class AtomicFile {
 };
 
 // While it lives, files that are committed wait for its own Commit, so that a
-// command writes all of its files or none. Without it they are removed. Not for
-// files that the command reads again; one at a time, used by one thread.
+// command writes all of its files or none. Without it they are removed. Readers
+// of what may wait open NameToRead. One at a time, used by one thread.
 class AtomicFileSet {
  public:
   AtomicFileSet();
@@ -56,14 +56,25 @@ class AtomicFileSet {
   // The first file that cannot be put in its place ends it.
   absl::Status Commit();
 
+  // Where the content of `path` is: that of the temporary file while a set
+  // lives in which `path` waits, empty if it waits to be removed, else `path`.
+  static std::string NameToRead(const std::string& path);
+
  private:
   friend class AtomicFile;
+  friend void RemoveWithSet(const std::string& path);
   // The set that lives, or null.
   static AtomicFileSet*& Current();
 
-  // Temporary files and what they become.
+  // What waited for `path` before is given up.
+  void Add(const std::string& temporary, const std::string& path);
+
+  // Temporary files and what they become; without one the file is removed.
   std::vector<std::pair<std::string, std::string>> waiting_;
 };
+
+// Removes a file, if it is there; while a set lives, with its Commit.
+void RemoveWithSet(const std::string& path);
 
 // The whole content in one call. "-" writes to standard output.
 absl::Status WriteFileAtomically(const std::string& path,

@@ -7,6 +7,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/tokens.h"
@@ -58,8 +60,13 @@ absl::StatusOr<std::vector<StampedRelation>> ReadRelations(
 }
 
 absl::Status WriteRelations(const std::vector<StampedRelation>& relations,
-                            const std::string& filename) {
+                            const std::string& filename,
+                            const std::string& comment) {
   std::string content;
+  for (const absl::string_view line :
+       absl::StrSplit(comment, '\n', absl::SkipEmpty())) {
+    absl::StrAppend(&content, "# ", line, "\n");
+  }
   for (const StampedRelation& relation : relations) {
     const Eigen::Vector3d& translation = relation.relative.translation();
     const Eigen::Matrix3d rotation = relation.relative.linear();

@@ -33,9 +33,10 @@ struct StampedRelation {
 absl::StatusOr<std::vector<StampedRelation>> ReadRelations(
     const std::string& filename);
 
-// Atomically; "-" is standard output.
+// Atomically; "-" is standard output. Lines of `comment` stand at the top.
 absl::Status WriteRelations(const std::vector<StampedRelation>& relations,
-                            const std::string& filename);
+                            const std::string& filename,
+                            const std::string& comment = "");
 
 }  // namespace io
 }  // namespace cartographer_ext

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/side_files.h"
 
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 
@@ -23,8 +22,8 @@ absl::Status WriteSideFiles(const std::string& records_filename,
                             const std::string& csv_filename,
                             const std::string& csv) {
   if (bytes.empty()) {
-    std::remove(records_filename.c_str());
-    std::remove(csv_filename.c_str());
+    RemoveWithSet(records_filename);
+    RemoveWithSet(csv_filename);
     return absl::OkStatus();
   }
   const absl::Status status = WriteFileAtomically(records_filename, bytes);
@@ -33,7 +32,7 @@ absl::Status WriteSideFiles(const std::string& records_filename,
 }
 
 absl::StatusOr<std::string> ReadBytes(const std::string& filename) {
-  std::ifstream file(filename, std::ios::binary);
+  std::ifstream file(AtomicFileSet::NameToRead(filename), std::ios::binary);
   if (!file) return absl::NotFoundError(absl::StrCat("cannot read ", filename));
   return std::string((std::istreambuf_iterator<char>(file)),
                      std::istreambuf_iterator<char>());

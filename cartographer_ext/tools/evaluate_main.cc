@@ -28,6 +28,7 @@
 #include "cartographer_ext/map/verdict/decision_table.h"
 #include "cartographer_ext/map/verdict/evaluation_report.h"
 #include "cartographer_ext/map/verdict/map_evaluation.h"
+#include "cartographer_ext/map/verdict/map_relations.h"
 #include "cartographer_ext/report/map_runs.h"
 #include "cartographer_ext/report/report.h"
 #include "cartographer_ext/rerun/rerun_configuration.h"
@@ -91,6 +92,10 @@ DEFINE_string(constraints_filename, "",
               "is truth, verdicts.");
 DEFINE_string(relation_errors_filename, "",
               "Output: CSV of the error of every relation.");
+DEFINE_string(write_relations, "",
+              "Output: relations along the path and over the loops of a map "
+              "that is judged sound, as truth to tune by where there is none. "
+              "They are as good as the map.");
 DEFINE_string(fail_on, "",
               "Exit code 3 where a map is broken, or with doubtful also where "
               "one is doubtful, or with worse where one has become worse since "
@@ -218,6 +223,21 @@ absl::Status WriteReport(const report::ReportData& data,
   return status;
 }
 
+absl::Status WriteMapRelations(const Inputs& inputs,
+                               const evaluation::Evaluation& result) {
+  if (FLAGS_write_relations.empty()) return absl::OkStatus();
+  evaluation::MapRelationsOptions options;
+  options.trajectory_id = EvaluationOptions(inputs.graph).trajectory_id;
+  const auto relations = evaluation::MakeRelationsIfSound(
+      inputs.graph, FLAGS_pbstream_filename, evaluation::Judge(result).word,
+      options);
+  if (!relations.ok()) return relations.status();
+  return io::WriteRelations(
+      *relations, FLAGS_write_relations,
+      absl::StrCat("From ", tools::BaseName(FLAGS_pbstream_filename),
+                   ", which was judged sound. No ground truth."));
+}
+
 // The runs over the map, for the report and the JSON. A map that cannot be run
 // again still has its report: `run_again` says why.
 absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data,
@@ -277,7 +297,8 @@ absl::Status ReadDecisionsBeside(evaluation::LoopStatistics* const loops,
 absl::Status CheckOutputs() {
   std::vector<std::string> outputs = {FLAGS_constraints_filename,
                                       FLAGS_relation_errors_filename,
-                                      FLAGS_json, FLAGS_report_filename};
+                                      FLAGS_json, FLAGS_report_filename,
+                                      FLAGS_write_relations};
   if (!FLAGS_report_filename.empty()) {
     outputs.push_back(BesideReport(".json"));
   }
@@ -320,6 +341,7 @@ absl::Status RunOne(const std::string& command_line, bool* const fails) {
     if (!status.ok()) return status;
   }
   status = WriteTables(inputs, *result);
+  if (status.ok()) status = WriteMapRelations(inputs, *result);
   if (!status.ok()) return status;
 
   report::ReportData data;
@@ -373,8 +395,9 @@ std::string WrongUsage(const bool many) {
     return "a trajectory alone cannot be judged: -relations_filename or "
            "-reference_trajectory_filename is needed";
   }
-  if (!FLAGS_constraints_filename.empty() && FLAGS_pbstream_filename.empty()) {
-    return "-constraints_filename needs -pbstream_filename";
+  if (FLAGS_pbstream_filename.empty() &&
+      !(FLAGS_constraints_filename + FLAGS_write_relations).empty()) {
+    return "-constraints_filename and -write_relations need -pbstream_filename";
   }
   if (!FLAGS_relation_errors_filename.empty() &&
       FLAGS_relations_filename.empty()) {

@@ -162,7 +162,9 @@ absl::Status Run(const std::string& command_line, bool* const fails) {
   const std::string& verdict = repair->after.consistency.word;
   *fails = verdict == "doubtful" || verdict == "broken";
   const bool written = repair->changed() && !FLAGS_dry_run;
-  const absl::Status status = WriteOutputs(*repair, written, command_line);
+  AtomicFileSet files;
+  absl::Status status = WriteOutputs(*repair, written, command_line);
+  if (status.ok()) status = files.Commit();
   if (!status.ok()) return status;
   if (FLAGS_json != "-") {
     std::cout << repair::ToText(*repair)

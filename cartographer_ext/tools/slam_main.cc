@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 // LINK: experiments report
+// SOURCES: slam_outputs.cc
 //
 // cartographer_ext_slam: a recording in, a map and numbers out.
 #include <malloc.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -23,25 +22,14 @@
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/experiments/wrong_loops.h"
-#include "cartographer_ext/io/occupancy_map.h"
-#include "cartographer_ext/io/pbstream/pbstream_reader.h"
-#include "cartographer_ext/io/pbstream/pbstream_writer.h"
-#include "cartographer_ext/io/trajectory_file.h"
-#include "cartographer_ext/loop_closure/decision_log.h"
-#include "cartographer_ext/map/host_map.h"
-#include "cartographer_ext/map/map_picture.h"
-#include "cartographer_ext/map/pbstream_map.h"
-#include "cartographer_ext/map/pbstream_optimization.h"
 #include "cartographer_ext/map/switched_constraints.h"
-#include "cartographer_ext/map/verdict/decision_table.h"
 #include "cartographer_ext/map/verdict/evaluation_report.h"
 #include "cartographer_ext/report/map_report.h"
-#include "cartographer_ext/slam/decision_files.h"
-#include "cartographer_ext/slam/match_files.h"
 #include "cartographer_ext/slam/open_recording.h"
 #include "cartographer_ext/slam/run_summary.h"
 #include "cartographer_ext/slam/slam_runner.h"
 #include "cartographer_ext/tools/command_line.h"
+#include "cartographer_ext/tools/slam_outputs.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
 
@@ -58,23 +46,6 @@ DEFINE_string(configuration_directory, "",
               "has a file wins. Empty: the files that came with this command.");
 DEFINE_string(configuration_basename, "default.lua",
               "Lua file that returns map_builder and trajectory_builder.");
-DEFINE_string(pbstream_filename, "", "Output: the map with everything in it.");
-DEFINE_string(map_filestem, "",
-              "Output: occupancy map <stem>.pgm and <stem>.yaml.");
-DEFINE_double(resolution, 0.05, "Metres a cell of the occupancy map.");
-DEFINE_string(picture_filename, "",
-              "Output: PNG of the map with path and loops.");
-DEFINE_string(report_filename, "",
-              "Output: HTML report of the map; needs -pbstream_filename.");
-DEFINE_string(trajectory_filename, "",
-              "Output: optimised pose at every scan (TUM: timestamp x y z qx "
-              "qy qz qw).");
-DEFINE_string(local_trajectory_filename, "",
-              "Output: pose at every scan as local SLAM found it, without loop "
-              "closure (TUM).");
-DEFINE_string(online_trajectory_filename, "",
-              "Output: pose at every scan as it was known when the scan came "
-              "(TUM), with the jumps that the optimisation made.");
 DEFINE_string(load_state_filename, "",
               "Map (.pbstream) to start from: to localise in it, or to go on "
               "mapping.");
@@ -83,9 +54,6 @@ DEFINE_string(
     initial_pose, "",
     "Where the robot is in that map at the first scan, as X,Y,DEGREES "
     "(metres). Without it the place is searched in the whole map.");
-DEFINE_string(decisions_filename, "",
-              "Output: CSV of the loop closures that were accepted, and which "
-              "of them the optimisation has switched off.");
 DEFINE_double(realtime_factor, 0.,
               "Replay the recording at this multiple of the time it took, to "
               "see latencies as on a robot; 0: as fast as possible.");
@@ -106,11 +74,6 @@ DEFINE_double(max_range, 0.,
               "Drop readings farther than this (metres) before local SLAM sees "
               "them; 0: as the configuration says.");
 DEFINE_uint64(seed, 0, "Worlds: chooses noise and faults.");
-DEFINE_string(switched_loops_filename, "",
-              "Output: CSV of the loop closures that the robust optimisation "
-              "problem left out of the last optimisation.");
-DEFINE_bool(keep_switched_loops, true,
-            "Keep those loop closures in the pbstream.");
 DEFINE_int32(wrong_loops, 0,
              "Test of the back end: inject this many wrong loop closures, "
              "spread evenly over the run.");
@@ -118,6 +81,9 @@ DEFINE_uint64(wrong_loops_seed, 1, "Chooses them.");
 DEFINE_string(json, "",
               "Output: what was done and what it took, as JSON; - is standard "
               "output.");
+
+DECLARE_string(pbstream_filename);
+DECLARE_string(report_filename);
 
 namespace cartographer_ext {
 namespace {
@@ -185,29 +151,6 @@ int CountSwitchedOff(const evaluation::SlamRun& run,
   return evaluation::MarkSwitchedOff(run.switched_loops.off, &graph).size();
 }
 
-// Leaves the loops that were switched off out of a map just written.
-absl::Status RemoveSwitchedLoops(const evaluation::SlamRun& run,
-                                 const std::string& filename) {
-  auto pbstream = io::ReadPbstream(filename);
-  if (!pbstream.ok()) return pbstream.status();
-  evaluation::MapGraph map = evaluation::MakeMapGraph(*pbstream);
-  evaluation::DropConstraints(
-      evaluation::MarkSwitchedOff(run.switched_loops.off, &map), &*pbstream);
-  return io::WritePbstream(*pbstream, filename);
-}
-
-// With a stem, every output that has no name of its own is named after it.
-void NameOutputs(const std::string& stem) {
-  if (stem.empty()) return;
-  const auto name = [&stem](std::string* const flag, const char* const ending) {
-    if (flag->empty()) *flag = stem + ending;
-  };
-  name(&FLAGS_pbstream_filename, ".pbstream");
-  name(&FLAGS_map_filestem, "");
-  name(&FLAGS_picture_filename, ".png");
-  name(&FLAGS_report_filename, ".html");
-}
-
 // Judges the map just written: the report, and the evaluation for JSON.
 absl::Status WriteReport(const std::string& command_line,
                          nlohmann::ordered_json* const json,
@@ -225,17 +168,6 @@ absl::Status WriteReport(const std::string& command_line,
   return WriteFileAtomically(FLAGS_report_filename, report->page);
 }
 
-void PrintOutputs(std::ostream& out) {
-  std::vector<std::string> names = {
-      FLAGS_pbstream_filename, FLAGS_picture_filename, FLAGS_report_filename};
-  if (!FLAGS_map_filestem.empty()) {
-    names.push_back(FLAGS_map_filestem + ".yaml");
-    names.push_back(FLAGS_map_filestem + ".pgm");
-  }
-  names.erase(std::remove(names.begin(), names.end(), ""), names.end());
-  if (!names.empty()) out << "Written    " << absl::StrJoin(names, ", ") << "\n";
-}
-
 nlohmann::ordered_json RunToJson(const evaluation::SlamRun& run) {
   nlohmann::ordered_json json;
   json["input"] = FLAGS_input_filename;
@@ -251,88 +183,6 @@ nlohmann::ordered_json RunToJson(const evaluation::SlamRun& run) {
   return json;
 }
 
-absl::Status WriteResults(const evaluation::SlamRun& run) {
-  auto* const map_builder = run.map_builder.get();
-  const auto& pose_graph = *map_builder->pose_graph();
-  if (!FLAGS_pbstream_filename.empty()) {
-    const absl::Status status =
-        evaluation::WritePbstream(map_builder, FLAGS_pbstream_filename);
-    if (!status.ok()) return status;
-    const absl::Status decisions = evaluation::WriteDecisionsBeside(
-        FLAGS_pbstream_filename, run.decisions);
-    if (!decisions.ok()) return decisions;
-    const absl::Status matches =
-        evaluation::WriteMatchesBeside(FLAGS_pbstream_filename, run.matches);
-    if (!matches.ok()) return matches;
-    if (!FLAGS_keep_switched_loops && !run.switched_loops.off.empty()) {
-      const absl::Status removed =
-          RemoveSwitchedLoops(run, FLAGS_pbstream_filename);
-      if (!removed.ok()) return removed;
-    }
-  }
-  if (!FLAGS_switched_loops_filename.empty()) {
-    const absl::Status status = WriteFileAtomically(
-        FLAGS_switched_loops_filename,
-        optimization::SwitchedLoopsTable(run.switched_loops));
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_trajectory_filename.empty()) {
-    const absl::Status status = io::WriteTumTrajectory(
-        run.global_scan_poses, FLAGS_trajectory_filename);
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_local_trajectory_filename.empty()) {
-    const absl::Status status = io::WriteTumTrajectory(
-        run.local_scan_poses, FLAGS_local_trajectory_filename);
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_online_trajectory_filename.empty()) {
-    const absl::Status status = io::WriteTumTrajectory(
-        run.online_scan_poses, FLAGS_online_trajectory_filename);
-    if (!status.ok()) return status;
-  }
-  const bool wants_map =
-      !FLAGS_map_filestem.empty() || !FLAGS_picture_filename.empty();
-  if (FLAGS_decisions_filename.empty() && !wants_map) return absl::OkStatus();
-  evaluation::MapGraph graph = evaluation::MakeMapGraph(pose_graph);
-  evaluation::MarkMatches(run.matches, &graph);
-  evaluation::MarkSwitchedOff(run.switched_loops.off, &graph);
-  if (!FLAGS_decisions_filename.empty()) {
-    const absl::Status status = WriteFileAtomically(
-        FLAGS_decisions_filename,
-        run.decisions.empty() ? evaluation::DecisionTable(graph)
-                              : loop_closure::DecisionCsv(run.decisions));
-    if (!status.ok()) return status;
-  }
-  if (!wants_map) return absl::OkStatus();
-  const auto map = evaluation::PaintHostMap(pose_graph, FLAGS_resolution);
-  if (!map.ok()) return map.status();
-  if (!FLAGS_map_filestem.empty()) {
-    const absl::Status status = io::WriteOccupancyMap(*map, FLAGS_map_filestem);
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_picture_filename.empty()) {
-    return evaluation::WriteMapPicture(*map, graph,
-                                       tools::BaseName(FLAGS_input_filename),
-                                       FLAGS_picture_filename);
-  }
-  return absl::OkStatus();
-}
-
-absl::Status CheckOutputs() {
-  std::vector<std::string> outputs = {
-      FLAGS_pbstream_filename,          FLAGS_picture_filename,
-      FLAGS_report_filename,
-      FLAGS_trajectory_filename,        FLAGS_local_trajectory_filename,
-      FLAGS_online_trajectory_filename, FLAGS_decisions_filename,
-      FLAGS_switched_loops_filename,    FLAGS_json};
-  if (!FLAGS_map_filestem.empty()) {
-    outputs.push_back(FLAGS_map_filestem + ".pgm");
-    outputs.push_back(FLAGS_map_filestem + ".yaml");
-  }
-  return tools::CheckWritable(outputs, {FLAGS_load_state_filename});
-}
-
 io::SensorSourceOptions SourceOptions(
     const evaluation::SensorSettings& settings) {
   io::SensorSourceOptions options = evaluation::ToSourceOptions(settings);
@@ -343,7 +193,7 @@ io::SensorSourceOptions SourceOptions(
 }
 
 absl::Status Run(const std::string& command_line) {
-  const absl::Status writable = CheckOutputs();
+  const absl::Status writable = tools::CheckSlamOutputs();
   if (!writable.ok()) return writable;
   const std::vector<std::string> directories =
       tools::ConfigurationDirectories(FLAGS_configuration_directory);
@@ -377,8 +227,8 @@ absl::Status Run(const std::string& command_line) {
   if (FLAGS_wrong_loops > 0) run_options.after_scan = injector.Callback();
   run_options.on_progress = [&](const evaluation::SlamProgress& now) {
     if (now.stage == evaluation::SlamProgress::Stage::kOptimizing) {
-      progress = std::make_unique<Progress>("closing loops, last optimisation",
-                                            0);
+      progress =
+          std::make_unique<Progress>("closing loops, last optimisation", 0);
       progress->Update(0);
     } else {
       progress->Update(now.scans, now.queue_length > 10
@@ -395,20 +245,23 @@ absl::Status Run(const std::string& command_line) {
         absl::StrCat(FLAGS_input_filename, ": ", run.status().message()));
   }
   tools::PrintNotes(run->warnings);
-  const absl::Status written = WriteResults(*run);
+  AtomicFileSet files;
+  const absl::Status written = tools::WriteSlamResults(*run);
   if (!written.ok()) return written;
   out << evaluation::ToText(*run);
   nlohmann::ordered_json json = RunToJson(*run);
   const absl::Status reported = WriteReport(command_line, &json, out);
   if (!reported.ok()) return reported;
-  PrintOutputs(out);
-  if (FLAGS_json.empty()) return absl::OkStatus();
   if (FLAGS_wrong_loops > 0) {
     json["wrong_loops"] = {
         {"injected", injector.injected().size()},
         {"switched_off", CountSwitchedOff(*run, injector.injected())}};
   }
-  return tools::WriteJson(json, FLAGS_json);
+  absl::Status status;
+  if (!FLAGS_json.empty()) status = tools::WriteJson(json, FLAGS_json);
+  if (status.ok()) status = files.Commit();
+  if (status.ok()) tools::PrintSlamOutputs(out);
+  return status;
 }
 
 }  // namespace
@@ -427,7 +280,7 @@ int main(int argc, char** argv) {
   if (FLAGS_output_filestem.empty() && command_line.has_positional_input()) {
     FLAGS_output_filestem = evaluation::RecordingStem(FLAGS_input_filename);
   }
-  NameOutputs(FLAGS_output_filestem);
+  tools::NameSlamOutputs(FLAGS_output_filestem);
   if (FLAGS_input_filename.empty()) {
     return tools::UsageError("a recording is missing");
   }

@@ -81,7 +81,8 @@ DEFINE_string(journal_filename, "",
               "Every finished run is added here at once; a search started "
               "again with the same journal goes on where it stopped.");
 DEFINE_string(output_filename, "",
-              "Output: Lua file with the changed keys, to be included.");
+              "Output: Lua file, a configuration that includes the one to start "
+              "from and changes keys of it.");
 DEFINE_string(picture_filename, "",
               "Output: objective over each key (.png or .svg).");
 DEFINE_string(json, "", "Output: the result as JSON; - is standard output.");
@@ -179,6 +180,7 @@ std::string ObjectiveText(const tuning::Objective& objective) {
 
 absl::Status WriteResults(const tuning::TuneResult& result,
                           const tuning::ResultContext& context) {
+  AtomicFileSet files;
   if (!FLAGS_output_filename.empty()) {
     const absl::Status status = WriteFileAtomically(
         FLAGS_output_filename, tuning::ToLuaFile(result, context));
@@ -190,8 +192,12 @@ absl::Status WriteResults(const tuning::TuneResult& result,
     if (!status.ok()) return status;
   }
   if (FLAGS_json != "-") std::cout << tuning::ToText(result, context);
-  if (FLAGS_json.empty()) return absl::OkStatus();
-  return tools::WriteJson(tuning::ToJson(result, context), FLAGS_json);
+  if (!FLAGS_json.empty()) {
+    const absl::Status status =
+        tools::WriteJson(tuning::ToJson(result, context), FLAGS_json);
+    if (!status.ok()) return status;
+  }
+  return files.Commit();
 }
 
 absl::Status Run(const tuning::MpiSession& session) {
@@ -200,6 +206,11 @@ absl::Status Run(const tuning::MpiSession& session) {
   if (!writable.ok()) return writable;
   auto setup = ReadSetup();
   if (!setup.ok()) return setup.status();
+  if (tools::BaseName(FLAGS_output_filename) == setup->spec.configuration) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        FLAGS_output_filename, ": the output includes ",
+        setup->spec.configuration, " and must have another name"));
+  }
   auto configuration = tuning::BaseConfiguration::Load(
       tools::ConfigurationDirectories(FLAGS_configuration_directory),
       setup->spec.configuration);
@@ -241,6 +252,8 @@ absl::Status Run(const tuning::MpiSession& session) {
   if (!result.ok()) return result.status();
   tuning::ResultContext context;
   context.configuration = setup->spec.configuration;
+  context.directories = configuration->directories();
+  context.filename = tools::BaseName(FLAGS_output_filename);
   context.objective = ObjectiveText(setup->spec.objective);
   context.parameters = setup->spec.parameters;
   context.inputs = setup->inputs;

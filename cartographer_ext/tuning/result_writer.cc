@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/types/optional.h"
 #include "cartographer_ext/configuration/lua_value.h"
@@ -109,7 +110,11 @@ std::string Confidence(const KeyResult& key, const size_t num_inputs) {
 std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
   std::string text = absl::StrCat(
       "-- Found by cartographer_ext_tune for ", context.configuration,
-      ".\n-- Include it behind the files that fill the tables.\n--\n");
+      ". To be used as it is, with ", context.configuration,
+      "\n-- and what it includes in the folders searched:\n"
+      "--   -configuration_directory=.,",
+      absl::StrJoin(context.directories, ","),
+      " -configuration_basename=", context.filename, "\n--\n");
   absl::StrAppendFormat(&text, "-- Objective: %s, %.6g -> %.6g",
                         context.objective, result.baseline.objective,
                         result.best.objective);
@@ -135,8 +140,11 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
                           "%.6g on these\n",
                           fold.held_out.size(), fold.before, fold.after);
   }
+  const std::string include =
+      absl::StrCat("include ", evaluation::ToLua(context.configuration));
   if (result.keys.empty()) {
-    return absl::StrCat(text, "--\n-- ", NothingText(result), "\n");
+    return absl::StrCat(text, "--\n-- ", NothingText(result), "\nreturn ",
+                        include, "\n");
   }
   std::set<std::string> copied;
   std::string assignments;
@@ -155,8 +163,10 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
                     comment, CopyTables(key.key, &copied), key.key, " = ",
                     evaluation::ToLua(key.after), "\n");
   }
-  absl::StrAppend(&text, includes, copied.empty() ? "" : kCopyFunction,
-                  assignments);
+  // The tables that it returns are those that are changed below.
+  absl::StrAppend(&text, "\nlocal configuration = ", include, "\n", includes,
+                  copied.empty() ? "" : kCopyFunction, assignments,
+                  "\nreturn configuration\n");
   return text;
 }
 

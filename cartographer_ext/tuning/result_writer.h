@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a search found: as a Lua file to be included behind the configuration,
-// as a table for people, as JSON for programs.
+// What a search found: as a Lua file that is a configuration, as a table for
+// people, as JSON for programs.
 #ifndef CARTOGRAPHER_EXT_TUNING_RESULT_WRITER_H_
 #define CARTOGRAPHER_EXT_TUNING_RESULT_WRITER_H_
 
@@ -24,13 +24,17 @@ std::string Confidence(const KeyResult& key, size_t num_inputs);
 // What the search was about.
 struct ResultContext {
   std::string configuration;
+  std::vector<std::string> directories;  // where it and its includes are
+  std::string filename;                  // of the Lua file, without folders
   std::string objective;  // "relations"
   std::vector<Parameter> parameters;
   std::vector<TuneInput> inputs;
   std::vector<TuneInput> holdout;
 };
 
-// The changed keys, each with what it was, what it gains and how sure that is.
+// A complete configuration: includes the one that the search started from and
+// sets the changed keys, each with what it was, what it gains and how sure that
+// is. What it includes has to be in the folders searched.
 std::string ToLuaFile(const TuneResult& result, const ResultContext& context);
 
 std::string ToText(const TuneResult& result, const ResultContext& context);

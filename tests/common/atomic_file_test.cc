@@ -161,6 +161,28 @@ TEST_F(AtomicFileTest, ASetIsWrittenAsAWholeOrNotAtAll) {
   EXPECT_EQ(Read(first), "3");
 }
 
+TEST_F(AtomicFileTest, WhatWaitsCanBeReadAndReplaced) {
+  const std::string first = folder_ + "/first", second = folder_ + "/second";
+  ASSERT_TRUE(WriteFileAtomically(first, "old").ok());
+  ASSERT_TRUE(WriteFileAtomically(second, "old").ok());
+  for (const bool commit : {false, true}) {
+    AtomicFileSet files;
+    EXPECT_EQ(Read(AtomicFileSet::NameToRead(first)), "old");
+    ASSERT_TRUE(WriteFileAtomically(first, "1").ok());
+    EXPECT_EQ(Read(AtomicFileSet::NameToRead(first)), "1");
+    ASSERT_TRUE(WriteFileAtomically(first, "2").ok());
+    EXPECT_EQ(Read(AtomicFileSet::NameToRead(first)), "2");
+    RemoveWithSet(second);
+    EXPECT_EQ(AtomicFileSet::NameToRead(second), "");
+    EXPECT_EQ(Read(first) + Read(second), "oldold");
+    if (!commit) continue;
+    EXPECT_TRUE(files.Commit().ok());
+  }
+  EXPECT_EQ(AtomicFileSet::NameToRead(first), first);
+  EXPECT_EQ(Read(first), "2");
+  EXPECT_THAT(List(), ::testing::ElementsAre("first"));
+}
+
 TEST_F(AtomicFileTest, WhatAKilledProcessLeftIsRemoved) {
   const std::string path = folder_ + "/out";
   const pid_t child = ::fork();

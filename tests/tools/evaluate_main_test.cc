@@ -49,6 +49,30 @@ class EvaluateMainTest : public testing::Test {
 
 TemporaryFolder* EvaluateMainTest::folder_ = nullptr;
 
+TEST_F(EvaluateMainTest, WritesRelationsOfASoundMap) {
+  const std::string own = File("own.relations");
+  const CommandResult result = RunCommand(
+      "evaluate", {File("room.pbstream"), "-write_relations", own});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(ReadFile(own), testing::StartsWith("# From room.pbstream, which "
+                                                 "was judged sound."));
+  const auto relations = io::ReadRelations(own);
+  ASSERT_TRUE(relations.ok()) << relations.status();
+  EXPECT_GT(relations->size(), 5u);
+  // The map agrees with itself.
+  const CommandResult same =
+      RunCommand("evaluate", {File("room.pbstream"), "-relations_filename", own,
+                              "-json", "-"});
+  ASSERT_EQ(same.exit_code, 0) << same.error;
+  const auto json = ParseJson(same.out);
+  EXPECT_LT(json["relations"]["translation"]["max"], 1e-6) << same.out;
+  const CommandResult usage = RunCommand(
+      "evaluate", {"-trajectory_filename", File("room.tum"),
+                   "-relations_filename", own, "-write_relations", own});
+  EXPECT_EQ(usage.exit_code, 2);
+  EXPECT_THAT(usage.error, HasSubstr("-write_relations"));
+}
+
 TEST_F(EvaluateMainTest, AgainstTheTruth) {
   const CommandResult result = RunCommand(
       "evaluate",

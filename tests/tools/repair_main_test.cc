@@ -31,6 +31,19 @@ TEST(RepairMainTest, ASoundMapNeedsNoRepair) {
   EXPECT_THAT(ReadFile(folder / "report.html"), HasSubstr("What to do"));
 }
 
+TEST(RepairMainTest, WritesAllOrNothing) {
+  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  const TemporaryFolder folder;
+  WriteRoomMap(folder, 40);
+  const size_t before = folder.Names().size();
+  const CommandResult result = RunCommand(
+      "repair", {folder / "room.pbstream", "-dry_run", "-report_filename",
+                 folder / "report.html", "-poses_filename", folder / "poses.csv",
+                 "-json", "/dev/full"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(folder.Names().size(), before);
+}
+
 TEST(RepairMainTest, RefusesBadInput) {
   const TemporaryFolder folder;
   WriteRoomMap(folder, 40);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
+#include <map>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -128,6 +129,31 @@ TEST(SlamMainTest, ARecordingAloneGivesEverything) {
   EXPECT_EQ(same.exit_code, 1);
   EXPECT_THAT(same.error, HasSubstr("would be overwritten"));
   EXPECT_TRUE(map == ReadFile(folder / "a.pbstream"));
+}
+
+TEST(SlamMainTest, WritesAllOrNothing) {
+  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 80);
+  const std::vector<std::string> arguments = {
+      folder / "room.clf", "-output_filestem", folder / "a",
+      "-trajectory_filename", folder / "a.tum"};
+  auto full = arguments;
+  full.insert(full.end(), {"-json", "/dev/full"});
+  EXPECT_EQ(RunCommand("slam", full).exit_code, 1);
+  EXPECT_THAT(folder.Names(), UnorderedElementsAre("room.clf"));
+
+  ASSERT_EQ(RunCommand("slam", arguments).exit_code, 0);
+  const std::vector<std::string> names = folder.Names();
+  std::map<std::string, std::string> before;
+  for (const auto& name : names) before[name] = ReadFile(folder / name);
+  // Without records, so that old ones would have to go.
+  full.insert(full.end(), {"-configuration_basename", "stock.lua"});
+  EXPECT_EQ(RunCommand("slam", full).exit_code, 1);
+  EXPECT_THAT(folder.Names(), testing::UnorderedElementsAreArray(names));
+  for (const auto& name : names) {
+    EXPECT_TRUE(before[name] == ReadFile(folder / name)) << name;
+  }
 }
 
 TEST(SlamMainTest, LocalizesInAMap) {

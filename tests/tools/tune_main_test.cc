@@ -104,6 +104,15 @@ TEST_F(TuneMainTest, WritesEverything) {
   EXPECT_THAT(result.out, HasSubstr("Objective  relations"));
   EXPECT_THAT(result.out, HasSubstr("Held out"));
   EXPECT_THAT(ReadFile(folder_ / "tuned.lua"), HasSubstr("Held out"));
+  EXPECT_THAT(ReadFile(folder_ / "tuned.lua"),
+              HasSubstr("-configuration_basename=tuned.lua"));
+  // It is a configuration as it stands.
+  const CommandResult run = RunCommand(
+      "slam", {folder_ / "room.world", "-pbstream_filename",
+               folder_ / "tuned.pbstream", "-configuration_directory",
+               folder_.path() + ",configuration_files",
+               "-configuration_basename", "tuned.lua"});
+  EXPECT_EQ(run.exit_code, 0) << run.error;
   EXPECT_THAT(ReadFile(folder_ / "tuned.svg"), HasSubstr("<svg"));
   const auto json = ParseJson(ReadFile(folder_ / "tuned.json"));
   EXPECT_EQ(json["trials"], 4);
@@ -111,6 +120,24 @@ TEST_F(TuneMainTest, WritesEverything) {
   EXPECT_LE(json["best"]["objective"], json["baseline"]["objective"]);
   EXPECT_GT(json["best"]["holdout"], 0.);
   EXPECT_TRUE(json["best"]["keys"].is_object());
+}
+
+TEST_F(TuneMainTest, WritesAllOrNothing) {
+  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  const size_t before = folder_.Names().size();
+  const CommandResult result = RunCommand(
+      "tune", Arguments({"-output_filename", folder_ / "tuned.lua",
+                         "-picture_filename", folder_ / "tuned.svg", "-json",
+                         "/dev/full"}));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(folder_.Names().size(), before);
+}
+
+TEST_F(TuneMainTest, TheOutputIsNotTheConfiguration) {
+  const CommandResult result = RunCommand(
+      "tune", Arguments({"-output_filename", folder_ / "stock.lua"}));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("must have another name"));
 }
 
 TEST_F(TuneMainTest, TheNumberOfWorkersDoesNotMatter) {

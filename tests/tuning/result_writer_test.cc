@@ -27,6 +27,8 @@ Trial MakeTrial(const Point& point, const std::vector<double>& objectives) {
 ResultContext Context() {
   ResultContext context;
   context.configuration = "stock.lua";
+  context.directories = {"/conf"};
+  context.filename = "tuned.lua";
   context.objective = "relations";
   context.parameters.resize(2);
   context.parameters[0].key = "A.score";
@@ -73,13 +75,18 @@ TEST(ResultWriterTest, TheLuaFileSetsTheKeys) {
   EXPECT_THAT(text, HasSubstr("confidence: not measured"));
   // Tables of the block that the configuration leaves out are made.
   const auto value = evaluation::EvaluateLua(
-      "A = { score = 0.5, cartographer_ext = { other = 3 } }\n" + text +
-          "return A\n",
+      "A = { score = 0.5, cartographer_ext = { other = 3 } }\n"
+      "function include(name) return { a = A, name = name } end\n" +
+          text,
       "t", {});
   ASSERT_TRUE(value.ok()) << value.status();
-  EXPECT_EQ((*value)["score"], 0.625);
-  EXPECT_EQ((*value)["cartographer_ext"]["fusion"]["window"], 20);
-  EXPECT_EQ((*value)["cartographer_ext"]["other"], 3);
+  EXPECT_EQ((*value)["name"], "stock.lua");
+  const auto& table = (*value)["a"];
+  EXPECT_EQ(table["score"], 0.625);
+  EXPECT_EQ(table["cartographer_ext"]["fusion"]["window"], 20);
+  EXPECT_EQ(table["cartographer_ext"]["other"], 3);
+  EXPECT_THAT(text, HasSubstr("-configuration_directory=.,/conf "
+                              "-configuration_basename=tuned.lua"));
 }
 
 TEST(ResultWriterTest, FilesAreIncludedFirst) {
@@ -97,7 +104,9 @@ TEST(ResultWriterTest, SaysWhenNothingWasBetter) {
   TuneResult result = Result();
   result.best = result.baseline;
   result.keys.clear();
-  EXPECT_THAT(ToLuaFile(result, Context()), HasSubstr("Nothing was better"));
+  EXPECT_THAT(ToLuaFile(result, Context()),
+              testing::AllOf(HasSubstr("Nothing was better"),
+                             testing::EndsWith("return include \"stock.lua\"\n")));
   EXPECT_THAT(ToText(result, Context()), HasSubstr("Nothing was better"));
   result.not_confirmed = "held-out recordings change by +3.0 %";
   for (const std::string& text :

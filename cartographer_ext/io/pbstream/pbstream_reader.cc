@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
+#include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/io/pbstream/message_size.h"
 #include "cartographer_ext/io/pbstream/pbstream_records.h"
@@ -282,7 +283,7 @@ class Parser {
 
 absl::StatusOr<Pbstream> ReadPbstream(const std::string& filename,
                                       const PbstreamReaderOptions& options) {
-  std::ifstream file(filename, std::ios::binary);
+  std::ifstream file(AtomicFileSet::NameToRead(filename), std::ios::binary);
   if (!file) {
     return absl::NotFoundError(absl::StrCat(filename, ": cannot be opened"));
   }

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/tools/slam_outputs.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/str_join.h"
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/io/occupancy_map.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
+#include "cartographer_ext/io/trajectory_file.h"
+#include "cartographer_ext/loop_closure/decision_log.h"
+#include "cartographer_ext/map/host_map.h"
+#include "cartographer_ext/map/map_picture.h"
+#include "cartographer_ext/map/pbstream_map.h"
+#include "cartographer_ext/map/pbstream_optimization.h"
+#include "cartographer_ext/map/switched_constraints.h"
+#include "cartographer_ext/map/verdict/decision_table.h"
+#include "cartographer_ext/slam/decision_files.h"
+#include "cartographer_ext/slam/match_files.h"
+#include "cartographer_ext/tools/command_line.h"
+#include "gflags/gflags.h"
+
+DECLARE_string(input_filename);
+DECLARE_string(load_state_filename);
+DECLARE_string(json);
+
+DEFINE_string(pbstream_filename, "", "Output: the map with everything in it.");
+DEFINE_string(map_filestem, "",
+              "Output: occupancy map <stem>.pgm and <stem>.yaml.");
+DEFINE_double(resolution, 0.05, "Metres a cell of the occupancy map.");
+DEFINE_string(picture_filename, "",
+              "Output: PNG of the map with path and loops.");
+DEFINE_string(report_filename, "",
+              "Output: HTML report of the map; needs -pbstream_filename.");
+DEFINE_string(trajectory_filename, "",
+              "Output: optimised pose at every scan (TUM: timestamp x y z qx "
+              "qy qz qw).");
+DEFINE_string(local_trajectory_filename, "",
+              "Output: pose at every scan as local SLAM found it, without loop "
+              "closure (TUM).");
+DEFINE_string(online_trajectory_filename, "",
+              "Output: pose at every scan as it was known when the scan came "
+              "(TUM), with the jumps that the optimisation made.");
+DEFINE_string(decisions_filename, "",
+              "Output: CSV of the loop closures that were accepted, and which "
+              "of them the optimisation has switched off.");
+DEFINE_string(switched_loops_filename, "",
+              "Output: CSV of the loop closures that the robust optimisation "
+              "problem left out of the last optimisation.");
+DEFINE_bool(keep_switched_loops, true,
+            "Keep those loop closures in the pbstream.");
+
+namespace cartographer_ext {
+namespace tools {
+namespace {
+
+// Leaves the loops that were switched off out of a map just written.
+absl::Status RemoveSwitchedLoops(const evaluation::SlamRun& run,
+                                 const std::string& filename) {
+  auto pbstream = io::ReadPbstream(filename);
+  if (!pbstream.ok()) return pbstream.status();
+  evaluation::MapGraph map = evaluation::MakeMapGraph(*pbstream);
+  evaluation::DropConstraints(
+      evaluation::MarkSwitchedOff(run.switched_loops.off, &map), &*pbstream);
+  return io::WritePbstream(*pbstream, filename);
+}
+
+}  // namespace
+
+void NameSlamOutputs(const std::string& stem) {
+  if (stem.empty()) return;
+  const auto name = [&stem](std::string* const flag, const char* const ending) {
+    if (flag->empty()) *flag = stem + ending;
+  };
+  name(&FLAGS_pbstream_filename, ".pbstream");
+  name(&FLAGS_map_filestem, "");
+  name(&FLAGS_picture_filename, ".png");
+  name(&FLAGS_report_filename, ".html");
+}
+
+absl::Status CheckSlamOutputs() {
+  std::vector<std::string> outputs = {FLAGS_pbstream_filename,
+                                      FLAGS_picture_filename,
+                                      FLAGS_report_filename,
+                                      FLAGS_trajectory_filename,
+                                      FLAGS_local_trajectory_filename,
+                                      FLAGS_online_trajectory_filename,
+                                      FLAGS_decisions_filename,
+                                      FLAGS_switched_loops_filename,
+                                      FLAGS_json};
+  if (!FLAGS_map_filestem.empty()) {
+    outputs.push_back(FLAGS_map_filestem + ".pgm");
+    outputs.push_back(FLAGS_map_filestem + ".yaml");
+  }
+  return CheckWritable(outputs, {FLAGS_load_state_filename});
+}
+
+absl::Status WriteSlamResults(const evaluation::SlamRun& run) {
+  auto* const map_builder = run.map_builder.get();
+  const auto& pose_graph = *map_builder->pose_graph();
+  if (!FLAGS_pbstream_filename.empty()) {
+    const absl::Status status =
+        evaluation::WritePbstream(map_builder, FLAGS_pbstream_filename);
+    if (!status.ok()) return status;
+    const absl::Status decisions = evaluation::WriteDecisionsBeside(
+        FLAGS_pbstream_filename, run.decisions);
+    if (!decisions.ok()) return decisions;
+    const absl::Status matches =
+        evaluation::WriteMatchesBeside(FLAGS_pbstream_filename, run.matches);
+    if (!matches.ok()) return matches;
+    if (!FLAGS_keep_switched_loops && !run.switched_loops.off.empty()) {
+      const absl::Status removed =
+          RemoveSwitchedLoops(run, FLAGS_pbstream_filename);
+      if (!removed.ok()) return removed;
+    }
+  }
+  if (!FLAGS_switched_loops_filename.empty()) {
+    const absl::Status status = WriteFileAtomically(
+        FLAGS_switched_loops_filename,
+        optimization::SwitchedLoopsTable(run.switched_loops));
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_trajectory_filename.empty()) {
+    const absl::Status status = io::WriteTumTrajectory(
+        run.global_scan_poses, FLAGS_trajectory_filename);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_local_trajectory_filename.empty()) {
+    const absl::Status status = io::WriteTumTrajectory(
+        run.local_scan_poses, FLAGS_local_trajectory_filename);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_online_trajectory_filename.empty()) {
+    const absl::Status status = io::WriteTumTrajectory(
+        run.online_scan_poses, FLAGS_online_trajectory_filename);
+    if (!status.ok()) return status;
+  }
+  const bool wants_map =
+      !FLAGS_map_filestem.empty() || !FLAGS_picture_filename.empty();
+  if (FLAGS_decisions_filename.empty() && !wants_map) return absl::OkStatus();
+  evaluation::MapGraph graph = evaluation::MakeMapGraph(pose_graph);
+  evaluation::MarkMatches(run.matches, &graph);
+  evaluation::MarkSwitchedOff(run.switched_loops.off, &graph);
+  if (!FLAGS_decisions_filename.empty()) {
+    const absl::Status status = WriteFileAtomically(
+        FLAGS_decisions_filename,
+        run.decisions.empty() ? evaluation::DecisionTable(graph)
+                              : loop_closure::DecisionCsv(run.decisions));
+    if (!status.ok()) return status;
+  }
+  if (!wants_map) return absl::OkStatus();
+  const auto map = evaluation::PaintHostMap(pose_graph, FLAGS_resolution);
+  if (!map.ok()) return map.status();
+  if (!FLAGS_map_filestem.empty()) {
+    const absl::Status status = io::WriteOccupancyMap(*map, FLAGS_map_filestem);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_picture_filename.empty()) {
+    return evaluation::WriteMapPicture(
+        *map, graph, BaseName(FLAGS_input_filename), FLAGS_picture_filename);
+  }
+  return absl::OkStatus();
+}
+
+void PrintSlamOutputs(std::ostream& out) {
+  std::vector<std::string> names = {
+      FLAGS_pbstream_filename, FLAGS_picture_filename, FLAGS_report_filename};
+  if (!FLAGS_map_filestem.empty()) {
+    names.push_back(FLAGS_map_filestem + ".yaml");
+    names.push_back(FLAGS_map_filestem + ".pgm");
+  }
+  names.erase(std::remove(names.begin(), names.end(), ""), names.end());
+  if (!names.empty())
+    out << "Written    " << absl::StrJoin(names, ", ") << "\n";
+}
+
+}  // namespace tools
+}  // namespace cartographer_ext
