@@ -281,8 +281,10 @@ OdometryState MotionPredictor::CheckOdometry(const double time,
   const bool has_odometry = IntegrateOdometry(time, &odometry);
   if (has_odometry && odometry.is_late) {
     // The readings are complete up to the scan before.
-    const OdometryState state = Compare(last_time_, has_odometry);
+    const OdometryState state =
+        Compare(last_time_, has_odometry, matched.evidence);
     uncompared_ = matched;
+    uncompared_.evidence = nullptr;
     return state;
   }
   if (has_odometry) {
@@ -296,12 +298,14 @@ OdometryState MotionPredictor::CheckOdometry(const double time,
   uncompared_.rotation_observable =
       uncompared_.rotation_observable && matched.rotation_observable;
   uncompared_.covariance = matched.covariance;
-  return Compare(time, has_odometry);
+  return Compare(time, has_odometry, matched.evidence);
 }
 
-OdometryState MotionPredictor::Compare(const double time,
-                                       const bool has_odometry) {
+OdometryState MotionPredictor::Compare(
+    const double time, const bool has_odometry,
+    const std::function<double(const Pose2&)>& evidence) {
   MotionComparison comparison;
+  comparison.evidence = evidence;
   comparison.time = time;
   comparison.interval = time - compared_time_;
   if (!(comparison.interval > 0.)) return monitor_.state();

@@ -26,6 +26,7 @@
 #ifndef CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_MOTION_PREDICTOR_H_
 
+#include <functional>
 #include <vector>
 
 #include "Eigen/Core"
@@ -83,6 +84,8 @@ struct MatchedMotion {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   // The match started from a prediction by the velocity, with or without IMU.
   bool from_velocity = false;
+  // See MotionComparison; used while it is added only.
+  std::function<double(const Pose2&)> evidence;
 };
 
 // A match against its prediction along one direction that the scan determines,
@@ -152,7 +155,8 @@ class MotionPredictor {
 
   OdometryState CheckOdometry(double time, const MatchedMotion& matched);
   // Compares odometry with `uncompared_`, up to `time`.
-  OdometryState Compare(double time, bool has_odometry);
+  OdometryState Compare(double time, bool has_odometry,
+                        const std::function<double(const Pose2&)>& evidence);
   void UpdateVelocity(double time, const MatchedMotion& matched,
                       double speed_change);
   void UpdateInsertion(double time, const Pose2& motion, OdometryState state);

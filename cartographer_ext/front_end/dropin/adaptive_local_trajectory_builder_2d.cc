@@ -16,6 +16,7 @@
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/match_record.pb.h"
+#include "cartographer_ext/scan_matching/dropin/scan_evidence.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -223,7 +224,8 @@ AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
     return nullptr;
   }
   const LocalMatch match = MatchScan(prediction, cloud);
-  const OdometryState odometry = UpdatePredictor(seconds, prediction, match);
+  const OdometryState odometry =
+      UpdatePredictor(seconds, prediction, match, cloud);
 
   AssembledScan in_local = Transform(scan, pose_);
   auto node = MaybeInsert(sweep.time, in_local, cloud, alignment);
@@ -279,7 +281,7 @@ LocalMatch AdaptiveLocalTrajectoryBuilder2D::MatchScan(
 
 OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
     const double seconds, const MotionPrediction& prediction,
-    const LocalMatch& match) {
+    const LocalMatch& match, const PointCloud& cloud) {
   MatchedMotion matched;
   matched.motion = Between(pose_, match.pose);
   matched.translation_observable =
@@ -291,6 +293,13 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
       (prediction.source == PredictionSource::kConstantVelocity ||
        prediction.source == PredictionSource::kImu) &&
       !match.relocated;
+  const auto submaps = active_submaps_.submaps();
+  if (!submaps.empty()) {
+    matched.evidence = [&](const Pose2& error) {
+      return scan_matching::ScanEvidence(match.pose, match.pose * error, cloud,
+                                         *submaps.front()->grid());
+    };
+  }
   MatchInnovation innovation;
   if (has_pose_ && InnovationOf(pose_, prediction, match, &innovation)) {
     predictor_.AddInnovation(innovation);

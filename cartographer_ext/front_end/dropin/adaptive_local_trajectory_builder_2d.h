@@ -99,7 +99,8 @@ class AdaptiveLocalTrajectoryBuilder2D {
   // Moves the pose to that of the match and updates the predictor.
   OdometryState UpdatePredictor(double seconds,
                                 const MotionPrediction& prediction,
-                                const LocalMatch& match);
+                                const LocalMatch& match,
+                                const cartographer::sensor::PointCloud& cloud);
   // (local <- tracking) at the last match.
   cartographer::transform::Rigid3d LocalPose(
       const Eigen::Quaterniond& alignment) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "cartographer/transform/rigid_transform.h"
@@ -13,6 +14,7 @@
 #include "cartographer_ext/options/option_description.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
 #include "cartographer_ext/scan_matching/dropin/real_time_matcher_2d.h"
+#include "cartographer_ext/scan_matching/dropin/scan_evidence.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -40,6 +42,21 @@ constexpr size_t kMaxSearches = 4;
 // Scales the covariance of a motion after a search, so that the motion hardly
 // constrains the match.
 constexpr double kCovarianceScaleAfterSearch = 100.;
+
+// Log-likelihood by which a scan must contradict odometry, which is wrong once
+// in a thousand scans, ...
+constexpr double kLogOddsOfFault = 7.;
+// ... and so much more where the best of some 150 places has been looked for.
+constexpr double kLogPlaces = 5.;
+
+// Of a scan (scan_evidence.h), before its match replaces the prediction that it
+// contradicts. Other predictions than by odometry are guesses.
+double NeededEvidence(const MotionPrediction& prediction) {
+  if (prediction.source != PredictionSource::kOdometry) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  return prediction.is_uncertain ? 0. : kLogOddsOfFault;
+}
 
 // The block of the scan matcher, or its defaults.
 proto::ScanMatcherOptions MatcherExtension(
@@ -149,6 +166,14 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   if (options_.enabled && IsDoubtful(match, prediction)) {
     match =
         MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
+    if (!match.relocated && match.report.mahalanobis > options_.gate &&
+        scan_matching::ScanEvidence(match.pose, predicted.pose, cloud, grid) <
+            NeededEvidence(prediction)) {
+      // The scan does not tell: odometry is right more often than the match.
+      match.pose = predicted.pose;
+      match.report.covariance = predicted.covariance;
+      match.score = scan_matching::MeanScore(match.pose, cloud, grid);
+    }
   }
   mean_score_ +=
       (has_mean_score_ ? kScoreRate : 1.) * (match.score - mean_score_);
@@ -178,6 +203,10 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
                              : options_.contradiction_gain *
                                    Inconsistency(predicted.pose, match.pose));
     if (match.score <= std::max(to_beat, matched.score + gain)) continue;
+    if (scan_matching::ScanEvidence(match.pose, predicted.pose, cloud, grid) <
+        NeededEvidence(prediction) + kLogPlaces) {
+      continue;
+    }
     to_beat = match.score;
     best = match;
     best.searched = true;

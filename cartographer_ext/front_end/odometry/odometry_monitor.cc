@@ -97,21 +97,33 @@ OdometryState OdometryMonitor::CheckInterval(
                  comparison.match.y - comparison.odometry.y);
   const double angle = std::abs(
       NormalizeAngle(comparison.match.theta - comparison.odometry.theta));
-  if (distance > options_.jump_distance || angle > options_.jump_angle) {
+  if ((distance > options_.jump_distance || angle > options_.jump_angle) &&
+      IsEvident(comparison, comparison.odometry, comparison.match)) {
     return OdometryState::kJumping;
   }
   // Smaller differences are decided by the window.
   return OdometryState::kOk;
 }
 
-OdometryState OdometryMonitor::CheckWindow() const {
+bool OdometryMonitor::IsEvident(const MotionComparison& comparison,
+                                const Pose2& odometry,
+                                const Pose2& match) const {
+  return !comparison.evidence ||
+         comparison.evidence(Between(match, odometry)) >= options_.min_evidence;
+}
+
+OdometryState OdometryMonitor::CheckWindow(
+    const MotionComparison& comparison) const {
   const Pose2 odometry =
       Between(window_.front().odometry, window_.back().odometry);
   const Pose2 match = Between(window_.front().match, window_.back().match);
   const bool in_fault =
       state_ == OdometryState::kWrongSign || state_ == OdometryState::kSlipping;
   const double gate = in_fault ? kExitRatio * options_.gate : options_.gate;
-  if (ChiSquare(odometry, match) <= gate) return OdometryState::kOk;
+  if (ChiSquare(odometry, match) <= gate ||
+      !IsEvident(comparison, odometry, match)) {
+    return OdometryState::kOk;
+  }
   const double sum = std::abs(odometry.x + match.x);
   const double larger = std::max(std::abs(odometry.x), std::abs(match.x));
   if (odometry.x * match.x < 0. && larger > 2. * kStationaryDistance &&
@@ -198,7 +210,7 @@ OdometryState OdometryMonitor::Add(const MotionComparison& given) {
     state_ = OdometryState::kOk;
     return state_;
   }
-  state_ = CheckWindow();
+  state_ = CheckWindow(comparison);
   if (state_ == OdometryState::kOk) {
     last_agreed_ = entry;
     if (slip_suspected) state_ = OdometryState::kSlipSuspected;

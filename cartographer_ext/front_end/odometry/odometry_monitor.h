@@ -30,6 +30,7 @@
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_MONITOR_H_
 
 #include <deque>
+#include <functional>
 
 #include "cartographer_ext/common/pose2.h"
 
@@ -64,6 +65,9 @@ struct OdometryCheckOptions {
   // before matching: beyond what the search around a prediction covers easily.
   double jump_distance = 0.3;  // metres
   double jump_angle = 0.3;     // radians
+  // A fault of odometry needs this much evidence of the scan, natural logarithm
+  // of a ratio of likelihoods: it is wrong in about one window of a thousand.
+  double min_evidence = 7.;
   // Where the translation is not observable, above what robots in buildings do.
   double max_acceleration = 1.5;  // m/s^2
 };
@@ -81,6 +85,10 @@ struct MotionComparison {
   // Change of forward speed by an IMU, m/s; only with has_inertial.
   bool has_inertial = false;
   double inertial_speed_change = 0.;
+  // By how much more likely (natural logarithm) the scan is at its match than
+  // displaced by an error of odometry, (robot by the match <- robot by
+  // odometry). Not given: matches are beyond doubt.
+  std::function<double(const Pose2&)> evidence;
 };
 
 class OdometryMonitor {
@@ -116,7 +124,10 @@ class OdometryMonitor {
 
   double ChiSquare(const Pose2& odometry, const Pose2& match) const;
   OdometryState CheckInterval(const MotionComparison& comparison) const;
-  OdometryState CheckWindow() const;
+  OdometryState CheckWindow(const MotionComparison& comparison) const;
+  // Whether the scan itself tells that odometry is wrong.
+  bool IsEvident(const MotionComparison& comparison, const Pose2& odometry,
+                 const Pose2& match) const;
   bool SuspectSlip(const MotionComparison& comparison);
   void Restart(double time);
 

@@ -74,6 +74,8 @@ class LocalMatcherTest : public testing::Test {
     PointCloud cloud;
     for (const auto& point :
          test::Scan(test::Room(), 0., Pose2(), 12., &random_).ranges) {
+      const double angle = std::atan2(point.position.y(), point.position.x());
+      if (std::abs(angle) > 0.5 * field_of_view_) continue;
       cloud.push_back({point.position});
     }
     return cloud;
@@ -98,6 +100,7 @@ class LocalMatcherTest : public testing::Test {
   LocalSearchOptions options_;
   std::unique_ptr<ActiveSubmaps2D> submaps_;
   MotionPrediction prediction_;
+  double field_of_view_ = 2. * kPi;
   Random random_{3};
 };
 
@@ -124,6 +127,18 @@ TEST_F(LocalMatcherTest, APredictionInDoubtIsOverruledSooner) {
   EXPECT_TRUE(match.relocated);
   EXPECT_NEAR(match.pose.x, 0., 0.02);
   EXPECT_NEAR(match.pose.theta, 0., 0.02);
+}
+
+// A few points, as a laser of 57 degrees sees of a wall, fit better elsewhere,
+// too: that is no evidence against odometry.
+TEST_F(LocalMatcherTest, AFewPointsDoNotOverruleOdometry) {
+  const Pose2 off(0.15, 0.1, DegToRad(6.));
+  field_of_view_ = DegToRad(20.);
+  const LocalMatch match = MatchFrom(off);
+  EXPECT_TRUE(match.searched);
+  EXPECT_FALSE(match.relocated);
+  EXPECT_LT(std::hypot(match.pose.x - off.x, match.pose.y - off.y), 0.02);
+  EXPECT_NEAR(match.pose.theta, off.theta, 0.02);
 }
 
 TEST_F(LocalMatcherTest, WithoutSearchItStaysWithThePrediction) {

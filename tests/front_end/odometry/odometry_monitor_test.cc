@@ -200,6 +200,36 @@ TEST(OdometryMonitorTest, SuspicionBeforeTheMatch) {
   EXPECT_FALSE(monitor.IsSuspect(0.1, kStill, true, kStill));
 }
 
+// A scan that cannot tell the pose of the match from that of odometry is no
+// witness of a fault.
+TEST(OdometryMonitorTest, AFaultNeedsEvidence) {
+  for (const double evidence : {6.9, 7.1}) {
+    OdometryMonitor monitor((OdometryCheckOptions()));
+    MotionComparison comparison;
+    comparison.interval = kInterval;
+    comparison.odometry = kForward;
+    comparison.match = Pose2(0.02, 0., 0.);
+    Pose2 error;
+    comparison.evidence = [&](const Pose2& by) {
+      error = by;
+      return evidence;
+    };
+    int faults = 0;
+    for (int i = 1; i <= 20; ++i) {
+      comparison.time = i * kInterval;
+      faults += monitor.Add(comparison) == OdometryState::kSlipping ? 1 : 0;
+    }
+    EXPECT_EQ(faults > 0, evidence > 7.);
+    // Over the window of a second odometry has driven 0.3 m further.
+    EXPECT_NEAR(error.x, 0.3, 0.04);
+    // A jump likewise.
+    comparison.time += kInterval;
+    comparison.match = Pose2(0.5, 0., 0.);
+    const OdometryState state = monitor.Add(comparison);
+    EXPECT_EQ(state == OdometryState::kJumping, evidence > 7.);
+  }
+}
+
 }  // namespace
 }  // namespace front_end
 }  // namespace cartographer_ext
