@@ -147,6 +147,10 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Whether whole submaps of the same trajectory may be searched when the
     -- uncertainty exceeds the largest window. [basic]
     global_search = true,
+    -- Search structures of the submaps used last are kept up to this; others
+    -- are built again when they are needed, with the same result. [>= 0 and
+    -- <= 1000000, MB]
+    max_cache_mb = 32,
   },
   temporal_verification = {
     -- Compares the last nodes with what the submap predicts along the same

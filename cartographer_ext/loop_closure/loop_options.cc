@@ -87,6 +87,8 @@ void ReadPaperMode(const LoopClosureOptions::PaperMode& from,
 LoopOptions ToLoopOptions(const LoopClosureOptions& message) {
   LoopOptions options;
   ReadSearch(message.search(), &options.search);
+  options.max_cache_bytes = static_cast<size_t>(message.search().max_cache_mb())
+                            << 20;
   ReadVerification(message, &options);
   options.innovation_veto.enabled = message.innovation_veto().enabled();
   ReadInformation(message.information(), &options.information);

@@ -72,6 +72,9 @@ struct LoopOptions {
   // a few metres. Metres and radians, > 0.
   double loop_translation = 0.05;
   double loop_rotation = 0.01;
+  // What is kept of the search structures of submaps, bytes; the others are
+  // built again when they are needed.
+  size_t max_cache_bytes = size_t{32} << 20;
   // Records with the CPU time of each stage differ from run to run.
   bool log_times = false;
   // Folder of records that are written while the program runs; empty: none.

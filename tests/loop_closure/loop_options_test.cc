@@ -23,6 +23,7 @@ std::map<std::string, double> Values(const LoopOptions& options) {
        static_cast<double>(options.search.max_linear_window)},
       {"search.global_search",
        static_cast<double>(options.search.global_search)},
+      {"search.max_cache_mb", static_cast<double>(options.max_cache_bytes)},
       {"temporal_verification.enabled",
        static_cast<double>(options.temporal.enabled)},
       {"temporal_verification.window_base",
@@ -77,7 +78,8 @@ std::map<std::string, double> Values(const LoopOptions& options) {
   };
 }
 
-options::test::KeyValues ValuesOfMessage(const proto::LoopClosureOptions& message) {
+options::test::KeyValues ValuesOfMessage(
+    const proto::LoopClosureOptions& message) {
   return Values(ToLoopOptions(message));
 }
 
@@ -88,7 +90,8 @@ TEST(LoopOptionsTest, DefaultsAreThoseOfTheStages) {
 }
 
 TEST(LoopOptionsTest, EveryKeyHasAnEffect) {
-  options::test::ExpectEveryKeyHasAnEffect<proto::LoopClosureOptions>(ValuesOfMessage);
+  options::test::ExpectEveryKeyHasAnEffect<proto::LoopClosureOptions>(
+      ValuesOfMessage);
 }
 
 TEST(LoopOptionsTest, CovarianceOfALoop) {

@@ -68,6 +68,11 @@ void ConstraintMetrics::Register(
           ->NewGaugeFamily("cartographer_ext_loop_submap_matchers",
                            "Submaps that can be searched")
           ->Add({});
+  metrics->cache_bytes =
+      factory
+          ->NewGaugeFamily("cartographer_ext_loop_cache_bytes",
+                           "Search structures of submaps that are kept")
+          ->Add({});
 }
 
 void ConstraintMetrics::CountDecision(const LoopDecision& decision) const {

@@ -6,8 +6,8 @@
 //   cartographer_ext_loop_searches{matcher=,search_region=}  counter
 //   cartographer_ext_loop_cpu_seconds{stage=}             counter
 //   cartographer_ext_loop_scores{score=}                  histogram
-//   cartographer_ext_loop_undecided, cartographer_ext_loop_submap_matchers
-//                                                         gauges
+//   cartographer_ext_loop_undecided, cartographer_ext_loop_submap_matchers,
+//   cartographer_ext_loop_cache_bytes                     gauges
 //
 // They belong to the process, not to a pose graph: that is how Cartographer
 // declares metrics. Its RegisterMetrics is a static function, called once for
@@ -52,6 +52,7 @@ struct ConstraintMetrics {
   Histogram* final_scores = Histogram::Null();
   Gauge* undecided = Gauge::Null();
   Gauge* num_matchers = Gauge::Null();
+  Gauge* cache_bytes = Gauge::Null();
 
  private:
   // By reason.

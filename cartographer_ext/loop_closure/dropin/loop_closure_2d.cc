@@ -59,10 +59,10 @@ LoopClosure2D::LoopClosure2D(
       context_(PoseGraphContext::CurrentOrNew()),
       recorder_(context_->Get<DecisionRecorder>()),
       log_(extension.log_directory, "loops", DecisionCsvHead()),
-      searcher_(options),
+      submaps_(options, extension),
+      searcher_(options, submaps_.cache()),
       pipeline_(extension, StockWeights(options)),
       planner_(options, extension, &pipeline_.paths()),
-      submaps_(options, extension, thread_pool),
       relocalizer_(extension.relocalization,
                    options.global_localization_min_score()),
       typical_fit_(extension.search.enabled ? extension.typical_fit
@@ -182,7 +182,7 @@ void LoopClosure2D::ScheduleSearch(SearchJob* const job,
   }
   auto task = absl::make_unique<Task>();
   task->SetWorkItem([this, job]() { searcher_.Search(job); });
-  submaps_.AwaitSubmap(candidate.submap, task.get(), end_of_node);
+  submaps_.AnnounceSearch(candidate.submap);
   end_of_node->AddDependency(thread_pool_->Schedule(std::move(task)));
 }
 
@@ -195,7 +195,7 @@ void LoopClosure2D::ScheduleQuery(const std::vector<SearchJob*>& jobs,
   std::weak_ptr<Task>* const last_task = relocalizer_.LastTask(*query);
   task->AddDependency(*last_task);
   for (const SearchJob* const job : jobs) {
-    submaps_.AwaitSubmap(job->candidate.submap, task.get(), end_of_node);
+    submaps_.AnnounceSearch(job->candidate.submap);
   }
   *last_task = thread_pool_->Schedule(std::move(task));
   end_of_node->AddDependency(*last_task);

@@ -47,8 +47,8 @@
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/pose_graph_context.h"
-#include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
 #include "cartographer_ext/common/record_log.h"
+#include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
 #include "cartographer_ext/loop_closure/decision_counts.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/loop_closure/dropin/inter_trajectory_loops.h"
@@ -137,10 +137,10 @@ class LoopClosure2D {
   DecisionRecorder* const recorder_;  // of the context
   DecisionCounts counts_;
   RecordLog log_;
+  SubmapStore submaps_;
   const PairSearcher searcher_;
   LoopPipeline pipeline_;
   PairPlanner planner_;
-  SubmapStore submaps_;
   Relocalizer relocalizer_;
   TypicalFit typical_fit_;
   InterTrajectoryLoops inter_trajectory_loops_;

@@ -19,27 +19,34 @@ using proto::LoopDecision;
 
 PairSearcher::PairSearcher(
     const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
-        options)
+        options,
+    SubmapCache* const cache)
     : options_(options),
-      ceres_scan_matcher_(options.ceres_scan_matcher_options()) {}
+      ceres_scan_matcher_(options.ceres_scan_matcher_options()),
+      cache_(cache) {}
 
 void PairSearcher::Search(SearchJob* const job) const {
   const ConstraintMetrics& metrics = *ConstraintMetrics::Global();
   const SubmapEntry& entry = *job->entry;
   const SearchPlan& plan = job->candidate.plan;
   const auto& cloud = job->node->filtered_gravity_aligned_point_cloud;
+  std::shared_ptr<const SubmapMatcher> matcher;
+  {
+    const StageMeter meter(metrics.build_cpu);
+    matcher = cache_->Matcher(entry.cached.get());
+  }
   SubmapMatch found;
   {
     const StageMeter meter(metrics.search_cpu);
     if (plan.full_submap) {
       metrics.searched_global->Increment();
-      found = entry.matcher->MatchFullSubmap(
+      found = matcher->MatchFullSubmap(
           cloud, job->score_scale * options_.global_localization_min_score());
     } else {
       metrics.searched_local->Increment();
-      found = entry.matcher->Match(
-          entry.local_pose * job->candidate.SearchCenter(), plan.linear_window,
-          plan.angular_window, cloud, job->score_scale * options_.min_score());
+      found = matcher->Match(entry.local_pose * job->candidate.SearchCenter(),
+                             plan.linear_window, plan.angular_window, cloud,
+                             job->score_scale * options_.min_score());
     }
     job->candidate.times.search = meter.seconds();
   }
@@ -67,7 +74,8 @@ void PairSearcher::SearchPlace(PlaceQuery* const query) const {
   for (const SearchJob* const job : query->jobs) {
     PlaceSubmap submap;
     submap.submap_index = job->candidate.submap.submap_index;
-    submap.matcher = job->entry->matcher.get();
+    CachedSubmap* const cached = job->entry->cached.get();
+    submap.matcher = [this, cached]() { return cache_->Matcher(cached); };
     submap.submap = job->entry->submap;
     submap.search = job->candidate.plan.skipped == LoopDecision::NONE;
     if (submap.search) metrics.searched_global->Increment();

@@ -45,11 +45,12 @@ class PairSearcher {
  public:
   explicit PairSearcher(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
-          options);
+          options,
+      SubmapCache* cache);
 
-  // Fills `match` of the candidate. The matcher of the submap has to be there.
+  // Fills `match` of the candidate.
   void Search(SearchJob* job) const;
-  // The same for the matchers of all submaps. The candidates that were searched
+  // The same for all submaps of the query. The candidates that were searched
   // are rejected: loops come from the places that are decided for.
   void SearchPlace(PlaceQuery* query) const;
 
@@ -62,6 +63,7 @@ class PairSearcher {
       options_;
   const cartographer::mapping::scan_matching::CeresScanMatcher2D
       ceres_scan_matcher_;
+  SubmapCache* const cache_;
 };
 
 }  // namespace loop_closure

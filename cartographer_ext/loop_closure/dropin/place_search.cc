@@ -46,11 +46,13 @@ PlaceSearch::PlaceSearch(const RelocalizationOptions& options,
 std::vector<PlaceMatch> PlaceSearch::FindPlaces(
     const PlaceNode& node, const std::vector<PlaceSubmap>& submaps,
     PlaceResult* const result) const {
+  std::vector<std::shared_ptr<const SubmapMatcher>> matchers;
   std::vector<const SubmapMatcher*> searched;
   std::vector<int> searched_index;
   for (const PlaceSubmap& submap : submaps) {
     if (!submap.search) continue;
-    searched.push_back(submap.matcher);
+    matchers.push_back(submap.matcher());
+    searched.push_back(matchers.back().get());
     searched_index.push_back(submap.submap_index);
   }
   const std::vector<SubmapRanking> ranking = MatchBestSubmaps(
@@ -78,8 +80,8 @@ absl::optional<PlaceMatch> PlaceSearch::MatchNearby(
   absl::optional<PlaceMatch> result;
   if (!Covers(*submap.submap, guess)) return result;
   const SubmapMatch match =
-      submap.matcher->Match(guess, kFollowMetres, kFollowRadians,
-                            nodes_.at(node_index).cloud, min_score);
+      submap.matcher()->Match(guess, kFollowMetres, kFollowRadians,
+                              nodes_.at(node_index).cloud, min_score);
   if (!match.found) return result;
   result = PlaceMatch();
   result->submap_index = submap.submap_index;

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "absl/types/optional.h"
@@ -30,7 +31,8 @@ namespace loop_closure {
 // A submap of the map.
 struct PlaceSubmap {
   int submap_index = 0;
-  const SubmapMatcher* matcher = nullptr;
+  // Asked for where it is used, as it may be built then.
+  std::function<std::shared_ptr<const SubmapMatcher>()> matcher;
   const cartographer::mapping::Submap2D* submap = nullptr;
   // Searched as a whole; otherwise places are followed into it only.
   bool search = true;

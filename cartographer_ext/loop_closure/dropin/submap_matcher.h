@@ -41,6 +41,8 @@ class SubmapMatcher {
   SubmapMatch MatchFullSubmap(const cartographer::sensor::PointCloud& cloud,
                               double min_score) const;
 
+  size_t MemoryBytes() const { return matcher_.MemoryBytes(); }
+
   // For searches of several submaps at once.
   const scan_matching::FastCorrelativeSearch2D& search() const {
     return matcher_.search();

@@ -9,13 +9,10 @@
 #include "cartographer/mapping/internal/constraints/constraint_builder_2d.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
-#include "cartographer_ext/loop_closure/loop_options.h"
-#include "cartographer_ext/loop_closure/verification/beam_agreement.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
-using cartographer::common::Task;
 using cartographer::mapping::Submap2D;
 using cartographer::mapping::constraints::ComputeSubmapPose;
 using uncertainty::SubmapId;
@@ -25,13 +22,11 @@ constexpr int SubmapEntry::kUnknownNode;
 SubmapStore::SubmapStore(
     const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
         options,
-    const LoopOptions& extension,
-    cartographer::common::ThreadPoolInterface* const thread_pool)
-    : options_(options),
-      temporal_options_(extension.temporal.comparison),
-      with_views_(extension.temporal.enabled),
+    const LoopOptions& extension)
+    : with_views_(extension.temporal.enabled),
       num_neighbours_(extension.temporal.num_neighbours),
-      thread_pool_(thread_pool) {}
+      cache_(options.fast_correlative_scan_matcher_options(),
+             extension.temporal.comparison, extension.max_cache_bytes) {}
 
 void SubmapStore::AddNode(const uncertainty::NodeId& node, const int64_t time) {
   const NewestNode added{node.node_index, time};
@@ -48,6 +43,7 @@ std::shared_ptr<SubmapEntry> SubmapStore::AddPair(
     // Set once: tasks read it.
     entry = std::make_shared<SubmapEntry>();
     entry->submap = submap;
+    entry->cached = absl::make_unique<CachedSubmap>(num_submaps_++, submap);
     entry->local_pose = ToPose2(ComputeSubmapPose(*submap));
     entry->first_group = num_groups_;
     if (newest != newest_nodes_.end()) {
@@ -83,9 +79,10 @@ int SubmapStore::Erase(const SubmapId& id) {
   const auto it = submaps_.find(id);
   if (it == submaps_.end()) return SubmapEntry::kUnknownNode;
   const int newest_node = it->second->newest_node_bound;
-  if (it->second->has_matcher) {
-    ConstraintMetrics::Global()->num_matchers->Set(--num_matchers_);
+  if (it->second->is_searched) {
+    ConstraintMetrics::Global()->num_matchers->Set(--num_searched_);
   }
+  cache_.Erase(*it->second->cached);
   submaps_.erase(it);
   return newest_node;
 }
@@ -130,68 +127,32 @@ LoopCandidate SubmapStore::MakeCandidate(
   return candidate;
 }
 
-void SubmapStore::AddMaps(LoopCandidate* const candidate) const {
+void SubmapStore::AnnounceSearch(const SubmapId& id) {
+  SubmapEntry* const entry = submaps_.at(id).get();
+  if (!entry->is_searched) {
+    entry->is_searched = true;
+    ConstraintMetrics::Global()->num_matchers->Set(++num_searched_);
+  }
+  if (!with_views_) return;
+  for (int k = -num_neighbours_; k <= num_neighbours_; ++k) {
+    const auto it =
+        submaps_.find(SubmapId{id.trajectory_id, id.submap_index + k});
+    if (it != submaps_.end()) it->second->is_compared = true;
+  }
+}
+
+void SubmapStore::AddMaps(LoopCandidate* const candidate) {
   for (int k = 0; k <= 2 * num_neighbours_; ++k) {
     // The submap, then its neighbours from near to far.
     const int offset = k % 2 == 1 ? (k + 1) / 2 : -k / 2;
     const auto it =
         submaps_.find(SubmapId{candidate->submap.trajectory_id,
                                candidate->submap.submap_index + offset});
-    if (it == submaps_.end()) continue;
-    absl::MutexLock lock(&it->second->view_mutex);
-    if (it->second->view == nullptr) continue;
-    candidate->views.push_back(it->second->view);
-    candidate->maps.push_back(
-        ReferenceMap{it->second->view.get(), candidate->submap_local_pose});
+    if (it == submaps_.end() || !it->second->is_compared) continue;
+    candidate->views.push_back(cache_.View(it->second->cached.get()));
+    candidate->maps.push_back(ReferenceMap{candidate->views.back().get(),
+                                           candidate->submap_local_pose});
   }
-}
-
-void SubmapStore::AwaitSubmap(const SubmapId& id, Task* const search,
-                              Task* const end_of_node) {
-  const std::shared_ptr<SubmapEntry>& entry = submaps_.at(id);
-  if (!entry->has_matcher) ScheduleMatcher(entry);
-  search->AddDependency(entry->matcher_task);
-  if (!with_views_) return;
-  for (int k = -num_neighbours_; k <= num_neighbours_; ++k) {
-    const auto it =
-        submaps_.find(SubmapId{id.trajectory_id, id.submap_index + k});
-    if (it != submaps_.end() && !it->second->has_view) {
-      ScheduleView(it->second, end_of_node);
-    }
-  }
-}
-
-void SubmapStore::ScheduleMatcher(const std::shared_ptr<SubmapEntry>& entry) {
-  entry->has_matcher = true;
-  ConstraintMetrics::Global()->num_matchers->Set(++num_matchers_);
-  auto task = absl::make_unique<Task>();
-  const auto& matcher_options =
-      options_.fast_correlative_scan_matcher_options();
-  task->SetWorkItem([entry, matcher_options]() {
-    const StageMeter meter(ConstraintMetrics::Global()->build_cpu);
-    entry->matcher = absl::make_unique<const SubmapMatcher>(
-        *entry->submap->grid(), matcher_options);
-  });
-  entry->matcher_task = thread_pool_->Schedule(std::move(task));
-}
-
-void SubmapStore::ScheduleView(const std::shared_ptr<SubmapEntry>& entry,
-                               Task* const end_of_node) {
-  entry->has_view = true;
-  auto task = absl::make_unique<Task>();
-  task->SetWorkItem([this, entry]() {
-    const StageMeter meter(ConstraintMetrics::Global()->build_cpu);
-    auto view = std::make_shared<OccupancyView>(
-        MakeOccupancyView(*entry->submap->grid()));
-    if (temporal_options_.comparison == ScanComparison::kBeams) {
-      view->FindDistances(
-          DistanceReach(temporal_options_.beams, view->resolution()));
-    }
-    // Verification may be under way.
-    absl::MutexLock lock(&entry->view_mutex);
-    entry->view = std::move(view);
-  });
-  end_of_node->AddDependency(thread_pool_->Schedule(std::move(task)));
 }
 
 }  // namespace loop_closure

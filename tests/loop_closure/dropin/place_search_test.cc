@@ -58,7 +58,7 @@ class PlaceSearchTest : public testing::Test {
     std::vector<PlaceSubmap> submaps(2);
     for (int s = 0; s < 2; ++s) {
       submaps[s].submap_index = s;
-      submaps[s].matcher = matchers_[s].get();
+      submaps[s].matcher = [this, s]() { return matchers_[s]; };
       submaps[s].submap = submaps_[s].get();
       submaps[s].search = s == 0;
     }
@@ -75,7 +75,7 @@ class PlaceSearchTest : public testing::Test {
   RelocalizationOptions options_;
   host::ValueConversionTables tables_;
   std::vector<std::unique_ptr<Submap2D>> submaps_;
-  std::vector<std::unique_ptr<const SubmapMatcher>> matchers_;
+  std::vector<std::shared_ptr<const SubmapMatcher>> matchers_;
 };
 
 TEST_F(PlaceSearchTest, DecidesAfterAFewNodesAndReturnsThemOnce) {

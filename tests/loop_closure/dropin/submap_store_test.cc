@@ -5,13 +5,11 @@
 #include <memory>
 
 #include "absl/memory/memory.h"
-#include "absl/synchronization/notification.h"
-#include "cartographer/common/thread_pool.h"
 #include "cartographer/mapping/2d/probability_grid.h"
 #include "gtest/gtest.h"
-#include "tests/uncertainty/random_walk.h"
 #include "tests/host/mapping_test_helpers.h"
 #include "tests/host/slam_test_helpers.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -24,17 +22,15 @@ using uncertainty::SubmapId;
 class SubmapStoreTest : public testing::Test {
  protected:
   SubmapStoreTest()
-      : pool_(2),
-        submap_(Eigen::Vector2f(1.f, 0.f),
+      : submap_(Eigen::Vector2f(1.f, 0.f),
                 host::test::RoomGrid(&tables_, 0.05, 5), &tables_),
         paths_(uncertainty::RandomWalk(), 1000) {
     submap_.Finish();
-    LoopOptions extension;
     store_ =
         absl::make_unique<SubmapStore>(host::test::LoadSlamOptions("")
                                            .map_builder.pose_graph_options()
                                            .constraint_builder_options(),
-                                       extension, &pool_);
+                                       LoopOptions());
     for (int i = 0; i < 30; ++i) paths_.Add(NodeId{0, i}, Pose2(i, 0., 0.));
   }
 
@@ -46,7 +42,6 @@ class SubmapStoreTest : public testing::Test {
   }
 
   host::ValueConversionTables tables_;
-  cartographer::common::ThreadPool pool_;
   host::Submap2D submap_;
   uncertainty::PathUncertainty paths_;
   std::unique_ptr<SubmapStore> store_;
@@ -79,27 +74,31 @@ TEST_F(SubmapStoreTest, AnchorsCandidatesAtANodeOrTheSubmap) {
   EXPECT_EQ(*other.anchor, uncertainty::VertexId(SubmapId{0, 3}));
 }
 
-TEST_F(SubmapStoreTest, BuildsMatchersAndViewsOnce) {
-  const auto entry = Add(3, 8);
-  for (int round = 0; round < 2; ++round) {
-    auto search = absl::make_unique<cartographer::common::Task>();
-    auto end_of_node = absl::make_unique<cartographer::common::Task>();
-    absl::Notification done;
-    end_of_node->SetWorkItem([&done]() { done.Notify(); });
-    store_->AwaitSubmap(SubmapId{0, 3}, search.get(), end_of_node.get());
-    EXPECT_TRUE(entry->has_matcher);
-    EXPECT_TRUE(entry->has_view);
-    end_of_node->AddDependency(pool_.Schedule(std::move(search)));
-    pool_.Schedule(std::move(end_of_node));
-    done.WaitForNotification();
-    EXPECT_NE(entry->matcher, nullptr);
-  }
-  LoopCandidate candidate =
-      store_->MakeCandidate(SubmapId{0, 3}, *entry, 0, paths_);
+TEST_F(SubmapStoreTest, MapsAreThoseOfSubmapsNearASearch) {
+  Add(3, 8);
+  Add(5, 9);
+  Add(6, 10);
+  const auto num_maps = [this](const int submap_index) {
+    LoopCandidate candidate;
+    candidate.submap = SubmapId{0, submap_index};
+    store_->AddMaps(&candidate);
+    EXPECT_EQ(candidate.maps.size(), candidate.views.size());
+    return candidate.maps.size();
+  };
+  EXPECT_EQ(num_maps(3), 0u);
+  store_->AnnounceSearch(SubmapId{0, 3});
+  EXPECT_EQ(num_maps(3), 2u);
+  EXPECT_EQ(num_maps(6), 1u);
+  store_->AnnounceSearch(SubmapId{0, 5});
+  EXPECT_EQ(num_maps(6), 2u);
+
+  LoopCandidate candidate;
+  candidate.submap = SubmapId{0, 3};
   store_->AddMaps(&candidate);
-  ASSERT_EQ(candidate.maps.size(), 1u);
+  EXPECT_GT(store_->cache()->bytes(), 0u);
+  for (const int index : {3, 5, 6}) store_->Erase(SubmapId{0, index});
+  EXPECT_EQ(store_->cache()->bytes(), 0u);
   // They outlive the submap.
-  store_->Erase(SubmapId{0, 3});
   EXPECT_EQ(candidate.maps[0].view, candidate.views[0].get());
 }
 

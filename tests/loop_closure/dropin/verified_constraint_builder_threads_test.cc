@@ -36,6 +36,43 @@ using test::StockOptions;
 class VerifiedConstraintBuilderThreadsTest
     : public test::VerifiedConstraintBuilderRoom {
  protected:
+  struct Run {
+    std::vector<Builder::Result> results;
+    DecisionRecorder::Decisions records;
+  };
+
+  Run DriveAlone(const LoopOptions& options, const int num_threads) {
+    const auto context = std::make_shared<PoseGraphContext>();
+    const ScopedPoseGraphContext scope(context);
+    DecisionRecorder* const recorder = context->Get<DecisionRecorder>();
+    recorder->Start(100000);
+    Run run;
+    {
+      cartographer::common::ThreadPool pool(num_threads);
+      Builder builder(StockOptions(), options, &pool);
+      run.results = Drive(&builder);
+    }
+    run.records = recorder->All();
+    return run;
+  }
+
+  static void ExpectSame(const Run& run, const Run& expected) {
+    ASSERT_EQ(run.records.size(), expected.records.size());
+    for (size_t i = 0; i < run.records.size(); ++i) {
+      EXPECT_EQ(run.records[i].SerializeAsString(),
+                expected.records[i].SerializeAsString());
+    }
+    ASSERT_EQ(run.results.size(), expected.results.size());
+    for (size_t r = 0; r < run.results.size(); ++r) {
+      ASSERT_EQ(run.results[r].size(), expected.results[r].size());
+      for (size_t i = 0; i < run.results[r].size(); ++i) {
+        EXPECT_EQ(run.results[r][i].pose.zbar_ij.translation(),
+                  expected.results[r][i].pose.zbar_ij.translation());
+        EXPECT_EQ(run.results[r][i].node_id, expected.results[r][i].node_id);
+      }
+    }
+  }
+
   // All calls from several threads at once, in any order; nothing is asked but
   // that everything is called back and counted, and that nothing of a submap
   // that is deleted meanwhile is missed.
@@ -87,35 +124,20 @@ class VerifiedConstraintBuilderThreadsTest
 };
 
 TEST_F(VerifiedConstraintBuilderThreadsTest, TheSameForAnyNumberOfThreads) {
-  std::vector<std::vector<Builder::Result>> runs;
-  std::vector<DecisionRecorder::Decisions> records;
-  for (const int num_threads : {1, 2, 8}) {
-    const auto context = std::make_shared<PoseGraphContext>();
-    const ScopedPoseGraphContext scope(context);
-    DecisionRecorder* const recorder = context->Get<DecisionRecorder>();
-    recorder->Start(100000);
-    {
-      cartographer::common::ThreadPool pool(num_threads);
-      Builder builder(StockOptions(), LoopOptions(), &pool);
-      runs.push_back(Drive(&builder));
-    }
-    records.push_back(recorder->All());
+  const Run one = DriveAlone(LoopOptions(), 1);
+  for (const int num_threads : {2, 8}) {
+    ExpectSame(DriveAlone(LoopOptions(), num_threads), one);
   }
-  for (size_t k = 1; k < runs.size(); ++k) {
-    ASSERT_EQ(records[k].size(), records[0].size());
-    for (size_t i = 0; i < records[0].size(); ++i) {
-      EXPECT_EQ(records[k][i].SerializeAsString(),
-                records[0][i].SerializeAsString());
-    }
-    ASSERT_EQ(runs[k].size(), runs[0].size());
-    for (size_t r = 0; r < runs[0].size(); ++r) {
-      ASSERT_EQ(runs[k][r].size(), runs[0][r].size());
-      for (size_t i = 0; i < runs[0][r].size(); ++i) {
-        EXPECT_EQ(runs[k][r][i].pose.zbar_ij.translation(),
-                  runs[0][r][i].pose.zbar_ij.translation());
-        EXPECT_EQ(runs[k][r][i].node_id, runs[0][r][i].node_id);
-      }
-    }
+}
+
+TEST_F(VerifiedConstraintBuilderThreadsTest, TheSameForAnyLimitOfTheCache) {
+  const Run unlimited = DriveAlone(LoopOptions(), 2);
+  EXPECT_FALSE(unlimited.records.empty());
+  // Nothing, a view or two, a matcher or two.
+  for (const size_t max_bytes : {0, 40000, 300000}) {
+    LoopOptions options;
+    options.max_cache_bytes = max_bytes;
+    ExpectSame(DriveAlone(options, 2), unlimited);
   }
 }
 
