@@ -108,7 +108,7 @@ TEST_F(TuneMainTest, WritesEverything) {
               HasSubstr("-configuration_basename=tuned.lua"));
   // It is a configuration as it stands.
   const CommandResult run = RunCommand(
-      "slam", {folder_ / "room.world", "-pbstream_filename",
+      "slam", {"-input_filename", folder_ / "room.world", "-pbstream_filename",
                folder_ / "tuned.pbstream", "-configuration_directory",
                folder_.path() + ",configuration_files",
                "-configuration_basename", "tuned.lua"});
@@ -126,9 +126,9 @@ TEST_F(TuneMainTest, WritesAllOrNothing) {
   if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
   const size_t before = folder_.Names().size();
   const CommandResult result = RunCommand(
-      "tune", Arguments({"-output_filename", folder_ / "tuned.lua",
-                         "-picture_filename", folder_ / "tuned.svg", "-json",
-                         "/dev/full"}));
+      "tune",
+      Arguments({"-output_filename", folder_ / "tuned.lua", "-picture_filename",
+                 folder_ / "tuned.svg", "-json", "/dev/full"}));
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(folder_.Names().size(), before);
 }
