@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <exception>
@@ -21,37 +20,41 @@
 #include "boost/iostreams/filter/lzma.hpp"
 #include "boost/iostreams/filtering_streambuf.hpp"
 #include "boost/iostreams/read.hpp"
+#include "cartographer_ext/io/expansion_budget.h"
 
 namespace cartographer_ext {
 namespace io {
 namespace {
 
 constexpr size_t kReadSize = 1 << 16;
-constexpr int64_t kFreeExpansion = 64 << 20;  // bytes
-
-std::atomic<int64_t> max_expansion{50};
 
 class ExpandsTooMuch : public std::exception {
  public:
+  explicit ExpandsTooMuch(const absl::Status& status) : status_(status) {}
   const char* what() const noexcept override { return "expands too much"; }
+  const absl::Status& status() const { return status_; }
+
+ private:
+  const absl::Status status_;
 };
 
-// Behind a decompressor: ends the reading after `limit` bytes.
+// Behind a decompressor: ends the reading where the budget does.
 class ExpansionLimit : public boost::iostreams::multichar_input_filter {
  public:
-  explicit ExpansionLimit(const int64_t limit) : left_(limit) {}
+  explicit ExpansionLimit(const ExpansionBudget& budget) : budget_(budget) {}
 
   template <typename Source>
   std::streamsize read(Source& source, char* const to,
                        const std::streamsize size) {
     const std::streamsize count = boost::iostreams::read(source, to, size);
-    left_ -= std::max<std::streamsize>(0, count);
-    if (left_ < 0) throw ExpandsTooMuch();
+    if (!budget_.Take(std::max<std::streamsize>(0, count))) {
+      throw ExpandsTooMuch(budget_.Error());
+    }
     return count;
   }
 
  private:
-  int64_t left_;
+  ExpansionBudget budget_;
 };
 
 // Up to `size` bytes; exceptions of the decompressors become errors.
@@ -60,10 +63,10 @@ absl::StatusOr<size_t> ReadSome(std::streambuf* content, char* to, size_t size,
   try {
     return static_cast<size_t>(
         std::max<std::streamsize>(0, content->sgetn(to, size)));
-  } catch (const ExpandsTooMuch&) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat(filename, ": expands to more than ", max_expansion.load(),
-                     " times its size; -max_expansion allows more"));
+  } catch (const ExpandsTooMuch& exception) {
+    return absl::Status(
+        exception.status().code(),
+        absl::StrCat(filename, ": ", exception.status().message()));
   } catch (const std::exception& exception) {
     return absl::DataLossError(
         absl::StrCat(filename, ": compressed data is damaged or truncated (",
@@ -72,8 +75,6 @@ absl::StatusOr<size_t> ReadSome(std::streambuf* content, char* to, size_t size,
 }
 
 }  // namespace
-
-void SetMaxExpansion(const int64_t factor) { max_expansion = factor; }
 
 absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
     const std::string& filename) {
@@ -98,9 +99,7 @@ absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
   try {
     std::unique_ptr<streams::filtering_istreambuf> result(
         new streams::filtering_istreambuf);
-    const ExpansionLimit limit(kFreeExpansion +
-                               max_expansion.load() *
-                                   std::max<int64_t>(1, info.st_size));
+    const ExpansionLimit limit{ExpansionBudget(info.st_size)};
     if (absl::StartsWith(head, "\x1f\x8b")) {
       result->push(limit, kReadSize);
       result->push(streams::gzip_decompressor(), kReadSize);

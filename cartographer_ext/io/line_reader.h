@@ -21,12 +21,7 @@
 namespace cartographer_ext {
 namespace io {
 
-// Bytes that a byte of a compressed file may expand to, in the mean and after
-// the first 64 MB; logs expand 3 to 30 times, bombs a thousand. For all files
-// that are opened from now on; above 0.
-void SetMaxExpansion(int64_t factor);
-
-// Decompressed content of `filename`; reading the stream buffer may throw on
+// Decompressed content of `filename`, within its ExpansionBudget; reading the stream buffer may throw on
 // damaged compressed data, so use LineReader or ReadFile where possible.
 absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
     const std::string& filename);

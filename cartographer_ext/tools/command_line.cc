@@ -23,7 +23,7 @@
 #include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/lua_value.h"
 #include "cartographer_ext/configuration/option_ranges.h"
-#include "cartographer_ext/io/line_reader.h"
+#include "cartographer_ext/io/expansion_budget.h"
 #include "gflags/gflags.h"
 #include "glog/logging.h"
 

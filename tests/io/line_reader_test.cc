@@ -11,6 +11,7 @@
 #include "boost/iostreams/filter/gzip.hpp"
 #include "boost/iostreams/filter/lzma.hpp"
 #include "boost/iostreams/filtering_streambuf.hpp"
+#include "cartographer_ext/io/expansion_budget.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/mutation.h"

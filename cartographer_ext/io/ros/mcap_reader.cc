@@ -9,6 +9,8 @@
 #include "absl/memory/memory.h"
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/types/optional.h"
+#include "cartographer_ext/io/expansion_budget.h"
 #include "cartographer_ext/io/ros/mcap_format.h"
 
 namespace cartographer_ext {
@@ -81,6 +83,7 @@ class McapContainer : public RosContainer {
     chunk_.clear();
     chunk_rest_ = McapFields(absl::string_view());
     at_end_ = false;
+    budget_.emplace(static_cast<int64_t>(file_size_));
     return absl::OkStatus();
   }
 
@@ -197,6 +200,9 @@ class McapContainer : public RosContainer {
     const absl::string_view compression = fields.TakeString();
     const absl::string_view data = fields.TakeBytes(fields.Take<uint64_t>());
     if (!fields.ok()) return Damaged("a damaged chunk");
+    if (!compression.empty() && !budget_->Take(size)) {
+      return absl::Status(budget_->Error().code(), absl::StrCat(filename_, ": ", budget_->Error().message()));
+    }
     absl::StatusOr<std::string> records = McapDecompress(compression, data, size);
     if (!records.ok()) {
       return absl::Status(records.status().code(), Damaged(std::string(records.status().message())).message());
@@ -214,6 +220,7 @@ class McapContainer : public RosContainer {
   uint64_t record_offset_ = 0;  // of the one being read
   uint64_t cut_off_at_ = 0;     // 0: the file is whole
   bool at_end_ = true;
+  absl::optional<ExpansionBudget> budget_;  // of this reading
   std::string record_;
   std::string chunk_;
   McapFields chunk_rest_{absl::string_view()};

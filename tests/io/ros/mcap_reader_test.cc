@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/ros/mcap_reader.h"
 
+#include <fstream>
 #include <string>
 
+#include "cartographer_ext/io/expansion_budget.h"
+#include "cartographer_ext/io/ros/mcap_writer.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/io/ros/ros2_sample.h"
@@ -73,6 +76,26 @@ TEST(McapReaderTest, DamageIsAnErrorThatNamesFileAndPlace) {
   EXPECT_THAT(std::string(container.status().message()), HasSubstr("record at byte"));
   test::WriteBytes(file.path(), "\x89MCAP1\r\n");
   EXPECT_THAT(std::string(OpenMcap(file.path()).status().message()), HasSubstr("not an MCAP file of version 0"));
+}
+
+TEST(McapReaderTest, BombsEnd) {
+  test::TemporaryFile file(".mcap");
+  {
+    std::ofstream out(file.path(), std::ios::binary);
+    McapWriter writer(&out, "zstd");
+    const uint16_t channel = writer.AddChannel("/scan", "sensor_msgs/msg/LaserScan", "");
+    const std::string zeros(4 << 20, '\0');
+    for (int i = 1; i <= 20; ++i) ASSERT_TRUE(writer.Write(channel, i, zeros).ok());
+    ASSERT_TRUE(writer.Finish().ok());
+  }
+  ASSERT_LT(test::ReadBytes(file.path()).size(), 100000u);
+  const auto container = OpenMcap(file.path());
+  EXPECT_EQ(container.status().code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(container.status().message()),
+              HasSubstr(file.path() + ": expands to more than 50 times its size"));
+  SetMaxExpansion(10000);
+  EXPECT_TRUE(OpenMcap(file.path()).ok());
+  SetMaxExpansion(50);
 }
 
 TEST(McapReaderTest, SurvivesDamagedFiles) {

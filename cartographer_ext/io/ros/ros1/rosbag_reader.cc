@@ -10,7 +10,9 @@
 #include "absl/memory/memory.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/types/optional.h"
 #include "boost/iostreams/device/mapped_file.hpp"
+#include "cartographer_ext/io/expansion_budget.h"
 #include "cartographer_ext/io/ros/ros_container.h"
 #include "cartographer_ext/io/ros/ros1/rosbag_records.h"
 
@@ -80,6 +82,7 @@ class RosbagContainer : public RosContainer {
     rest_.remove_prefix(sizeof(kMagic) - 1);
     chunk_rest_ = absl::string_view();
     at_end_ = false;
+    budget_.emplace(static_cast<int64_t>(file_.size()));
   }
 
   absl::Status Damaged(const std::string& what) const {
@@ -133,6 +136,13 @@ class RosbagContainer : public RosContainer {
         return false;
       }
       case kRosbagChunk: {
+        uint32_t size;
+        if (record.header.Text("compression") != "none" &&
+            record.header.Number("size", &size) && !budget_->Take(size)) {
+          return absl::Status(
+              budget_->Error().code(),
+              absl::StrCat(filename_, ": ", budget_->Error().message()));
+        }
         const absl::StatusOr<absl::string_view> content =
             RosbagChunkContent(record, &chunk_);
         if (!content.ok()) {
@@ -221,6 +231,7 @@ class RosbagContainer : public RosContainer {
   uint64_t position_ = 0;   // of the record being read
   std::string chunk_;       // decompressed
   absl::string_view chunk_rest_;
+  absl::optional<ExpansionBudget> budget_;  // of this reading
   bool at_end_ = true;
   bool has_file_header_ = false;
   bool has_index_ = false;
