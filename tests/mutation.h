@@ -10,7 +10,9 @@
 //     LoadSomething(file);  // Must return, with or without an error.
 //   });
 //
-// CARTOGRAPHER_EXT_FUZZ_ITERATIONS sets how many (default 300).
+// CARTOGRAPHER_EXT_FUZZ_ITERATIONS sets how many (default 300),
+// CARTOGRAPHER_EXT_FUZZ_SEED which, any number.
+// An input that takes longer than a minute ends the program.
 #ifndef TESTS_MUTATION_H_
 #define TESTS_MUTATION_H_
 
@@ -205,15 +207,23 @@ class Mutator {
   Random random_;
 };
 
+inline uint64_t FuzzSeed() {
+  const char* const text = std::getenv("CARTOGRAPHER_EXT_FUZZ_SEED");
+  return text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
+}
+
 // Calls `load` with damaged versions of `sample`, FuzzIterations() times.
 template <typename Load>
 void ForEachMutation(const std::string& sample, const Load& load,
-                     int default_count = 300, uint64_t seed = 1) {
+                     int default_count = 300, uint64_t seed = FuzzSeed()) {
+  constexpr unsigned int kMaxSeconds = 60;  // of one input
   const int count = FuzzIterations(default_count);
   for (int i = 0; i < count; ++i) {
     Mutator mutator(seed * 1000003u + static_cast<uint64_t>(i));
+    ::alarm(kMaxSeconds);
     load(mutator.Mutate(sample));
   }
+  ::alarm(0);
 }
 
 }  // namespace test

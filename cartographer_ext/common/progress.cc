@@ -35,19 +35,25 @@ std::string FormatDuration(double seconds) {
 
 std::string FormatProgress(const std::string& label, int64_t done,
                            int64_t total, double elapsed_seconds,
-                           const std::string& note) {
+                           const std::string& note,
+                           const double seconds_left) {
   std::string line = absl::StrCat(label, " ", done);
   if (total <= 0 && done == 0) {
     line = absl::StrCat(label, " ...");
+    if (seconds_left >= 0.) {
+      absl::StrAppend(&line, ", about ", FormatDuration(seconds_left), " left");
+    }
   } else if (total > 0) {
     const double share =
         std::min(1., std::max(0., static_cast<double>(done) / total));
     absl::StrAppendFormat(&line, "/%d %3.0f %%", total, 100. * share);
     if (done > 0 && done < total) {
-      absl::StrAppend(&line, ", ",
-                      FormatDuration(elapsed_seconds *
-                                     (static_cast<double>(total) / done - 1.)),
-                      " left");
+      const double in_proportion =
+          elapsed_seconds * (static_cast<double>(total) / done - 1.);
+      absl::StrAppend(
+          &line, ", ",
+          FormatDuration(seconds_left >= 0. ? seconds_left : in_proportion),
+          " left");
     } else {
       absl::StrAppend(&line, ", ", FormatDuration(elapsed_seconds));
     }
@@ -66,7 +72,8 @@ Progress::Progress(std::string label, int64_t total)
 
 Progress::~Progress() { Finish(); }
 
-void Progress::Update(int64_t done, const std::string& note) {
+void Progress::Update(int64_t done, const std::string& note,
+                      const double seconds_left) {
   if (!on_terminal_) return;
   const auto now = std::chrono::steady_clock::now();
   if (drawn_ && Seconds(now - last_draw_) < kSecondsBetweenDrawings) return;
@@ -74,7 +81,8 @@ void Progress::Update(int64_t done, const std::string& note) {
   last_draw_ = now;
   std::fputs(
       absl::StrCat(kEraseLine, FormatProgress(label_, done, total_,
-                                              Seconds(now - start_), note))
+                                              Seconds(now - start_), note,
+                                              seconds_left))
           .c_str(),
       stderr);
   std::fflush(stderr);

@@ -16,10 +16,11 @@ namespace cartographer_ext {
 std::string FormatDuration(double seconds);
 
 // One line: label, counts, share and time left (elapsed time where `total` is
-// unknown or reached), note.
+// unknown or reached), note. The time left is what the counts say unless
+// `seconds_left` is given, that is, not negative.
 std::string FormatProgress(const std::string& label, int64_t done,
                            int64_t total, double elapsed_seconds,
-                           const std::string& note);
+                           const std::string& note, double seconds_left = -1.);
 
 class Progress {
  public:
@@ -29,7 +30,9 @@ class Progress {
   // Clears the line.
   ~Progress();
   // `done` of total; redraws at most ten times a second. `note` is appended.
-  void Update(int64_t done, const std::string& note = "");
+  // `seconds_left` as in FormatProgress.
+  void Update(int64_t done, const std::string& note = "",
+              double seconds_left = -1.);
   void Finish();
 
  private:

@@ -36,6 +36,7 @@
 #include "cartographer_ext/slam/match_files.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "cartographer_ext/tools/evaluate_many.h"
+#include "cartographer_ext/tools/slam_progress.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
 
@@ -93,9 +94,8 @@ DEFINE_string(constraints_filename, "",
 DEFINE_string(relation_errors_filename, "",
               "Output: CSV of the error of every relation.");
 DEFINE_string(write_relations, "",
-              "Output: relations along the path and over the loops of a map "
-              "that is judged sound, as truth to tune by where there is none. "
-              "They are as good as the map.");
+              "Output: relations along the path and over the loops of a sound "
+              "map, to tune by where there is no truth; as good as the map.");
 DEFINE_string(fail_on, "",
               "Exit code 3 where a map is broken, or with doubtful also where "
               "one is doubtful, or with worse where one has become worse since "
@@ -226,11 +226,9 @@ absl::Status WriteReport(const report::ReportData& data,
 absl::Status WriteMapRelations(const Inputs& inputs,
                                const evaluation::Evaluation& result) {
   if (FLAGS_write_relations.empty()) return absl::OkStatus();
-  evaluation::MapRelationsOptions options;
-  options.trajectory_id = EvaluationOptions(inputs.graph).trajectory_id;
   const auto relations = evaluation::MakeRelationsIfSound(
       inputs.graph, FLAGS_pbstream_filename, evaluation::Judge(result).word,
-      options);
+      {EvaluationOptions(inputs.graph).trajectory_id});
   if (!relations.ok()) return relations.status();
   return io::WriteRelations(
       *relations, FLAGS_write_relations,
@@ -310,6 +308,7 @@ absl::Status RunOne(const std::string& command_line, bool* const fails) {
   if (!writable.ok()) return writable;
   AtomicFileSet files;
   Inputs inputs;
+  auto step = tools::ShowStep("judging the map");
   const absl::Status read = ReadInputs(&inputs);
   if (!read.ok()) return read;
 
@@ -327,6 +326,7 @@ absl::Status RunOne(const std::string& command_line, bool* const fails) {
   if (inputs.trajectory.has_value()) map.scans = &*inputs.trajectory;
   auto result = evaluation::EvaluateMap(map, inputs.truth,
                                         EvaluationOptions(inputs.graph));
+  step.reset();
   if (!result.ok()) {
     return absl::Status(result.status().code(),
                         absl::StrCat(has_map ? FLAGS_pbstream_filename
@@ -375,6 +375,7 @@ absl::Status RunOne(const std::string& command_line, bool* const fails) {
     json["assumptions"] = data.assumptions;
   }
   if (!FLAGS_report_filename.empty()) {
+    step = tools::ShowStep("writing the report");
     status = WriteReport(data, json);
     if (!status.ok()) return status;
   }

@@ -6,6 +6,7 @@
 // cartographer_ext_slam: a recording in, a map and numbers out.
 #include <malloc.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -19,7 +20,6 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/atomic_file.h"
-#include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/map/switched_constraints.h"
@@ -30,6 +30,7 @@
 #include "cartographer_ext/slam/slam_runner.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "cartographer_ext/tools/slam_outputs.h"
+#include "cartographer_ext/tools/slam_progress.h"
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
 
@@ -156,12 +157,11 @@ absl::Status WriteReport(const std::string& command_line,
                          nlohmann::ordered_json* const json,
                          std::ostream& out) {
   if (FLAGS_report_filename.empty()) return absl::OkStatus();
-  Progress progress("judging the map", 0);
-  progress.Update(0);
+  auto step = tools::ShowStep("judging the map");
   const auto report =
       report::ReportMap(FLAGS_pbstream_filename,
                         tools::BaseName(FLAGS_input_filename), command_line);
-  progress.Finish();
+  step.reset();
   if (!report.ok()) return report.status();
   out << evaluation::ToText(report->evaluation);
   (*json)["evaluation"] = evaluation::ToJson(report->evaluation);
@@ -192,6 +192,22 @@ io::SensorSourceOptions SourceOptions(
   return options;
 }
 
+tools::SlamWork WorkOf(const io::SensorSourceInfo& info,
+                       const evaluation::SlamConfiguration& configuration) {
+  tools::SlamWork work;
+  work.total_scans = info.num_scans;
+  work.judges_map = !FLAGS_report_filename.empty();
+  const bool use_imu =
+      configuration.trajectory_builder_options.trajectory_builder_2d_options()
+          .use_imu_data();
+  const int64_t readings =
+      (configuration.sensors.use_odometry ? info.num_odometry : 0) +
+      (use_imu ? info.num_imu : 0);
+  work.readings_a_scan =
+      static_cast<double>(readings) / std::max<double>(1., info.num_scans);
+  return work;
+}
+
 absl::Status Run(const std::string& command_line) {
   const absl::Status writable = tools::CheckSlamOutputs();
   if (!writable.ok()) return writable;
@@ -213,8 +229,8 @@ absl::Status Run(const std::string& command_line) {
   PrintRecording((*source)->info(), out);
   tools::PrintNotes((*source)->info().warnings);
 
-  auto progress =
-      std::make_unique<Progress>("mapping", (*source)->info().num_scans);
+  auto progress = std::make_unique<tools::SlamProgressLine>(
+      WorkOf((*source)->info(), *configuration));
   evaluation::SlamRunOptions run_options;
   run_options.state = *std::move(state);
   run_options.num_background_threads = FLAGS_num_background_threads;
@@ -226,15 +242,8 @@ absl::Status Run(const std::string& command_line) {
       configuration->map_builder_options, wrong_loops));
   if (FLAGS_wrong_loops > 0) run_options.after_scan = injector.Callback();
   run_options.on_progress = [&](const evaluation::SlamProgress& now) {
-    if (now.stage == evaluation::SlamProgress::Stage::kOptimizing) {
-      progress =
-          std::make_unique<Progress>("closing loops, last optimisation", 0);
-      progress->Update(0);
-    } else {
-      progress->Update(now.scans, now.queue_length > 10
-                                      ? absl::StrCat("queue ", now.queue_length)
-                                      : "");
-    }
+    progress->Update(now.scans, now.queue_length,
+                     now.stage == evaluation::SlamProgress::Stage::kOptimizing);
   };
   const auto run =
       evaluation::RunSlam(*configuration, source->get(), run_options);
@@ -246,7 +255,9 @@ absl::Status Run(const std::string& command_line) {
   }
   tools::PrintNotes(run->warnings);
   AtomicFileSet files;
+  auto step = tools::ShowStep("writing the files");
   const absl::Status written = tools::WriteSlamResults(*run);
+  step.reset();
   if (!written.ok()) return written;
   out << evaluation::ToText(*run);
   nlohmann::ordered_json json = RunToJson(*run);

@@ -80,9 +80,10 @@ DEFINE_string(odometry_source, "",
 DEFINE_string(journal_filename, "",
               "Every finished run is added here at once; a search started "
               "again with the same journal goes on where it stopped.");
-DEFINE_string(output_filename, "",
-              "Output: Lua file, a configuration that includes the one to start "
-              "from and changes keys of it.");
+DEFINE_string(
+    output_filename, "",
+    "Output: Lua file, a configuration that includes the one to start "
+    "from and changes keys of it.");
 DEFINE_string(picture_filename, "",
               "Output: objective over each key (.png or .svg).");
 DEFINE_string(json, "", "Output: the result as JSON; - is standard output.");
@@ -200,6 +201,20 @@ absl::Status WriteResults(const tuning::TuneResult& result,
   return files.Commit();
 }
 
+std::string BestAndBudget(const tuning::TunerProgress& state) {
+  std::string text;
+  if (state.best.has_value()) {
+    absl::StrAppendFormat(&text, ", best so far %.4g", *state.best);
+  }
+  if (FLAGS_budget_minutes > 0.) {
+    absl::StrAppend(
+        &text, ", ",
+        FormatDuration(60. * FLAGS_budget_minutes - state.elapsed_seconds),
+        " of the budget left");
+  }
+  return text;
+}
+
 absl::Status Run(const tuning::MpiSession& session) {
   const absl::Status writable = tools::CheckWritable(
       {FLAGS_output_filename, FLAGS_picture_filename, FLAGS_json});
@@ -207,9 +222,9 @@ absl::Status Run(const tuning::MpiSession& session) {
   auto setup = ReadSetup();
   if (!setup.ok()) return setup.status();
   if (tools::BaseName(FLAGS_output_filename) == setup->spec.configuration) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        FLAGS_output_filename, ": the output includes ",
-        setup->spec.configuration, " and must have another name"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(FLAGS_output_filename, ": the output includes ",
+                     setup->spec.configuration, " and must have another name"));
   }
   auto configuration = tuning::BaseConfiguration::Load(
       tools::ConfigurationDirectories(FLAGS_configuration_directory),
@@ -240,12 +255,8 @@ absl::Status Run(const tuning::MpiSession& session) {
                       setup->options, pool.get(), journal->get());
   Progress progress("Trial", FLAGS_max_trials);
   tuner.SetProgressCallback([&progress](const tuning::TunerProgress& state) {
-    progress.Update(
-        state.trials,
-        absl::StrCat(state.step,
-                     state.best.has_value()
-                         ? absl::StrFormat(", best so far %.4g", *state.best)
-                         : ""));
+    progress.Update(state.trials,
+                    absl::StrCat(state.step, BestAndBudget(state)));
   });
   const auto result = tuner.Run();
   progress.Finish();

@@ -33,6 +33,10 @@ TEST(ProgressTest, FormatsLines) {
   EXPECT_EQ(FormatProgress("scans", 7, 0, 61., "x"), "scans 7, 1:01, x");
   EXPECT_EQ(FormatProgress("judging the map", 0, 0, 3., ""),
             "judging the map ...");
+  EXPECT_EQ(FormatProgress("scans", 25, 100, 10., "", 70.),
+            "scans 25/100  25 %, 1:10 left");
+  EXPECT_EQ(FormatProgress("judging the map", 0, 0, 3., "", 8.),
+            "judging the map ..., about 0:08 left");
 }
 
 TEST(ProgressTest, SilentWithoutTerminal) {
