@@ -148,6 +148,7 @@ class Repairer {
 
   MapRepair Run() {
     if (!options_.dropped_loops.empty()) DropLoops();
+    if (!options_.added_loops.empty()) AddLoops();
     if (!done()) JudgeLoopsAgain();
     RerunLocalSlamAlongChains();
     is_local_ = false;
@@ -222,6 +223,46 @@ class Repairer {
     } else {
       Consider(solved);
     }
+  }
+
+  void AddLoops() {
+    Begin("loops added by hand");
+    HandMatchOptions match;
+    match.builder = options_.configuration.stock.constraint_builder_options();
+    evaluation::MapGraph graph = result_.after.graph;
+    std::string refused;
+    for (const LoopByHand& loop : options_.added_loops) {
+      const auto matched = MatchByHand(loop, graph, *original_, match);
+      if (!matched.ok()) {
+        absl::StrAppend(&refused, refused.empty() ? "" : "; ",
+                        matched.status().message());
+        continue;
+      }
+      evaluation::GraphConstraint constraint;
+      constraint.submap_id = loop.submap_id;
+      constraint.node_id = loop.node_id;
+      constraint.relative_pose = matched->pose;
+      constraint.translation_weight =
+          match.builder.loop_closure_translation_weight();
+      constraint.rotation_weight = match.builder.loop_closure_rotation_weight();
+      constraint.is_loop = true;
+      graph.constraints.push_back(constraint);
+    }
+    if (graph.constraints.size() == result_.after.graph.constraints.size()) {
+      Skip(refused);
+      return;
+    }
+    auto pbstream = std::make_shared<io::Pbstream>(*result_.after.pbstream);
+    StoreGraph(graph, pbstream.get());
+    std::string reason;
+    const PbstreamPointer solved = Optimize(graph, *pbstream, "huber", &reason);
+    if (solved == nullptr) {
+      Skip(reason);
+      return;
+    }
+    Consider(solved);
+    if (refused.empty()) return;
+    absl::StrAppend(&result_.steps.back().reason, "; not taken: ", refused);
   }
 
   void KeepFrame() {

@@ -31,6 +31,7 @@
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/map/verdict/self_consistency.h"
 #include "cartographer_ext/repair/local_faults.h"
+#include "cartographer_ext/repair/loops_by_hand.h"
 #include "cartographer_ext/repair/map_quality.h"
 #include "cartographer_ext/rerun/rerun_configuration.h"
 
@@ -46,6 +47,8 @@ struct RepairOptions {
   cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D local_slam;
   // Indices of constraints that the user wants left out, see FindLoops.
   std::vector<int> dropped_loops;
+  // Loops that the user wants in; those that do not match are not taken.
+  std::vector<LoopByHand> added_loops;
   // The repaired map keeps the frame of the map by a robust fit of its nodes;
   // otherwise its first node stays where it was.
   bool keep_frame = false;

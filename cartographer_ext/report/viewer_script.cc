@@ -136,9 +136,10 @@ dots(svg,scans[node],map,'map-scan');
 make('div',panel,'Scan: blue where the loop puts it, orange where the map '+
 'has it.');}
 else make('div',panel,'Its scan is not in this page.');
-if(!line.classList.contains('s6')){
-make('div',panel,'Leave it out: ').appendChild(
-document.createElement('code')).textContent='-drop_loops '+id;}
+var refused=line.classList.contains('s6');
+make('div',panel,refused?'Add it: ':'Leave it out: ').appendChild(
+document.createElement('code')).textContent=
+refused?'-add_loops '+id+':'+line.dataset.pose:'-drop_loops '+id;
 var u=+svg.dataset.units,near=make('button',panel,'Go there');
 near.type='button';near.addEventListener('click',function(){
 go((map[0]-(+svg.dataset.x))*u,(+svg.dataset.y-map[1])*u,30*u);});

@@ -48,6 +48,11 @@ DEFINE_string(drop_loops, "",
               "Loops to leave out, named "
               "submap_trajectory:submap:node_trajectory:node, comma "
               "separated.");
+DEFINE_string(add_loops, "",
+              "Loops to add, named in the same way, with or without "
+              ":x:y:theta behind (node in the submap, metres and radians; "
+              "without, the whole submap is searched). Taken only where the "
+              "scan and those around it match and the map is better.");
 DEFINE_string(configuration_directory, "",
               "Folders with Lua files, comma separated; ours when empty.");
 DEFINE_string(configuration_basename, "default.lua",
@@ -103,6 +108,9 @@ absl::StatusOr<repair::RepairOptions> MakeOptions(
   const auto dropped = evaluation::FindLoops(graph, FLAGS_drop_loops);
   if (!dropped.ok()) return dropped.status();
   options.dropped_loops = *dropped;
+  const auto added = repair::ParseLoopsByHand(graph, FLAGS_add_loops);
+  if (!added.ok()) return added.status();
+  options.added_loops = *added;
   options.keep_frame = FLAGS_keep_frame;
   options.num_background_threads = FLAGS_num_background_threads;
   return options;

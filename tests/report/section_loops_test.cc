@@ -40,7 +40,8 @@ TEST(SectionLoopsTest, ALoopHasWhatAClickShows) {
   AddScans(data, prepared, &page);
   const std::string& html = page.str();
   // The second loop: two metres off where the map has its node.
-  EXPECT_THAT(html, HasSubstr("data-id=\"0:0:0:3\" data-t=\"3\" "
+  EXPECT_THAT(html, HasSubstr("data-id=\"0:0:0:3\" "
+                              "data-pose=\"3.000:2.000:0.0000\" data-t=\"3\" "
                               "data-loop=\"3 2 0\" data-map=\"3 0 0\""));
   EXPECT_THAT(html, HasSubstr("{\"0:3\":[123,-50,200,0]}"));
   EXPECT_THAT(html, Not(HasSubstr("700")));

@@ -78,6 +78,10 @@ TEST(RepairMainTest, RefusesBadInput) {
       RunCommand("repair", {map, "-dry_run", "-drop_loops", "0:99:0:1"});
   EXPECT_EQ(loop.exit_code, 1);
   EXPECT_THAT(loop.error, HasSubstr("no loop between"));
+  const CommandResult added =
+      RunCommand("repair", {map, "-dry_run", "-add_loops", "0:99:0:1"});
+  EXPECT_EQ(added.exit_code, 1);
+  EXPECT_THAT(added.error, HasSubstr("no submap (0, 99)"));
 }
 
 }  // namespace
