@@ -86,7 +86,10 @@ class Parser {
                             static_cast<int64_t>(content.size())),
         max_memory_(options.limits.memory_floor +
                     options.limits.max_memory_expansion *
-                        static_cast<int64_t>(content.size())) {}
+                        static_cast<int64_t>(content.size())),
+        max_known_cells_(options.limits.known_cells_floor +
+                         options.limits.max_known_cells_expansion *
+                             static_cast<int64_t>(content.size())) {}
 
   absl::StatusOr<Pbstream> Parse() {
     if (!records_.status().ok()) return records_.status();
@@ -247,7 +250,16 @@ class Parser {
                             "this is a 3D submap; only 2D states are "
                             "supported");
     }
-    return absl::OkStatus();
+    const auto& submap = pbstream_.submaps.back();
+    const auto& cells = submap.submap_2d().grid().cells();
+    known_cells_ += cells.size() - std::count(cells.begin(), cells.end(), 0);
+    if (known_cells_ <= max_known_cells_) return absl::OkStatus();
+    return records_.Error(
+        absl::StatusCode::kResourceExhausted,
+        absl::StrFormat("with submap (%d, %d) the grids have more than the %d "
+                        "known cells that are allowed for the size of the file",
+                        submap.submap_id().trajectory_id(),
+                        submap.submap_id().submap_index(), max_known_cells_));
   }
 
   absl::Status Fill(absl::string_view kind, absl::string_view message,
@@ -276,6 +288,8 @@ class Parser {
   int64_t total_size_ = 0;
   const int64_t max_memory_;
   int64_t memory_ = 0;
+  const int64_t max_known_cells_;
+  int64_t known_cells_ = 0;
   Pbstream pbstream_;
 };
 

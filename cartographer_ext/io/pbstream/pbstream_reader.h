@@ -56,6 +56,11 @@ struct PbstreamLimits {
   int64_t max_total_expansion = 32;
   int64_t memory_floor = int64_t{1} << 26;  // bytes
   int64_t max_memory_expansion = 40;
+  // Known cells of all grids, in proportion to the file. The search for loops
+  // needs some hundred bytes for each. Submaps of fifteen maps of robots have
+  // at most 2.6 in a byte.
+  int64_t known_cells_floor = 1500000;
+  int64_t max_known_cells_expansion = 8;
 };
 
 struct PbstreamReaderOptions {

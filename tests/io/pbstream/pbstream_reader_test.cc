@@ -284,6 +284,30 @@ TEST(PbstreamReaderTest, ZipBombs) {
               "expands to more than the 1048576 bytes");
 }
 
+// Cells that have been seen cost more than their bytes: they are searched.
+TEST(PbstreamReaderTest, GridBombs) {
+  Pbstream example = ExamplePbstream();
+  auto* const grid = example.submaps[0].mutable_submap_2d()->mutable_grid();
+  const auto resize = [grid](const int size) {
+    auto* const limits = grid->mutable_limits()->mutable_cell_limits();
+    limits->set_num_x_cells(size);
+    limits->set_num_y_cells(size);
+    grid->mutable_cells()->Clear();
+    grid->mutable_cells()->Resize(size * size, 100);
+  };
+  resize(1200);
+  std::string content = SerializePbstream(example);
+  EXPECT_TRUE(Read(content).ok()) << Read(content);
+  resize(2000);
+  content = SerializePbstream(example);
+  EXPECT_LT(content.size(), 100000u);
+  ExpectError(Read(content), absl::StatusCode::kResourceExhausted,
+              "with submap (0, 0) the grids have more than the 15");
+  PbstreamReaderOptions options;
+  options.limits.known_cells_floor = 4000000;
+  EXPECT_TRUE(Read(content, options).ok());
+}
+
 // Two bytes of a file each, a hundred of memory.
 TEST(PbstreamReaderTest, ObjectBombs) {
   using cartographer::mapping::proto::PoseGraph;
