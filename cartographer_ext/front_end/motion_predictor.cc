@@ -23,6 +23,11 @@ constexpr double kMaxTimeSinceInsertion = 10.;
 // Changes of speed below this many standard deviations of the accelerometer's
 // bias count as zero, because they would add up to metres per second.
 constexpr double kAccelerationGate = 2.;
+// Matches of a laser that sees less are worth less: the same scan lasts for a
+// shorter part of the way, and errors of the maps made of it add up. By the
+// square of the angle a depth camera of 57 degrees leaves odometry a tenth of
+// the variance, 3 mm and 3 %.
+constexpr double kWideFieldOfView = kPi;
 // A stationary robot's wheels move less between two scans, and its matches
 // scatter less: metres, radians.
 constexpr double kStationaryWheelMotion = 1e-3;
@@ -214,7 +219,7 @@ Eigen::Matrix3d MotionPredictor::WideCovariance(const double interval) const {
 
 Eigen::Matrix3d MotionPredictor::OdometryMotionCovariance(
     const OdometryMotion& odometry, const double interval) const {
-  const double scale = std::sqrt(noise_scale_.scale());
+  const double scale = std::sqrt(odometry_noise_scale());
   const Eigen::Vector3d factors(scale, scale, 1.);
   Eigen::Matrix3d covariance =
       factors.asDiagonal() * odometry.covariance * factors.asDiagonal();
@@ -244,9 +249,13 @@ bool MotionPredictor::IsStationary(const double time,
          std::abs(match.theta) < kStationaryMatchRotation;
 }
 
+void MotionPredictor::SetFieldOfView(const double angle) {
+  field_of_view_scale_ = std::min(1., Squared(angle / kWideFieldOfView));
+}
+
 void MotionPredictor::AddInnovation(const MatchInnovation& innovation) {
   noise_scale_.Add(innovation.squared, innovation.match_variance,
-                   innovation.prediction_variance / noise_scale_.scale());
+                   innovation.prediction_variance / odometry_noise_scale());
 }
 
 OdometryState MotionPredictor::AddMatch(const double time,

@@ -119,8 +119,14 @@ class MotionPredictor {
   // The scan matched last was inserted into the map.
   void AddInsertion();
 
+  // How wide the laser sees, radians; half a circle and more before it is
+  // known.
+  void SetFieldOfView(double angle);
+
   // Of the variance of odometry, see odometry_noise_scale.h.
-  double odometry_noise_scale() const { return noise_scale_.scale(); }
+  double odometry_noise_scale() const {
+    return field_of_view_scale_ * noise_scale_.scale();
+  }
   double time_offset() const { return odometry_.time_offset(); }
   const OdometryCalibration& calibration() const {
     return odometry_.calibration();
@@ -166,6 +172,7 @@ class MotionPredictor {
   ImuPredictor imu_;
   OdometryMonitor monitor_;
   OdometryNoiseScale noise_scale_;
+  double field_of_view_scale_ = 1.;
   bool has_match_ = false;
   double last_time_ = 0.;
   VelocityFilter velocity_;

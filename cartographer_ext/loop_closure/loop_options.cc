@@ -68,7 +68,10 @@ void ReadPaperMode(const LoopClosureOptions::PaperMode& from,
   if (from.dynamic_threshold()) {
     to->threshold.direction = ThresholdDirection::kAsPrinted;
   }
-  if (from.fusion()) to->fusion.mode = FusionMode::kAsPrinted;
+  if (from.fusion()) {
+    to->fusion.mode = FusionMode::kAsPrinted;
+    to->min_slide_odds = -std::numeric_limits<double>::infinity();
+  }
   if (from.compatible_subset()) {
     CompatibleSubsetOptions* const subset = &to->compatible_subset;
     subset->cycle.test = uncertainty::CycleTest::kFixedBound;

@@ -75,6 +75,13 @@ struct LoopOptions {
   // What is kept of the search structures of submaps, bytes; the others are
   // built again when they are needed.
   size_t max_cache_bytes = size_t{32} << 20;
+  // Least log-odds of a match against another pose along what the scan
+  // determines least (dropin/slide_test.h): 20 to 1. Not in paper modes and
+  // where scores are not fused.
+  double min_slide_odds = 3.;
+  // Asked of lasers that see less than this only, radians: what others do not
+  // see of a place the nodes around show, which the temporal score compares.
+  double sliding_field_of_view = 2.1;
   // Records with the CPU time of each stage differ from run to run.
   bool log_times = false;
   // Folder of records that are written while the program runs; empty: none.

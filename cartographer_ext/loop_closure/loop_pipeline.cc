@@ -56,6 +56,10 @@ void LoopPipeline::Process(LoopCandidate candidate) {
   } else if (!candidate.match.found && !candidate.is_rejected()) {
     candidate.Reject(LoopDecision::LOW_GRID_SCORE);
   }
+  if (!candidate.is_rejected() &&
+      candidate.match.slide_odds < options_.min_slide_odds) {
+    candidate.Reject(LoopDecision::AMBIGUOUS);
+  }
   if (candidate.is_rejected()) return Settle({std::move(candidate)});
   AddSubmap(candidate.submap, candidate.submap_local_pose);
 

@@ -65,6 +65,27 @@ TEST(MotionPredictorTest, OdometryBridgesAGapInTheScans) {
   EXPECT_FALSE(prediction.is_uncertain);
 }
 
+// A laser that sees a quarter of a circle is trusted less against odometry.
+TEST(MotionPredictorTest, TheFieldOfViewWeighsOdometry) {
+  const auto covariance = [](const double field_of_view) {
+    MotionPredictor predictor((MotionPredictorOptions()));
+    predictor.SetFieldOfView(field_of_view);
+    for (int i = 0; i <= 40; ++i) {
+      predictor.AddOdometry(0.05 * i, Pose2(0.025 * i, 0., 0.));
+    }
+    predictor.AddMatch(0., Matched(Pose2()));
+    const MotionPrediction prediction = predictor.Predict(1.);
+    EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
+    return prediction.covariance;
+  };
+  const Eigen::Matrix3d wide = covariance(2. * kPi);
+  EXPECT_TRUE(covariance(kPi).isApprox(wide, 1e-12));
+  const Eigen::Matrix3d narrow = covariance(0.5 * kPi);
+  EXPECT_NEAR(narrow(0, 0), 0.25 * wide(0, 0), 1e-12);
+  EXPECT_NEAR(narrow(1, 1), 0.25 * wide(1, 1), 1e-12);
+  EXPECT_EQ(narrow(2, 2), wide(2, 2));
+}
+
 // A laser of short range crosses a hall without an echo: the robot is where
 // odometry says, not where it was last seen.
 TEST(MotionPredictorTest, OdometryBridgesMinutes) {

@@ -207,6 +207,12 @@ AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
 
   const double seconds = Seconds(sweep.time);
   const double interval = has_pose_ ? seconds - last_seconds_ : 0.;
+  for (const auto& range : sweep.ranges) {
+    field_of_view_.Add(
+        (range.point_time.position - sweep.origins.at(range.origin_index))
+            .head<2>());
+  }
+  predictor_.SetFieldOfView(field_of_view_.angle());
   const MotionPrediction prediction = predictor_.Predict(seconds);
 
   const Eigen::Quaterniond alignment = GravityAlignment();

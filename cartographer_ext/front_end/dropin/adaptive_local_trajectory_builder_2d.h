@@ -37,6 +37,7 @@
 #include "cartographer/sensor/odometry_data.h"
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
+#include "cartographer_ext/common/field_of_view.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/common/record_log.h"
@@ -127,6 +128,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   cartographer::mapping::RangeDataCollator range_data_collator_;
   ScanAssembler assembler_;
   MotionPredictor predictor_;
+  FieldOfView field_of_view_;
   LocalMatcher matcher_;
   // Null until the first reading.
   std::unique_ptr<cartographer::mapping::ImuTracker> imu_tracker_;

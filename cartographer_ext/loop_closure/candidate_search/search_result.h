@@ -8,6 +8,7 @@
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_RESULT_H_
 
 #include <cstdint>
+#include <limits>
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
@@ -45,6 +46,8 @@ struct SearchMatch {
   // Of the refined pose from the scan alone, (submap <- node), metres and
   // radians; zero where it is not known.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  // Log-odds against another pose along what the scan determines least.
+  double slide_odds = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace loop_closure

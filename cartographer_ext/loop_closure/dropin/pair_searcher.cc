@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <utility>
 
+#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/match_information.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
+#include "cartographer_ext/loop_closure/dropin/slide_test.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -64,7 +66,29 @@ void PairSearcher::Search(SearchJob* const job) const {
   match.refined = Between(entry.local_pose, refined);
   match.information =
       MatchInformation(*entry.submap->grid(), cloud, refined, entry.local_pose);
+  if (job->candidate.may_slide) {
+    match.slide_odds = SlideOddsOf(*job, refined);
+  }
   job->candidate.times.refinement = meter.seconds();
+}
+
+double PairSearcher::SlideOddsOf(const SearchJob& job,
+                                 const Pose2& refined) const {
+  const SubmapEntry& entry = *job.entry;
+  const LoopCandidate& candidate = job.candidate;
+  absl::optional<PredictedPosition> predicted;
+  if (candidate.predicted.has_value() &&
+      candidate.plan.translation_sigma > 0.) {
+    predicted.emplace();
+    predicted->position =
+        (entry.local_pose * *candidate.predicted).translation();
+    predicted->sigma = candidate.plan.translation_sigma;
+  }
+  const Eigen::Matrix3d to_grid = PlanarRotation(entry.local_pose.theta);
+  return SlideOdds(refined,
+                   to_grid * candidate.match.information * to_grid.transpose(),
+                   predicted, job.node->filtered_gravity_aligned_point_cloud,
+                   *entry.submap->grid());
 }
 
 void PairSearcher::SearchPlace(PlaceQuery* const query) const {

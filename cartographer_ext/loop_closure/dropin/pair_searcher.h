@@ -55,6 +55,8 @@ class PairSearcher {
   void SearchPlace(PlaceQuery* query) const;
 
  private:
+  // (grid <- node) `refined` is that of the match.
+  double SlideOddsOf(const SearchJob& job, const Pose2& refined) const;
   Pose2 Refine(const cartographer::mapping::Submap2D& submap,
                const cartographer::sensor::PointCloud& cloud,
                const Pose2& pose) const;

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How wide the lasers of a robot see, from the points that they return: the
+// angle of all directions from which there was more than a stray one.
+#ifndef CARTOGRAPHER_EXT_COMMON_FIELD_OF_VIEW_H_
+#define CARTOGRAPHER_EXT_COMMON_FIELD_OF_VIEW_H_
+
+#include <array>
+#include <cstdint>
+
+#include "Eigen/Core"
+
+namespace cartographer_ext {
+
+class FieldOfView {
+ public:
+  // A point relative to the laser, in a frame that moves with the robot. Points
+  // that are not finite are ignored.
+  void Add(const Eigen::Vector2f& point);
+
+  // Radians in (0, 2 pi]; 2 pi before there were enough points to tell.
+  double angle() const;
+
+ private:
+  static constexpr int kSectors = 72;
+  std::array<int64_t, kSectors> counts_{};
+  int64_t total_ = 0;
+};
+
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_COMMON_FIELD_OF_VIEW_H_
