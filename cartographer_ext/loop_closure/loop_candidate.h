@@ -73,9 +73,6 @@ struct LoopCandidate {
   bool relocalized = false;
   // The path to older nodes of the trajectory is not to be believed.
   int first_node_index = 0;
-  // The laser sees so little that the match has to be tested for other places
-  // along a wall (dropin/slide_test.h).
-  bool may_slide = false;
 
   // --- Candidate search. ---
   SearchPlan plan;

@@ -79,9 +79,6 @@ struct LoopOptions {
   // determines least (dropin/slide_test.h): 20 to 1. Not in paper modes and
   // where scores are not fused.
   double min_slide_odds = 3.;
-  // Asked of lasers that see less than this only, radians: what others do not
-  // see of a place the nodes around show, which the temporal score compares.
-  double sliding_field_of_view = 2.1;
   // Records with the CPU time of each stage differ from run to run.
   bool log_times = false;
   // Folder of records that are written while the program runs; empty: none.

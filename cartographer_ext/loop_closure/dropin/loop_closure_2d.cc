@@ -127,10 +127,6 @@ LoopCandidate LoopClosure2D::Propose(const Proposal& proposal) {
   candidate.node = ToKey(proposal.node_id);
   candidate.node_time = cartographer::common::ToUniversal(proposal.node->time);
   candidate.aligned_from_tracking = AlignedFromTracking(*proposal.node);
-  candidate.may_slide =
-      extension_.fusion.enabled &&
-      fields_of_view_[proposal.node_id.trajectory_id].angle() <
-          extension_.sliding_field_of_view;
   if (!candidate.is_inter_trajectory() && entry->newest_node_at_first >= 0) {
     candidate.submap_age =
         1e-7 * static_cast<double>(candidate.node_time - entry->time_at_first);
@@ -149,11 +145,9 @@ void LoopClosure2D::RememberNode(const Proposal& proposal) {
   node.node_index = id.node_index;
   node.time = cartographer::common::ToUniversal(proposal.node->time);
   node.local_pose = LocalPose(*proposal.node);
-  const std::vector<Eigen::Vector2f> points = PlanarPoints(*proposal.node);
-  FieldOfView& field_of_view = fields_of_view_[id.trajectory_id];
-  for (const Eigen::Vector2f& point : points) field_of_view.Add(point);
   if (extension_.temporal.enabled) {
-    DescribeScan(pipeline_.temporal_options(), points, &node);
+    DescribeScan(pipeline_.temporal_options(), PlanarPoints(*proposal.node),
+                 &node);
   }
   submaps_.AddNode(id, node.time);
   pipeline_.AddNode(id.trajectory_id, std::move(node));

@@ -46,7 +46,6 @@
 #include "cartographer/mapping/proto/pose_graph/constraint_builder_options.pb.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/transform/rigid_transform.h"
-#include "cartographer_ext/common/field_of_view.h"
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/common/record_log.h"
 #include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
@@ -140,7 +139,6 @@ class LoopClosure2D {
   RecordLog log_;
   SubmapStore submaps_;
   const PairSearcher searcher_;
-  std::map<int, FieldOfView> fields_of_view_;  // by trajectory
   LoopPipeline pipeline_;
   PairPlanner planner_;
   Relocalizer relocalizer_;

@@ -66,9 +66,7 @@ void PairSearcher::Search(SearchJob* const job) const {
   match.refined = Between(entry.local_pose, refined);
   match.information =
       MatchInformation(*entry.submap->grid(), cloud, refined, entry.local_pose);
-  if (job->candidate.may_slide) {
-    match.slide_odds = SlideOddsOf(*job, refined);
-  }
+  match.slide_odds = SlideOddsOf(*job, refined);
   job->candidate.times.refinement = meter.seconds();
 }
 
