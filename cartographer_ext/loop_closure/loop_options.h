@@ -76,9 +76,9 @@ struct LoopOptions {
   // built again when they are needed.
   size_t max_cache_bytes = size_t{32} << 20;
   // Least log-odds of a match against another pose along what the scan
-  // determines least (dropin/slide_test.h): 20 to 1. Not in paper modes and
+  // determines least (dropin/slide_test.h): about 3 to 1. Not in paper modes and
   // where scores are not fused.
-  double min_slide_odds = 3.;
+  double min_slide_odds = 1.;
   // Records with the CPU time of each stage differ from run to run.
   bool log_times = false;
   // Folder of records that are written while the program runs; empty: none.

@@ -163,14 +163,14 @@ TEST_F(LoopPipelineTest, ComparesNothingFromBeforeTheFirstNode) {
 TEST_F(LoopPipelineTest, AnAmbiguousMatchIsNoLoop) {
   MakePipeline();
   LoopCandidate candidate = Candidate(3, 120, 0., &world_);
-  candidate.match.slide_odds = 2.9;
+  candidate.match.slide_odds = 0.9;
   pipeline_->Process(candidate);
   std::vector<LoopCandidate> outcomes = pipeline_->Decide();
   ASSERT_EQ(outcomes.size(), 1u);
   EXPECT_EQ(Record(outcomes[0]).reason(), LoopDecision::AMBIGUOUS);
   EXPECT_TRUE(Record(outcomes[0]).search().has_refined());
   EXPECT_FALSE(Record(outcomes[0]).has_temporal());
-  candidate.match.slide_odds = 3.1;
+  candidate.match.slide_odds = 1.1;
   pipeline_->Process(candidate);
   outcomes = pipeline_->Flush();
   ASSERT_EQ(outcomes.size(), 1u);
