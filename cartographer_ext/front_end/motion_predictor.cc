@@ -24,7 +24,7 @@ constexpr double kMaxTimeSinceInsertion = 10.;
 // bias count as zero, because they would add up to metres per second.
 constexpr double kAccelerationGate = 2.;
 // Matches of a laser that sees less are worth less: the same scan lasts for a
-// shorter part of the way, and errors of the maps made of it add up. By the
+// shorter part of the path, and errors of the maps made of it add up. By the
 // square of the angle a depth camera of 57 degrees leaves odometry a tenth of
 // the variance, 3 mm and 3 %.
 constexpr double kWideFieldOfView = kPi;

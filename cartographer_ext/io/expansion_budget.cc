@@ -35,9 +35,9 @@ bool ExpansionBudget::Take(const uint64_t bytes) {
   return true;
 }
 
-absl::Status ExpansionBudget::Error() const {
+absl::Status ExpansionBudget::Error(const std::string& filename) const {
   return absl::ResourceExhaustedError(
-      absl::StrCat("expands to more than ", factor_,
+      absl::StrCat(filename, ": expands to more than ", factor_,
                    " times its size; -max_expansion allows more"));
 }
 

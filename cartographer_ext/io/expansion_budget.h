@@ -27,8 +27,8 @@ class ExpansionBudget {
   // False once more has been taken than there is.
   bool Take(uint64_t bytes);
 
-  // ResourceExhausted, names the flag that allows more.
-  absl::Status Error() const;
+  // ResourceExhausted, names the file and the flag that allows more.
+  absl::Status Error(const std::string& filename) const;
 
  private:
   const int64_t factor_;

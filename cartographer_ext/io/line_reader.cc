@@ -30,12 +30,12 @@ constexpr size_t kReadSize = 1 << 16;
 
 class ExpandsTooMuch : public std::exception {
  public:
-  explicit ExpandsTooMuch(const absl::Status& status) : status_(status) {}
+  explicit ExpandsTooMuch(const ExpansionBudget& budget) : budget_(budget) {}
   const char* what() const noexcept override { return "expands too much"; }
-  const absl::Status& status() const { return status_; }
+  const ExpansionBudget& budget() const { return budget_; }
 
  private:
-  const absl::Status status_;
+  const ExpansionBudget budget_;
 };
 
 // Behind a decompressor: ends the reading where the budget does.
@@ -48,7 +48,7 @@ class ExpansionLimit : public boost::iostreams::multichar_input_filter {
                        const std::streamsize size) {
     const std::streamsize count = boost::iostreams::read(source, to, size);
     if (!budget_.Take(std::max<std::streamsize>(0, count))) {
-      throw ExpandsTooMuch(budget_.Error());
+      throw ExpandsTooMuch(budget_);
     }
     return count;
   }
@@ -64,9 +64,7 @@ absl::StatusOr<size_t> ReadSome(std::streambuf* content, char* to, size_t size,
     return static_cast<size_t>(
         std::max<std::streamsize>(0, content->sgetn(to, size)));
   } catch (const ExpandsTooMuch& exception) {
-    return absl::Status(
-        exception.status().code(),
-        absl::StrCat(filename, ": ", exception.status().message()));
+    return exception.budget().Error(filename);
   } catch (const std::exception& exception) {
     return absl::DataLossError(
         absl::StrCat(filename, ": compressed data is damaged or truncated (",

@@ -68,10 +68,7 @@ void ReadPaperMode(const LoopClosureOptions::PaperMode& from,
   if (from.dynamic_threshold()) {
     to->threshold.direction = ThresholdDirection::kAsPrinted;
   }
-  if (from.fusion()) {
-    to->fusion.mode = FusionMode::kAsPrinted;
-    to->min_slide_odds = -std::numeric_limits<double>::infinity();
-  }
+  if (from.fusion()) to->fusion.mode = FusionMode::kAsPrinted;
   if (from.compatible_subset()) {
     CompatibleSubsetOptions* const subset = &to->compatible_subset;
     subset->cycle.test = uncertainty::CycleTest::kFixedBound;
@@ -93,6 +90,8 @@ LoopOptions ToLoopOptions(const LoopClosureOptions& message) {
   options.max_cache_bytes = static_cast<size_t>(message.search().max_cache_mb())
                             << 20;
   ReadVerification(message, &options);
+  options.slide_test =
+      message.fusion().enabled() && !message.paper_mode().fusion();
   options.innovation_veto.enabled = message.innovation_veto().enabled();
   ReadInformation(message.information(), &options.information);
   ReadCompatibleSubset(message.compatible_subset(), &options.compatible_subset);

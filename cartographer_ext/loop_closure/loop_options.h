@@ -75,9 +75,10 @@ struct LoopOptions {
   // What is kept of the search structures of submaps, bytes; the others are
   // built again when they are needed.
   size_t max_cache_bytes = size_t{32} << 20;
-  // Least log-odds of a match against another pose along what the scan
-  // determines least (dropin/slide_test.h): about 3 to 1. Not in paper modes and
-  // where scores are not fused.
+  // Whether matches are tested for other poses along what the scan determines
+  // least (dropin/slide_test.h), and the least log-odds: about 3 to 1. Not in
+  // paper modes and where scores are not fused.
+  bool slide_test = true;
   double min_slide_odds = 1.;
   // Records with the CPU time of each stage differ from run to run.
   bool log_times = false;

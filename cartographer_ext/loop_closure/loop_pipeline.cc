@@ -56,7 +56,7 @@ void LoopPipeline::Process(LoopCandidate candidate) {
   } else if (!candidate.match.found && !candidate.is_rejected()) {
     candidate.Reject(LoopDecision::LOW_GRID_SCORE);
   }
-  if (!candidate.is_rejected() && options_.fusion.enabled &&
+  if (!candidate.is_rejected() && options_.slide_test &&
       candidate.match.slide_odds < options_.min_slide_odds) {
     candidate.Reject(LoopDecision::AMBIGUOUS);
   }

@@ -14,6 +14,11 @@ std::string ToString(const GraphId& id) {
   return absl::StrCat("(", id.trajectory_id, ", ", id.index, ")");
 }
 
+std::string LoopName(const GraphId& submap_id, const GraphId& node_id) {
+  return absl::StrCat(submap_id.trajectory_id, ":", submap_id.index, ":",
+                      node_id.trajectory_id, ":", node_id.index);
+}
+
 int64_t MapGraph::num_loops() const {
   return std::count_if(
       constraints.begin(), constraints.end(),

@@ -42,6 +42,9 @@ struct GraphId {
 // For example "(0, 17)".
 std::string ToString(const GraphId& id);
 
+// "submap_trajectory:submap:node_trajectory:node", as commands take it.
+std::string LoopName(const GraphId& submap_id, const GraphId& node_id);
+
 struct GraphNode {
   io::TimeNs time = 0;
   Pose2 local_pose;   // (local frame of the trajectory <- node)

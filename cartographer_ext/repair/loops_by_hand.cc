@@ -21,9 +21,9 @@
 #include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/mapping/value_conversion_tables.h"
-#include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/verification/temporal_verification.h"
 #include "cartographer_ext/map/map_painter.h"
 
@@ -38,8 +38,6 @@ using loop_closure::OccupancyView;
 using loop_closure::SubmapMatch;
 
 constexpr double kMaxCoordinate = 1e6;  // metres
-// Submaps on each side that continue the reference, as in loop closure.
-constexpr int kNeighbours = 2;
 
 absl::StatusOr<LoopByHand> Parse(const std::string& name) {
   const std::vector<std::string> parts = absl::StrSplit(name, ':');
@@ -188,7 +186,9 @@ loop_closure::TemporalResult Verify(const LoopByHand& loop, const Pose2& pose,
   const evaluation::GraphSubmap& submap = graph.submaps.at(loop.submap_id);
   std::list<OccupancyView> views;
   std::vector<loop_closure::ReferenceMap> maps;
-  for (int i = 0; i <= 2 * kNeighbours; ++i) {
+  const int num_neighbours =
+      loop_closure::TemporalStageOptions().num_neighbours;
+  for (int i = 0; i <= 2 * num_neighbours; ++i) {
     // 0, -1, 1, -2, 2
     const int offset = i % 2 == 0 ? i / 2 : -(i + 1) / 2;
     const GraphId id{loop.submap_id.trajectory_id,
@@ -201,9 +201,8 @@ loop_closure::TemporalResult Verify(const LoopByHand& loop, const Pose2& pose,
         })) {
       continue;
     }
-    views.push_back(loop_closure::MakeOccupancyView(*neighbour->grid()));
-    views.back().FindDistances(
-        loop_closure::DistanceReach(temporal.beams, views.back().resolution()));
+    views.push_back(
+        loop_closure::MakeReferenceView(temporal, *neighbour->grid()));
     loop_closure::ReferenceMap reference;
     reference.view = &views.back();
     reference.view_from_submap = submap.local_pose;
@@ -229,19 +228,15 @@ SubmapMatch Search(const Submap2D& submap,
   if (!found.found) return found;
   const cartographer::mapping::scan_matching::CeresScanMatcher2D refiner(
       options.builder.ceres_scan_matcher_options());
-  cartographer::transform::Rigid2d refined = ToRigid2d(found.pose);
-  ceres::Solver::Summary unused_summary;
-  refiner.Match(refined.translation(), refined, cloud, *submap.grid(), &refined,
-                &unused_summary);
-  found.pose = ToPose2(refined);
+  found.pose =
+      loop_closure::RefineMatch(refiner, *submap.grid(), cloud, found.pose);
   return found;
 }
 
 }  // namespace
 
 std::string ToString(const LoopByHand& loop) {
-  return absl::StrCat(loop.submap_id.trajectory_id, ":", loop.submap_id.index,
-                      ":", loop.node_id.trajectory_id, ":", loop.node_id.index);
+  return evaluation::LoopName(loop.submap_id, loop.node_id);
 }
 
 absl::StatusOr<std::vector<LoopByHand>> ParseLoopsByHand(

@@ -45,16 +45,13 @@ Attributes LoopAttributes(const LoopEvidence& loop,
                           const evaluation::GraphSubmap& submap,
                           const evaluation::GraphNode& node,
                           const io::TimeNs start) {
-  return {
-      {"data-id",
-       absl::StrCat(loop.submap_id.trajectory_id, ":", loop.submap_id.index,
-                    ":", loop.node_id.trajectory_id, ":", loop.node_id.index)},
-      {"data-pose",
-       absl::StrFormat("%.3f:%.3f:%.4f", loop.relative_pose.x,
-                       loop.relative_pose.y, loop.relative_pose.theta)},
-      {"data-t", Number(io::ToSeconds(node.time - start), 1)},
-      {"data-loop", PoseText(submap.global_pose * loop.relative_pose)},
-      {"data-map", PoseText(node.global_pose)}};
+  return {{"data-id", evaluation::LoopName(loop.submap_id, loop.node_id)},
+          {"data-pose",
+           absl::StrFormat("%.3f:%.3f:%.4f", loop.relative_pose.x,
+                           loop.relative_pose.y, loop.relative_pose.theta)},
+          {"data-t", Number(io::ToSeconds(node.time - start), 1)},
+          {"data-loop", PoseText(submap.global_pose * loop.relative_pose)},
+          {"data-map", PoseText(node.global_pose)}};
 }
 
 // Stretches that contradict the map, and nodes with a degenerate scan.

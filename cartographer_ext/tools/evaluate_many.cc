@@ -94,9 +94,10 @@ std::string WrongUsageOfMany(const bool many) {
       !FLAGS_reference_trajectory_filename.empty() ||
       !FLAGS_rerun_configuration_directory.empty() ||
       !FLAGS_constraints_filename.empty() ||
-      !FLAGS_match_records_filename.empty() ||
-      !FLAGS_write_relations.empty() || !FLAGS_self_consistency) {
-    return "ground truth, runs, constraints, relations and -noself_consistency are for "
+      !FLAGS_match_records_filename.empty() || !FLAGS_write_relations.empty() ||
+      !FLAGS_self_consistency) {
+    return "ground truth, runs, constraints, relations and -noself_consistency "
+           "are for "
            "one map";
   }
   if (FLAGS_workers < 0 || !(FLAGS_max_map_cpu_seconds >= 0.)) {

@@ -17,8 +17,8 @@ TEST(ExpansionBudgetTest, SixtyFourMegabytesAndFiftyTimesTheFile) {
   EXPECT_TRUE(budget.Take(64 << 20));
   EXPECT_TRUE(budget.Take(50 * 1000));
   EXPECT_FALSE(budget.Take(1));
-  EXPECT_EQ(budget.Error().code(), absl::StatusCode::kResourceExhausted);
-  EXPECT_THAT(std::string(budget.Error().message()),
+  EXPECT_EQ(budget.Error("x").code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(budget.Error("x").message()),
               testing::HasSubstr("50 times its size; -max_expansion"));
 }
 

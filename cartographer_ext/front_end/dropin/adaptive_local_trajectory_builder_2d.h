@@ -37,7 +37,6 @@
 #include "cartographer/sensor/odometry_data.h"
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
-#include "cartographer_ext/common/field_of_view.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/common/record_log.h"
@@ -47,6 +46,7 @@
 #include "cartographer_ext/front_end/match_counts.h"
 #include "cartographer_ext/front_end/match_recorder.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
+#include "cartographer_ext/front_end/point_cloud/field_of_view.h"
 
 namespace cartographer_ext {
 namespace front_end {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "cartographer/transform/rigid_transform.h"
@@ -43,20 +42,8 @@ constexpr size_t kMaxSearches = 4;
 // constrains the match.
 constexpr double kCovarianceScaleAfterSearch = 100.;
 
-// Log-likelihood by which a scan must contradict odometry, which is wrong once
-// in a thousand scans, ...
-constexpr double kLogOddsOfFault = 7.;
-// ... and so much more where the best of some 150 places has been looked for.
+// A place that is the best of some 150 needs so much more log-likelihood.
 constexpr double kLogPlaces = 5.;
-
-// Of a scan (scan_evidence.h), before its match replaces the prediction that it
-// contradicts. Other predictions than by odometry are guesses.
-double NeededEvidence(const MotionPrediction& prediction) {
-  if (prediction.source != PredictionSource::kOdometry) {
-    return -std::numeric_limits<double>::infinity();
-  }
-  return prediction.is_uncertain ? 0. : kLogOddsOfFault;
-}
 
 // The block of the scan matcher, or its defaults.
 proto::ScanMatcherOptions MatcherExtension(
@@ -66,6 +53,17 @@ proto::ScanMatcherOptions MatcherExtension(
     options::SetDefaults(&extension);
   }
   return extension;
+}
+
+// Whether the scan is evidence enough (scan_evidence.h) for `found` against the
+// place by odometry. Other predictions are guesses.
+bool MayOverrule(const MotionPrediction& prediction, const double log_places,
+                 const Pose2& found, const Pose2& predicted,
+                 const PointCloud& cloud, const Grid2D& grid) {
+  if (prediction.source != PredictionSource::kOdometry) return true;
+  const double fault = prediction.is_uncertain ? 0. : kLogOddsOfOdometryFault;
+  return scan_matching::ScanEvidence(found, predicted, cloud, grid) >=
+         fault + log_places;
 }
 
 // In the local frame.
@@ -167,9 +165,8 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
     match =
         MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
     if (!match.relocated && match.report.mahalanobis > options_.gate &&
-        scan_matching::ScanEvidence(match.pose, predicted.pose, cloud, grid) <
-            NeededEvidence(prediction)) {
-      // The scan does not tell: odometry is right more often than the match.
+        !MayOverrule(prediction, 0., match.pose, predicted.pose, cloud, grid)) {
+      // Odometry is right more often than such a match.
       match.pose = predicted.pose;
       match.report.covariance = predicted.covariance;
       match.score = scan_matching::MeanScore(match.pose, cloud, grid);
@@ -203,8 +200,8 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
                              : options_.contradiction_gain *
                                    Inconsistency(predicted.pose, match.pose));
     if (match.score <= std::max(to_beat, matched.score + gain)) continue;
-    if (scan_matching::ScanEvidence(match.pose, predicted.pose, cloud, grid) <
-        NeededEvidence(prediction) + kLogPlaces) {
+    if (!MayOverrule(prediction, kLogPlaces, match.pose, predicted.pose, cloud,
+                     grid)) {
       continue;
     }
     to_beat = match.score;

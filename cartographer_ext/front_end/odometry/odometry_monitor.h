@@ -47,6 +47,10 @@ enum class OdometryState {
   kSlipSuspected,  // sudden speed where the translation is not observable
 };
 
+// Log-likelihood by which a scan must contradict odometry before that is held
+// for wrong, which it is in about one scan of a thousand.
+constexpr double kLogOddsOfOdometryFault = 7.;
+
 struct OdometryCheckOptions {
   bool enabled = true;
   // Motions are also compared over this time. Longer detects weaker slip,
@@ -66,8 +70,8 @@ struct OdometryCheckOptions {
   double jump_distance = 0.3;  // metres
   double jump_angle = 0.3;     // radians
   // A fault of odometry needs this much evidence of the scan, natural logarithm
-  // of a ratio of likelihoods: it is wrong in about one window of a thousand.
-  double min_evidence = 7.;
+  // of a ratio of likelihoods.
+  double min_evidence = kLogOddsOfOdometryFault;
   // Where the translation is not observable, above what robots in buildings do.
   double max_acceleration = 1.5;  // m/s^2
 };

@@ -201,7 +201,7 @@ class McapContainer : public RosContainer {
     const absl::string_view data = fields.TakeBytes(fields.Take<uint64_t>());
     if (!fields.ok()) return Damaged("a damaged chunk");
     if (!compression.empty() && !budget_->Take(size)) {
-      return absl::Status(budget_->Error().code(), absl::StrCat(filename_, ": ", budget_->Error().message()));
+      return budget_->Error(filename_);
     }
     absl::StatusOr<std::string> records = McapDecompress(compression, data, size);
     if (!records.ok()) {

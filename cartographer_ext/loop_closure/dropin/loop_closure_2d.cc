@@ -60,7 +60,7 @@ LoopClosure2D::LoopClosure2D(
       recorder_(context_->Get<DecisionRecorder>()),
       log_(extension.log_directory, "loops", DecisionCsvHead()),
       submaps_(options, extension),
-      searcher_(options, submaps_.cache()),
+      searcher_(options, extension.slide_test, submaps_.cache()),
       pipeline_(extension, StockWeights(options)),
       planner_(options, extension, &pipeline_.paths()),
       relocalizer_(extension.relocalization,

@@ -16,14 +16,14 @@ namespace cartographer_ext {
 namespace loop_closure {
 
 using cartographer::mapping::Submap2D;
-using cartographer::transform::Rigid2d;
 using proto::LoopDecision;
 
 PairSearcher::PairSearcher(
     const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
         options,
-    SubmapCache* const cache)
+    const bool slide_test, SubmapCache* const cache)
     : options_(options),
+      slide_test_(slide_test),
       ceres_scan_matcher_(options.ceres_scan_matcher_options()),
       cache_(cache) {}
 
@@ -62,11 +62,12 @@ void PairSearcher::Search(SearchJob* const job) const {
   match.matched = Between(entry.local_pose, found.pose);
 
   const StageMeter meter(metrics.refinement_cpu);
-  const Pose2 refined = Refine(*entry.submap, cloud, found.pose);
+  const Pose2 refined = RefineMatch(ceres_scan_matcher_, *entry.submap->grid(),
+                                    cloud, found.pose);
   match.refined = Between(entry.local_pose, refined);
   match.information =
       MatchInformation(*entry.submap->grid(), cloud, refined, entry.local_pose);
-  match.slide_odds = SlideOddsOf(*job, refined);
+  if (slide_test_) match.slide_odds = SlideOddsOf(*job, refined);
   job->candidate.times.refinement = meter.seconds();
 }
 
@@ -115,8 +116,9 @@ void PairSearcher::SearchPlace(PlaceQuery* const query) const {
   query->result = query->places->Search(
       std::move(node), submaps, query->is_known,
       [this](const Submap2D& submap,
-             const cartographer::sensor::PointCloud& cloud,
-             const Pose2& pose) { return Refine(submap, cloud, pose); });
+             const cartographer::sensor::PointCloud& cloud, const Pose2& pose) {
+        return RefineMatch(ceres_scan_matcher_, *submap.grid(), cloud, pose);
+      });
   size_t next = 0;
   const double share =
       meter.seconds() / std::max<size_t>(1, query->result.scores.size());
@@ -133,16 +135,6 @@ void PairSearcher::SearchPlace(PlaceQuery* const query) const {
     candidate.times.search = share;
     ++next;
   }
-}
-
-Pose2 PairSearcher::Refine(const Submap2D& submap,
-                           const cartographer::sensor::PointCloud& cloud,
-                           const Pose2& pose) const {
-  Rigid2d refined = ToRigid2d(pose);
-  ceres::Solver::Summary unused_summary;
-  ceres_scan_matcher_.Match(refined.translation(), refined, cloud,
-                            *submap.grid(), &refined, &unused_summary);
-  return ToPose2(refined);
 }
 
 }  // namespace loop_closure

@@ -46,7 +46,7 @@ class PairSearcher {
   explicit PairSearcher(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
-      SubmapCache* cache);
+      bool slide_test, SubmapCache* cache);
 
   // Fills `match` of the candidate.
   void Search(SearchJob* job) const;
@@ -57,12 +57,10 @@ class PairSearcher {
  private:
   // (grid <- node) `refined` is that of the match.
   double SlideOddsOf(const SearchJob& job, const Pose2& refined) const;
-  Pose2 Refine(const cartographer::mapping::Submap2D& submap,
-               const cartographer::sensor::PointCloud& cloud,
-               const Pose2& pose) const;
 
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
       options_;
+  const bool slide_test_;
   const cartographer::mapping::scan_matching::CeresScanMatcher2D
       ceres_scan_matcher_;
   SubmapCache* const cache_;

@@ -35,10 +35,10 @@ double SlideOdds(const Pose2& pose, const Eigen::Matrix3d& information,
     return odds;
   }
   const Eigen::Vector2d direction = translation.eigenvectors().col(0);
+  const scan_matching::PoseEvidence evidence(pose, cloud, grid);
   for (const double slide : kSlides) {
     const Eigen::Vector2d moved = pose.translation() + slide * direction;
-    double against = scan_matching::ScanEvidence(
-        pose, Pose2(moved.x(), moved.y(), pose.theta), cloud, grid);
+    double against = evidence.Against(Pose2(moved.x(), moved.y(), pose.theta));
     if (predicted.has_value()) {
       against += 0.5 *
                  ((moved - predicted->position).squaredNorm() -

@@ -3,7 +3,6 @@
 #include "cartographer_ext/loop_closure/dropin/submap_cache.h"
 
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
-#include "cartographer_ext/loop_closure/verification/beam_agreement.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -61,13 +60,8 @@ std::shared_ptr<const OccupancyView> SubmapCache::View(
     CachedSubmap* const submap) {
   return Get<OccupancyView>(
       Key(submap->number, Kind::kView), &submap->view, [this, submap]() {
-        auto view = std::make_shared<OccupancyView>(
-            MakeOccupancyView(*submap->submap->grid()));
-        if (temporal_options_.comparison == ScanComparison::kBeams) {
-          view->FindDistances(
-              DistanceReach(temporal_options_.beams, view->resolution()));
-        }
-        return view;
+        return std::make_shared<OccupancyView>(
+            MakeReferenceView(temporal_options_, *submap->submap->grid()));
       });
 }
 

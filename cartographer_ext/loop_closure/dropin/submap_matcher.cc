@@ -8,6 +8,9 @@
 #include <cstdint>
 
 #include "cartographer/mapping/2d/map_limits.h"
+#include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/common/dropin/pose_conversion.h"
+#include "cartographer_ext/loop_closure/verification/beam_agreement.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -127,6 +130,26 @@ OccupancyView MakeOccupancyView(const Grid2D& grid) {
     }
   }
   return view;
+}
+
+OccupancyView MakeReferenceView(const TemporalVerificationOptions& options,
+                                const Grid2D& grid) {
+  OccupancyView view = MakeOccupancyView(grid);
+  if (options.comparison == ScanComparison::kBeams) {
+    view.FindDistances(DistanceReach(options.beams, view.resolution()));
+  }
+  return view;
+}
+
+Pose2 RefineMatch(
+    const cartographer::mapping::scan_matching::CeresScanMatcher2D& matcher,
+    const Grid2D& grid, const cartographer::sensor::PointCloud& cloud,
+    const Pose2& pose) {
+  cartographer::transform::Rigid2d refined = ToRigid2d(pose);
+  ceres::Solver::Summary unused_summary;
+  matcher.Match(refined.translation(), refined, cloud, grid, &refined,
+                &unused_summary);
+  return ToPose2(refined);
 }
 
 }  // namespace loop_closure

@@ -7,10 +7,12 @@
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
 
 #include "cartographer/mapping/2d/grid_2d.h"
+#include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/proto/scan_matching/fast_correlative_scan_matcher_options_2d.pb.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/verification/occupancy_view.h"
+#include "cartographer_ext/loop_closure/verification/temporal_verification.h"
 #include "cartographer_ext/scan_matching/dropin/fast_correlative_matcher_2d.h"
 
 namespace cartographer_ext {
@@ -68,6 +70,16 @@ std::vector<SubmapRanking> MatchBestSubmaps(
 // Cells more likely occupied than not are occupied, other known ones free. Of a
 // TSDF those within one cell of the surface are occupied.
 OccupancyView MakeOccupancyView(const cartographer::mapping::Grid2D& grid);
+
+// The same with what the temporal verification needs of it.
+OccupancyView MakeReferenceView(const TemporalVerificationOptions& options,
+                                const cartographer::mapping::Grid2D& grid);
+
+// (grid <- cloud) of a match, refined by Cartographer's scan matcher.
+Pose2 RefineMatch(
+    const cartographer::mapping::scan_matching::CeresScanMatcher2D& matcher,
+    const cartographer::mapping::Grid2D& grid,
+    const cartographer::sensor::PointCloud& cloud, const Pose2& pose);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

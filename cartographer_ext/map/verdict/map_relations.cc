@@ -111,15 +111,15 @@ absl::StatusOr<std::vector<io::StampedRelation>> MakeRelationsIfSound(
     const MapGraph& graph, const std::string& name, const std::string& verdict,
     const MapRelationsOptions& options) {
   if (verdict != "sound") {
-    return absl::FailedPreconditionError(
-        absl::StrCat(
+    return absl::FailedPreconditionError(absl::StrCat(
         name, ": relations are written from sound maps only, and this one is ",
         verdict));
   }
   std::vector<io::StampedRelation> relations = MakeMapRelations(graph, options);
   if (relations.empty()) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        name, ": the path is shorter than ", options.spacing, " m: no relations"));
+    return absl::FailedPreconditionError(
+        absl::StrCat(name, ": the path is shorter than ", options.spacing,
+                     " m: no relations"));
   }
   return relations;
 }

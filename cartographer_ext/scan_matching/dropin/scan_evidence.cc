@@ -6,8 +6,7 @@
 #include <limits>
 #include <map>
 #include <utility>
-
-#include "Eigen/Core"
+#include <vector>
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -43,34 +42,46 @@ class Likelihood {
   const double c_, s_, x_, y_;
 };
 
-struct Patch {
-  double sum = 0.;
-  int num_points = 0;
-};
-
 }  // namespace
+
+PoseEvidence::PoseEvidence(const Pose2& pose,
+                           const cartographer::sensor::PointCloud& cloud,
+                           const Grid2D& grid)
+    : grid_(grid) {
+  if (grid.GetGridType() == cartographer::mapping::GridType::TSDF) return;
+  const Likelihood likelihood(grid, pose);
+  std::map<std::pair<int, int>, std::vector<Point>> patches;
+  for (const auto& point : cloud) {
+    const Eigen::Vector2d p = point.position.head<2>().cast<double>();
+    if (!p.allFinite()) continue;
+    patches[{static_cast<int>(std::floor(p.x() / kPatch)),
+             static_cast<int>(std::floor(p.y() / kPatch))}]
+        .push_back({p, likelihood.Log(p)});
+  }
+  patches_.reserve(patches.size());
+  for (auto& patch : patches) patches_.push_back(std::move(patch.second));
+}
+
+double PoseEvidence::Against(const Pose2& other) const {
+  if (grid_.GetGridType() == cartographer::mapping::GridType::TSDF) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const Likelihood likelihood(grid_, other);
+  double evidence = 0.;
+  for (const std::vector<Point>& patch : patches_) {
+    double sum = 0.;
+    for (const Point& point : patch) {
+      sum += point.log_probability - likelihood.Log(point.position);
+    }
+    evidence += sum / static_cast<double>(patch.size());
+  }
+  return evidence;
+}
 
 double ScanEvidence(const Pose2& pose, const Pose2& other,
                     const cartographer::sensor::PointCloud& cloud,
                     const Grid2D& grid) {
-  if (grid.GetGridType() == cartographer::mapping::GridType::TSDF) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const Likelihood here(grid, pose), there(grid, other);
-  std::map<std::pair<int, int>, Patch> patches;
-  for (const auto& point : cloud) {
-    const Eigen::Vector2d p = point.position.head<2>().cast<double>();
-    if (!p.allFinite()) continue;
-    Patch& patch = patches[{static_cast<int>(std::floor(p.x() / kPatch)),
-                            static_cast<int>(std::floor(p.y() / kPatch))}];
-    patch.sum += here.Log(p) - there.Log(p);
-    ++patch.num_points;
-  }
-  double evidence = 0.;
-  for (const auto& patch : patches) {
-    evidence += patch.second.sum / patch.second.num_points;
-  }
-  return evidence;
+  return PoseEvidence(pose, cloud, grid).Against(other);
 }
 
 }  // namespace scan_matching

@@ -15,6 +15,9 @@
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_SCAN_EVIDENCE_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_SCAN_EVIDENCE_H_
 
+#include <vector>
+
+#include "Eigen/Core"
 #include "cartographer/mapping/2d/grid_2d.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
@@ -22,9 +25,29 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
-// L(`pose`) - L(`other`); poses are (frame of the grid <- cloud). Zero without
-// points. Infinite in a TSDF, whose distances are not probabilities: there
-// matches are beyond doubt.
+// For one pose of a scan, against any other. Poses are (frame of the grid <-
+// cloud).
+class PoseEvidence {
+ public:
+  // The grid must outlive it.
+  PoseEvidence(const Pose2& pose, const cartographer::sensor::PointCloud& cloud,
+               const cartographer::mapping::Grid2D& grid);
+
+  // L(pose) - L(`other`). Zero without points. Infinite in a TSDF, whose
+  // distances are not probabilities: there matches are beyond doubt.
+  double Against(const Pose2& other) const;
+
+ private:
+  struct Point {
+    Eigen::Vector2d position;
+    double log_probability;  // at the pose
+  };
+
+  const cartographer::mapping::Grid2D& grid_;
+  std::vector<std::vector<Point>> patches_;
+};
+
+// The same for one other pose.
 double ScanEvidence(const Pose2& pose, const Pose2& other,
                     const cartographer::sensor::PointCloud& cloud,
                     const cartographer::mapping::Grid2D& grid);

@@ -41,6 +41,7 @@ inline LoopOptions StagesOff() {
   options.search.enabled = false;
   options.temporal.enabled = false;
   options.threshold.enabled = false;
+  options.slide_test = false;
   options.fusion.enabled = false;
   options.information.enabled = false;
   options.compatible_subset.enabled = false;

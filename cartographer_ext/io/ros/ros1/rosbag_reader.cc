@@ -13,8 +13,8 @@
 #include "absl/types/optional.h"
 #include "boost/iostreams/device/mapped_file.hpp"
 #include "cartographer_ext/io/expansion_budget.h"
-#include "cartographer_ext/io/ros/ros_container.h"
 #include "cartographer_ext/io/ros/ros1/rosbag_records.h"
+#include "cartographer_ext/io/ros/ros_container.h"
 
 namespace cartographer_ext {
 namespace io {
@@ -31,9 +31,10 @@ class RosbagContainer : public RosContainer {
   // Reads the whole file once: its topics, and whether it is whole.
   absl::Status Survey() {
     if (!absl::StartsWith(Bytes(), kMagic)) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          filename_,
-          ": only bags of format 2.0 are read; \"rosbag fix\" converts others"));
+      return absl::InvalidArgumentError(
+          absl::StrCat(filename_,
+                       ": only bags of format 2.0 are read; \"rosbag fix\" "
+                       "converts others"));
     }
     Restart();
     RosMessage message;
@@ -118,8 +119,7 @@ class RosbagContainer : public RosContainer {
   }
 
   absl::StatusOr<bool> TakeOuter(const RosbagRecord& record) {
-    if ((record.op == kRosbagFileHeader) !=
-        (position_ == sizeof(kMagic) - 1)) {
+    if ((record.op == kRosbagFileHeader) != (position_ == sizeof(kMagic) - 1)) {
       return Damaged("no file header at the beginning");
     }
     switch (record.op) {
@@ -139,9 +139,7 @@ class RosbagContainer : public RosContainer {
         uint32_t size;
         if (record.header.Text("compression") != "none" &&
             record.header.Number("size", &size) && !budget_->Take(size)) {
-          return absl::Status(
-              budget_->Error().code(),
-              absl::StrCat(filename_, ": ", budget_->Error().message()));
+          return budget_->Error(filename_);
         }
         const absl::StatusOr<absl::string_view> content =
             RosbagChunkContent(record, &chunk_);

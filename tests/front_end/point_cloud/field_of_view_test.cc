@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/common/field_of_view.h"
+#include "cartographer_ext/front_end/point_cloud/field_of_view.h"
 
 #include <cmath>
 
@@ -8,6 +8,7 @@
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
+namespace front_end {
 namespace {
 
 // Scans of one beam a degree.
@@ -44,4 +45,5 @@ TEST(FieldOfViewTest, StrayPointsDoNotCount) {
 }
 
 }  // namespace
+}  // namespace front_end
 }  // namespace cartographer_ext

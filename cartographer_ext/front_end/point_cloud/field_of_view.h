@@ -3,8 +3,8 @@
 //
 // How wide the lasers of a robot see, from the points that they return: the
 // angle of all directions from which there was more than a stray one.
-#ifndef CARTOGRAPHER_EXT_COMMON_FIELD_OF_VIEW_H_
-#define CARTOGRAPHER_EXT_COMMON_FIELD_OF_VIEW_H_
+#ifndef CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_FIELD_OF_VIEW_H_
+#define CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_FIELD_OF_VIEW_H_
 
 #include <array>
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "Eigen/Core"
 
 namespace cartographer_ext {
+namespace front_end {
 
 class FieldOfView {
  public:
@@ -28,6 +29,7 @@ class FieldOfView {
   int64_t total_ = 0;
 };
 
+}  // namespace front_end
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_COMMON_FIELD_OF_VIEW_H_
+#endif  // CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_FIELD_OF_VIEW_H_

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/common/field_of_view.h"
+#include "cartographer_ext/front_end/point_cloud/field_of_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
+namespace front_end {
 namespace {
 
 constexpr int64_t kEnough = 2000;  // points
@@ -35,4 +36,5 @@ double FieldOfView::angle() const {
   return 2. * kPi * sectors / kSectors;
 }
 
+}  // namespace front_end
 }  // namespace cartographer_ext
