@@ -89,9 +89,9 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- corridor).
     estimate_odometry_scale = true,
     -- Learn the same of the rotation: its scale (wheel base), and what a
-    -- robot with unequal wheels turns on every metre. Scans nearly always
-    -- determine the rotation, so that it matters less.
-    estimate_rotation = false,
+    -- robot with unequal wheels turns on every metre, for where a laser of
+    -- short range or of few degrees sees little (halls, streets).
+    estimate_rotation = true,
     -- Factor on the translation of odometry before anything is learnt, or for
     -- the whole run without estimate. Every run reports what it has learnt.
     -- [basic, >= 0.5 and <= 2]

@@ -17,6 +17,7 @@ TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext =
 TRAJECTORY_BUILDER_2D.cartographer_ext.paper_mode.adaptive_features = true
 TRAJECTORY_BUILDER_2D.cartographer_ext.time_offset.estimate = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.calibration.estimate_odometry_scale = false
+TRAJECTORY_BUILDER_2D.cartographer_ext.calibration.estimate_rotation = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.fault_check.enabled = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.search.enabled = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.wall_filling.enabled = false

@@ -161,6 +161,8 @@ Values LocalSlamOf(const SlamConfiguration& configuration) {
        Text(own.prediction.time_offset.estimate)},
       {"front_end.prediction.calibration.estimate_odometry_scale",
        Text(own.prediction.calibration.estimate_odometry_scale)},
+      {"front_end.prediction.calibration.estimate_rotation",
+       Text(own.prediction.calibration.estimate_rotation)},
       {"front_end.prediction.check.enabled",
        Text(own.prediction.check.enabled)},
       {"front_end.search.enabled", Text(own.search.enabled)},

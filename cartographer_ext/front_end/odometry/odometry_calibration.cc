@@ -85,7 +85,7 @@ double CalibrationFilter::sigma(const int i) const {
 }
 
 bool CalibrationFilter::Add(const Eigen::Vector2d& regressors,
-                            const double length, const double matched,
+                            const double length, const double measured,
                             const double extra) {
   Eigen::Matrix3d transition = Eigen::Matrix3d::Identity();
   transition.row(2).head<2>() = regressors.transpose();
@@ -101,7 +101,7 @@ bool CalibrationFilter::Add(const Eigen::Vector2d& regressors,
 
   const double measurement = Squared(noise_.match) + Squared(extra);
   const double variance = covariance_(2, 2) + measurement;
-  const double residual = matched - state_.z();
+  const double residual = measured - state_.z();
   if (!(Squared(residual) <= Squared(noise_.max_residual) * variance)) {
     Restart();
     return false;
@@ -113,7 +113,7 @@ bool CalibrationFilter::Add(const Eigen::Vector2d& regressors,
   rest.col(2) -= gain;
   covariance_ = Symmetric(rest * covariance_ * rest.transpose() +
                           measurement * gain * gain.transpose());
-  state_.z() -= matched;
+  state_.z() -= measured;
   return true;
 }
 
@@ -128,7 +128,8 @@ OdometryCalibration::OdometryCalibration(
                           Eigen::Vector2d(kTranslationFloor, 0.),
                           kTranslationNoise),
       rotation_filter_(
-          Eigen::Vector2d(options.rotation_scale, options.rotation_per_metre),
+          Eigen::Vector2d(1. / options.rotation_scale,
+                          -options.rotation_per_metre / options.rotation_scale),
           options.estimate_rotation
               ? Eigen::Vector2d(options.rotation_scale_sigma,
                                 options.rotation_per_metre_sigma)
@@ -205,10 +206,10 @@ void OdometryCalibration::Learn(const Segment& segment) {
     translation_filter_.Restart();
   }
   if (segment.rotation_observable) {
-    rotation_filter_.Add(Eigen::Vector2d(segment.odometry_rotation,
-                                         segment.odometry_translation),
-                         segment.length + kWheelRadius * segment.rotation,
-                         segment.matched_rotation, segment.rotation_sigma);
+    rotation_filter_.Add(
+        Eigen::Vector2d(segment.matched_rotation, segment.odometry_translation),
+        segment.length + kWheelRadius * segment.rotation,
+        segment.odometry_rotation, segment.rotation_sigma);
   } else {
     rotation_filter_.Restart();
   }
@@ -220,13 +221,13 @@ double OdometryCalibration::translation_scale() const {
 }
 
 double OdometryCalibration::rotation_scale() const {
-  return Clamped(rotation_filter_.value(0), options_.rotation_scale,
+  return Clamped(1. / rotation_filter_.value(0), options_.rotation_scale,
                  options_.max_deviation);
 }
 
 double OdometryCalibration::rotation_per_metre() const {
-  return Clamped(rotation_filter_.value(1), options_.rotation_per_metre,
-                 options_.max_deviation);
+  return Clamped(-rotation_filter_.value(1) / rotation_filter_.value(0),
+                 options_.rotation_per_metre, options_.max_deviation);
 }
 
 Pose2 OdometryCalibration::Correct(const Pose2& odometry) const {

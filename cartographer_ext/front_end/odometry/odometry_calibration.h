@@ -11,9 +11,16 @@
 //                 + rotation_per_metre * odometry translation
 //
 // Unequal wheels cause rotation_per_metre, a wrong wheel base rotation_scale.
+// Of rotation, the match is by far more precise than the wheels. A regression
+// on odometry would be diluted by the noise of the wheels: on straight ways,
+// where they turn by noise alone, the best scale is zero. So the second line is
+// estimated the other way round,
+//
+//   odometry rotation = (rotation - rotation_per_metre * odometry translation)
+//                       / rotation_scale.
 //
 // The parameters p of each line are the state of a small Kalman filter,
-// together with y, the translation (rotation) of the robot as odometry has it:
+// together with y, the translation of the robot as odometry has it:
 // an augmented filter, as in A. Martinelli, N. Tomatis, R. Siegwart,
 // "Simultaneous localization and odometry self calibration for mobile robot",
 // Autonomous Robots 22 (2007), in one dimension. Over an odometry increment h
@@ -41,6 +48,7 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/common/squared.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -48,7 +56,7 @@ namespace front_end {
 // Errors are standard deviations.
 struct OdometryCalibrationOptions {
   bool estimate_odometry_scale = true;  // translation_scale
-  bool estimate_rotation = false;       // rotation_scale, rotation_per_metre
+  bool estimate_rotation = true;        // rotation_scale, rotation_per_metre
   double translation_scale = 1.;        // initial value
   // Of a robot as it comes: tyres and load change the scale by one or two per
   // cent.
@@ -79,10 +87,10 @@ class CalibrationFilter {
                     const Eigen::Vector2d& sigmas,
                     const Eigen::Vector2d& floors, const Noise& noise);
 
-  // An odometry increment `regressors` (`length` for the noise) and the matched
+  // An increment `regressors` (`length` for the noise) and the measured
   // increment; `extra` is a standard deviation beyond that of a match. Returns
   // false and restarts when the two are inconsistent.
-  bool Add(const Eigen::Vector2d& regressors, double length, double matched,
+  bool Add(const Eigen::Vector2d& regressors, double length, double measured,
            double extra);
 
   // The next increment does not continue the last one.
@@ -95,7 +103,7 @@ class CalibrationFilter {
   const Eigen::Vector2d initial_variances_;
   const Eigen::Vector2d floors_;
   const Noise noise_;
-  Eigen::Vector3d state_;  // p, then y minus the matched one
+  Eigen::Vector3d state_;  // p, then y minus the measured one
   Eigen::Matrix3d covariance_;
 };
 
@@ -132,9 +140,13 @@ class OdometryCalibration {
     return translation_filter_.sigma(0);
   }
   double rotation_scale() const;
-  double rotation_scale_sigma() const { return rotation_filter_.sigma(0); }
+  double rotation_scale_sigma() const {
+    return Squared(rotation_scale()) * rotation_filter_.sigma(0);
+  }
   double rotation_per_metre() const;  // radians per metre
-  double rotation_per_metre_sigma() const { return rotation_filter_.sigma(1); }
+  double rotation_per_metre_sigma() const {
+    return rotation_scale() * rotation_filter_.sigma(1);
+  }
 
  private:
   // The motion between two scans that the filters compare.

@@ -175,6 +175,29 @@ TEST(OdometryCalibrationTest, FindsTheScalesAndHowSureTheyAre) {
   EXPECT_LT(per_metre, 1.2);
 }
 
+// On a straight way wheels turn by their noise alone, which tells nothing about
+// the scale of rotations.
+TEST(OdometryCalibrationTest, NoiseOfTheWheelsDoesNotDiluteTheScale) {
+  Random random(4);
+  OdometryCalibration calibration(TranslationAndRotation());
+  double error = 0.;
+  for (int i = 0; i < 2000; ++i) {  // 100 m
+    CalibrationInterval interval;
+    interval.time = 100. + kStep * i;
+    interval.interval = kStep;
+    const double last_error = error;
+    error = random.Normal(0., 0.001);
+    interval.match = Pose2(0.05, 0., error - last_error);
+    interval.odometry = Pose2(
+        0.05, 0., 0.02 * 0.05 + random.Normal(0., 0.015 * std::sqrt(0.05)));
+    interval.covariance = Eigen::Vector3d(1.6e-5, 1.6e-5, 1e-6).asDiagonal();
+    calibration.Add(interval);
+  }
+  EXPECT_NEAR(calibration.rotation_scale(), 1., 0.01);
+  EXPECT_NEAR(calibration.rotation_scale_sigma(), 0.03, 0.002);
+  EXPECT_NEAR(calibration.rotation_per_metre(), -0.02, 0.01);
+}
+
 TEST(OdometryCalibrationTest, ASlipIsKeptOut) {
   Robot robot(5, 1., 1., 0.), same(5, 1., 1., 0.);
   OdometryCalibration calibration(TranslationAndRotation());
