@@ -2,21 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/experiments/robustness_sweep.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <numeric>
 
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/strip.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
-#include "cartographer_ext/experiments/graph_families.h"
-#include "cartographer_ext/experiments/outliers/outlier_generator.h"
+#include "cartographer_ext/experiments/sweep_graphs.h"
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
@@ -25,96 +18,8 @@ namespace cartographer_ext {
 namespace experiments {
 namespace {
 
-using evaluation::ReadPoseGraph;
 using evaluation::ReadTruth;
 using optimization::PoseGraph;
-using optimization::PoseGraphEdge;
-
-struct Dataset {
-  std::string name;
-  PoseGraph graph;
-  std::vector<Pose2> optimum;  // without outliers
-  int num_loops = 0;
-  bool is_family = false;
-  double inherent_ate = -1.;
-};
-
-bool Exists(const std::string& path) {
-  struct stat unused;
-  return stat(path.c_str(), &unused) == 0;
-}
-
-absl::StatusOr<Dataset> LoadDataset(const SweepOptions& options,
-                                    const std::string& dataset) {
-  std::string filename = dataset;
-  for (const char* suffix : {".g2o.xz", ".g2o.gz", ".g2o"}) {
-    const std::string candidate =
-        absl::StrCat(options.data_directory, "/", dataset, suffix);
-    if (!Exists(filename) && Exists(candidate)) filename = candidate;
-  }
-  auto graph = ReadPoseGraph(filename);
-  if (!graph.ok()) return graph.status();
-  Dataset result;
-  result.name = DatasetName(dataset);
-  result.graph = *std::move(graph);
-  result.optimum = result.graph.poses;
-  optimization::SolverOptions solver;
-  solver.max_iterations = 500;
-  solver.cost_tolerance = 1e-10;
-  // Sets that come with wrong loops of their own have no plain optimum.
-  const bool own_outliers = options.truths.count(result.name) > 0;
-  if (own_outliers) {
-    optimization::OptimizeOptions automatic;
-    const auto best = optimization::Optimize(result.graph, automatic);
-    if (best.ok()) result.optimum = best->poses;
-  } else {
-    optimization::SolveRobust(optimization::Whiten(result.graph.edges), solver,
-                              &result.optimum);
-  }
-  for (const PoseGraphEdge& edge : result.graph.edges) {
-    result.num_loops += edge.is_loop;
-  }
-  return result;
-}
-
-absl::StatusOr<Dataset> MakeFamilyDataset(const std::string& family,
-                                          const int seed) {
-  auto generated = GenerateFamilyGraph(family, seed);
-  if (!generated.ok()) return generated.status();
-  Dataset result;
-  result.name = family;
-  result.is_family = true;
-  // From the truth and with the noise as it is, whatever the matrices claim.
-  PoseGraph honest = generated->graph;
-  for (PoseGraphEdge& edge : honest.edges) {
-    edge.information /= edge.is_loop ? generated->loop_confidence
-                                     : generated->odometry_confidence;
-    result.num_loops += edge.is_loop;
-  }
-  result.optimum = generated->truth;
-  optimization::SolverOptions solver;
-  solver.max_iterations = 500;
-  solver.cost_tolerance = 1e-10;
-  optimization::SolveRobust(optimization::Whiten(honest.edges), solver,
-                            &result.optimum);
-  result.inherent_ate =
-      optimization::AbsoluteTrajectoryError(result.optimum, generated->truth);
-  result.graph = std::move(generated->graph);
-  return result;
-}
-
-absl::StatusOr<int> OutlierCount(const std::string& text, const int num_loops) {
-  absl::string_view number = text;
-  const bool is_percentage = absl::ConsumeSuffix(&number, "%");
-  double value;
-  if (!absl::SimpleAtod(number, &value) || !(value >= 0.) || value > 1e6 ||
-      (is_percentage && value > 99.)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "outlier count '", text, "' is neither a number nor at most 99%"));
-  }
-  if (!is_percentage) return static_cast<int>(value);
-  return static_cast<int>(std::lround(num_loops * value / (100. - value)));
-}
 
 std::string Key(const SweepRun& run) {
   return absl::StrCat(run.is_family ? "family " : "", run.dataset, "|",
@@ -148,7 +53,7 @@ absl::StatusOr<std::map<std::string, SweepRun>> ReadJournal(
   return result;
 }
 
-double AteLimit(const SweepOptions& options, const Dataset& dataset,
+double AteLimit(const SweepOptions& options, const SweepGraph& dataset,
                 const std::string& type) {
   if (dataset.is_family) {
     return options.ate_limit + 0.5 * dataset.inherent_ate;
@@ -158,20 +63,13 @@ double AteLimit(const SweepOptions& options, const Dataset& dataset,
   return type[0] == 'L' ? options.ate_limit_local : options.ate_limit;
 }
 
-absl::Status RunOne(const SweepOptions& options, const Dataset& dataset,
+absl::Status RunOne(const SweepOptions& options, const SweepGraph& dataset,
                     SweepRun* const run) {
-  PoseGraph graph = dataset.graph;
-  const size_t first_outlier = graph.edges.size();
-  if (run->type != "none") {
-    optimization::OutlierOptions outliers;
-    outliers.type = *optimization::OutlierTypeFromName(run->type);
-    outliers.count = run->count;
-    outliers.seed = run->seed;
-    outliers.group_size = options.group_size;
-    const auto edges = optimization::GenerateOutliers(graph, outliers);
-    if (!edges.ok()) return edges.status();
-    graph.edges.insert(graph.edges.end(), edges->begin(), edges->end());
-  }
+  const size_t first_outlier = dataset.graph.edges.size();
+  const auto with_outliers =
+      WithOutliers(options, dataset, run->type, run->count, run->seed);
+  if (!with_outliers.ok()) return with_outliers.status();
+  const PoseGraph& graph = *with_outliers;
   optimization::OptimizeOptions optimize = options.optimize;
   optimize.method = run->kernel;
   const auto result = optimization::Optimize(graph, optimize);
@@ -303,40 +201,8 @@ bool FromJson(const nlohmann::json& json, SweepRun* const run) {
   return true;
 }
 
-std::string DatasetName(const std::string& dataset) {
-  std::string name = std::filesystem::path(dataset).filename().string();
-  for (const char* suffix : {".xz", ".gz", ".bz2", ".g2o"}) {
-    name = std::string(absl::StripSuffix(name, suffix));
-  }
-  return name;
-}
-
-namespace {
-
-absl::Status CheckNames(const SweepOptions& options) {
-  for (const std::string& kernel : options.kernels) {
-    const std::vector<std::string>& names = optimization::MethodNames();
-    if (std::find(names.begin(), names.end(), kernel) == names.end()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("unknown kernel '", kernel, "'"));
-    }
-  }
-  for (const std::string& type : options.types) {
-    if (type == "none") continue;
-    const auto known = optimization::OutlierTypeFromName(type);
-    if (!known.ok()) return known.status();
-  }
-  for (const std::string& family : options.families) {
-    const auto known = GenerateFamilyGraph(family, options.first_seed);
-    if (!known.ok()) return known.status();
-  }
-  return absl::OkStatus();
-}
-
-}  // namespace
-
 absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
-  const absl::Status known = CheckNames(options);
+  const absl::Status known = CheckSweepOptions(options);
   if (!known.ok()) return known;
   auto journal = ReadJournal(options.journal_filename);
   if (!journal.ok()) return journal.status();
@@ -354,9 +220,9 @@ absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
                         options.seeds * options.kernels.size();
   Progress progress("robustness", total);
   // All kernels of one graph with one set of outliers.
-  const auto run_kernels = [&](const Dataset& dataset, const std::string& type,
-                               const std::string& count_text,
-                               const int seed) -> absl::Status {
+  const auto run_kernels =
+      [&](const SweepGraph& dataset, const std::string& type,
+          const std::string& count_text, const int seed) -> absl::Status {
     const auto count = OutlierCount(count_text, dataset.num_loops);
     if (!count.ok()) return count.status();
     for (const std::string& kernel : options.kernels) {
@@ -389,14 +255,14 @@ absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
   names.insert(names.end(), options.families.begin(), options.families.end());
   for (size_t n = 0; n != names.size(); ++n) {
     const bool is_family = n >= options.datasets.size();
-    absl::StatusOr<Dataset> dataset;
-    if (!is_family) dataset = LoadDataset(options, names[n]);
+    absl::StatusOr<SweepGraph> dataset;
+    if (!is_family) dataset = LoadSweepGraph(options, names[n]);
     if (!is_family && !dataset.ok()) return dataset.status();
     for (const std::string& type : options.types) {
       for (const std::string& count_text : options.counts) {
         for (int k = 0; k != options.seeds; ++k) {
           const int seed = options.first_seed + k;
-          if (is_family) dataset = MakeFamilyDataset(names[n], seed);
+          if (is_family) dataset = MakeFamilyGraph(names[n], seed);
           if (!dataset.ok()) return dataset.status();
           const absl::Status status =
               run_kernels(*dataset, type, count_text, seed);

@@ -7,37 +7,15 @@
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_SWEEP_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_SWEEP_H_
 
-#include <map>
 #include <string>
 #include <vector>
 
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "cartographer_ext/optimization/offline/optimize.h"
+#include "cartographer_ext/experiments/sweep_graphs.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_ext {
 namespace experiments {
-
-struct SweepOptions {
-  std::string data_directory;         // where names of data sets are looked up
-  std::vector<std::string> datasets;  // names ("intel") or files
-  // Families of generated graphs (graph_families.h); each seed is another
-  // graph.
-  std::vector<std::string> families;
-  std::vector<std::string> kernels;  // optimization::MethodNames()
-  std::vector<std::string> types;    // R L RG LG, or none
-  std::vector<std::string> counts;   // "1000", or "90%" of all loops
-  int first_seed = 1;
-  int seeds = 1;  // first_seed, first_seed + 1, ...
-  int group_size = 10;
-  double ate_limit = 0.05;  // metres; success
-  double ate_limit_local = 0.4;
-  std::map<std::string, double> ate_limits;   // by data set, for all types
-  std::map<std::string, std::string> truths;  // by data set; else the optimum
-  std::string journal_filename;               // empty: none
-  optimization::OptimizeOptions optimize;     // all but the method
-};
 
 struct SweepRun {
   std::string dataset, kernel, type;
@@ -71,9 +49,6 @@ struct SweepRun {
 nlohmann::ordered_json ToJson(const SweepRun& run);
 // False when a key is missing or of another kind.
 bool FromJson(const nlohmann::json& json, SweepRun* run);
-
-// The data set's short name: the file's without folder and .g2o, .gz, .xz.
-std::string DatasetName(const std::string& dataset);
 
 // All runs in the order data set, type, count, seed, kernel, those of the
 // journal included. Bad input (a file, a name, a journal of something else) is

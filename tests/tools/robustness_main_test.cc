@@ -77,6 +77,18 @@ TEST(RobustnessMainTest, FamiliesAreGeneratedBySeed) {
   EXPECT_EQ(RunCommand("robustness", {"-family", "moon"}).exit_code, 1);
 }
 
+TEST(RobustnessMainTest, ComparesCosts) {
+  const CommandResult result =
+      RunCommand("robustness", {"-compare_cost", "-family", "few",
+                                "-first_seed", "5", "-outlier_types", "none,L",
+                                "-outlier_counts", "20%", "-json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const nlohmann::json json = test::ParseJson(result.out);
+  EXPECT_EQ(json["graphs"], 2);
+  EXPECT_EQ(json["above"], 0);
+  EXPECT_EQ(json["comparisons"][1]["seed"], 5);
+}
+
 TEST(RobustnessMainTest, BadInputAndUsage) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(RunCommand("robustness", {"-preset", "nothing"}).exit_code, 2);

@@ -215,13 +215,18 @@ absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
         absl::StrCat("unknown kernel '", options.method, "', expected one of ",
                      absl::StrJoin(names, " ")));
   }
+  if (!options.start.empty() && options.start.size() != graph.poses.size()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(options.start.size(), " poses to start from for ",
+                     graph.poses.size(), " poses"));
+  }
   const double start = ThreadCpuSeconds();
   PoseGraph with_fixed_poses;
   if (graph.fixed.size() > 1) with_fixed_poses = Held(graph);
   const PoseGraph& held = graph.fixed.size() > 1 ? with_fixed_poses : graph;
   std::vector<WhitenedEdge> edges = Whiten(held.edges);
   OptimizeResult result;
-  result.poses = graph.poses;
+  result.poses = options.start.empty() ? graph.poses : options.start;
   if (options.method == "auto") {
     RunAuto(held, options, &result);
     edges = Whiten(WithNoiseScale(held, result.applied_odometry_scale,

@@ -46,6 +46,10 @@ struct OptimizeOptions {
   // and of such maps one near that of the adapted gate (polish_near.h).
   bool lowest_cost = true;
   SmootherOptions smoother;
+  // Poses to start from instead of the graph's, all but auto and r_isam, which
+  // choose their own. One per pose of the graph, with fixed poses as there;
+  // empty: the graph's.
+  std::vector<Pose2> start;
 };
 
 struct OptimizeResult {

@@ -94,6 +94,24 @@ TEST(OptimizeTest, FixedPosesStay) {
   }
 }
 
+TEST(OptimizeTest, StartsFromGivenPoses) {
+  const test::GridWorld world = test::MakeGridWorld(120, 6, 2);
+  OptimizeOptions options;
+  options.method = "none";
+  const auto from_graph = Optimize(world.graph, options);
+  ASSERT_TRUE(from_graph.ok());
+  // The optimum is where the solver already is.
+  options.start = from_graph->poses;
+  options.max_iterations = 1;
+  const auto from_optimum = Optimize(world.graph, options);
+  ASSERT_TRUE(from_optimum.ok());
+  EXPECT_NEAR(from_optimum->truncated_chi2, from_graph->truncated_chi2,
+              1e-6 * from_graph->truncated_chi2);
+  options.start.pop_back();
+  EXPECT_THAT(std::string(Optimize(world.graph, options).status().message()),
+              HasSubstr("119 poses to start from"));
+}
+
 TEST(OptimizeTest, Errors) {
   const test::GridWorld world = test::MakeGridWorld(30, 4, 1);
   OptimizeOptions options;

@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/experiments/cost_comparison.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/optimization/offline/starts.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace experiments {
+namespace {
+
+using optimization::PoseGraph;
+using optimization::WhitenedEdge;
+
+struct Start {
+  std::string name;
+  std::vector<Pose2> poses;
+};
+
+std::vector<Start> Starts(const PoseGraph& graph) {
+  std::vector<Start> result = {{"given", graph.poses}};
+  result.push_back(
+      {"tree", optimization::SpanningTree(
+                   graph, std::vector<double>(graph.edges.size(), 1.))});
+  std::vector<Pose2> chordal = optimization::ChainOdometry(graph);
+  if (optimization::RobustChordalPoses(optimization::Whiten(graph.edges),
+                                       &chordal)) {
+    result.push_back({"chordal", std::move(chordal)});
+  }
+  return result;
+}
+
+// Lowers the comparison's best rival by those that solve `graph`; costs are
+// those of `edges`.
+absl::Status RaceRivals(const PoseGraph& graph, const std::string& noise,
+                        const optimization::OptimizeOptions& options,
+                        const std::vector<WhitenedEdge>& edges,
+                        CostComparison* const comparison) {
+  const auto race = [&](const std::string& start, const std::string& kernel,
+                        const std::vector<Pose2>& poses) -> absl::Status {
+    optimization::OptimizeOptions rival = options;
+    rival.method = kernel;
+    rival.start = poses;
+    const auto result = optimization::Optimize(graph, rival);
+    if (!result.ok()) return result.status();
+    const double cost = optimization::TruncatedCost(edges, result->poses);
+    if (cost < comparison->rival_cost) {
+      comparison->rival_cost = cost;
+      comparison->rival = absl::StrCat(start, kernel, noise);
+    }
+    return absl::OkStatus();
+  };
+  for (const Start& start : Starts(graph)) {
+    for (const char* kernel :
+         {"none", "huber", "gm", "dcs", "acs", "gnc_tls"}) {
+      const absl::Status status =
+          race(absl::StrCat(start.name, ", "), kernel, start.poses);
+      if (!status.ok()) return status;
+    }
+  }
+  // Several trajectories cannot be replayed.
+  race("", "r_isam", {}).IgnoreError();
+  return absl::OkStatus();
+}
+
+absl::Status Compare(const PoseGraph& graph, const SweepOptions& options,
+                     CostComparison* const comparison) {
+  optimization::OptimizeOptions automatic = options.optimize;
+  automatic.method = "auto";
+  const auto result = optimization::Optimize(graph, automatic);
+  if (!result.ok()) return result.status();
+  comparison->poses = graph.poses.size();
+  for (const optimization::PoseGraphEdge& edge : graph.edges) {
+    comparison->loops += edge.is_loop;
+  }
+  comparison->cpu_seconds = result->cpu_seconds;
+  comparison->member = result->member;
+  const PoseGraph scaled = optimization::WithNoiseScale(
+      graph, result->applied_odometry_scale, result->applied_loop_scale);
+  const std::vector<WhitenedEdge> edges = optimization::Whiten(scaled.edges);
+  comparison->cost = optimization::TruncatedCost(edges, result->poses);
+  comparison->rival_cost = std::numeric_limits<double>::infinity();
+  absl::Status status =
+      RaceRivals(graph, "", options.optimize, edges, comparison);
+  if (!status.ok()) return status;
+  if (result->applied_odometry_scale != 1. ||
+      result->applied_loop_scale != 1.) {
+    status = RaceRivals(scaled, ", scaled noise", options.optimize, edges,
+                        comparison);
+    if (!status.ok()) return status;
+  }
+  // A cost near zero says nothing in relation to itself.
+  comparison->excess = (comparison->cost - comparison->rival_cost) /
+                       std::max(comparison->rival_cost, 1e-6);
+  return absl::OkStatus();
+}
+
+bool IsAbove(const CostComparison& comparison) {
+  return comparison.excess > kCostTolerance;
+}
+
+// Compares one data set or family with one type and count of outliers over all
+// seeds.
+absl::Status CompareCell(const SweepOptions& options, const std::string& name,
+                         const bool is_family, const CostComparison& cell,
+                         Progress* const progress,
+                         std::vector<CostComparison>* const result) {
+  for (int seed = options.first_seed;
+       seed != options.first_seed + options.seeds; ++seed) {
+    const auto dataset =
+        is_family ? MakeFamilyGraph(name, seed) : LoadSweepGraph(options, name);
+    if (!dataset.ok()) return dataset.status();
+    const auto count = OutlierCount(cell.requested_count, dataset->num_loops);
+    if (!count.ok()) return count.status();
+    CostComparison comparison = cell;
+    comparison.dataset = dataset->name;
+    comparison.seed = seed;
+    comparison.count = cell.type == "none" ? 0 : *count;
+    const auto graph = WithOutliers(options, *dataset, comparison.type,
+                                    comparison.count, seed);
+    if (!graph.ok()) return graph.status();
+    const absl::Status status = Compare(*graph, options, &comparison);
+    if (!status.ok()) return status;
+    result->push_back(comparison);
+    progress->Update(result->size(), comparison.dataset);
+    // Without outliers the seed changes nothing but a family's graph.
+    if (!is_family && comparison.type == "none") break;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<CostComparison>> CompareCosts(
+    const SweepOptions& options) {
+  const absl::Status known = CheckSweepOptions(options);
+  if (!known.ok()) return known;
+  std::vector<CostComparison> cells;
+  for (const std::string& type : options.types) {
+    for (const std::string& count : options.counts) {
+      CostComparison cell;
+      cell.type = type;
+      cell.requested_count = type == "none" ? "0" : count;
+      cells.push_back(cell);
+      if (type == "none") break;
+    }
+  }
+  std::vector<std::string> names = options.datasets;
+  names.insert(names.end(), options.families.begin(), options.families.end());
+  std::vector<CostComparison> result;
+  Progress progress("graphs", names.size() * cells.size() * options.seeds);
+  for (size_t n = 0; n != names.size(); ++n) {
+    for (const CostComparison& cell : cells) {
+      const absl::Status status =
+          CompareCell(options, names[n], n >= options.datasets.size(), cell,
+                      &progress, &result);
+      if (!status.ok()) return status;
+    }
+  }
+  progress.Finish();
+  return result;
+}
+
+std::string CostTable(const std::vector<CostComparison>& comparisons) {
+  struct Row {
+    std::string name, type;
+    int graphs = 0, above = 0;
+    double worst = -1., cpu_seconds = 0.;
+  };
+  std::vector<Row> rows;
+  Row all;
+  all.name = "all";
+  std::string list;
+  const auto add = [](const CostComparison& comparison, Row* const row) {
+    ++row->graphs;
+    row->above += IsAbove(comparison);
+    row->worst = std::max(row->worst, comparison.excess);
+    row->cpu_seconds += comparison.cpu_seconds;
+  };
+  for (const CostComparison& comparison : comparisons) {
+    if (rows.empty() || rows.back().name != comparison.dataset ||
+        rows.back().type != comparison.type) {
+      rows.emplace_back();
+      rows.back().name = comparison.dataset;
+      rows.back().type = comparison.type;
+    }
+    add(comparison, &rows.back());
+    add(comparison, &all);
+    if (!IsAbove(comparison)) continue;
+    absl::StrAppendFormat(
+        &list, "above: %s %s %s seed %d: %.9g (%s), %s %.9g, excess %.2g\n",
+        comparison.dataset, comparison.type, comparison.requested_count,
+        comparison.seed, comparison.cost, comparison.member, comparison.rival,
+        comparison.rival_cost, comparison.excess);
+  }
+  rows.push_back(all);
+  std::string table =
+      absl::StrFormat("%-20s %-5s %7s %7s %13s %8s\n", "set", "type", "graphs",
+                      "above", "worst excess", "CPU s");
+  for (const Row& row : rows) {
+    absl::StrAppendFormat(&table, "%-20s %-5s %7d %7d %13.2g %8.3f\n", row.name,
+                          row.type, row.graphs, row.above, row.worst,
+                          row.cpu_seconds / std::max(1, row.graphs));
+  }
+  return absl::StrCat(table, list);
+}
+
+nlohmann::ordered_json CostJson(
+    const std::vector<CostComparison>& comparisons) {
+  nlohmann::ordered_json json;
+  json["tolerance"] = kCostTolerance;
+  json["graphs"] = comparisons.size();
+  json["above"] =
+      std::count_if(comparisons.begin(), comparisons.end(), IsAbove);
+  json["comparisons"] = nlohmann::ordered_json::array();
+  for (const CostComparison& comparison : comparisons) {
+    json["comparisons"].push_back(
+        {{"dataset", comparison.dataset},
+         {"type", comparison.type},
+         {"requested_count", comparison.requested_count},
+         {"count", comparison.count},
+         {"seed", comparison.seed},
+         {"poses", comparison.poses},
+         {"loops", comparison.loops},
+         {"cpu_seconds", comparison.cpu_seconds},
+         {"cost", comparison.cost},
+         {"member", comparison.member},
+         {"rival", comparison.rival},
+         {"rival_cost", comparison.rival_cost},
+         {"excess", comparison.excess},
+         {"above", IsAbove(comparison)}});
+  }
+  return json;
+}
+
+}  // namespace experiments
+}  // namespace cartographer_ext

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/experiments/sweep_graphs.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "cartographer_ext/experiments/graph_families.h"
+#include "cartographer_ext/experiments/outliers/outlier_generator.h"
+#include "cartographer_ext/map/pose_graph_files.h"
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace experiments {
+
+using evaluation::ReadPoseGraph;
+using optimization::PoseGraph;
+using optimization::PoseGraphEdge;
+
+namespace {
+
+bool Exists(const std::string& path) {
+  struct stat unused;
+  return stat(path.c_str(), &unused) == 0;
+}
+
+}  // namespace
+
+absl::Status CheckSweepOptions(const SweepOptions& options) {
+  for (const std::string& kernel : options.kernels) {
+    const std::vector<std::string>& names = optimization::MethodNames();
+    if (std::find(names.begin(), names.end(), kernel) == names.end()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("unknown kernel '", kernel, "'"));
+    }
+  }
+  for (const std::string& type : options.types) {
+    if (type == "none") continue;
+    const auto known = optimization::OutlierTypeFromName(type);
+    if (!known.ok()) return known.status();
+  }
+  for (const std::string& family : options.families) {
+    const auto known = GenerateFamilyGraph(family, options.first_seed);
+    if (!known.ok()) return known.status();
+  }
+  return absl::OkStatus();
+}
+
+std::string DatasetName(const std::string& dataset) {
+  std::string name = std::filesystem::path(dataset).filename().string();
+  for (const char* suffix : {".xz", ".gz", ".bz2", ".g2o"}) {
+    name = std::string(absl::StripSuffix(name, suffix));
+  }
+  return name;
+}
+
+absl::StatusOr<SweepGraph> LoadSweepGraph(const SweepOptions& options,
+                                          const std::string& dataset) {
+  std::string filename = dataset;
+  for (const char* suffix : {".g2o.xz", ".g2o.gz", ".g2o"}) {
+    const std::string candidate =
+        absl::StrCat(options.data_directory, "/", dataset, suffix);
+    if (!Exists(filename) && Exists(candidate)) filename = candidate;
+  }
+  auto graph = ReadPoseGraph(filename);
+  if (!graph.ok()) return graph.status();
+  SweepGraph result;
+  result.name = DatasetName(dataset);
+  result.graph = *std::move(graph);
+  result.optimum = result.graph.poses;
+  optimization::SolverOptions solver;
+  solver.max_iterations = 500;
+  solver.cost_tolerance = 1e-10;
+  // Sets that come with wrong loops of their own have no plain optimum.
+  const bool own_outliers = options.truths.count(result.name) > 0;
+  if (own_outliers) {
+    optimization::OptimizeOptions automatic;
+    const auto best = optimization::Optimize(result.graph, automatic);
+    if (best.ok()) result.optimum = best->poses;
+  } else {
+    optimization::SolveRobust(optimization::Whiten(result.graph.edges), solver,
+                              &result.optimum);
+  }
+  for (const PoseGraphEdge& edge : result.graph.edges) {
+    result.num_loops += edge.is_loop;
+  }
+  return result;
+}
+
+absl::StatusOr<SweepGraph> MakeFamilyGraph(const std::string& family,
+                                           const int seed) {
+  auto generated = GenerateFamilyGraph(family, seed);
+  if (!generated.ok()) return generated.status();
+  SweepGraph result;
+  result.name = family;
+  result.is_family = true;
+  // From the truth and with the noise as it is, whatever the matrices claim.
+  PoseGraph honest = generated->graph;
+  for (PoseGraphEdge& edge : honest.edges) {
+    edge.information /= edge.is_loop ? generated->loop_confidence
+                                     : generated->odometry_confidence;
+    result.num_loops += edge.is_loop;
+  }
+  result.optimum = generated->truth;
+  optimization::SolverOptions solver;
+  solver.max_iterations = 500;
+  solver.cost_tolerance = 1e-10;
+  optimization::SolveRobust(optimization::Whiten(honest.edges), solver,
+                            &result.optimum);
+  result.inherent_ate =
+      optimization::AbsoluteTrajectoryError(result.optimum, generated->truth);
+  result.graph = std::move(generated->graph);
+  return result;
+}
+
+absl::StatusOr<int> OutlierCount(const std::string& text, const int num_loops) {
+  absl::string_view number = text;
+  const bool is_percentage = absl::ConsumeSuffix(&number, "%");
+  double value;
+  if (!absl::SimpleAtod(number, &value) || !(value >= 0.) || value > 1e6 ||
+      (is_percentage && value > 99.)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "outlier count '", text, "' is neither a number nor at most 99%"));
+  }
+  if (!is_percentage) return static_cast<int>(value);
+  return static_cast<int>(std::lround(num_loops * value / (100. - value)));
+}
+
+absl::StatusOr<PoseGraph> WithOutliers(const SweepOptions& options,
+                                       const SweepGraph& dataset,
+                                       const std::string& type, const int count,
+                                       const int seed) {
+  PoseGraph graph = dataset.graph;
+  if (type == "none") return graph;
+  optimization::OutlierOptions outliers;
+  outliers.type = *optimization::OutlierTypeFromName(type);
+  outliers.count = count;
+  outliers.seed = seed;
+  outliers.group_size = options.group_size;
+  const auto edges = optimization::GenerateOutliers(graph, outliers);
+  if (!edges.ok()) return edges.status();
+  graph.edges.insert(graph.edges.end(), edges->begin(), edges->end());
+  return graph;
+}
+
+}  // namespace experiments
+}  // namespace cartographer_ext
