@@ -21,6 +21,8 @@ namespace {
 constexpr int kPolishRounds = 30;
 // Relative difference of truncated costs of one and the same optimum.
 constexpr double kSame = 1e-6;
+// chi2 of an odometry edge that the digits of a file leave.
+constexpr double kRounding = 1e-3;
 // Loops by which solvers differ that decide only what is near the gate
 // differently.
 constexpr double kNearlySame = 3.;
@@ -30,8 +32,14 @@ constexpr size_t kMaxInnovations = 200;
 constexpr int kMaxPossible = 2;
 // Loops that agree with one that is relied on without regard to the rest.
 constexpr size_t kSupported = 2;
+// Kernels that have to agree.
+constexpr size_t kQuickKernels = 3;
 // Poses of a graph on which each solution counts.
 constexpr size_t kLargeGraph = 30000;
+// Share of the supported loops that a map in which they agree keeps.
+constexpr double kNearlyAll = 0.98;
+// Poses times loops from which on the supported loops are tried first.
+constexpr double kLargeSearch = 1e8;
 // Groups of a large graph that are forced in.
 constexpr int kMaxTrialsOnLargeGraph = 4;
 // A graph of fewer poses times loops is searched from all starts in any case.
@@ -43,10 +51,12 @@ constexpr double kLittleWork = 3e6;
 // Beyond so many poses times loops, the search by groups is too dear.
 constexpr double kMaxGrowthWork = 4e6;
 
-bool SamePoses(const std::vector<Pose2>& a, const std::vector<Pose2>& b) {
-  for (size_t i = 0; i != a.size(); ++i) {
-    if (std::abs(a[i].x - b[i].x) > 1e-6 || std::abs(a[i].y - b[i].y) > 1e-6 ||
-        std::abs(NormalizeAngle(a[i].theta - b[i].theta)) > 1e-6) {
+// Whether the poses differ from chained odometry by rounding only.
+bool AreChained(const std::vector<WhitenedEdge>& edges,
+                const std::vector<Pose2>& poses) {
+  for (const WhitenedEdge& edge : edges) {
+    if (!edge.is_loop &&
+        !(Chi2(edge, poses[edge.from], poses[edge.to]) < kRounding)) {
       return false;
     }
   }
@@ -113,10 +123,14 @@ void Portfolio::AddKernels(const std::string& start_name,
   AddKernel(start_name, KernelType::kDcs, start);
   AddKernel(start_name, KernelType::kGemanMcClure, start);
   AddKernel(start_name, KernelType::kAcs, start);
-  if (with_full_kernels) {
-    AddKernel(start_name, KernelType::kHuber, start);
-    AddKernel(start_name, KernelType::kNone, start);
-  }
+  if (with_full_kernels) AddFullKernels(start_name, start);
+}
+
+void Portfolio::AddFullKernels(const std::string& start_name,
+                               const std::vector<Pose2>& start) {
+  AddKernel(start_name, KernelType::kHuber, start);
+  AddKernel(start_name, KernelType::kNone, start);
+  ran_full_kernels_ = true;
 }
 
 void Portfolio::AddGnc(const std::string& start_name,
@@ -129,10 +143,17 @@ void Portfolio::AddGnc(const std::string& start_name,
 }
 
 double Portfolio::FullWork() {
-  if (full_work_.has_value()) return *full_work_;
+  if (!full_work_.has_value()) {
+    full_work_ = WorkOf(std::vector<double>(edges_.size(), 1.));
+  }
+  return *full_work_;
+}
+
+double Portfolio::WorkOf(const std::vector<double>& weights) const {
   std::vector<std::pair<int, int>> pairs;
-  for (const WhitenedEdge& edge : edges_) {
-    if (edge.from > 0 && edge.to > 0) {
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    const WhitenedEdge& edge = edges_[i];
+    if (weights[i] > 0. && edge.from > 0 && edge.to > 0) {
       pairs.push_back({edge.from - 1, edge.to - 1});
     }
   }
@@ -145,7 +166,6 @@ double Portfolio::FullWork() {
       work += 27. * (0.5 * rows * rows + rows + 1.);
     }
   }
-  full_work_ = work;
   return work;
 }
 
@@ -169,14 +189,13 @@ void Portfolio::RunQuick() {
   AddKernels("", graph_.poses, false);
   // With few wrong loops the solvers that keep all of them cost little more.
   if (CountRejected() <= 0.1 * num_loops_ && FullWork() <= kLittleWork) {
-    AddKernel("", KernelType::kHuber, graph_.poses);
-    AddKernel("", KernelType::kNone, graph_.poses);
+    AddFullKernels("", graph_.poses);
   }
 }
 
-bool Portfolio::IsSettled() {
+bool Portfolio::IsSettled(const size_t first) {
   double highest = 0.;
-  for (size_t i = 0; i != std::min<size_t>(3, members_.size()); ++i) {
+  for (size_t i = first; i != first + kQuickKernels; ++i) {
     highest = std::max(highest, members_[i].cost);
   }
   if (highest > best().cost * (1. + kSame) + kNearlySame * kChi2Gate) {
@@ -261,12 +280,43 @@ bool Portfolio::AddCertain() {
   return true;
 }
 
+std::vector<double> Portfolio::SupportedLoops() {
+  std::vector<double> result(edges_.size(), 1.);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (!edges_[i].is_loop) continue;
+    result[i] = support().agreeing[i].size() >= kSupported ? 1. : 0.;
+  }
+  return result;
+}
+
+bool Portfolio::SettleBySupport() {
+  const std::vector<double> supported = SupportedLoops();
+  // Wrong loops that agree with each other fill the factor.
+  if (WorkOf(supported) > kAffordableWork) return false;
+  std::vector<Pose2> poses = ChainOdometry(graph_);
+  if (!ChordalPoses(edges_, supported, &poses)) return false;
+  Add("supported", poses);
+  const size_t first = members_.size();
+  AddKernels("supported, ", poses, false);
+  if (!IsSettled(first)) return false;
+  size_t loops = 0, in_force = 0;
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (!edges_[i].is_loop || supported[i] == 0.) continue;
+    ++loops;
+    in_force += Chi2(edges_[i], best().poses[edges_[i].from],
+                     best().poses[edges_[i].to]) < kChi2Gate;
+  }
+  return in_force >= kNearlyAll * loops;
+}
+
 void Portfolio::Run() {
+  const double size = static_cast<double>(graph_.poses.size()) * num_loops_;
   // What else there is would take minutes on a large graph.
   if (graph_.poses.size() > kLargeGraph && AddCertain()) return;
+  if (size > kLargeSearch && SettleBySupport()) return;
+  const size_t first = members_.size();
   RunQuick();
-  const bool settled = IsSettled();
-  const double size = static_cast<double>(graph_.poses.size()) * num_loops_;
+  const bool settled = IsSettled(first);
   if (settled && size > kSmallGraph) return;
   // Where many loops contradict a map that the robust kernels agree on, the
   // solvers that keep them all are far off.
@@ -289,13 +339,12 @@ void Portfolio::Improve() {
 
 void Portfolio::RunStarts(const bool with_full_kernels) {
   const bool affordable = FullWork() <= kAffordableWork;
-  if (with_full_kernels && members_.size() <= 4) {
-    AddKernel("", KernelType::kHuber, graph_.poses);
-    AddKernel("", KernelType::kNone, graph_.poses);
+  if (with_full_kernels && !ran_full_kernels_) {
+    AddFullKernels("", graph_.poses);
   }
   AddReplays();
   const std::vector<Pose2> chained = ChainOdometry(graph_);
-  const bool same = SamePoses(chained, graph_.poses);
+  const bool same = AreChained(edges_, graph_.poses);
   if (!same) AddKernels("odometry, ", chained, with_full_kernels);
   if (!affordable) return;
   AddGnc("", graph_.poses);
@@ -303,22 +352,24 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
   std::vector<Pose2> chordal = chained;
   if (RobustChordalPoses(edges_, &chordal)) {
     AddKernels("chordal, ", chordal, with_full_kernels);
+    AddGnc("chordal, ", chordal);
   }
+  const std::vector<Pose2> tree =
+      SpanningTree(graph_, std::vector<double>(edges_.size(), 1.));
+  AddKernels("tree of all, ", tree, with_full_kernels);
+  AddGnc("tree of all, ", tree);
 }
 
 void Portfolio::RunGroups() {
   AddGrowth(ChainOdometry(graph_));
   std::vector<double> in_force = Chi2OfEdges(edges_, best().poses);
-  std::vector<double> supported(edges_.size(), 1.);
+  std::vector<double> supported = SupportedLoops();
   for (size_t i = 0; i != edges_.size(); ++i) {
     in_force[i] = !edges_[i].is_loop || in_force[i] < kChi2Gate ? 1. : 0.;
-    if (edges_[i].is_loop) {
-      supported[i] = support().agreeing[i].size() >= kSupported ? 1. : 0.;
-    }
   }
   AddKernel("tree, ", KernelType::kGemanMcClure,
             SpanningTree(graph_, in_force));
-  for (const std::vector<double>* const weights : {&in_force, &supported}) {
+  for (const auto* const weights : {&in_force, &supported}) {
     std::vector<Pose2> poses = best().poses;
     if (ChordalPoses(edges_, *weights, &poses)) {
       AddKernel("relaxed, ", KernelType::kDcs, poses);

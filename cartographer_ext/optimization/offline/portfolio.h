@@ -11,12 +11,17 @@
 //           no single decision can be improved and the rejected loops
 //           contradict the map beyond its uncertainty, the search of a large
 //           graph ends here: other starts end in the same optimum.
-//   Starts  chained odometry, chordal relaxation and an incremental replay
-//           (R-iSAM) as starts of the same kernels; graduated non-convexity.
+//   Starts  chained odometry, chordal relaxation, a spanning tree of short
+//           paths and an incremental replay (R-iSAM) as starts of the same
+//           kernels; graduated non-convexity.
 //   Groups  where the rejected loops are within the uncertainty of the map or
 //           the kernels disagree: growth by groups of loops (loop_growth.h), a
 //           spanning tree over the loops in force, groups forced in one by one
 //           (decision_moves.h).
+//
+// A large graph is first solved with the loops that agree with others over
+// short stretches, where those do not fill the factor; if the kernels agree
+// from there and hardly any of these loops is rejected, the search ends.
 //
 // A graph of tens of thousands of poses is grown by the loops that are certain
 // (certain_growth.h) and polished, and that is all. Where a smaller one has too
@@ -76,7 +81,8 @@ class Portfolio {
 
  private:
   void RunQuick();
-  bool IsSettled();
+  // Whether the quick members, from `first` on, agree.
+  bool IsSettled(size_t first);
   // Whether the rejected loops lie beyond the uncertainty of the best map.
   bool RejectedContradict();
   void RunStarts(bool with_full_kernels);
@@ -87,12 +93,21 @@ class Portfolio {
                  const std::vector<Pose2>& start);
   void AddKernels(const std::string& start_name,
                   const std::vector<Pose2>& start, bool with_full_kernels);
+  // Those that keep all loops.
+  void AddFullKernels(const std::string& start_name,
+                      const std::vector<Pose2>& start);
   void AddGnc(const std::string& start_name, const std::vector<Pose2>& start);
   void AddReplays();
   // False where no loop is certain.
   bool AddCertain();
+  // 1 for the loops that several others agree with, and for odometry.
+  std::vector<double> SupportedLoops();
+  // Whether the supported loops alone lead to a map that ends the search.
+  bool SettleBySupport();
   void AddGrowth(const std::vector<Pose2>& start);
-  // Work of one factorisation with all loops, in multiplications.
+  // Work of one factorisation with these edges and with all, in
+  // multiplications.
+  double WorkOf(const std::vector<double>& weights) const;
   double FullWork();
   int CountRejected() const;
 
@@ -109,6 +124,7 @@ class Portfolio {
   absl::optional<LoopSupport> support_;
   int iterations_ = 0;
   bool converged_ = true;
+  bool ran_full_kernels_ = false;
 };
 
 }  // namespace optimization
