@@ -81,11 +81,6 @@ absl::Status RunOne(const SweepOptions& options, const SweepGraph& dataset,
       optimization::AbsoluteTrajectoryError(result->poses, dataset.optimum);
   run->rpe = optimization::RelativePoseError(graph.edges, result->poses,
                                              dataset.optimum);
-  const optimization::LoopScore score =
-      optimization::ScoreLoops(optimization::Whiten(graph.edges), first_outlier,
-                               result->poses, dataset.optimum);
-  run->precision = score.precision;
-  run->recall = score.recall;
   run->truncated = result->truncated_chi2;
   run->selected_truncated = result->member.empty()
                                 ? result->truncated_chi2
@@ -111,6 +106,10 @@ absl::Status RunOne(const SweepOptions& options, const SweepGraph& dataset,
       optimization::WithNoiseScale(graph, result->applied_odometry_scale,
                                    result->applied_loop_scale)
           .edges);
+  const optimization::LoopScore score = optimization::ScoreLoops(
+      edges, first_outlier, result->accepted, dataset.optimum);
+  run->precision = score.precision;
+  run->recall = score.recall;
   std::vector<Pose2> right = dataset.optimum;
   optimization::PolishTruncated(edges, optimization::kChi2Gate, 30, &right,
                                 nullptr);

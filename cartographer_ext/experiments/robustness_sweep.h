@@ -28,9 +28,9 @@ struct SweepRun {
   double ate = 0.;         // metres, to the optimum without outliers
   double ate_truth = -1.;  // metres, where truth was given
   double rpe = 0.;         // square metres
-  double precision = 0., recall = 0.;
-  double truncated = 0.;           // TruncatedCost
-  double selected_truncated = 0.;  // auto: of the member chosen
+  double precision = 0., recall = 0.;  // of the loops in force
+  double truncated = 0.;               // TruncatedCost
+  double selected_truncated = 0.;      // auto: of the member chosen
   int iterations = 0;
   bool converged = false;
   // r_isam, milliseconds.

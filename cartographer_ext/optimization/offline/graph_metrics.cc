@@ -115,20 +115,30 @@ LoopScore ScoreLoops(const std::vector<WhitenedEdge>& edges,
                      const size_t first_outlier,
                      const std::vector<Pose2>& estimate,
                      const std::vector<Pose2>& reference) {
+  std::vector<bool> accepted;
+  for (const WhitenedEdge& edge : edges) {
+    accepted.push_back(Chi2(edge, estimate[edge.from], estimate[edge.to]) <
+                       kChi2Gate);
+  }
+  return ScoreLoops(edges, first_outlier, accepted, reference);
+}
+
+LoopScore ScoreLoops(const std::vector<WhitenedEdge>& edges,
+                     const size_t first_outlier,
+                     const std::vector<bool>& accepted,
+                     const std::vector<Pose2>& reference) {
   LoopScore score;
   for (size_t i = 0; i != edges.size(); ++i) {
     const WhitenedEdge& edge = edges[i];
     if (!edge.is_loop) continue;
-    const bool accepted =
-        Chi2(edge, estimate[edge.from], estimate[edge.to]) < kChi2Gate;
     const bool fits_reference =
         Chi2(edge, reference[edge.from], reference[edge.to]) < kChi2Gate;
-    score.accepted += accepted;
+    score.accepted += accepted[i];
     if (i < first_outlier) {
       ++score.true_total;
-      score.true_accepted += accepted;
+      score.true_accepted += accepted[i];
     } else {
-      score.false_accepted += accepted && !fits_reference;
+      score.false_accepted += accepted[i] && !fits_reference;
     }
   }
   if (score.accepted > 0) {

@@ -56,6 +56,10 @@ struct LoopScore {
 LoopScore ScoreLoops(const std::vector<WhitenedEdge>& edges,
                      size_t first_outlier, const std::vector<Pose2>& estimate,
                      const std::vector<Pose2>& reference);
+// The same for given decisions, one per edge.
+LoopScore ScoreLoops(const std::vector<WhitenedEdge>& edges,
+                     size_t first_outlier, const std::vector<bool>& accepted,
+                     const std::vector<Pose2>& reference);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

@@ -38,8 +38,6 @@ constexpr size_t kQuickKernels = 3;
 constexpr size_t kLargeGraph = 30000;
 // Share of the supported loops that a map in which they agree keeps.
 constexpr double kNearlyAll = 0.98;
-// Poses times loops from which on the supported loops are tried first.
-constexpr double kLargeSearch = 1e8;
 // Groups of a large graph that are forced in.
 constexpr int kMaxTrialsOnLargeGraph = 4;
 // A graph of fewer poses times loops is searched from all starts in any case.
@@ -201,10 +199,7 @@ bool Portfolio::IsSettled(const size_t first) {
   if (highest > best().cost * (1. + kSame) + kNearlySame * kChi2Gate) {
     return false;
   }
-  std::vector<Pose2> poses = best().poses;
-  if (FlipLoops(flip_options(), &solver_, &poses) > 0) {
-    Add(absl::StrCat(best().name, ", moved"), poses);
-  }
+  Improve();
   return RejectedContradict();
 }
 
@@ -232,13 +227,27 @@ bool Portfolio::RejectedContradict() {
   return possible <= kMaxPossible;
 }
 
+bool Portfolio::SettleByReplay() {
+  ReplayResult replay;
+  if (!Replay(graph_, options_.smoother, &replay).ok()) return false;
+  lowest_of_solvers_ =
+      std::min(lowest_of_solvers_, TruncatedCost(edges_, replay.poses));
+  Add("r_isam", replay.poses);
+  replayed_ = true;
+  const size_t first = members_.size();
+  AddKernels("r_isam, ", replay.poses, false);
+  return IsSettled(first);
+}
+
 void Portfolio::AddReplays() {
   ReplayResult replay;
-  if (Replay(graph_, options_.smoother, &replay).ok()) {
-    lowest_of_solvers_ =
-        std::min(lowest_of_solvers_, TruncatedCost(edges_, replay.poses));
-    Add("r_isam", replay.poses);
-    AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
+  if (replayed_ || Replay(graph_, options_.smoother, &replay).ok()) {
+    if (!replayed_) {
+      lowest_of_solvers_ =
+          std::min(lowest_of_solvers_, TruncatedCost(edges_, replay.poses));
+      Add("r_isam", replay.poses);
+      AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
+    }
     if (graph_.poses.size() > kLargeGraph) return;
     // The failures of a softer and of a harder epoch kernel differ.
     SmootherOptions softer = options_.smoother;
@@ -313,11 +322,13 @@ void Portfolio::Run() {
   const double size = static_cast<double>(graph_.poses.size()) * num_loops_;
   // What else there is would take minutes on a large graph.
   if (graph_.poses.size() > kLargeGraph && AddCertain()) return;
-  if (size > kLargeSearch && SettleBySupport()) return;
+  const bool large = size > options_.large_search;
+  if (large && SettleBySupport()) return;
   const size_t first = members_.size();
   RunQuick();
   const bool settled = IsSettled(first);
   if (settled && size > kSmallGraph) return;
+  if (large && SettleByReplay()) return;
   // Where many loops contradict a map that the robust kernels agree on, the
   // solvers that keep them all are far off.
   RunStarts(FullWork() <= kAffordableWork &&
@@ -330,11 +341,36 @@ void Portfolio::Run() {
   Improve();
 }
 
+void Portfolio::Soften() {
+  // Wide enough for what lies just beyond the gate to count.
+  for (const KernelType type : {KernelType::kDcs, KernelType::kGemanMcClure}) {
+    SolverOptions options;
+    options.kernel = DefaultKernel(type);
+    options.kernel.parameter = kChi2Gate;
+    std::vector<Pose2> poses = best().poses;
+    Count(solver_.Solve(options, &poses));
+    Add(absl::StrCat(best().name, ", softened"), std::move(poses));
+  }
+}
+
 void Portfolio::Improve() {
+  Soften();
   std::vector<Pose2> poses = best().poses;
   if (FlipLoops(flip_options(), &solver_, &poses) > 0) {
     Add(absl::StrCat(best().name, ", moved"), std::move(poses));
   }
+  // To the last digit, which decisions near the gate may depend on.
+  SolverOptions options;
+  options.edge_weights = Chi2OfEdges(edges_, best().poses);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    double& weight = options.edge_weights[i];
+    weight = !edges_[i].is_loop || weight < kChi2Gate ? 1. : 0.;
+  }
+  options.cost_tolerance = 1e-12;
+  options.max_iterations = 20;
+  poses = best().poses;
+  Count(solver_.Solve(options, &poses));
+  Add(best().name, std::move(poses));
 }
 
 void Portfolio::RunStarts(const bool with_full_kernels) {

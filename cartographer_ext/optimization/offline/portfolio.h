@@ -21,7 +21,8 @@
 //
 // A large graph is first solved with the loops that agree with others over
 // short stretches, where those do not fill the factor; if the kernels agree
-// from there and hardly any of these loops is rejected, the search ends.
+// from there and hardly any of these loops is rejected, the search ends. After
+// the quick solvers it also ends where the kernels agree from a replay.
 //
 // A graph of tens of thousands of poses is grown by the loops that are certain
 // (certain_growth.h) and polished, and that is all. Where a smaller one has too
@@ -47,6 +48,8 @@ namespace optimization {
 
 struct PortfolioOptions {
   int max_iterations = 200;  // of one solution
+  // Poses times loops of a graph that is called large below.
+  double large_search = 1e8;
   SmootherOptions smoother;
 };
 
@@ -64,7 +67,8 @@ class Portfolio {
   void Add(const std::string& name, std::vector<Pose2> poses);
 
   void Run();
-  // Single decisions of the best member, changed where that lowers its cost.
+  // The best member solved with softer kernels, single decisions changed where
+  // that lowers its cost, and solved to the last digit.
   void Improve();
 
   const std::vector<Member>& members() const { return members_; }
@@ -98,12 +102,16 @@ class Portfolio {
                       const std::vector<Pose2>& start);
   void AddGnc(const std::string& start_name, const std::vector<Pose2>& start);
   void AddReplays();
+  // From the best, kernels as wide as the gate.
+  void Soften();
   // False where no loop is certain.
   bool AddCertain();
   // 1 for the loops that several others agree with, and for odometry.
   std::vector<double> SupportedLoops();
   // Whether the supported loops alone lead to a map that ends the search.
   bool SettleBySupport();
+  // The same for the incremental replay.
+  bool SettleByReplay();
   void AddGrowth(const std::vector<Pose2>& start);
   // Work of one factorisation with these edges and with all, in
   // multiplications.
@@ -125,6 +133,7 @@ class Portfolio {
   int iterations_ = 0;
   bool converged_ = true;
   bool ran_full_kernels_ = false;
+  bool replayed_ = false;
 };
 
 }  // namespace optimization

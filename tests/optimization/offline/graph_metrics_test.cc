@@ -71,6 +71,12 @@ TEST(GraphMetricsTest, ScoresLoops) {
   EXPECT_EQ(score.accepted, 3);
   EXPECT_DOUBLE_EQ(score.recall, 0.5);
   EXPECT_NEAR(score.precision, 2. / 3., 1e-12);
+  // Decided otherwise: both true ones and the first outlier.
+  const LoopScore decided = ScoreLoops(
+      Whiten(edges), 2, {true, true, true, false, false}, kReference);
+  EXPECT_EQ(decided.true_accepted, 2);
+  EXPECT_EQ(decided.false_accepted, 1);
+  EXPECT_DOUBLE_EQ(decided.recall, 1.);
 }
 
 }  // namespace

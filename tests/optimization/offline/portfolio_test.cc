@@ -38,6 +38,29 @@ TEST(PortfolioTest, IsNeverAboveAnySolver) {
   }
 }
 
+// The supported loops lead to the map that the whole search finds.
+TEST(PortfolioTest, ALargeGraphIsSettledByLoopsThatAgree) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    test::GridWorld world = test::MakeGridWorld(500, 8, seed);
+    OutlierOptions outliers;
+    outliers.count = 60;
+    outliers.seed = seed;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    // As careful as the matrices of large public graphs.
+    for (PoseGraphEdge& edge : world.graph.edges) edge.information /= 100.;
+    PortfolioOptions options;
+    Portfolio whole(world.graph, options);
+    whole.Run();
+    options.large_search = 0.;
+    Portfolio settled(world.graph, options);
+    settled.Run();
+    EXPECT_LT(settled.members().size(), whole.members().size());
+    EXPECT_EQ(settled.members().front().name, "supported");
+    EXPECT_NEAR(settled.best().cost, whole.best().cost,
+                1e-6 * whole.best().cost);
+  }
+}
+
 TEST(PortfolioTest, KeepsAllLoopsOfACleanGraphFromAPoorStart) {
   test::GridWorld world = test::MakeWeakRing(3);
   Portfolio portfolio(world.graph, PortfolioOptions());
