@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "cartographer/mapping/2d/map_limits.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/loop_closure/verification/beam_agreement.h"
+#include "cartographer_ext/scan_matching/dropin/grid_rows.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -120,11 +122,18 @@ OccupancyView MakeOccupancyView(const Grid2D& grid) {
                                      limits.max().y() - resolution * num_y),
                      resolution, num_x, num_y);
   const bool is_tsdf = grid.GetGridType() == GridType::TSDF;
+  std::vector<float> costs(num_y);
   for (int i = 0; i < num_x; ++i) {
+    const int row = num_x - 1 - i;
+    scan_matching::CopyCosts(grid, 0, row, num_y, costs.data());
     for (int j = 0; j < num_y; ++j) {
-      const Eigen::Array2i cell(num_y - 1 - j, num_x - 1 - i);
-      if (!grid.IsKnown(cell)) continue;
-      const double cost = grid.GetCorrespondenceCost(cell);
+      const int column = num_y - 1 - j;
+      const double cost = costs[column];
+      // Unknown cells have the maximum cost, as known ones may.
+      if (costs[column] == grid.GetMaxCorrespondenceCost() &&
+          !grid.IsKnown(Eigen::Array2i(column, row))) {
+        continue;
+      }
       const bool occupied = is_tsdf ? std::abs(cost) < resolution : cost < 0.5;
       view.Set(i, j, occupied ? CellState::kOccupied : CellState::kFree);
     }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "Eigen/Core"
 #include "cartographer/mapping/2d/grid_2d.h"
@@ -17,6 +18,7 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/scan_matching/correlative_search/fast_correlative_search_2d.h"
+#include "cartographer_ext/scan_matching/dropin/grid_rows.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -46,10 +48,11 @@ inline SearchGrid2D ToSearchGrid(const cartographer::mapping::Grid2D& grid) {
   const float steps_per_score = 255.f / (result.max_score - result.min_score);
   result.values.resize(static_cast<size_t>(result.num_x) * result.num_y);
   uint8_t* value = result.values.data();
+  std::vector<float> costs(result.num_x);
   for (int y = 0; y != result.num_y; ++y) {
+    CopyCosts(grid, 0, y, result.num_x, costs.data());
     for (int x = 0; x != result.num_x; ++x) {
-      const float score =
-          1.f - std::abs(grid.GetCorrespondenceCost(Eigen::Array2i(x, y)));
+      const float score = 1.f - std::abs(costs[x]);
       // Rounds like lround: the sum is exact, and below 0 nothing is left.
       const double step =
           static_cast<double>((score - result.min_score) * steps_per_score);

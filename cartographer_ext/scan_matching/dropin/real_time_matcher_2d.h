@@ -18,6 +18,7 @@
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/scan_matching/correlative_search/real_time_search_2d.h"
 #include "cartographer_ext/scan_matching/dropin/fast_correlative_matcher_2d.h"
+#include "cartographer_ext/scan_matching/dropin/grid_rows.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -55,9 +56,7 @@ class ProbabilityGridView : public ProbabilityView {
     const SearchKernels& kernels = BestSearchKernels();
     for (int begin = x_begin; begin < x_end; begin += kAtOnce) {
       const int count = std::min(kAtOnce, x_end - begin);
-      for (int i = 0; i != count; ++i) {
-        costs[i] = grid_.GetCorrespondenceCost({begin + i, y});
-      }
+      CopyCosts(grid_, begin, y, count, costs);
       kernels.round_up(costs, kMaxProbability, kSteps, count, values);
       values += count;
     }

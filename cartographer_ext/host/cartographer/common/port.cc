@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <cstring>
+#include <vector>
 
 #include "glog/logging.h"
 
@@ -19,22 +20,37 @@ constexpr int kGzipWindowBits = 15 + 16;  // 16: gzip header and trailer
 }  // namespace
 
 void FastGzipString(const std::string& uncompressed, std::string* compressed) {
+  FastGzipPieces(
+      [&uncompressed](const std::function<void(const std::string&)>& write) {
+        write(uncompressed);
+      },
+      compressed);
+}
+
+void FastGzipPieces(
+    const std::function<void(const std::function<void(const std::string&)>&)>&
+        pieces,
+    std::string* const compressed) {
   z_stream stream;
   std::memset(&stream, 0, sizeof(stream));
   CHECK_EQ(deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kGzipWindowBits, 8,
                         Z_DEFAULT_STRATEGY),
            Z_OK);
-  // Sizes of zlib are 32 bits wide; deflateBound is safe for what fits.
-  CHECK_LT(uncompressed.size(), size_t{1} << 31) << "message too large";
-  const size_t old_size = compressed->size();
-  compressed->resize(old_size + deflateBound(&stream, uncompressed.size()));
-  stream.next_in =
-      reinterpret_cast<Bytef*>(const_cast<char*>(uncompressed.data()));
-  stream.avail_in = uncompressed.size();
-  stream.next_out = reinterpret_cast<Bytef*>(&(*compressed)[old_size]);
-  stream.avail_out = compressed->size() - old_size;
-  CHECK_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-  compressed->resize(old_size + stream.total_out);
+  std::vector<char> buffer(size_t{1} << 16);
+  const auto deflate_all = [&](const std::string& piece, const int flush) {
+    // Sizes of zlib are 32 bits wide.
+    CHECK_LT(piece.size(), size_t{1} << 31) << "message too large";
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(piece.data()));
+    stream.avail_in = static_cast<uInt>(piece.size());
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(buffer.data());
+      stream.avail_out = static_cast<uInt>(buffer.size());
+      CHECK_NE(deflate(&stream, flush), Z_STREAM_ERROR);
+      compressed->append(buffer.data(), buffer.size() - stream.avail_out);
+    } while (stream.avail_out == 0);
+  };
+  pieces([&](const std::string& piece) { deflate_all(piece, Z_NO_FLUSH); });
+  deflate_all("", Z_FINISH);
   deflateEnd(&stream);
 }
 

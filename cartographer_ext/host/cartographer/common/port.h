@@ -8,6 +8,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace cartographer {
@@ -31,6 +32,13 @@ inline int64 RoundToInt64(double x) { return std::llround(x); }
 
 // Appends one gzip member (fastest level, no name, no time) to `compressed`.
 void FastGzipString(const std::string& uncompressed, std::string* compressed);
+
+// The same of a text in pieces: `pieces` passes them to the function that it is
+// given.
+void FastGzipPieces(
+    const std::function<void(const std::function<void(const std::string&)>&)>&
+        pieces,
+    std::string* compressed);
 
 // Appends the content of a gzip file to `decompressed`. Broken data is fatal.
 void FastGunzipString(const std::string& compressed, std::string* decompressed);

@@ -32,6 +32,11 @@ bool ReadNumber(std::istream* const in, uint64* const number) {
   return true;
 }
 
+void WriteRecord(const std::string& compressed, std::ostream* const out) {
+  WriteNumber(compressed.size(), out);
+  out->write(compressed.data(), compressed.size());
+}
+
 }  // namespace
 
 ProtoStreamWriter::ProtoStreamWriter(const std::string& filename)
@@ -45,8 +50,14 @@ void ProtoStreamWriter::WriteProto(const google::protobuf::Message& proto) {
   CHECK(proto.SerializeToString(&data));
   std::string compressed;
   common::FastGzipString(data, &compressed);
-  WriteNumber(compressed.size(), &out_);
-  out_.write(compressed.data(), compressed.size());
+  WriteRecord(compressed, &out_);
+}
+
+void ProtoStreamWriter::WriteSerialized(
+    const std::function<void(const Write&)>& pieces) {
+  std::string compressed;
+  common::FastGzipPieces(pieces, &compressed);
+  WriteRecord(compressed, &out_);
 }
 
 bool ProtoStreamWriter::Close() {

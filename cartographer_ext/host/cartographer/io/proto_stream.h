@@ -22,6 +22,8 @@ class ProtoStreamWriter : public ProtoStreamWriterInterface {
   ProtoStreamWriter& operator=(const ProtoStreamWriter&) = delete;
 
   void WriteProto(const google::protobuf::Message& proto) override;
+  void WriteSerialized(
+      const std::function<void(const Write&)>& pieces) override;
   bool Close() override;
 
  private:

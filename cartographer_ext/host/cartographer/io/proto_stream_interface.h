@@ -3,6 +3,9 @@
 #ifndef CARTOGRAPHER_IO_PROTO_STREAM_INTERFACE_H_
 #define CARTOGRAPHER_IO_PROTO_STREAM_INTERFACE_H_
 
+#include <functional>
+#include <string>
+
 #include "google/protobuf/message.h"
 
 namespace cartographer {
@@ -13,6 +16,11 @@ class ProtoStreamWriterInterface {
   virtual ~ProtoStreamWriterInterface() {}
 
   virtual void WriteProto(const google::protobuf::Message& proto) = 0;
+  // Not part of Cartographer: a serialized message in pieces, which `pieces`
+  // passes to the function that it is given.
+  using Write = std::function<void(const std::string&)>;
+  virtual void WriteSerialized(
+      const std::function<void(const Write&)>& pieces) = 0;
   // Nothing may be written afterwards. False when something went wrong.
   virtual bool Close() = 0;
 };

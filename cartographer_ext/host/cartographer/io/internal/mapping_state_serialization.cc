@@ -4,6 +4,8 @@
 
 #include "Eigen/Geometry"
 #include "cartographer/common/time.h"
+#include "cartographer/io/internal/submap_record.h"
+#include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/mapping/proto/serialization.pb.h"
 #include "cartographer/sensor/fixed_frame_pose_data.h"
 #include "cartographer/sensor/imu_data.h"
@@ -64,6 +66,23 @@ SerializedData LandmarkRecord(
   return record;
 }
 
+void WriteSubmap(const mapping::SubmapId& id, const mapping::Submap& submap,
+                 ProtoStreamWriterInterface* const writer) {
+  const auto* const submap_2d = dynamic_cast<const mapping::Submap2D*>(&submap);
+  if (submap_2d != nullptr && submap_2d->grid() != nullptr &&
+      submap_2d->grid()->GetGridType() ==
+          mapping::GridType::PROBABILITY_GRID) {
+    writer->WriteSerialized([&](const ProtoStreamWriterInterface::Write& write) {
+      WriteSubmapRecord(id, *submap_2d, write);
+    });
+    return;
+  }
+  SerializedData record;
+  *record.mutable_submap() = submap.ToProto(/*include_grid_data=*/true);
+  id.ToProto(record.mutable_submap()->mutable_submap_id());
+  writer->WriteProto(record);
+}
+
 }  // namespace
 
 void WritePbStream(
@@ -95,11 +114,7 @@ void WritePbStream(
         !submap.data.submap->insertion_finished()) {
       continue;
     }
-    SerializedData record;
-    *record.mutable_submap() =
-        submap.data.submap->ToProto(/*include_grid_data=*/true);
-    submap.id.ToProto(record.mutable_submap()->mutable_submap_id());
-    writer->WriteProto(record);
+    WriteSubmap(submap.id, *submap.data.submap, writer);
   }
   for (const auto& node : pose_graph.GetTrajectoryNodes()) {
     SerializedData record;

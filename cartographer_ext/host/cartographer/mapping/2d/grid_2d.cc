@@ -40,8 +40,7 @@ Grid2D::Grid2D(const MapLimits& limits, const float min_correspondence_cost,
                ValueConversionTables* const conversion_tables)
     : limits_(limits),
       cells_(static_cast<size_t>(limits.cell_limits().num_x_cells) *
-                 limits.cell_limits().num_y_cells,
-             kUnknownCorrespondenceValue),
+             limits.cell_limits().num_y_cells),
       min_correspondence_cost_(min_correspondence_cost),
       max_correspondence_cost_(max_correspondence_cost),
       value_to_cost_(conversion_tables
@@ -86,12 +85,32 @@ void Grid2D::ComputeCroppedLimits(Eigen::Array2i* const offset,
   *limits = CellLimits(size.x(), size.y());
 }
 
+void Grid2D::CopyCorrespondenceCosts(const int x, const int y, const int count,
+                                     float* const costs) const {
+  const CellLimits& size = limits_.cell_limits();
+  const bool has_row = y >= 0 && y < size.num_y_cells;
+  // Inside are cells [begin, end) of the run.
+  const int begin = has_row ? std::min(count, std::max(0, -x)) : count;
+  const int end =
+      has_row ? std::max(begin, std::min(count, size.num_x_cells - x)) : count;
+  std::fill_n(costs, begin, max_correspondence_cost_);
+  std::fill(costs + end, costs + count, max_correspondence_cost_);
+  constexpr int kAtOnce = 64;
+  uint16 buffer[kAtOnce];
+  for (int i = begin; i < end; i += kAtOnce) {
+    const int num_cells = std::min(kAtOnce, end - i);
+    const uint16* const cells = CellRun(x + i, y, num_cells, buffer);
+    for (int k = 0; k != num_cells; ++k)
+      costs[i + k] = value_to_cost_[cells[k]];
+  }
+}
+
 void Grid2D::GrowLimits(const Eigen::Vector2f& point) {
   GrowLimits(point, {&cells_}, {kUnknownCorrespondenceValue});
 }
 
 void Grid2D::GrowLimits(const Eigen::Vector2f& point,
-                        const std::vector<std::vector<uint16>*>& grids,
+                        const std::vector<FlatCells*>& grids,
                         const std::vector<uint16>& grids_unknown_cell_values) {
   CHECK(update_indices_.empty()) << "a grid cannot grow during an update";
   CHECK(point.allFinite());
@@ -105,14 +124,20 @@ void Grid2D::GrowLimits(const Eigen::Vector2f& point,
     const Eigen::Vector2i margin(old_size.num_x_cells / 2,
                                  old_size.num_y_cells / 2);
     for (size_t i = 0; i != grids.size(); ++i) {
-      std::vector<uint16> grown(
-          static_cast<size_t>(new_size.num_x_cells) * new_size.num_y_cells,
-          grids_unknown_cell_values[i]);
+      CHECK_EQ(grids_unknown_cell_values[i], 0);
+      FlatCells grown(static_cast<size_t>(new_size.num_x_cells) *
+                      new_size.num_y_cells);
       auto old_row = grids[i]->cbegin();
       auto new_row = grown.begin() + margin.y() * new_size.num_x_cells;
       for (int row = 0; row != old_size.num_y_cells; ++row) {
-        std::copy_n(old_row, old_size.num_x_cells, new_row + margin.x());
-        old_row += old_size.num_x_cells;
+        // What is not written takes no memory.
+        const auto is_known = [](const uint16 cell) { return cell != 0; };
+        const auto old_end = old_row + old_size.num_x_cells;
+        const auto first = std::find_if(old_row, old_end, is_known);
+        auto last = old_end;
+        while (last != first && !is_known(*(last - 1))) --last;
+        std::copy(first, last, new_row + margin.x() + (first - old_row));
+        old_row = old_end;
         new_row += new_size.num_x_cells;
       }
       *grids[i] = std::move(grown);
@@ -127,11 +152,21 @@ void Grid2D::GrowLimits(const Eigen::Vector2f& point,
 }
 
 proto::Grid2D Grid2D::ToProto() const {
+  proto::Grid2D result = HeadToProto();
+  const CellLimits& size = limits_.cell_limits();
+  result.mutable_cells()->Reserve(size.num_x_cells * size.num_y_cells);
+  std::vector<uint16> buffer(size.num_x_cells);
+  for (int y = 0; y != size.num_y_cells; ++y) {
+    const uint16* const row = CellRun(0, y, size.num_x_cells, buffer.data());
+    result.mutable_cells()->Add(row, row + size.num_x_cells);
+  }
+  return result;
+}
+
+proto::Grid2D Grid2D::HeadToProto() const {
   CHECK(update_indices_.empty()) << "a grid cannot be saved during an update";
   proto::Grid2D result;
   *result.mutable_limits() = mapping::ToProto(limits_);
-  result.mutable_cells()->Reserve(static_cast<int>(cells_.size()));
-  for (const uint16 cell : cells_) result.add_cells(cell);
   if (!known_cells_box_.isEmpty()) {
     proto::Grid2D::CellBox* const box = result.mutable_known_cells_box();
     box->set_min_x(known_cells_box_.min().x());
@@ -154,11 +189,20 @@ MapLimits Grid2D::CroppedMapLimits(Eigen::Array2i* const offset) const {
       size};
 }
 
-std::vector<uint16> Grid2D::CropCells(const std::vector<uint16>& cells) const {
+void Grid2D::MakeCostCellsCompact() {
+  CHECK(update_indices_.empty())
+      << "a grid cannot be finished during an update";
+  if (is_compact()) return;
+  compact_cells_ = CompactCells(cells_, limits_.cell_limits());
+  cells_ = FlatCells();
+  update_indices_ = std::vector<int>();
+}
+
+FlatCells Grid2D::CropCells(const FlatCells& cells) const {
   Eigen::Array2i offset;
   CellLimits size;
   ComputeCroppedLimits(&offset, &size);
-  std::vector<uint16> cropped;
+  FlatCells cropped;
   cropped.reserve(static_cast<size_t>(size.num_x_cells) * size.num_y_cells);
   for (int row = 0; row != size.num_y_cells; ++row) {
     const auto begin =

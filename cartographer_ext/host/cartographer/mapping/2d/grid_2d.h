@@ -10,6 +10,7 @@
 #include "Eigen/Geometry"
 #include "cartographer/common/lua_parameter_dictionary.h"
 #include "cartographer/common/port.h"
+#include "cartographer/mapping/2d/cell_storage.h"
 #include "cartographer/mapping/2d/map_limits.h"
 #include "cartographer/mapping/grid_interface.h"
 #include "cartographer/mapping/probability_values.h"
@@ -49,7 +50,7 @@ class Grid2D : public GridInterface {
   // Unknown cells and those outside the grid have the maximum cost.
   float GetCorrespondenceCost(const Eigen::Array2i& cell_index) const {
     if (!limits_.Contains(cell_index)) return max_correspondence_cost_;
-    return value_to_cost_[cells_[ToFlatIndex(cell_index)]];
+    return value_to_cost_[CellValue(cell_index)];
   }
 
   virtual GridType GetGridType() const = 0;
@@ -58,7 +59,7 @@ class Grid2D : public GridInterface {
 
   bool IsKnown(const Eigen::Array2i& cell_index) const {
     return limits_.Contains(cell_index) &&
-           cells_[ToFlatIndex(cell_index)] != kUnknownCorrespondenceValue;
+           CellValue(cell_index) != kUnknownCorrespondenceValue;
   }
 
   // The smallest rectangle with all known cells: index of its first cell and
@@ -77,21 +78,45 @@ class Grid2D : public GridInterface {
       proto::SubmapQuery::Response::SubmapTexture* texture,
       transform::Rigid3d local_pose) const = 0;
 
-  // Not part of Cartographer's interface: the plain arrays, for this host's own
-  // inner loops. Cell (ix, iy) is at num_x_cells * iy + ix.
-  const uint16* cell_values() const { return cells_.data(); }
+  // Not part of Cartographer's interface, as is what follows. Keeps the cells
+  // in less memory; nothing may be changed afterwards.
+  virtual void MakeCompact() {}
+  // What ToProto says but for the cells.
+  virtual proto::Grid2D HeadToProto() const;
+
+  // For this host's own inner loops; the cells must lie inside the grid.
   const float* value_to_correspondence_cost() const { return value_to_cost_; }
+  bool is_compact() const { return cells_.data() == nullptr; }
+  uint16 CellValue(const Eigen::Array2i& cell_index) const {
+    return is_compact() ? compact_cells_.At(cell_index.x(), cell_index.y())
+                        : cells_[ToFlatIndex(cell_index)];
+  }
+  // The values of `count` cells from (x, y) on, with x growing; `buffer` has
+  // room for them and may be used.
+  const uint16* CellRun(const int x, const int y, const int count,
+                        uint16* const buffer) const {
+    return is_compact() ? compact_cells_.Run(x, y, count, buffer)
+                        : cells_.data() + ToFlatIndex({x, y});
+  }
+  // GetCorrespondenceCost of `count` cells, inside the grid or not.
+  void CopyCorrespondenceCosts(int x, int y, int count, float* costs) const;
 
  protected:
   // Grows several arrays of cells of this size together.
   void GrowLimits(const Eigen::Vector2f& point,
-                  const std::vector<std::vector<uint16>*>& grids,
+                  const std::vector<FlatCells*>& grids,
                   const std::vector<uint16>& grids_unknown_cell_values);
 
-  const std::vector<uint16>& correspondence_cost_cells() const {
+  // Fatal for a compact grid.
+  const FlatCells& correspondence_cost_cells() const {
+    CHECK(!is_compact());
     return cells_;
   }
-  std::vector<uint16>* mutable_correspondence_cost_cells() { return &cells_; }
+  FlatCells* mutable_correspondence_cost_cells() {
+    CHECK(!is_compact());
+    return &cells_;
+  }
+  void MakeCostCellsCompact();
   const std::vector<int>& update_indices() const { return update_indices_; }
   std::vector<int>* mutable_update_indices() { return &update_indices_; }
   const Eigen::AlignedBox2i& known_cells_box() const {
@@ -107,9 +132,9 @@ class Grid2D : public GridInterface {
   // Limits of the known rectangle, for a cropped grid or a picture of it.
   MapLimits CroppedMapLimits(Eigen::Array2i* offset) const;
   // The cells of the known rectangle out of an array of this grid's size.
-  std::vector<uint16> CropCells(const std::vector<uint16>& cells) const;
-  // What all kinds of grid have to say about their picture. `delta` maps a
-  // flat index of a known cell to a brightness in [-255, 255], 0 being gray.
+  FlatCells CropCells(const FlatCells& cells) const;
+  // What all kinds of grid have to say about their picture. `delta` maps the
+  // index of a known cell to a brightness in [-255, 255], 0 being gray.
   template <typename DeltaFunction>
   void DrawTexture(const DeltaFunction& delta,
                    const transform::Rigid3d& local_pose,
@@ -120,7 +145,8 @@ class Grid2D : public GridInterface {
                      proto::SubmapQuery::Response::SubmapTexture* t) const;
 
   MapLimits limits_;
-  std::vector<uint16> cells_;
+  FlatCells cells_;  // without memory in a compact grid
+  CompactCells compact_cells_;
   float min_correspondence_cost_;
   float max_correspondence_cost_;
   std::vector<int> update_indices_;      // flat indices of marked cells
@@ -144,7 +170,7 @@ void Grid2D::DrawTexture(
     if (IsKnown(cell_index)) {
       // Colours are premultiplied: value alone brightens what lies below,
       // alpha alone darkens it. Fully transparent is left to unknown cells.
-      const int brightness = delta(ToFlatIndex(cell_index));
+      const int brightness = delta(cell_index);
       value = static_cast<uint8>(brightness > 0 ? brightness : 0);
       alpha = static_cast<uint8>(brightness < 0 ? -brightness : 0);
       if (brightness == 0) alpha = 1;

@@ -24,7 +24,7 @@ ProbabilityGrid::ProbabilityGrid(const proto::Grid2D& proto,
 void ProbabilityGrid::SetProbability(const Eigen::Array2i& cell_index,
                                      const float probability) {
   const int index = ToFlatIndex(cell_index);
-  std::vector<uint16>& cells = *mutable_correspondence_cost_cells();
+  FlatCells& cells = *mutable_correspondence_cost_cells();
   CHECK_EQ(cells[index], kUnknownCorrespondenceValue) << "the cell is known";
   const float cost = ProbabilityToCorrespondenceCost(probability);
   cells[index] = CorrespondenceCostToValue(cost);
@@ -42,8 +42,8 @@ bool ProbabilityGrid::ApplyLookupTable(const Eigen::Array2i& cell_index,
   return true;
 }
 
-proto::Grid2D ProbabilityGrid::ToProto() const {
-  proto::Grid2D result = Grid2D::ToProto();
+proto::Grid2D ProbabilityGrid::HeadToProto() const {
+  proto::Grid2D result = Grid2D::HeadToProto();
   result.mutable_probability_grid_2d();
   return result;
 }
@@ -68,9 +68,9 @@ bool ProbabilityGrid::DrawToSubmapTexture(
     proto::SubmapQuery::Response::SubmapTexture* const texture,
     const transform::Rigid3d local_pose) const {
   DrawTexture(
-      [this](const int flat_index) {
+      [this](const Eigen::Array2i& cell_index) {
         const float probability = CorrespondenceCostToProbability(
-            ValueToCorrespondenceCost(correspondence_cost_cells()[flat_index]));
+            ValueToCorrespondenceCost(CellValue(cell_index)));
         return 128 - ProbabilityToLogOddsInteger(probability);
       },
       local_pose, texture);

@@ -35,12 +35,13 @@ class ProbabilityGrid : public Grid2D {
   // Unknown cells and those outside the grid have the lowest probability.
   float GetProbability(const Eigen::Array2i& cell_index) const {
     if (!limits().Contains(cell_index)) return kMinProbability;
-    return CorrespondenceCostToProbability(ValueToCorrespondenceCost(
-        correspondence_cost_cells()[ToFlatIndex(cell_index)]));
+    return CorrespondenceCostToProbability(
+        ValueToCorrespondenceCost(CellValue(cell_index)));
   }
 
-  proto::Grid2D ToProto() const override;
+  proto::Grid2D HeadToProto() const override;
   std::unique_ptr<Grid2D> ComputeCroppedGrid() const override;
+  void MakeCompact() override { MakeCostCellsCompact(); }
   bool DrawToSubmapTexture(proto::SubmapQuery::Response::SubmapTexture* texture,
                            transform::Rigid3d local_pose) const override;
 

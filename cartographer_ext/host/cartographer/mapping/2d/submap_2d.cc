@@ -98,7 +98,10 @@ void Submap2D::UpdateFromProto(const proto::Submap& proto) {
 
 // All but the pose, which does not change.
 void Submap2D::ReadState(const proto::Submap2D& proto) {
-  if (proto.has_grid()) grid_ = GridFromProto(proto.grid(), conversion_tables_);
+  if (proto.has_grid()) {
+    grid_ = GridFromProto(proto.grid(), conversion_tables_);
+    if (proto.finished()) grid_->MakeCompact();
+  }
   set_insertion_finished(proto.finished());
   set_num_range_data(proto.num_range_data());
 }
@@ -123,7 +126,9 @@ void Submap2D::InsertRangeData(
 void Submap2D::Finish() {
   CHECK(grid_ != nullptr);
   CHECK(!insertion_finished());
-  grid_ = grid_->ComputeCroppedGrid();
+  std::unique_ptr<Grid2D> cropped = grid_->ComputeCroppedGrid();
+  cropped->MakeCompact();
+  grid_ = std::move(cropped);
   set_insertion_finished(true);
 }
 

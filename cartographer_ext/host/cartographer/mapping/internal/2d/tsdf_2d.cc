@@ -107,7 +107,8 @@ bool TSDF2D::DrawToSubmapTexture(
     const transform::Rigid3d local_pose) const {
   // Dark near surfaces, bright far from them, gray where little is known.
   DrawTexture(
-      [this](const int flat_index) {
+      [this](const Eigen::Array2i& cell_index) {
+        const int flat_index = ToFlatIndex(cell_index);
         const float distance = std::abs(value_converter_.ValueToTSD(
             correspondence_cost_cells()[flat_index]));
         const float certainty =

@@ -45,7 +45,7 @@ class TSDF2D : public Grid2D {
  private:
   ValueConversionTables* conversion_tables_;
   TSDValueConverter value_converter_;
-  std::vector<uint16> weight_cells_;  // same layout as the distances
+  FlatCells weight_cells_;  // same layout as the distances
 };
 
 }  // namespace mapping

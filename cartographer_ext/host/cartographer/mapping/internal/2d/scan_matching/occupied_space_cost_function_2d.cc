@@ -58,7 +58,7 @@ class OccupiedSpaceCostFunction2D : public ceres::CostFunction {
       : scaling_factor_(scaling_factor),
         point_cloud_(point_cloud),
         limits_(grid.limits()),
-        cells_(grid.cell_values()),
+        grid_(grid),
         value_to_cost_(grid.value_to_correspondence_cost()) {
     set_num_residuals(static_cast<int>(point_cloud.size()));
     mutable_parameter_block_sizes()->push_back(3);
@@ -152,8 +152,9 @@ class OccupiedSpaceCostFunction2D : public ceres::CostFunction {
     for (int r = 0; r != 4; ++r) {
       double line[4];
       if (all_inside) {
+        uint16 buffer[4];
         const uint16* const cells =
-            cells_ + num_columns * (first_row + r) + first_column;
+            grid_.CellRun(first_column, first_row + r, 4, buffer);
         for (int c = 0; c != 4; ++c) line[c] = value_to_cost_[cells[c]];
       } else {
         for (int c = 0; c != 4; ++c) {
@@ -173,14 +174,13 @@ class OccupiedSpaceCostFunction2D : public ceres::CostFunction {
 
   double CostAt(const int row, const int column) const {
     if (!limits_.Contains({column, row})) return kMaxCorrespondenceCost;
-    return value_to_cost_[cells_[limits_.cell_limits().num_x_cells * row +
-                                 column]];
+    return value_to_cost_[grid_.CellValue({column, row})];
   }
 
   const double scaling_factor_;
   const sensor::PointCloud& point_cloud_;
   const MapLimits& limits_;
-  const uint16* const cells_;
+  const Grid2D& grid_;
   const float* const value_to_cost_;
 };
 

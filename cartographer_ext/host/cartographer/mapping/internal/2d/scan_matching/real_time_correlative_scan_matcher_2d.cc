@@ -46,20 +46,18 @@ float MeanCloseness(const TSDF2D& tsdf, const DiscreteScan2D& scan,
 void ReadSquare(const ProbabilityGrid& grid, const int x, const int y,
                 const int size, float* probabilities) {
   const CellLimits& limits = grid.limits().cell_limits();
-  const float* const costs = grid.value_to_correspondence_cost();
-  if (x >= 0 && y >= 0 && x <= limits.num_x_cells - size &&
-      y <= limits.num_y_cells - size) {
-    const uint16* row = grid.cell_values() + limits.num_x_cells * y + x;
-    for (int j = 0; j != size; ++j, row += limits.num_x_cells) {
+  const bool is_inside = x >= 0 && y >= 0 && x <= limits.num_x_cells - size &&
+                         y <= limits.num_y_cells - size;
+  for (int j = 0; j != size; ++j, probabilities += size) {
+    if (is_inside) {
+      grid.CopyCorrespondenceCosts(x, y + j, size, probabilities);
       for (int i = 0; i != size; ++i) {
-        *probabilities++ = CorrespondenceCostToProbability(costs[row[i]]);
+        probabilities[i] = CorrespondenceCostToProbability(probabilities[i]);
       }
-    }
-    return;
-  }
-  for (int j = 0; j != size; ++j) {
-    for (int i = 0; i != size; ++i) {
-      *probabilities++ = grid.GetProbability({x + i, y + j});
+    } else {
+      for (int i = 0; i != size; ++i) {
+        probabilities[i] = grid.GetProbability({x + i, y + j});
+      }
     }
   }
 }
