@@ -45,6 +45,8 @@ struct LaserScan {
   Pose2 laser_pose;             // (robot <- laser)
   // Instead of ranges, from lasers that deliver points: in the laser frame.
   std::vector<Eigen::Vector2d> points;
+  // Of each point, seconds before `time` (not above 0); empty: all at once.
+  std::vector<float> point_times;
   // Every echo of beam i, for multi-echo lasers; `ranges` has the first.
   std::vector<std::vector<float>> echoes;
   // CARMEN logs carry the robot's odometry pose (odometry <- robot) inside the

@@ -36,14 +36,15 @@ cartographer::sensor::TimedPointCloudData ToTimedPointCloudData(
         std::min(0., (static_cast<double>(i) - last) * scan.time_increment));
     data.ranges.push_back(timed_point);
   }
-  for (const Eigen::Vector2d& in_laser : scan.points) {
+  for (size_t i = 0; i < scan.points.size(); ++i) {
+    const Eigen::Vector2d& in_laser = scan.points[i];
     const double range = in_laser.norm();
     if (!(range >= nearest && range <= furthest)) continue;
     const Eigen::Vector2d point = scan.laser_pose * in_laser;
     cartographer::sensor::TimedRangefinderPoint timed_point;
     timed_point.position = Eigen::Vector3f(static_cast<float>(point.x()),
                                            static_cast<float>(point.y()), 0.f);
-    timed_point.time = 0.f;
+    timed_point.time = scan.point_times.empty() ? 0.f : scan.point_times[i];
     data.ranges.push_back(timed_point);
   }
   return data;

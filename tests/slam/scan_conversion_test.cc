@@ -67,6 +67,17 @@ TEST(ScanConversionTest, TimesCountBackFromTheLastBeam) {
   EXPECT_FLOAT_EQ(data.ranges[2].time, -0.01f);
 }
 
+TEST(ScanConversionTest, PointsKeepTheirTimes) {
+  io::LaserScan scan;
+  scan.range_max = 10.;
+  scan.points = {{1., 0.}, {0., 20.}, {0., 2.}};
+  scan.point_times = {-0.1f, -0.05f, 0.f};
+  const auto data = ToTimedPointCloudData(scan, 0., 10.);
+  ASSERT_EQ(data.ranges.size(), 2u);
+  EXPECT_EQ(data.ranges[0].time, -0.1f);
+  EXPECT_EQ(data.ranges[1].time, 0.f);
+}
+
 TEST(HostTypesTest, StampsSurviveTheRoundTrip) {
   for (const io::TimeNs time : {0LL, 90239599000LL, 976052857337530000LL}) {
     EXPECT_EQ(FromHostTime(ToHostTime(time)), time);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/ros/ros_messages.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -16,6 +17,7 @@ constexpr double kMaxCoordinate = 1e7;
 constexpr uint32_t kMaxTransforms = 10000;
 constexpr uint32_t kMaxEchoes = 64;
 constexpr uint64_t kMaxPoints = 1000000;
+constexpr double kMaxPointTime = 1.;  // seconds
 
 // Reads fields in their order; once something is missing, `ok` stays false.
 class Decoder {
@@ -149,6 +151,49 @@ class Decoder {
   bool ok_ = true;
 };
 
+// Types of the fields of a point cloud.
+constexpr uint8_t kInt32 = 5, kUint32 = 6, kFloat32 = 7, kFloat64 = 8;
+
+// The field of a point cloud that says when a point was measured.
+struct PointTime {
+  static bool IsName(const std::string& name) {
+    return name == "t" || name == "time" || name == "timestamp" || name == "time_stamp" || name == "time_offset" ||
+           name == "offset_time";
+  }
+  // Bytes; 0 for types that hold no time.
+  static size_t Size(const uint8_t type) {
+    return type == kFloat64 ? 8 : type == kInt32 || type == kUint32 || type == kFloat32 ? 4 : 0;
+  }
+  // Seconds after `stamp`.
+  double Seconds(const char* const bytes, const TimeNs stamp) const {
+    // Seconds, and from where on they are nanoseconds, since 1970.
+    constexpr double kAbsoluteSeconds = 1e6, kAbsoluteNanoseconds = 1e15;
+    switch (type) {
+      case kInt32:
+        return 1e-9 * Read<int32_t>(bytes);
+      case kUint32:
+        return 1e-9 * Read<uint32_t>(bytes);
+      case kFloat32:
+        return Read<float>(bytes);
+      default:
+        break;
+    }
+    const double value = Read<double>(bytes);
+    if (!(std::abs(value) >= kAbsoluteSeconds)) return value;
+    return std::abs(value) < kAbsoluteNanoseconds ? value - 1e-9 * static_cast<double>(stamp)
+                                                  : 1e-9 * (value - static_cast<double>(stamp));
+  }
+  template <typename T>
+  static T Read(const char* const bytes) {
+    T value;
+    std::memcpy(&value, bytes, sizeof(T));
+    return value;
+  }
+
+  int64_t offset = -1;
+  uint8_t type = 0;
+};
+
 // The fields in front of the ranges.
 void TakeScanHead(Decoder* decoder, RosHeader* header, LaserScan* scan) {
   *header = decoder->TakeHeader();
@@ -208,20 +253,20 @@ bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosH
   return decoder.AtEnd() && FinishScan(*header, scan);
 }
 
-bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* header,
-                       std::vector<Eigen::Vector3d>* points) {
-  constexpr uint8_t kFloat32 = 7;
+bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* header, RosPointCloud* const cloud) {
   Decoder decoder(data, encoding);
   *header = decoder.TakeHeader();
   const uint64_t height = decoder.Take<uint32_t>(), width = decoder.Take<uint32_t>();
   const uint32_t num_fields = decoder.TakeCount(13);
   int64_t offsets[3] = {-1, -1, -1};
+  PointTime time;
   for (uint32_t i = 0; i < num_fields && decoder.ok(); ++i) {
     const std::string name = decoder.TakeString();
     const uint32_t offset = decoder.Take<uint32_t>();
     const uint8_t type = decoder.Take<uint8_t>();
     decoder.Take<uint32_t>();  // elements
     if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z' && type == kFloat32) offsets[name[0] - 'x'] = offset;
+    if (PointTime::IsName(name) && PointTime::Size(type) > 0) time = PointTime{offset, type};
   }
   const bool big_endian = decoder.Take<uint8_t>() != 0;
   const uint64_t point_step = decoder.Take<uint32_t>(), row_step = decoder.Take<uint32_t>();
@@ -234,16 +279,22 @@ bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* 
   for (const int64_t offset : offsets) {
     if (offset < 0 || static_cast<uint64_t>(offset) + sizeof(float) > point_step) return false;
   }
-  points->clear();
+  const bool timed = time.offset >= 0 && static_cast<uint64_t>(time.offset) + PointTime::Size(time.type) <= point_step;
+  *cloud = RosPointCloud();
   for (uint64_t row = 0; row < height; ++row) {
     for (uint64_t column = 0; column < width; ++column) {
       const char* const point = bytes.data() + row * row_step + column * point_step;
       float xyz[3];
       for (int i = 0; i < 3; ++i) std::memcpy(&xyz[i], point + offsets[i], sizeof(float));
       const Eigen::Vector3d position(xyz[0], xyz[1], xyz[2]);
-      if ((position.array().abs() <= kMaxCoordinate).all()) points->push_back(position);
+      if (!(position.array().abs() <= kMaxCoordinate).all()) continue;
+      cloud->points.push_back(position);
+      if (timed) cloud->times.push_back(time.Seconds(point + time.offset, header->time));
     }
   }
+  const bool plausible = std::all_of(cloud->times.begin(), cloud->times.end(),
+                                     [](const double seconds) { return std::abs(seconds) <= kMaxPointTime; });
+  if (!plausible) cloud->times.clear();
   return true;
 }
 

@@ -57,6 +57,13 @@ struct RosTransform {
   Eigen::Isometry3d pose;   // (parent <- child)
 };
 
+struct RosPointCloud {
+  std::vector<Eigen::Vector3d> points;
+  // Of each point, seconds after the stamp of the message. Empty where it has
+  // none, or where they are not within a second of the stamp.
+  std::vector<double> times;
+};
+
 // All return false for messages that are too short, too long, or hold numbers
 // that make no sense (poses that are not finite, no beams or more than
 // CarmenLine::kMaxReadings, beams over more than a full turn).
@@ -67,9 +74,11 @@ bool DecodeLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* he
 bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
                               LaserScan* scan);
 // The points with finite coordinates, in the frame of the sensor; the fields x,
-// y and z have to be float32 and little endian.
-bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* header,
-                       std::vector<Eigen::Vector3d>* points);
+// y and z have to be float32 and little endian. Times are taken from a field
+// "t", "time", "timestamp", "time_stamp", "time_offset" or "offset_time":
+// nanoseconds if it is an integer, seconds if it is a float, after the stamp of
+// the message or, if a double, absolute (seconds or nanoseconds).
+bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* header, RosPointCloud* cloud);
 // `pose` is (header.frame <- child_frame).
 bool DecodeOdometry(RosEncoding encoding, absl::string_view data, RosHeader* header,
                     std::string* child_frame, Eigen::Isometry3d* pose);

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "absl/memory/memory.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/io/reorder.h"
 #include "cartographer_ext/io/ros/ros_container.h"
+#include "cartographer_ext/io/ros/ros_event.h"
 #include "cartographer_ext/io/ros/ros_frames.h"
 
 namespace cartographer_ext {
@@ -34,20 +34,6 @@ Pose2 Planar(const Eigen::Isometry3d& pose) {
                std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)));
 }
 
-enum Rank { kOdometryRank, kImuRank, kScanRank, kNumRanks };
-
-// A message of one of the chosen topics, not yet in the robot's frame.
-struct Decoded {
-  Rank rank = kOdometryRank;
-  SensorEvent event;
-  std::string frame;           // of the sensor, or the child of odometry
-  Eigen::Isometry3d odometry;  // (odometry <- frame)
-  std::vector<Eigen::Vector3d> points;  // of a scan, in the frame
-};
-
-// The frame of REP 105, maybe within the name space of a robot.
-bool IsOdometryFrame(const std::string& frame) { return frame == "odom" || absl::EndsWith(frame, "/odom"); }
-
 // Whether points lie in a plane of the sensor, as those of a planar laser do.
 bool IsPlanar(const std::vector<Eigen::Vector3d>& points) {
   constexpr double kMaxHeightSigma = 0.1;
@@ -64,7 +50,8 @@ class RosRecording : public SensorSource {
  public:
   RosRecording(const std::string& filename, std::unique_ptr<RosContainer> container,
                const SensorSourceOptions& options)
-      : filename_(filename), container_(std::move(container)), tracking_frame_(options.tracking_frame) {
+      : filename_(filename), container_(std::move(container)), tracking_frame_(options.tracking_frame),
+        decoder_(container_->encoding(), &topics_, &timing_) {
     if (!tracking_frame_.empty() && tracking_frame_[0] == '/') {
       tracking_frame_.erase(0, 1);
     }
@@ -89,16 +76,12 @@ class RosRecording : public SensorSource {
   void CountEvents(const std::vector<EventKey>& keys);
   void ChooseTrackingFrame();
   void CheckFrames();
-  bool Decode(const RosMessage& message, Decoded* decoded);
-  bool DecodeScan(const RosMessage& message, RosHeader* header, Decoded* decoded);
-  // The odometry among the transforms of a message; false where there is none.
-  bool FindOdometry(const RosMessage& message, Decoded* decoded) const;
   // Reads all messages once: what there is, and in which order.
   absl::Status ReadKeys(std::vector<EventKey>* keys);
   // Adds the transforms of a message to the frames.
   bool TakeTransforms(const RosMessage& message);
   // Moves the event into the robot's frame.
-  void Place(Decoded* decoded);
+  void Place(RosEvent* decoded);
   // Reads one message on.
   absl::Status Advance();
   Eigen::Isometry3d SensorPose(const std::string& frame) const {
@@ -109,12 +92,6 @@ class RosRecording : public SensorSource {
     return topics_.scans.count(topic) > 0 || topic == topics_.odometry ||
            topic == topics_.imu;
   }
-  Rank RankOf(const std::string& event_topic) const {
-    return topics_.scans.count(event_topic) > 0 ? kScanRank
-           : event_topic == topics_.imu         ? kImuRank
-                                                : kOdometryRank;
-  }
-
   std::set<std::string> EventTopics() const {
     std::set<std::string> topics = {topics_.odometry, topics_.imu};
     for (const auto& scan : topics_.scans) topics.insert(scan.first);
@@ -128,8 +105,11 @@ class RosRecording : public SensorSource {
   std::string tracking_frame_;
   SensorSourceInfo info_;
   ChosenTopics topics_;
+  ScanTiming timing_;
+  RosEventDecoder decoder_;
   RosFrames frames_;
   std::set<std::string> seen_frames_[kNumRanks];
+  std::map<std::string, int64_t> damaged_;  // messages of each topic
   int64_t num_clouds_ = 0, num_planar_clouds_ = 0;
 
   ReorderPlan reordering_;
@@ -159,72 +139,6 @@ absl::Status RosRecording::Open(const SensorSourceOptions& options) {
   return absl::OkStatus();
 }
 
-bool RosRecording::Decode(const RosMessage& message, Decoded* decoded) {
-  const RosEncoding encoding = container_->encoding();
-  RosHeader header;
-  bool valid;
-  decoded->points.clear();
-  if (topics_.transforms.count(message.topic) > 0) return FindOdometry(message, decoded);
-  decoded->rank = RankOf(message.topic);
-  if (decoded->rank == kScanRank) {
-    valid = DecodeScan(message, &header, decoded);
-  } else if (decoded->rank == kOdometryRank) {
-    OdometryReading reading;
-    valid = DecodeOdometry(encoding, message.data, &header, &decoded->frame, &decoded->odometry);
-    reading.time = header.time;
-    decoded->event = reading;
-  } else {
-    ImuReading reading;
-    valid = DecodeImu(encoding, message.data, &header, &reading);
-    decoded->frame = header.frame;
-    decoded->event = reading;
-  }
-  if (valid && header.time == 0) {
-    const TimeNs received = message.received;
-    absl::visit([received](auto& event) { event.time += received; }, decoded->event);
-  }
-  return valid;
-}
-
-bool RosRecording::DecodeScan(const RosMessage& message, RosHeader* header, Decoded* decoded) {
-  const RosEncoding encoding = container_->encoding();
-  LaserScan scan;
-  bool valid = false;
-  switch (topics_.scans.at(message.topic)) {
-    case RosScanType::kLaserScan:
-      valid = DecodeLaserScan(encoding, message.data, header, &scan);
-      break;
-    case RosScanType::kMultiEchoLaserScan:
-      valid = DecodeMultiEchoLaserScan(encoding, message.data, header, &scan);
-      break;
-    case RosScanType::kPointCloud2:
-      valid = DecodePointCloud2(encoding, message.data, header, &decoded->points);
-      scan.time = header->time;
-      scan.range_max = std::numeric_limits<double>::infinity();
-      break;
-  }
-  if (topics_.scans.size() > 1) scan.sensor_id = message.topic;
-  decoded->frame = header->frame;
-  decoded->event = std::move(scan);
-  return valid;
-}
-
-bool RosRecording::FindOdometry(const RosMessage& message, Decoded* decoded) const {
-  std::vector<RosTransform> transforms;
-  if (!DecodeTransforms(container_->encoding(), message.data, &transforms)) return false;
-  for (const RosTransform& transform : transforms) {
-    if (!IsOdometryFrame(transform.header.frame)) continue;
-    OdometryReading reading;
-    reading.time = transform.header.time == 0 ? message.received : transform.header.time;
-    decoded->rank = kOdometryRank;
-    decoded->event = reading;
-    decoded->frame = transform.child_frame;
-    decoded->odometry = transform.pose;
-    return true;
-  }
-  return false;
-}
-
 bool RosRecording::TakeTransforms(const RosMessage& message) {
   std::vector<RosTransform> transforms;
   if (!DecodeTransforms(container_->encoding(), message.data, &transforms)) return false;
@@ -237,9 +151,11 @@ absl::Status RosRecording::ReadKeys(std::vector<EventKey>* keys) {
   topics.insert(topics_.transforms.begin(), topics_.transforms.end());
   const absl::Status rewound = container_->Rewind(topics);
   if (!rewound.ok()) return rewound;
-  std::map<std::string, int64_t> damaged;
+  keys->clear();
+  info_.num_out_of_order = 0;
+  damaged_.clear();
   std::map<std::string, TimeNs> last;
-  Decoded decoded;
+  RosEvent decoded;
   RosMessage message;
   while (true) {
     const absl::StatusOr<bool> more = container_->Next(&message);
@@ -247,18 +163,19 @@ absl::Status RosRecording::ReadKeys(std::vector<EventKey>* keys) {
     if (!*more) break;
     const bool is_event = IsEventTopic(message.topic);
     if (!is_event) {
-      if (!TakeTransforms(message)) ++damaged[message.topic];
+      if (!TakeTransforms(message)) ++damaged_[message.topic];
       if (!topics_.odometry_from_transforms) continue;
     }
-    if (!Decode(message, &decoded)) {
-      if (is_event) ++damaged[message.topic];
+    if (!decoder_.Decode(message, &decoded)) {
+      if (is_event) ++damaged_[message.topic];
       continue;
     }
     std::set<std::string>& frames = seen_frames_[decoded.rank];
     if (frames.size() < kMaxSensorFrames) frames.insert(decoded.frame);
-    if (!decoded.points.empty()) {
+    if (decoded.rank == kScanRank) AddScanTiming(message.topic, decoded, &timing_);
+    if (!decoded.cloud.points.empty()) {
       ++num_clouds_;
-      if (IsPlanar(decoded.points)) ++num_planar_clouds_;
+      if (IsPlanar(decoded.cloud.points)) ++num_planar_clouds_;
     }
     const TimeNs time = EventTime(decoded.event);
     const auto known = last.emplace(message.topic, time);
@@ -269,10 +186,6 @@ absl::Status RosRecording::ReadKeys(std::vector<EventKey>* keys) {
       return absl::OutOfRangeError(absl::StrCat(filename_, ": more than ", kMaxEvents, " messages"));
     }
   }
-  for (const auto& topic : damaged) {
-    info_.warnings.push_back(
-        absl::StrCat(filename_, ": ", topic.second, " messages on ", topic.first, " are damaged or have values that are no numbers; skipped"));
-  }
   return absl::OkStatus();
 }
 
@@ -280,6 +193,14 @@ absl::Status RosRecording::Survey() {
   std::vector<EventKey> keys;
   absl::Status status = ReadKeys(&keys);
   if (!status.ok()) return status;
+  timing_.Judge();
+  for (const std::string& warning : timing_.Warnings()) info_.warnings.push_back(absl::StrCat(filename_, ": ", warning));
+  // Stamps of scans without the time that their beams claim to take.
+  if (timing_.AnyImpossible() && !(status = ReadKeys(&keys)).ok()) return status;
+  for (const auto& topic : damaged_) {
+    info_.warnings.push_back(
+        absl::StrCat(filename_, ": ", topic.second, " messages on ", topic.first, " are damaged or have values that are no numbers; skipped"));
+  }
   if (topics_.odometry_from_transforms) {
     if (frames_.HasMovingChild(seen_frames_[kOdometryRank])) {
       info_.warnings.push_back(absl::StrCat(filename_, ": no odometry messages; taking the transforms from \"",
@@ -336,7 +257,7 @@ void RosRecording::CountEvents(const std::vector<EventKey>& keys) {
 
 void RosRecording::ChooseTrackingFrame() {
   if (frames_.Knows(tracking_frame_)) return;
-  for (const Rank rank : {kOdometryRank, kScanRank}) {
+  for (const RosRank rank : {kOdometryRank, kScanRank}) {
     const std::set<std::string>& seen = seen_frames_[rank];
     if (seen.empty() || seen.count(tracking_frame_) > 0) continue;
     info_.warnings.push_back(
@@ -374,7 +295,7 @@ void RosRecording::CheckFrames() {
   }
 }
 
-void RosRecording::Place(Decoded* decoded) {
+void RosRecording::Place(RosEvent* decoded) {
   const Eigen::Isometry3d sensor = SensorPose(decoded->frame);
   if (decoded->rank == kScanRank) {
     LaserScan& scan = absl::get<LaserScan>(decoded->event);
@@ -385,7 +306,7 @@ void RosRecording::Place(Decoded* decoded) {
       scan.angle_increment = -scan.angle_increment;
     }
     const Pose2 laser_from_robot = scan.laser_pose.Inverse();
-    for (const Eigen::Vector3d& point : decoded->points) {
+    for (const Eigen::Vector3d& point : decoded->cloud.points) {
       scan.points.push_back(laser_from_robot * Eigen::Vector2d((sensor * point).head<2>()));
     }
   } else if (decoded->rank == kOdometryRank) {
@@ -406,8 +327,8 @@ absl::Status RosRecording::Advance() {
     at_end_ = true;
     return absl::OkStatus();
   }
-  Decoded decoded;
-  if (!Decode(message, &decoded)) return absl::OkStatus();
+  RosEvent decoded;
+  if (!decoder_.Decode(message, &decoded)) return absl::OkStatus();
   const EventKey key{EventTime(decoded.event), decoded.rank, ordinal_++};
   if (next_dropped_ < reordering_.dropped.size() && reordering_.dropped[next_dropped_] == key.ordinal) {
     ++next_dropped_;

@@ -148,23 +148,60 @@ TEST(RosMessagesTest, PointCloud2) {
     const std::string data = test::PointCloud2Bytes(
         encoding, 10, "/lidar", {{1.f, 2.f, 0.5f}, {nan, nan, nan}, {-3.f, 0.f, 0.5f}});
     RosHeader header;
-    std::vector<Eigen::Vector3d> points;
-    ASSERT_TRUE(DecodePointCloud2(encoding, data, &header, &points));
+    RosPointCloud cloud;
+    ASSERT_TRUE(DecodePointCloud2(encoding, data, &header, &cloud));
     EXPECT_EQ(header.time, 10000000000);
     EXPECT_EQ(header.frame, "lidar");
     // Points without a return are left out.
-    ASSERT_EQ(points.size(), 2u);
-    EXPECT_EQ(points[0], Eigen::Vector3d(1., 2., 0.5));
-    EXPECT_EQ(points[1], Eigen::Vector3d(-3., 0., 0.5));
+    ASSERT_EQ(cloud.points.size(), 2u);
+    EXPECT_TRUE(cloud.times.empty());
+    EXPECT_EQ(cloud.points[0], Eigen::Vector3d(1., 2., 0.5));
+    EXPECT_EQ(cloud.points[1], Eigen::Vector3d(-3., 0., 0.5));
     for (size_t size = 0; size + 8 < data.size(); ++size) {
-      EXPECT_FALSE(DecodePointCloud2(encoding, data.substr(0, size), &header, &points));
+      EXPECT_FALSE(DecodePointCloud2(encoding, data.substr(0, size), &header, &cloud));
     }
     test::ForEachMutation(data, [encoding](const std::string& damaged) {
       RosHeader damaged_header;
-      std::vector<Eigen::Vector3d> damaged_points;
-      DecodePointCloud2(encoding, damaged, &damaged_header, &damaged_points);
+      RosPointCloud damaged_cloud;
+      DecodePointCloud2(encoding, damaged, &damaged_header, &damaged_cloud);
     });
   }
+}
+
+template <typename T>
+std::string Raw(const T value) {
+  return test::Bytes().Add(value).data();
+}
+
+std::vector<double> PointTimes(const std::string& field, const uint8_t type, const std::vector<std::string>& times) {
+  RosHeader header;
+  RosPointCloud cloud;
+  const std::string data =
+      test::PointCloud2Bytes(RosEncoding::kRos1, 1000000010, "lidar", {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.f}}, field, type, times);
+  EXPECT_TRUE(DecodePointCloud2(RosEncoding::kRos1, data, &header, &cloud));
+  EXPECT_EQ(cloud.points.size(), 2u);
+  return cloud.times;
+}
+
+TEST(RosMessagesTest, TimesOfPoints) {
+  constexpr uint8_t kUint16 = 4, kInt32 = 5, kUint32 = 6, kFloat32 = 7, kFloat64 = 8;
+  using ::testing::DoubleNear;
+  using ::testing::ElementsAre;
+  using ::testing::IsEmpty;
+  const auto times = ElementsAre(DoubleNear(0.05, 1e-6), DoubleNear(0.1, 1e-6));
+  EXPECT_THAT(PointTimes("t", kUint32, {Raw(uint32_t{50000000}), Raw(uint32_t{100000000})}), times);
+  EXPECT_THAT(PointTimes("offset_time", kInt32, {Raw(int32_t{50000000}), Raw(int32_t{100000000})}), times);
+  EXPECT_THAT(PointTimes("time", kFloat32, {Raw(0.05f), Raw(0.1f)}), times);
+  EXPECT_THAT(PointTimes("timestamp", kFloat64, {Raw(0.05), Raw(0.1)}), times);
+  EXPECT_THAT(PointTimes("timestamp", kFloat64, {Raw(1000000010.05), Raw(1000000010.1)}), times);
+  EXPECT_THAT(PointTimes("timestamp", kFloat64, {Raw(1000000010.05e9), Raw(1000000010.1e9)}), times);
+  // Before the stamp of the message, as some drivers have it.
+  EXPECT_THAT(PointTimes("time", kFloat32, {Raw(-0.1f), Raw(0.f)}), ElementsAre(DoubleNear(-0.1, 1e-6), 0.));
+  // In another unit, not a number, another type, another field.
+  EXPECT_THAT(PointTimes("time", kFloat32, {Raw(50.f), Raw(100.f)}), IsEmpty());
+  EXPECT_THAT(PointTimes("time", kFloat32, {Raw(0.05f), Raw(std::numeric_limits<float>::quiet_NaN())}), IsEmpty());
+  EXPECT_THAT(PointTimes("time", kUint16, {Raw(uint16_t{1}), Raw(uint16_t{2})}), IsEmpty());
+  EXPECT_THAT(PointTimes("ring", kFloat32, {Raw(0.05f), Raw(0.1f)}), IsEmpty());
 }
 
 TEST(RosMessagesTest, TooShortOrTooLongIsRefused) {

@@ -168,6 +168,63 @@ TEST(RosRecordingTest, PointsOfAPlanarLaser) {
   EXPECT_NEAR((scan.laser_pose * scan.points[0] - Eigen::Vector2d(0.5, 1.)).norm(), 0., 1e-9);
 }
 
+TEST(RosRecordingTest, TheScanIsStampedWithItsLastPoint) {
+  constexpr uint8_t kUint32 = 6;
+  const auto raw = [](const uint32_t nanoseconds) { return test::Bytes().Add(nanoseconds).data(); };
+  auto container = absl::make_unique<MemoryContainer>();
+  container->Add("/points", "sensor_msgs/msg/PointCloud2",
+                 test::PointCloud2Bytes(RosEncoding::kCdr, 2, "base_link", {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.f}}, "t", kUint32,
+                                        {raw(100000000), raw(25000000)}));
+  auto source = OpenRosRecording("memory", std::move(container), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  const auto events = ReadAll(source->get());
+  const auto& scan = absl::get<LaserScan>(events.at(0));
+  EXPECT_EQ(scan.time, 2100000000);
+  EXPECT_THAT(scan.point_times, ElementsAre(0.f, ::testing::FloatNear(-0.075f, 1e-6f)));
+}
+
+// Twenty scans a tenth of a second apart, whose beams claim to take `sweep`.
+std::unique_ptr<MemoryContainer> TwentyScans(const double sweep) {
+  auto container = absl::make_unique<MemoryContainer>();
+  LaserScan scan;
+  scan.angle_min = -kPi;
+  scan.angle_increment = 2. * kPi / 5.;
+  scan.range_max = 10.;
+  scan.ranges = {1.f, 2.f, 3.f, 4.f, 5.f};
+  scan.time_increment = sweep / 4.;
+  for (int i = 0; i < 20; ++i) {
+    // EncodeLaserScan stamps the first beam.
+    scan.time = FromSeconds(10. + 0.1 * i + sweep);
+    container->Add("/scan", kRos2LaserScan, EncodeLaserScan(scan, "base_link"));
+  }
+  return container;
+}
+
+TEST(RosRecordingTest, BeamsThatTakeLongerThanThereIsTimeAreAtOnce) {
+  auto source = OpenRosRecording("memory", TwentyScans(0.4), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_THAT((*source)->info().warnings, ::testing::Contains(HasSubstr("make a scan take 0.4 s, but one comes every 0.1 s")));
+  const auto events = ReadAll(source->get());
+  ASSERT_EQ(events.size(), 20u);
+  EXPECT_EQ(absl::get<LaserScan>(events[0]).time_increment, 0.);
+  EXPECT_EQ(EventTime(events[0]), FromSeconds(10.));
+  EXPECT_EQ((*source)->info().begin, FromSeconds(10.));
+}
+
+TEST(RosRecordingTest, PossibleTimesOfBeamsAreKept) {
+  auto source = OpenRosRecording("memory", TwentyScans(0.1), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_THAT((*source)->info().warnings, ::testing::Not(::testing::Contains(HasSubstr("taken as measured at once"))));
+  const auto events = ReadAll(source->get());
+  EXPECT_NEAR(absl::get<LaserScan>(events.at(0)).time_increment, 0.025, 1e-9);
+}
+
+TEST(RosRecordingTest, MissingTimesOfBeamsAreSaid) {
+  auto source = OpenRosRecording("memory", TwentyScans(0.), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_THAT((*source)->info().warnings, ::testing::Contains(HasSubstr("no times of beams on /scan")));
+}
+
 TEST(RosRecordingTest, PointsInSpaceAreRefused) {
   auto container = absl::make_unique<MemoryContainer>();
   container->Add("/points", "sensor_msgs/msg/PointCloud2",
