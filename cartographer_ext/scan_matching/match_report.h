@@ -9,6 +9,8 @@
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_MATCH_REPORT_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_MATCH_REPORT_H_
 
+#include <limits>
+
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/scan_matching/degeneracy.h"
@@ -25,6 +27,9 @@ struct Prediction {
   // Number of scans in the map; 0 when it is not known. All walls of a map of a
   // single scan have the noise and the rounding of that scan.
   int scans_in_map = 0;
+  // Metres from the node from which on points are where the laser's sight ends
+  // and the map may not reach (occupied_space_cost.h).
+  double limit_of_sight = std::numeric_limits<double>::infinity();
 };
 
 struct MatchReport {

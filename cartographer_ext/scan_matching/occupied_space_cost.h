@@ -18,6 +18,12 @@
 //
 //   u(f) = (-f + 2f^2 - f^3, 2 - 5f^2 + 3f^3, f + 4f^2 - 3f^3, f^3 - f^2) / 2,
 //
+// A cell that no scan has seen costs as much as a free one in the stock matcher.
+// Where the sight of the laser ends, the walls of a map do, too: every new scan
+// reaches further by what the robot has moved, and fits better where it has
+// moved less. With a laser of 4.5 m in a corridor that shortens a path by 3 %.
+// So what nobody has seen is even odds for points at the limit of sight.
+//
 // c = u(f_row)^T P u(f_column) with P the 4 x 4 cells around the point, and the
 // derivatives have u' in place of one u. The solver evaluates a scan a few
 // times at nearly the same pose, so P is reused while the point stays in its
@@ -50,17 +56,24 @@ struct OccupiedSpaceSums {
 //   double resolution() const, max_x() const, max_y() const;  // metres
 //   int num_rows() const, num_columns() const;
 //   float Cost(int row, int column) const;                    // inside only
+//   bool IsKnown(int row, int column) const;                  // inside only
 template <typename Cells>
 class OccupiedSpaceCost {
  public:
   // Cost of everything outside the grid.
   static constexpr float kOutside = 0.9f;
+  // Cost of what no scan has seen, for points at the limit of sight.
+  static constexpr float kUnknownAtLimit = 0.5f;
 
-  // `points` in metres, in the frame of the node. `cells` must outlive this.
+  // `points` in metres, in the frame of the node; those from `num_near` on are
+  // at the limit of sight (-1: none is). `cells` must outlive this.
   OccupiedSpaceCost(const Cells* cells, std::vector<Eigen::Vector2d> points,
-                    const BicubicKernels& kernels = BestBicubicKernels())
+                    const BicubicKernels& kernels = BestBicubicKernels(),
+                    const int num_near = -1)
       : cells_(*cells),
         points_(std::move(points)),
+        num_near_(num_near < 0 ? points_.size()
+                               : static_cast<size_t>(num_near)),
         kernels_(kernels),
         cells_per_metre_(1. / cells->resolution()),
         // An odd number of half cache lines.
@@ -117,20 +130,22 @@ class OccupiedSpaceCost {
     const double last_row = cells_.num_rows() - 1.;
     const double last_column = cells_.num_columns() - 1.;
     double squares = 0.;
-    for (const Eigen::Vector2d& point : points_) {
+    for (size_t i = 0; i != points_.size(); ++i) {
+      const Eigen::Vector2d& point = points_[i];
+      const bool near = i < num_near_;
       const double row = row_of_origin - cosine * point.x() + sine * point.y();
       const double column =
           column_of_origin - sine * point.x() - cosine * point.y();
-      double cost = kOutside;
+      double cost = near ? kOutside : kUnknownAtLimit;
       if (row >= 0. && row < last_row && column >= 0. && column < last_column) {
         const int r = static_cast<int>(row);
         const int c = static_cast<int>(column);
         const double v = row - r;
         const double u = column - c;
-        cost = (1. - v) *
-                   ((1. - u) * cells_.Cost(r, c) + u * cells_.Cost(r, c + 1)) +
-               v * ((1. - u) * cells_.Cost(r + 1, c) +
-                    u * cells_.Cost(r + 1, c + 1));
+        cost = (1. - v) * ((1. - u) * CostFor(near, r, c) +
+                           u * CostFor(near, r, c + 1)) +
+               v * ((1. - u) * CostFor(near, r + 1, c) +
+                    u * CostFor(near, r + 1, c + 1));
       }
       squares += cost * cost;
     }
@@ -208,7 +223,8 @@ class OccupiedSpaceCost {
                          Array(kCost), Array(kRowSlope), Array(kColumnSlope));
     for (int i = 0; any_outside && i != num_points; ++i) {
       if (!patches_[i].is_outside) continue;
-      Array(kCost)[i] = kOutside;
+      Array(kCost)[i] =
+          static_cast<size_t>(i) < num_near_ ? kOutside : kUnknownAtLimit;
       Array(kRowSlope)[i] = Array(kColumnSlope)[i] = 0.;
     }
   }
@@ -216,6 +232,11 @@ class OccupiedSpaceCost {
   static int Floor(const double x) {
     const int cut = static_cast<int>(x);
     return cut - (x < cut);
+  }
+
+  float CostFor(const bool near, const int row, const int column) const {
+    return near || cells_.IsKnown(row, column) ? cells_.Cost(row, column)
+                                               : kUnknownAtLimit;
   }
 
   void Load(const int row, const int column, const int point) {
@@ -226,6 +247,7 @@ class OccupiedSpaceCost {
     double* const cells = Array(kCells) + point;
     const int num_rows = cells_.num_rows();
     const int num_columns = cells_.num_columns();
+    const bool near = static_cast<size_t>(point) < num_near_;
     const bool is_whole = row >= 1 && row + 2 < num_rows && column >= 1 &&
                           column + 2 < num_columns;
     for (int i = 0; i != 4; ++i) {
@@ -234,14 +256,16 @@ class OccupiedSpaceCost {
         const int c = column - 1 + j;
         cells[(4 * j + i) * stride_] =
             is_whole || (r >= 0 && r < num_rows && c >= 0 && c < num_columns)
-                ? cells_.Cost(r, c)
-                : kOutside;
+                ? CostFor(near, r, c)
+            : near ? kOutside
+                   : kUnknownAtLimit;
       }
     }
   }
 
   const Cells& cells_;
   const std::vector<Eigen::Vector2d> points_;
+  const size_t num_near_;
   const BicubicKernels& kernels_;
   const double cells_per_metre_;
   const int stride_;
@@ -251,6 +275,8 @@ class OccupiedSpaceCost {
 
 template <typename Cells>
 constexpr float OccupiedSpaceCost<Cells>::kOutside;
+template <typename Cells>
+constexpr float OccupiedSpaceCost<Cells>::kUnknownAtLimit;
 template <typename Cells>
 constexpr int OccupiedSpaceCost<Cells>::kNoRow;
 

@@ -111,10 +111,11 @@ namespace internal {
 template <typename Cells>
 class ScanMatch {
  public:
-  // Points, prediction and initial pose are finite.
+  // Points, prediction and initial pose are finite; points from `num_near` on
+  // are at the limit of sight.
   ScanMatch(const ScanMatchOptions& options, const Prediction& prediction,
             const Pose2& initial, std::vector<Eigen::Vector2d> points,
-            const Cells& cells)
+            const int num_near, const Cells& cells)
       : options_(options),
         covariance_(prediction.covariance),
         scans_in_map_(prediction.scans_in_map),
@@ -124,7 +125,7 @@ class ScanMatch {
         weight2_(options.occupied_space_weight * options.occupied_space_weight),
         scale_(num_points_ == 0 ? 0. : weight2_ / num_points_),
         resolution_(cells.resolution()),
-        cost_(&cells, std::move(points)) {
+        cost_(&cells, std::move(points), BestBicubicKernels(), num_near) {
     covariance_is_known_ =
         uncertainty::InvertCovariance(covariance_, &prediction_information_);
     const double translation2 =
@@ -260,6 +261,11 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
                                 return !point.allFinite();
                               }),
                points.end());
+  const auto limit = std::stable_partition(
+      points.begin(), points.end(), [&](const Eigen::Vector2d& point) {
+        return point.norm() < prediction.limit_of_sight;
+      });
+  const int num_near = static_cast<int>(limit - points.begin());
   Pose2 start = internal::IsFinite(initial) ? initial : prediction.pose;
   if (!internal::IsFinite(start)) start = Pose2();
   Prediction predicted = prediction;
@@ -267,7 +273,7 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
   // One branch for all angles.
   predicted.pose.theta = UnwrapAngle(predicted.pose.theta, start.theta);
   internal::ScanMatch<Cells> match(options, predicted, start, std::move(points),
-                                   cells);
+                                   num_near, cells);
   return match.Match(report);
 }
 

@@ -117,6 +117,45 @@ TEST(OccupiedSpaceCostTest, DerivativesAgreeWithDifferences) {
   }
 }
 
+// A wall along x that nobody has seen beyond x = 0.4, and points on it that
+// reach further.
+TEST(OccupiedSpaceCostTest, WhatNobodyHasSeenDoesNotPullPointsAtTheLimitBack) {
+  TestCells cells(0.05, 1., 0.7, 30, 20, 0.9f);
+  for (int row = 0; row < 30; ++row) {
+    for (int column = 0; column < 20; ++column) {
+      if (cells.CenterX(row) > 0.4) cells.Forget(row, column);
+    }
+    if (cells.CenterX(row) <= 0.4) cells.Set(row, 10, 0.1f);
+  }
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < 20; ++i)
+    points.emplace_back(0.3 + 0.01 * i, cells.CenterY(10));
+  Cost near(&cells, points);
+  Cost limit(&cells, points, BestBicubicKernels(), 0);
+  const double pull = near.Evaluate(Pose2()).gradient.x();
+  EXPECT_GT(pull, 0.);
+  const double at_limit = limit.Evaluate(Pose2()).gradient.x();
+  EXPECT_GT(at_limit, 0.);
+  EXPECT_LT(at_limit, 0.4 * pull);
+  // The same where only the last points are at the limit: it is them that pull.
+  Cost last(&cells, points, BestBicubicKernels(), 5);
+  EXPECT_NEAR(last.Evaluate(Pose2()).gradient.x(), at_limit, 0.1 * at_limit);
+
+  // Both ways to sum agree with what the cells say, and with differences.
+  Cost beyond(
+      &cells,
+      {Eigen::Vector2d(0.675, cells.CenterY(10)), Eigen::Vector2d(5., 5.)},
+      BestBicubicKernels(), 0);
+  EXPECT_NEAR(beyond.Evaluate(Pose2()).squares, 2. * 0.25, 1e-12);
+  EXPECT_NEAR(beyond.LinearSquares(Pose2()), 2. * 0.25, 1e-12);
+  const double step = 1e-6;
+  EXPECT_NEAR(at_limit,
+              (limit.Evaluate(Pose2(step, 0., 0.)).squares -
+               limit.Evaluate(Pose2(-step, 0., 0.)).squares) /
+                  (4. * step),
+              1e-5 * at_limit);
+}
+
 // The kept patches make no difference.
 TEST(OccupiedSpaceCostTest, RepeatsWhateverWasAskedBefore) {
   const TestCells cells = RandomCells();

@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <functional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "Eigen/Core"
@@ -34,6 +36,12 @@ class TestCells {
   double max_y() const { return max_y_; }
   int num_rows() const { return num_rows_; }
   int num_columns() const { return num_columns_; }
+  bool IsKnown(const int row, const int column) const {
+    return unknown_.count({row, column}) == 0;
+  }
+  void Forget(const int row, const int column) {
+    unknown_.insert({row, column});
+  }
   float Cost(const int row, const int column) const {
     return costs_[static_cast<size_t>(row) * num_columns_ + column];
   }
@@ -66,6 +74,7 @@ class TestCells {
   const double resolution_, max_x_, max_y_;
   const int num_rows_, num_columns_;
   std::vector<float> costs_;
+  std::set<std::pair<int, int>> unknown_;  // row, column
 };
 
 // 8 m by 8 m around the origin, cells of 5 cm.

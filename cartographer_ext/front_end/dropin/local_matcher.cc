@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <vector>
 
 #include "cartographer/transform/rigid_transform.h"
@@ -41,6 +43,17 @@ constexpr size_t kMaxSearches = 4;
 // Scales the covariance of a motion after a search, so that the motion hardly
 // constrains the match.
 constexpr double kCovarianceScaleAfterSearch = 100.;
+
+// The walls of a submap end where the sight of the scans before did, which are
+// inserted every 0.2 m; the laser may be half of this off the robot's origin.
+constexpr double kLimitZone = 0.5;  // metres
+// Longer ranges of a scan, of which there are at least this many, are no
+// outliers.
+constexpr size_t kMinFarthest = 3;
+// So many scans this far from each other tell the limit of a laser from the
+// size of a room.
+constexpr int kMinScansAtLimit = 50;
+constexpr double kRangeStep = 0.2;  // metres
 
 // A place that is the best of some 150 needs so much more log-likelihood.
 constexpr double kLogPlaces = 5.;
@@ -132,6 +145,33 @@ bool LocalMatcher::IsDoubtful(const LocalMatch& match,
          match.report.mahalanobis > options_.gate;
 }
 
+void LocalMatcher::UpdateRange(const Pose2& pose, const PointCloud& cloud) {
+  if (cloud.size() < kMinFarthest) return;
+  if (scans_ > 0 &&
+      std::hypot(pose.x - range_pose_.x, pose.y - range_pose_.y) < kRangeStep)
+    return;
+  range_pose_ = pose;
+  std::vector<float> squares;
+  squares.reserve(cloud.size());
+  for (const auto& point : cloud)
+    squares.push_back(point.position.head<2>().squaredNorm());
+  std::nth_element(squares.begin(), squares.begin() + (kMinFarthest - 1),
+                   squares.end(), std::greater<float>());
+  const double range = std::sqrt(squares[kMinFarthest - 1]);
+  if (range > range_ + kLimitZone) scans_ = scans_at_limit_ = 0;
+  range_ = std::max(range_, range);
+  ++scans_;
+  scans_at_limit_ += range > range_ - kLimitZone ? 1 : 0;
+}
+
+double LocalMatcher::LimitOfSight() const {
+  // Otherwise it is the building that ends.
+  const bool is_limit =
+      scans_ >= kMinScansAtLimit && 2 * scans_at_limit_ >= scans_;
+  return is_limit ? std::max(0., range_ - kLimitZone)
+                  : std::numeric_limits<double>::infinity();
+}
+
 Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
                            const MotionPrediction& prediction,
                            const PointCloud& cloud, const Grid2D& grid) const {
@@ -160,6 +200,8 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   Prediction predicted =
       ToPrediction(last_pose, prediction.motion, prediction.covariance);
   predicted.scans_in_map = submap.num_range_data();
+  UpdateRange(last_pose, cloud);
+  predicted.limit_of_sight = LimitOfSight();
   LocalMatch match = MatchFrom(predicted, predicted.pose, cloud, grid);
   if (options_.enabled && IsDoubtful(match, prediction)) {
     match =
@@ -191,6 +233,7 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
     Prediction start = ToPrediction(
         last_pose, motion, kCovarianceScaleAfterSearch * prediction.covariance);
     start.scans_in_map = predicted.scans_in_map;
+    start.limit_of_sight = predicted.limit_of_sight;
     const LocalMatch match =
         MatchFrom(start, Search(start.pose, motion, prediction, cloud, grid),
                   cloud, grid);

@@ -65,6 +65,12 @@ class LocalMatcher {
                              const cartographer::sensor::PointCloud& cloud,
                              const cartographer::mapping::Grid2D& grid,
                              const LocalMatch& matched) const;
+  // Takes what the scan, from near `pose`, says about how far the laser sees.
+  void UpdateRange(const Pose2& pose,
+                   const cartographer::sensor::PointCloud& cloud);
+  // Metres from where on points are at the limit of sight, infinity where that
+  // is not known.
+  double LimitOfSight() const;
   // Around `center`, the end of `motion`, in a window that covers the
   // uncertainty of the prediction.
   Pose2 Search(const Pose2& center, const Pose2& motion,
@@ -76,6 +82,11 @@ class LocalMatcher {
   const scan_matching::DegeneracyAwareScanMatcher2D matcher_;
   double mean_score_ = 0.;
   bool has_mean_score_ = false;
+  // The longest range so far, metres; of the scans since, one every
+  // kRangeStep, how many there are and how many reach as far.
+  double range_ = 0.;
+  int scans_ = 0, scans_at_limit_ = 0;
+  Pose2 range_pose_;  // of the last of them
 };
 
 // How inconsistent `found` is with `predicted`, from 0 (within 5 cm and 2

@@ -17,11 +17,17 @@ namespace io {
 namespace {
 
 // The frame of REP 105, maybe within the name space of a robot.
-bool IsOdometryFrame(const std::string& frame) { return frame == "odom" || absl::EndsWith(frame, "/odom"); }
+bool IsOdometryFrame(const std::string& frame) {
+  return frame == "odom" || absl::EndsWith(frame, "/odom");
+}
 
 double Sweep(const LaserScan& scan) {
-  if (!scan.point_times.empty()) return -*std::min_element(scan.point_times.begin(), scan.point_times.end());
-  return scan.ranges.empty() ? 0. : scan.time_increment * (static_cast<double>(scan.ranges.size()) - 1.);
+  if (!scan.point_times.empty())
+    return -*std::min_element(scan.point_times.begin(), scan.point_times.end());
+  return scan.ranges.empty()
+             ? 0.
+             : scan.time_increment *
+                   (static_cast<double>(scan.ranges.size()) - 1.);
 }
 
 // The scan's time becomes that of the last point.
@@ -29,16 +35,19 @@ void TakePointTimes(const RosPointCloud& cloud, LaserScan* scan) {
   if (cloud.times.empty()) return;
   const double last = *std::max_element(cloud.times.begin(), cloud.times.end());
   scan->time += FromSeconds(last);
-  for (const double time : cloud.times) scan->point_times.push_back(static_cast<float>(time - last));
+  for (const double time : cloud.times)
+    scan->point_times.push_back(static_cast<float>(time - last));
 }
 
 }  // namespace
 
-bool RosEventDecoder::Decode(const RosMessage& message, RosEvent* const decoded) const {
+bool RosEventDecoder::Decode(const RosMessage& message,
+                             RosEvent* const decoded) const {
   RosHeader header;
   bool valid;
   decoded->cloud = RosPointCloud();
-  if (topics_.transforms.count(message.topic) > 0) return FindOdometry(message, decoded);
+  if (topics_.transforms.count(message.topic) > 0)
+    return FindOdometry(message, decoded);
   if (topics_.scans.count(message.topic) > 0) {
     decoded->rank = kScanRank;
     valid = DecodeScan(message, &header, decoded);
@@ -51,18 +60,22 @@ bool RosEventDecoder::Decode(const RosMessage& message, RosEvent* const decoded)
   } else {
     decoded->rank = kOdometryRank;
     OdometryReading reading;
-    valid = DecodeOdometry(encoding_, message.data, &header, &decoded->frame, &decoded->odometry);
+    valid = DecodeOdometry(encoding_, message.data, &header, &decoded->frame,
+                           &decoded->odometry);
     reading.time = header.time;
     decoded->event = reading;
   }
   if (valid && header.time == 0) {
     const TimeNs received = message.received;
-    absl::visit([received](auto& event) { event.time += received; }, decoded->event);
+    absl::visit([received](auto& event) { event.time += received; },
+                decoded->event);
   }
   return valid;
 }
 
-bool RosEventDecoder::DecodeScan(const RosMessage& message, RosHeader* const header, RosEvent* const decoded) const {
+bool RosEventDecoder::DecodeScan(const RosMessage& message,
+                                 RosHeader* const header,
+                                 RosEvent* const decoded) const {
   LaserScan scan;
   bool valid = false;
   switch (topics_.scans.at(message.topic)) {
@@ -73,7 +86,8 @@ bool RosEventDecoder::DecodeScan(const RosMessage& message, RosHeader* const hea
       valid = DecodeMultiEchoLaserScan(encoding_, message.data, header, &scan);
       break;
     case RosScanType::kPointCloud2:
-      valid = DecodePointCloud2(encoding_, message.data, header, &decoded->cloud);
+      valid =
+          DecodePointCloud2(encoding_, message.data, header, &decoded->cloud);
       scan.time = header->time;
       scan.range_max = std::numeric_limits<double>::infinity();
       TakePointTimes(decoded->cloud, &scan);
@@ -90,13 +104,15 @@ bool RosEventDecoder::DecodeScan(const RosMessage& message, RosHeader* const hea
   return valid;
 }
 
-bool RosEventDecoder::FindOdometry(const RosMessage& message, RosEvent* const decoded) const {
+bool RosEventDecoder::FindOdometry(const RosMessage& message,
+                                   RosEvent* const decoded) const {
   std::vector<RosTransform> transforms;
   if (!DecodeTransforms(encoding_, message.data, &transforms)) return false;
   for (const RosTransform& transform : transforms) {
     if (!IsOdometryFrame(transform.header.frame)) continue;
     OdometryReading reading;
-    reading.time = transform.header.time == 0 ? message.received : transform.header.time;
+    reading.time =
+        transform.header.time == 0 ? message.received : transform.header.time;
     decoded->rank = kOdometryRank;
     decoded->event = reading;
     decoded->frame = transform.child_frame;
@@ -106,12 +122,17 @@ bool RosEventDecoder::FindOdometry(const RosMessage& message, RosEvent* const de
   return false;
 }
 
-void AddScanTiming(const std::string& topic, const RosEvent& decoded, ScanTiming* const timing) {
+void AddScanTiming(const std::string& topic, const RosEvent& decoded,
+                   ScanTiming* const timing) {
   const LaserScan& scan = absl::get<LaserScan>(decoded.event);
   const double sweep = Sweep(scan);
   // Points tell nothing about where a turning laser sees nothing.
-  const double field_of_view = scan.ranges.empty() ? 2. * kPi : std::abs(scan.angle_increment) * static_cast<double>(scan.ranges.size());
-  timing->Add(topic, decoded.frame, scan.time - FromSeconds(sweep), sweep, field_of_view);
+  const double field_of_view =
+      scan.ranges.empty() ? 2. * kPi
+                          : std::abs(scan.angle_increment) *
+                                static_cast<double>(scan.ranges.size());
+  timing->Add(topic, decoded.frame, scan.time - FromSeconds(sweep), sweep,
+              field_of_view);
 }
 
 }  // namespace io

@@ -32,14 +32,16 @@ class RosEventDecoder {
  public:
   // Both have to outlive the decoder; scans of sensors that `timing` finds
   // impossible are taken as measured at once.
-  RosEventDecoder(RosEncoding encoding, const ChosenTopics* topics, const ScanTiming* timing)
+  RosEventDecoder(RosEncoding encoding, const ChosenTopics* topics,
+                  const ScanTiming* timing)
       : encoding_(encoding), topics_(*topics), timing_(*timing) {}
 
   // False for damaged messages, and for transforms without odometry.
   bool Decode(const RosMessage& message, RosEvent* decoded) const;
 
  private:
-  bool DecodeScan(const RosMessage& message, RosHeader* header, RosEvent* decoded) const;
+  bool DecodeScan(const RosMessage& message, RosHeader* header,
+                  RosEvent* decoded) const;
   // The odometry among the transforms of a message; false where there is none.
   bool FindOdometry(const RosMessage& message, RosEvent* decoded) const;
 
@@ -49,7 +51,8 @@ class RosEventDecoder {
 };
 
 // Adds what a decoded scan says about the times of its beams.
-void AddScanTiming(const std::string& topic, const RosEvent& decoded, ScanTiming* timing);
+void AddScanTiming(const std::string& topic, const RosEvent& decoded,
+                   ScanTiming* timing);
 
 }  // namespace io
 }  // namespace cartographer_ext

@@ -102,7 +102,8 @@ class Decoder {
   RosHeader TakeHeader() {
     RosHeader header;
     if (!cdr_) Take<uint32_t>();  // sequence number
-    const int64_t seconds = cdr_ ? int64_t{Take<int32_t>()} : int64_t{Take<uint32_t>()};
+    const int64_t seconds =
+        cdr_ ? int64_t{Take<int32_t>()} : int64_t{Take<uint32_t>()};
     const int64_t nanoseconds = Take<uint32_t>();
     header.time = seconds * 1000000000 + nanoseconds;
     header.frame = TakeFrame();
@@ -157,12 +158,15 @@ constexpr uint8_t kInt32 = 5, kUint32 = 6, kFloat32 = 7, kFloat64 = 8;
 // The field of a point cloud that says when a point was measured.
 struct PointTime {
   static bool IsName(const std::string& name) {
-    return name == "t" || name == "time" || name == "timestamp" || name == "time_stamp" || name == "time_offset" ||
+    return name == "t" || name == "time" || name == "timestamp" ||
+           name == "time_stamp" || name == "time_offset" ||
            name == "offset_time";
   }
   // Bytes; 0 for types that hold no time.
   static size_t Size(const uint8_t type) {
-    return type == kFloat64 ? 8 : type == kInt32 || type == kUint32 || type == kFloat32 ? 4 : 0;
+    return type == kFloat64                                        ? 8
+           : type == kInt32 || type == kUint32 || type == kFloat32 ? 4
+                                                                   : 0;
   }
   // Seconds after `stamp`.
   double Seconds(const char* const bytes, const TimeNs stamp) const {
@@ -180,8 +184,9 @@ struct PointTime {
     }
     const double value = Read<double>(bytes);
     if (!(std::abs(value) >= kAbsoluteSeconds)) return value;
-    return std::abs(value) < kAbsoluteNanoseconds ? value - 1e-9 * static_cast<double>(stamp)
-                                                  : 1e-9 * (value - static_cast<double>(stamp));
+    return std::abs(value) < kAbsoluteNanoseconds
+               ? value - 1e-9 * static_cast<double>(stamp)
+               : 1e-9 * (value - static_cast<double>(stamp));
   }
   template <typename T>
   static T Read(const char* const bytes) {
@@ -222,8 +227,8 @@ bool FinishScan(const RosHeader& header, LaserScan* scan) {
 
 }  // namespace
 
-bool DecodeLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
-                     LaserScan* scan) {
+bool DecodeLaserScan(RosEncoding encoding, absl::string_view data,
+                     RosHeader* header, LaserScan* scan) {
   Decoder decoder(data, encoding);
   TakeScanHead(&decoder, header, scan);
   decoder.TakeFloats(&scan->ranges);
@@ -233,8 +238,8 @@ bool DecodeLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* he
   return decoder.AtEnd() && FinishScan(*header, scan);
 }
 
-bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
-                              LaserScan* scan) {
+bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data,
+                              RosHeader* header, LaserScan* scan) {
   Decoder decoder(data, encoding);
   TakeScanHead(&decoder, header, scan);
   const uint32_t n = decoder.TakeCount(sizeof(uint32_t));
@@ -253,10 +258,12 @@ bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosH
   return decoder.AtEnd() && FinishScan(*header, scan);
 }
 
-bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* header, RosPointCloud* const cloud) {
+bool DecodePointCloud2(RosEncoding encoding, absl::string_view data,
+                       RosHeader* header, RosPointCloud* const cloud) {
   Decoder decoder(data, encoding);
   *header = decoder.TakeHeader();
-  const uint64_t height = decoder.Take<uint32_t>(), width = decoder.Take<uint32_t>();
+  const uint64_t height = decoder.Take<uint32_t>(),
+                 width = decoder.Take<uint32_t>();
   const uint32_t num_fields = decoder.TakeCount(13);
   int64_t offsets[3] = {-1, -1, -1};
   PointTime time;
@@ -265,41 +272,54 @@ bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* 
     const uint32_t offset = decoder.Take<uint32_t>();
     const uint8_t type = decoder.Take<uint8_t>();
     decoder.Take<uint32_t>();  // elements
-    if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z' && type == kFloat32) offsets[name[0] - 'x'] = offset;
-    if (PointTime::IsName(name) && PointTime::Size(type) > 0) time = PointTime{offset, type};
+    if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z' &&
+        type == kFloat32)
+      offsets[name[0] - 'x'] = offset;
+    if (PointTime::IsName(name) && PointTime::Size(type) > 0)
+      time = PointTime{offset, type};
   }
   const bool big_endian = decoder.Take<uint8_t>() != 0;
-  const uint64_t point_step = decoder.Take<uint32_t>(), row_step = decoder.Take<uint32_t>();
+  const uint64_t point_step = decoder.Take<uint32_t>(),
+                 row_step = decoder.Take<uint32_t>();
   const absl::string_view bytes = decoder.TakeBytes(decoder.TakeCount(1));
   decoder.Take<uint8_t>();  // dense
-  if (!decoder.AtEnd() || big_endian || height * width > kMaxPoints || row_step < width * point_step ||
-      bytes.size() < height * row_step) {
+  if (!decoder.AtEnd() || big_endian || height * width > kMaxPoints ||
+      row_step < width * point_step || bytes.size() < height * row_step) {
     return false;
   }
   for (const int64_t offset : offsets) {
-    if (offset < 0 || static_cast<uint64_t>(offset) + sizeof(float) > point_step) return false;
+    if (offset < 0 ||
+        static_cast<uint64_t>(offset) + sizeof(float) > point_step)
+      return false;
   }
-  const bool timed = time.offset >= 0 && static_cast<uint64_t>(time.offset) + PointTime::Size(time.type) <= point_step;
+  const bool timed = time.offset >= 0 && static_cast<uint64_t>(time.offset) +
+                                                 PointTime::Size(time.type) <=
+                                             point_step;
   *cloud = RosPointCloud();
   for (uint64_t row = 0; row < height; ++row) {
     for (uint64_t column = 0; column < width; ++column) {
-      const char* const point = bytes.data() + row * row_step + column * point_step;
+      const char* const point =
+          bytes.data() + row * row_step + column * point_step;
       float xyz[3];
-      for (int i = 0; i < 3; ++i) std::memcpy(&xyz[i], point + offsets[i], sizeof(float));
+      for (int i = 0; i < 3; ++i)
+        std::memcpy(&xyz[i], point + offsets[i], sizeof(float));
       const Eigen::Vector3d position(xyz[0], xyz[1], xyz[2]);
       if (!(position.array().abs() <= kMaxCoordinate).all()) continue;
       cloud->points.push_back(position);
-      if (timed) cloud->times.push_back(time.Seconds(point + time.offset, header->time));
+      if (timed)
+        cloud->times.push_back(time.Seconds(point + time.offset, header->time));
     }
   }
-  const bool plausible = std::all_of(cloud->times.begin(), cloud->times.end(),
-                                     [](const double seconds) { return std::abs(seconds) <= kMaxPointTime; });
+  const bool plausible = std::all_of(
+      cloud->times.begin(), cloud->times.end(),
+      [](const double seconds) { return std::abs(seconds) <= kMaxPointTime; });
   if (!plausible) cloud->times.clear();
   return true;
 }
 
-bool DecodeOdometry(RosEncoding encoding, absl::string_view data, RosHeader* header,
-                    std::string* child_frame, Eigen::Isometry3d* pose) {
+bool DecodeOdometry(RosEncoding encoding, absl::string_view data,
+                    RosHeader* header, std::string* child_frame,
+                    Eigen::Isometry3d* pose) {
   Decoder decoder(data, encoding);
   *header = decoder.TakeHeader();
   *child_frame = decoder.TakeFrame();
@@ -309,7 +329,8 @@ bool DecodeOdometry(RosEncoding encoding, absl::string_view data, RosHeader* hea
   return decoder.AtEnd();
 }
 
-bool DecodeImu(RosEncoding encoding, absl::string_view data, RosHeader* header, ImuReading* reading) {
+bool DecodeImu(RosEncoding encoding, absl::string_view data, RosHeader* header,
+               ImuReading* reading) {
   constexpr double kMaxValue = 1e6;
   Decoder decoder(data, encoding);
   *header = decoder.TakeHeader();
@@ -324,7 +345,8 @@ bool DecodeImu(RosEncoding encoding, absl::string_view data, RosHeader* header, 
          (reading->linear_acceleration.array().abs() <= kMaxValue).all();
 }
 
-bool DecodeTransforms(RosEncoding encoding, absl::string_view data, std::vector<RosTransform>* transforms) {
+bool DecodeTransforms(RosEncoding encoding, absl::string_view data,
+                      std::vector<RosTransform>* transforms) {
   Decoder decoder(data, encoding);
   const uint32_t n = decoder.TakeCount(64);  // all but the names and padding
   if (n > kMaxTransforms) return false;

@@ -69,22 +69,26 @@ struct RosPointCloud {
 // CarmenLine::kMaxReadings, beams over more than a full turn).
 
 // `scan->time` becomes the time of the last beam.
-bool DecodeLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
-                     LaserScan* scan);
-bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data, RosHeader* header,
-                              LaserScan* scan);
+bool DecodeLaserScan(RosEncoding encoding, absl::string_view data,
+                     RosHeader* header, LaserScan* scan);
+bool DecodeMultiEchoLaserScan(RosEncoding encoding, absl::string_view data,
+                              RosHeader* header, LaserScan* scan);
 // The points with finite coordinates, in the frame of the sensor; the fields x,
 // y and z have to be float32 and little endian. Times are taken from a field
 // "t", "time", "timestamp", "time_stamp", "time_offset" or "offset_time":
 // nanoseconds if it is an integer, seconds if it is a float, after the stamp of
 // the message or, if a double, absolute (seconds or nanoseconds).
-bool DecodePointCloud2(RosEncoding encoding, absl::string_view data, RosHeader* header, RosPointCloud* cloud);
+bool DecodePointCloud2(RosEncoding encoding, absl::string_view data,
+                       RosHeader* header, RosPointCloud* cloud);
 // `pose` is (header.frame <- child_frame).
-bool DecodeOdometry(RosEncoding encoding, absl::string_view data, RosHeader* header,
-                    std::string* child_frame, Eigen::Isometry3d* pose);
+bool DecodeOdometry(RosEncoding encoding, absl::string_view data,
+                    RosHeader* header, std::string* child_frame,
+                    Eigen::Isometry3d* pose);
 // In the frame of the sensor.
-bool DecodeImu(RosEncoding encoding, absl::string_view data, RosHeader* header, ImuReading* reading);
-bool DecodeTransforms(RosEncoding encoding, absl::string_view data, std::vector<RosTransform>* transforms);
+bool DecodeImu(RosEncoding encoding, absl::string_view data, RosHeader* header,
+               ImuReading* reading);
+bool DecodeTransforms(RosEncoding encoding, absl::string_view data,
+                      std::vector<RosTransform>* transforms);
 
 }  // namespace io
 }  // namespace cartographer_ext

@@ -48,9 +48,12 @@ bool IsPlanar(const std::vector<Eigen::Vector3d>& points) {
 
 class RosRecording : public SensorSource {
  public:
-  RosRecording(const std::string& filename, std::unique_ptr<RosContainer> container,
+  RosRecording(const std::string& filename,
+               std::unique_ptr<RosContainer> container,
                const SensorSourceOptions& options)
-      : filename_(filename), container_(std::move(container)), tracking_frame_(options.tracking_frame),
+      : filename_(filename),
+        container_(std::move(container)),
+        tracking_frame_(options.tracking_frame),
         decoder_(container_->encoding(), &topics_, &timing_) {
     if (!tracking_frame_.empty() && tracking_frame_[0] == '/') {
       tracking_frame_.erase(0, 1);
@@ -95,7 +98,8 @@ class RosRecording : public SensorSource {
   std::set<std::string> EventTopics() const {
     std::set<std::string> topics = {topics_.odometry, topics_.imu};
     for (const auto& scan : topics_.scans) topics.insert(scan.first);
-    if (topics_.odometry_from_transforms) topics.insert(topics_.transforms.begin(), topics_.transforms.end());
+    if (topics_.odometry_from_transforms)
+      topics.insert(topics_.transforms.begin(), topics_.transforms.end());
     topics.erase("");
     return topics;
   }
@@ -122,7 +126,9 @@ class RosRecording : public SensorSource {
 absl::Status RosRecording::Open(const SensorSourceOptions& options) {
   auto chosen = ChooseTopics(container_->topics(), options);
   if (!chosen.ok()) {
-    return absl::Status(chosen.status().code(), absl::StrCat(filename_, ": ", chosen.status().message()));
+    return absl::Status(
+        chosen.status().code(),
+        absl::StrCat(filename_, ": ", chosen.status().message()));
   }
   topics_ = std::move(*chosen);
   info_.format = container_->format();
@@ -131,7 +137,8 @@ absl::Status RosRecording::Open(const SensorSourceOptions& options) {
   }
   absl::Status status = Survey();
   if (!status.ok()) return status;
-  for (std::string& warning : container_->warnings()) info_.warnings.push_back(std::move(warning));
+  for (std::string& warning : container_->warnings())
+    info_.warnings.push_back(std::move(warning));
   CheckFrames();
   status = container_->Rewind(EventTopics());
   if (!status.ok()) return status;
@@ -141,7 +148,8 @@ absl::Status RosRecording::Open(const SensorSourceOptions& options) {
 
 bool RosRecording::TakeTransforms(const RosMessage& message) {
   std::vector<RosTransform> transforms;
-  if (!DecodeTransforms(container_->encoding(), message.data, &transforms)) return false;
+  if (!DecodeTransforms(container_->encoding(), message.data, &transforms))
+    return false;
   for (const RosTransform& transform : transforms) frames_.Add(transform);
   return true;
 }
@@ -172,7 +180,8 @@ absl::Status RosRecording::ReadKeys(std::vector<EventKey>* keys) {
     }
     std::set<std::string>& frames = seen_frames_[decoded.rank];
     if (frames.size() < kMaxSensorFrames) frames.insert(decoded.frame);
-    if (decoded.rank == kScanRank) AddScanTiming(message.topic, decoded, &timing_);
+    if (decoded.rank == kScanRank)
+      AddScanTiming(message.topic, decoded, &timing_);
     if (!decoded.cloud.points.empty()) {
       ++num_clouds_;
       if (IsPlanar(decoded.cloud.points)) ++num_planar_clouds_;
@@ -181,9 +190,11 @@ absl::Status RosRecording::ReadKeys(std::vector<EventKey>* keys) {
     const auto known = last.emplace(message.topic, time);
     if (time < known.first->second) ++info_.num_out_of_order;
     known.first->second = time;
-    keys->push_back(EventKey{time, decoded.rank, static_cast<int64_t>(keys->size())});
+    keys->push_back(
+        EventKey{time, decoded.rank, static_cast<int64_t>(keys->size())});
     if (keys->size() > kMaxEvents) {
-      return absl::OutOfRangeError(absl::StrCat(filename_, ": more than ", kMaxEvents, " messages"));
+      return absl::OutOfRangeError(
+          absl::StrCat(filename_, ": more than ", kMaxEvents, " messages"));
     }
   }
   return absl::OkStatus();
@@ -194,23 +205,29 @@ absl::Status RosRecording::Survey() {
   absl::Status status = ReadKeys(&keys);
   if (!status.ok()) return status;
   timing_.Judge();
-  for (const std::string& warning : timing_.Warnings()) info_.warnings.push_back(absl::StrCat(filename_, ": ", warning));
+  for (const std::string& warning : timing_.Warnings())
+    info_.warnings.push_back(absl::StrCat(filename_, ": ", warning));
   // Stamps of scans without the time that their beams claim to take.
-  if (timing_.AnyImpossible() && !(status = ReadKeys(&keys)).ok()) return status;
+  if (timing_.AnyImpossible() && !(status = ReadKeys(&keys)).ok())
+    return status;
   for (const auto& topic : damaged_) {
-    info_.warnings.push_back(
-        absl::StrCat(filename_, ": ", topic.second, " messages on ", topic.first, " are damaged or have values that are no numbers; skipped"));
+    info_.warnings.push_back(absl::StrCat(
+        filename_, ": ", topic.second, " messages on ", topic.first,
+        " are damaged or have values that are no numbers; skipped"));
   }
   if (topics_.odometry_from_transforms) {
     if (frames_.HasMovingChild(seen_frames_[kOdometryRank])) {
-      info_.warnings.push_back(absl::StrCat(filename_, ": no odometry messages; taking the transforms from \"",
-                                            *seen_frames_[kOdometryRank].begin(), "\" to \"odom\""));
+      info_.warnings.push_back(absl::StrCat(
+          filename_, ": no odometry messages; taking the transforms from \"",
+          *seen_frames_[kOdometryRank].begin(), "\" to \"odom\""));
     } else {
       // None, or of a robot that only says so.
       topics_.odometry_from_transforms = false;
       seen_frames_[kOdometryRank].clear();
       keys.erase(std::remove_if(keys.begin(), keys.end(),
-                                [](const EventKey& key) { return key.rank == kOdometryRank; }),
+                                [](const EventKey& key) {
+                                  return key.rank == kOdometryRank;
+                                }),
                  keys.end());
       int64_t ordinal = 0;
       for (EventKey& key : keys) key.ordinal = ordinal++;
@@ -221,13 +238,15 @@ absl::Status RosRecording::Survey() {
   for (const auto& scan : topics_.scans) scans.push_back(scan.first);
   const std::string names = absl::StrJoin(scans, ", ");
   if (info_.num_scans == 0) {
-    return absl::InvalidArgumentError(absl::StrCat(filename_, ": no valid scan on ", names));
+    return absl::InvalidArgumentError(
+        absl::StrCat(filename_, ": no valid scan on ", names));
   }
   if (scans.size() > 1) info_.lasers = std::move(scans);
   if (2 * num_planar_clouds_ < num_clouds_) {
     return absl::InvalidArgumentError(
         absl::StrCat(filename_, ": the points on ", names,
-                     " do not lie in one plane; only lasers that measure in a plane are read"));
+                     " do not lie in one plane; only lasers that measure in a "
+                     "plane are read"));
   }
   return absl::OkStatus();
 }
@@ -235,14 +254,16 @@ absl::Status RosRecording::Survey() {
 void RosRecording::CountEvents(const std::vector<EventKey>& keys) {
   reordering_ = PlanReordering(keys, kMaxReorderWindow);
   if (!reordering_.dropped.empty()) {
-    info_.warnings.push_back(absl::StrCat(filename_, ": ", reordering_.dropped.size(), " messages more than ",
-                                          kMaxReorderWindow, " messages late dropped"));
+    info_.warnings.push_back(absl::StrCat(
+        filename_, ": ", reordering_.dropped.size(), " messages more than ",
+        kMaxReorderWindow, " messages late dropped"));
   }
   int64_t counts[kNumRanks] = {};
   info_.begin = std::numeric_limits<TimeNs>::max();
   size_t next_dropped = 0;
   for (const EventKey& key : keys) {
-    if (next_dropped < reordering_.dropped.size() && reordering_.dropped[next_dropped] == key.ordinal) {
+    if (next_dropped < reordering_.dropped.size() &&
+        reordering_.dropped[next_dropped] == key.ordinal) {
       ++next_dropped;
       continue;
     }
@@ -307,7 +328,8 @@ void RosRecording::Place(RosEvent* decoded) {
     }
     const Pose2 laser_from_robot = scan.laser_pose.Inverse();
     for (const Eigen::Vector3d& point : decoded->cloud.points) {
-      scan.points.push_back(laser_from_robot * Eigen::Vector2d((sensor * point).head<2>()));
+      scan.points.push_back(laser_from_robot *
+                            Eigen::Vector2d((sensor * point).head<2>()));
     }
   } else if (decoded->rank == kOdometryRank) {
     absl::get<OdometryReading>(decoded->event).pose =
@@ -330,7 +352,8 @@ absl::Status RosRecording::Advance() {
   RosEvent decoded;
   if (!decoder_.Decode(message, &decoded)) return absl::OkStatus();
   const EventKey key{EventTime(decoded.event), decoded.rank, ordinal_++};
-  if (next_dropped_ < reordering_.dropped.size() && reordering_.dropped[next_dropped_] == key.ordinal) {
+  if (next_dropped_ < reordering_.dropped.size() &&
+      reordering_.dropped[next_dropped_] == key.ordinal) {
     ++next_dropped_;
     return absl::OkStatus();
   }
@@ -346,17 +369,21 @@ RosTopicType TypeOfRos2(const std::string& name) {
   type.name = name;
   const size_t at = name.find("/msg/");
   if (at == std::string::npos) return type;
-  const std::string ros1 = absl::StrCat(name.substr(0, at), "/", name.substr(at + 5));
-  for (const RosType& known : {kRosLaserScan, kRosMultiEchoLaserScan, kRosPointCloud2, kRosOdometry, kRosImu, kRosTransforms}) {
+  const std::string ros1 =
+      absl::StrCat(name.substr(0, at), "/", name.substr(at + 5));
+  for (const RosType& known :
+       {kRosLaserScan, kRosMultiEchoLaserScan, kRosPointCloud2, kRosOdometry,
+        kRosImu, kRosTransforms}) {
     if (ros1 == known.name) type.md5sum = known.md5sum;
   }
   return type;
 }
 
-absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosRecording(const std::string& filename,
-                                                               std::unique_ptr<RosContainer> container,
-                                                               const SensorSourceOptions& options) {
-  auto source = absl::make_unique<RosRecording>(filename, std::move(container), options);
+absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosRecording(
+    const std::string& filename, std::unique_ptr<RosContainer> container,
+    const SensorSourceOptions& options) {
+  auto source =
+      absl::make_unique<RosRecording>(filename, std::move(container), options);
   const absl::Status status = source->Open(options);
   if (!status.ok()) return status;
   return std::unique_ptr<SensorSource>(std::move(source));

@@ -24,7 +24,8 @@ constexpr double kTurningFieldOfView = 1.5 * kPi;
 
 double Median(std::vector<double> values) {
   if (values.size() < kMinScans) return 0.;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  std::nth_element(values.begin(), values.begin() + values.size() / 2,
+                   values.end());
   return values[values.size() / 2];
 }
 
@@ -36,7 +37,8 @@ std::string Seconds(const double value) {
 
 }  // namespace
 
-void ScanTiming::Add(const std::string& topic, const std::string& frame, const TimeNs begin, const double sweep,
+void ScanTiming::Add(const std::string& topic, const std::string& frame,
+                     const TimeNs begin, const double sweep,
                      const double field_of_view) {
   const auto key = std::make_pair(topic, frame);
   if (sensors_.size() >= kMaxSensors && sensors_.count(key) == 0) return;
@@ -55,17 +57,20 @@ void ScanTiming::Judge() {
     Sensor& sensor = entry.second;
     sensor.period = Median(sensor.periods);
     sensor.sweep = Median(sensor.sweeps);
-    sensor.impossible = sensor.period > 0. && sensor.sweep > kPeriodTolerance * sensor.period;
+    sensor.impossible =
+        sensor.period > 0. && sensor.sweep > kPeriodTolerance * sensor.period;
   }
 }
 
-bool ScanTiming::IsImpossible(const std::string& topic, const std::string& frame) const {
+bool ScanTiming::IsImpossible(const std::string& topic,
+                              const std::string& frame) const {
   const auto found = sensors_.find(std::make_pair(topic, frame));
   return found != sensors_.end() && found->second.impossible;
 }
 
 bool ScanTiming::AnyImpossible() const {
-  return std::any_of(sensors_.begin(), sensors_.end(), [](const auto& entry) { return entry.second.impossible; });
+  return std::any_of(sensors_.begin(), sensors_.end(),
+                     [](const auto& entry) { return entry.second.impossible; });
 }
 
 std::vector<std::string> ScanTiming::Warnings() const {
@@ -73,11 +78,17 @@ std::vector<std::string> ScanTiming::Warnings() const {
   for (const auto& entry : sensors_) {
     const Sensor& sensor = entry.second;
     if (sensor.impossible) {
-      warnings.push_back(absl::StrCat("the times of beams on ", entry.first.first, " make a scan take ", Seconds(sensor.sweep),
-                                      ", but one comes every ", Seconds(sensor.period), "; every scan is taken as measured at once"));
-    } else if (sensor.sweep == 0. && sensor.period >= kSlowPeriod && sensor.field_of_view >= kTurningFieldOfView) {
-      warnings.push_back(absl::StrCat("no times of beams on ", entry.first.first, " (time_increment is 0): every scan is taken as measured at ",
-                                      "once; if the laser turns, beams are up to ", Seconds(sensor.period), " old and a moving robot smears them"));
+      warnings.push_back(absl::StrCat(
+          "the times of beams on ", entry.first.first, " make a scan take ",
+          Seconds(sensor.sweep), ", but one comes every ",
+          Seconds(sensor.period), "; every scan is taken as measured at once"));
+    } else if (sensor.sweep == 0. && sensor.period >= kSlowPeriod &&
+               sensor.field_of_view >= kTurningFieldOfView) {
+      warnings.push_back(absl::StrCat(
+          "no times of beams on ", entry.first.first,
+          " (time_increment is 0): every scan is taken as measured at ",
+          "once; if the laser turns, beams are up to ", Seconds(sensor.period),
+          " old and a moving robot smears them"));
     }
   }
   return warnings;

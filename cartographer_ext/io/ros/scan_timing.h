@@ -21,7 +21,8 @@ class ScanTiming {
  public:
   // A scan on `topic` from the sensor `frame`: time of its first beam, seconds
   // to the last one, and the angle between them in radians.
-  void Add(const std::string& topic, const std::string& frame, TimeNs begin, double sweep, double field_of_view);
+  void Add(const std::string& topic, const std::string& frame, TimeNs begin,
+           double sweep, double field_of_view);
 
   // Decides for every sensor; before, nothing is impossible.
   void Judge();

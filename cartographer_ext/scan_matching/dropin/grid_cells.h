@@ -27,6 +27,9 @@ class GridCells {
   float Cost(const int row, const int column) const {
     return grid_.GetCorrespondenceCost(Eigen::Array2i(column, row));
   }
+  bool IsKnown(const int row, const int column) const {
+    return grid_.IsKnown(Eigen::Array2i(column, row));
+  }
 
  private:
   const cartographer::mapping::Grid2D& grid_;

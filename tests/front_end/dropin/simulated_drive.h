@@ -68,6 +68,7 @@ struct RunOptions {
   bool use_odometry = true;
   double seconds = 40.;
   double max_range = 12.;
+  double field_of_view = 2. * kPi;  // radians, ahead
   cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D stock =
       StockOptions();
   FrontEndOptions own;
@@ -94,9 +95,17 @@ inline RunResult RunDrive(const RunOptions& options) {
       next_odometry += 0.05;
     }
     if (!options.has_scan(t)) continue;
-    const auto matched = builder.AddRangeData(
-        "scan",
-        Scan(options.walls, t, options.path(t), options.max_range, &random));
+    auto scan =
+        Scan(options.walls, t, options.path(t), options.max_range, &random);
+    const auto unseen =
+        [&](const cartographer::sensor::TimedRangefinderPoint& point) {
+          return std::abs(std::atan2(point.position.y(), point.position.x())) >
+                 0.5 * options.field_of_view + 1e-3;
+        };
+    scan.ranges.erase(
+        std::remove_if(scan.ranges.begin(), scan.ranges.end(), unseen),
+        scan.ranges.end());
+    const auto matched = builder.AddRangeData("scan", scan);
     if (matched == nullptr) continue;
     ++result.matched;
     result.nodes += matched->insertion_result != nullptr;

@@ -65,14 +65,14 @@ class Bytes {
 // numbers) of each point, or there is no such field.
 inline std::string PointCloud2Bytes(
     const io::RosEncoding encoding, const uint32_t seconds,
-    const std::string& frame,
-    const std::vector<std::array<float, 3>>& points,
+    const std::string& frame, const std::vector<std::array<float, 3>>& points,
     const std::string& time_field = "", const uint8_t time_type = 0,
     const std::vector<std::string>& times = {}) {
   constexpr uint8_t kFloat32 = 7;
   const uint32_t n = static_cast<uint32_t>(points.size());
   const uint32_t num_fields = times.empty() ? 4 : 5;
-  const uint32_t step = 16 + (times.empty() ? 0 : static_cast<uint32_t>(times[0].size()));
+  const uint32_t step =
+      16 + (times.empty() ? 0 : static_cast<uint32_t>(times[0].size()));
   Bytes bytes(encoding);
   bytes.Header(seconds, 0, frame).Add(uint32_t{1}).Add(n).Add(num_fields);
   uint32_t offset = 0;
@@ -80,7 +80,8 @@ inline std::string PointCloud2Bytes(
     bytes.Text(name).Add(offset).Add(kFloat32).Add(uint32_t{1});
     offset += 4;
   }
-  if (!times.empty()) bytes.Text(time_field).Add(offset).Add(time_type).Add(uint32_t{1});
+  if (!times.empty())
+    bytes.Text(time_field).Add(offset).Add(time_type).Add(uint32_t{1});
   Bytes data;
   for (size_t i = 0; i < points.size(); ++i) {
     data.Floats({points[i][0], points[i][1], points[i][2], 99.f});

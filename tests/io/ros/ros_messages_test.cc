@@ -32,7 +32,8 @@ std::string LaserScanBytes(const std::vector<float>& ranges) {
 TEST(RosMessagesTest, LaserScan) {
   RosHeader header;
   LaserScan scan;
-  ASSERT_TRUE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes({1.f, 2.f, 3.f}), &header, &scan));
+  ASSERT_TRUE(DecodeLaserScan(RosEncoding::kRos1,
+                              LaserScanBytes({1.f, 2.f, 3.f}), &header, &scan));
   EXPECT_EQ(header.time, 10500000000);
   EXPECT_EQ(header.frame, "laser");
   EXPECT_EQ(scan.time, 11000000000);  // of the last beam
@@ -41,9 +42,11 @@ TEST(RosMessagesTest, LaserScan) {
   EXPECT_EQ(scan.time_increment, 0.25);
   EXPECT_EQ(scan.range_max, 30.);
   EXPECT_EQ(scan.ranges, (std::vector<float>{1.f, 2.f, 3.f}));
-  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes({}), &header, &scan));
+  EXPECT_FALSE(
+      DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes({}), &header, &scan));
   // More than a full turn.
-  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, LaserScanBytes(std::vector<float>(20, 1.f)),
+  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1,
+                               LaserScanBytes(std::vector<float>(20, 1.f)),
                                &header, &scan));
 }
 
@@ -61,7 +64,8 @@ TEST(RosMessagesTest, MultiEchoLaserScan) {
                                .data();
   RosHeader header;
   LaserScan scan;
-  ASSERT_TRUE(DecodeMultiEchoLaserScan(RosEncoding::kRos1, data, &header, &scan));
+  ASSERT_TRUE(
+      DecodeMultiEchoLaserScan(RosEncoding::kRos1, data, &header, &scan));
   ASSERT_EQ(scan.ranges.size(), 2u);
   EXPECT_EQ(scan.ranges[0], 4.f);
   EXPECT_TRUE(std::isnan(scan.ranges[1]));
@@ -81,7 +85,8 @@ TEST(RosMessagesTest, Odometry) {
   RosHeader header;
   std::string child;
   Eigen::Isometry3d pose;
-  ASSERT_TRUE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0.6, 0.8}),
+  ASSERT_TRUE(DecodeOdometry(RosEncoding::kRos1,
+                             OdometryBytes({1., 2., 3., 0., 0., 0.6, 0.8}),
                              &header, &child, &pose));
   EXPECT_EQ(header.time, 1000000002);
   EXPECT_EQ(child, "base_link");
@@ -89,14 +94,16 @@ TEST(RosMessagesTest, Odometry) {
   EXPECT_NEAR(std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)),
               2. * std::atan2(0.6, 0.8), 1e-12);
   // All zero stands for no rotation.
-  ASSERT_TRUE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0., 0.}),
+  ASSERT_TRUE(DecodeOdometry(RosEncoding::kRos1,
+                             OdometryBytes({1., 2., 3., 0., 0., 0., 0.}),
                              &header, &child, &pose));
   EXPECT_TRUE(pose.linear().isIdentity());
-  EXPECT_FALSE(DecodeOdometry(RosEncoding::kRos1, OdometryBytes({1., 2., 3., 0., 0., 0., 0.5}),
+  EXPECT_FALSE(DecodeOdometry(RosEncoding::kRos1,
+                              OdometryBytes({1., 2., 3., 0., 0., 0., 0.5}),
                               &header, &child, &pose));
-  EXPECT_FALSE(
-      DecodeOdometry(RosEncoding::kRos1, OdometryBytes({std::nan(""), 2., 3., 0., 0., 0., 1.}),
-                     &header, &child, &pose));
+  EXPECT_FALSE(DecodeOdometry(
+      RosEncoding::kRos1, OdometryBytes({std::nan(""), 2., 3., 0., 0., 0., 1.}),
+      &header, &child, &pose));
 }
 
 TEST(RosMessagesTest, Imu) {
@@ -117,7 +124,8 @@ TEST(RosMessagesTest, Imu) {
   EXPECT_EQ(reading.time, 3000000000);
   EXPECT_EQ(reading.angular_velocity, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(reading.linear_acceleration, Eigen::Vector3d(1., 2., 9.8));
-  EXPECT_FALSE(DecodeImu(RosEncoding::kRos1, bytes(std::nan("")), &header, &reading));
+  EXPECT_FALSE(
+      DecodeImu(RosEncoding::kRos1, bytes(std::nan("")), &header, &reading));
 }
 
 TEST(RosMessagesTest, Transforms) {
@@ -146,7 +154,8 @@ TEST(RosMessagesTest, PointCloud2) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const RosEncoding encoding : {RosEncoding::kRos1, RosEncoding::kCdr}) {
     const std::string data = test::PointCloud2Bytes(
-        encoding, 10, "/lidar", {{1.f, 2.f, 0.5f}, {nan, nan, nan}, {-3.f, 0.f, 0.5f}});
+        encoding, 10, "/lidar",
+        {{1.f, 2.f, 0.5f}, {nan, nan, nan}, {-3.f, 0.f, 0.5f}});
     RosHeader header;
     RosPointCloud cloud;
     ASSERT_TRUE(DecodePointCloud2(encoding, data, &header, &cloud));
@@ -158,7 +167,8 @@ TEST(RosMessagesTest, PointCloud2) {
     EXPECT_EQ(cloud.points[0], Eigen::Vector3d(1., 2., 0.5));
     EXPECT_EQ(cloud.points[1], Eigen::Vector3d(-3., 0., 0.5));
     for (size_t size = 0; size + 8 < data.size(); ++size) {
-      EXPECT_FALSE(DecodePointCloud2(encoding, data.substr(0, size), &header, &cloud));
+      EXPECT_FALSE(
+          DecodePointCloud2(encoding, data.substr(0, size), &header, &cloud));
     }
     test::ForEachMutation(data, [encoding](const std::string& damaged) {
       RosHeader damaged_header;
@@ -173,34 +183,50 @@ std::string Raw(const T value) {
   return test::Bytes().Add(value).data();
 }
 
-std::vector<double> PointTimes(const std::string& field, const uint8_t type, const std::vector<std::string>& times) {
+std::vector<double> PointTimes(const std::string& field, const uint8_t type,
+                               const std::vector<std::string>& times) {
   RosHeader header;
   RosPointCloud cloud;
-  const std::string data =
-      test::PointCloud2Bytes(RosEncoding::kRos1, 1000000010, "lidar", {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.f}}, field, type, times);
+  const std::string data = test::PointCloud2Bytes(
+      RosEncoding::kRos1, 1000000010, "lidar",
+      {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.f}}, field, type, times);
   EXPECT_TRUE(DecodePointCloud2(RosEncoding::kRos1, data, &header, &cloud));
   EXPECT_EQ(cloud.points.size(), 2u);
   return cloud.times;
 }
 
 TEST(RosMessagesTest, TimesOfPoints) {
-  constexpr uint8_t kUint16 = 4, kInt32 = 5, kUint32 = 6, kFloat32 = 7, kFloat64 = 8;
+  constexpr uint8_t kUint16 = 4, kInt32 = 5, kUint32 = 6, kFloat32 = 7,
+                    kFloat64 = 8;
   using ::testing::DoubleNear;
   using ::testing::ElementsAre;
   using ::testing::IsEmpty;
   const auto times = ElementsAre(DoubleNear(0.05, 1e-6), DoubleNear(0.1, 1e-6));
-  EXPECT_THAT(PointTimes("t", kUint32, {Raw(uint32_t{50000000}), Raw(uint32_t{100000000})}), times);
-  EXPECT_THAT(PointTimes("offset_time", kInt32, {Raw(int32_t{50000000}), Raw(int32_t{100000000})}), times);
+  EXPECT_THAT(PointTimes("t", kUint32,
+                         {Raw(uint32_t{50000000}), Raw(uint32_t{100000000})}),
+              times);
+  EXPECT_THAT(PointTimes("offset_time", kInt32,
+                         {Raw(int32_t{50000000}), Raw(int32_t{100000000})}),
+              times);
   EXPECT_THAT(PointTimes("time", kFloat32, {Raw(0.05f), Raw(0.1f)}), times);
   EXPECT_THAT(PointTimes("timestamp", kFloat64, {Raw(0.05), Raw(0.1)}), times);
-  EXPECT_THAT(PointTimes("timestamp", kFloat64, {Raw(1000000010.05), Raw(1000000010.1)}), times);
-  EXPECT_THAT(PointTimes("timestamp", kFloat64, {Raw(1000000010.05e9), Raw(1000000010.1e9)}), times);
+  EXPECT_THAT(PointTimes("timestamp", kFloat64,
+                         {Raw(1000000010.05), Raw(1000000010.1)}),
+              times);
+  EXPECT_THAT(PointTimes("timestamp", kFloat64,
+                         {Raw(1000000010.05e9), Raw(1000000010.1e9)}),
+              times);
   // Before the stamp of the message, as some drivers have it.
-  EXPECT_THAT(PointTimes("time", kFloat32, {Raw(-0.1f), Raw(0.f)}), ElementsAre(DoubleNear(-0.1, 1e-6), 0.));
+  EXPECT_THAT(PointTimes("time", kFloat32, {Raw(-0.1f), Raw(0.f)}),
+              ElementsAre(DoubleNear(-0.1, 1e-6), 0.));
   // In another unit, not a number, another type, another field.
   EXPECT_THAT(PointTimes("time", kFloat32, {Raw(50.f), Raw(100.f)}), IsEmpty());
-  EXPECT_THAT(PointTimes("time", kFloat32, {Raw(0.05f), Raw(std::numeric_limits<float>::quiet_NaN())}), IsEmpty());
-  EXPECT_THAT(PointTimes("time", kUint16, {Raw(uint16_t{1}), Raw(uint16_t{2})}), IsEmpty());
+  EXPECT_THAT(
+      PointTimes("time", kFloat32,
+                 {Raw(0.05f), Raw(std::numeric_limits<float>::quiet_NaN())}),
+      IsEmpty());
+  EXPECT_THAT(PointTimes("time", kUint16, {Raw(uint16_t{1}), Raw(uint16_t{2})}),
+              IsEmpty());
   EXPECT_THAT(PointTimes("ring", kFloat32, {Raw(0.05f), Raw(0.1f)}), IsEmpty());
 }
 
@@ -209,9 +235,11 @@ TEST(RosMessagesTest, TooShortOrTooLongIsRefused) {
   RosHeader header;
   LaserScan decoded;
   for (size_t size = 0; size < scan.size(); ++size) {
-    EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, scan.substr(0, size), &header, &decoded));
+    EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, scan.substr(0, size),
+                                 &header, &decoded));
   }
-  EXPECT_FALSE(DecodeLaserScan(RosEncoding::kRos1, scan + "x", &header, &decoded));
+  EXPECT_FALSE(
+      DecodeLaserScan(RosEncoding::kRos1, scan + "x", &header, &decoded));
 }
 
 TEST(RosMessagesTest, SurvivesMutations) {

@@ -22,7 +22,8 @@ using ::testing::HasSubstr;
 
 class MemoryContainer : public RosContainer {
  public:
-  void Add(const std::string& topic, const std::string& type, const std::string& data) {
+  void Add(const std::string& topic, const std::string& type,
+           const std::string& data) {
     topics_[topic] = TypeOfRos2(type);
     RosMessage message;
     message.topic = topic;
@@ -42,13 +43,16 @@ class MemoryContainer : public RosContainer {
   }
   absl::StatusOr<bool> Next(RosMessage* message) override {
     while (at_ < messages_.size()) {
-      if (static_cast<int>(at_) == fail_after_) return absl::DataLossError("memory: gone");
+      if (static_cast<int>(at_) == fail_after_)
+        return absl::DataLossError("memory: gone");
       *message = messages_[at_++];
       if (wanted_.count(message->topic) > 0) return true;
     }
     return false;
   }
-  std::vector<std::string> warnings() const override { return {"memory: rather short"}; }
+  std::vector<std::string> warnings() const override {
+    return {"memory: rather short"};
+  }
 
  private:
   RosTopics topics_;
@@ -59,21 +63,26 @@ class MemoryContainer : public RosContainer {
 };
 
 TEST(RosRecordingTest, TypesOfRos2) {
-  EXPECT_STREQ(TypeOfRos2("sensor_msgs/msg/LaserScan").md5sum.c_str(), kRosLaserScan.md5sum);
-  EXPECT_EQ(TypeOfRos2("sensor_msgs/msg/LaserScan").name, "sensor_msgs/msg/LaserScan");
+  EXPECT_STREQ(TypeOfRos2("sensor_msgs/msg/LaserScan").md5sum.c_str(),
+               kRosLaserScan.md5sum);
+  EXPECT_EQ(TypeOfRos2("sensor_msgs/msg/LaserScan").name,
+            "sensor_msgs/msg/LaserScan");
   EXPECT_EQ(TypeOfRos2("sensor_msgs/LaserScan").md5sum, "");
   EXPECT_EQ(TypeOfRos2("my_msgs/msg/LaserScan").md5sum, "");
 }
 
 TEST(RosRecordingTest, WarningsOfTheContainerAndDamagedMessagesAreReported) {
   auto container = absl::make_unique<MemoryContainer>();
-  container->Add("scan", kRos2LaserScan, EncodeLaserScan(test::SampleScan(2000000000, 5), "base_link"));
+  container->Add("scan", kRos2LaserScan,
+                 EncodeLaserScan(test::SampleScan(2000000000, 5), "base_link"));
   container->Add("scan", kRos2LaserScan, "not a scan");
   auto source = OpenRosRecording("memory", std::move(container), {});
   ASSERT_TRUE(source.ok()) << source.status();
   EXPECT_EQ((*source)->info().num_scans, 1);
-  EXPECT_THAT((*source)->info().warnings, ElementsAre(HasSubstr("1 messages on scan are damaged or have values that are no numbers; skipped"),
-                                                      "memory: rather short"));
+  EXPECT_THAT((*source)->info().warnings,
+              ElementsAre(HasSubstr("1 messages on scan are damaged or have "
+                                    "values that are no numbers; skipped"),
+                          "memory: rather short"));
 }
 
 TEST(RosRecordingTest, WithoutStampTheTimeOfRecordingCounts) {
@@ -89,13 +98,20 @@ TEST(RosRecordingTest, WithoutStampTheTimeOfRecordingCounts) {
 
 TEST(RosRecordingTest, ErrorsOfTheContainerArePassedOn) {
   auto container = absl::make_unique<MemoryContainer>();
-  container->Add("scan", kRos2LaserScan, EncodeLaserScan(test::SampleScan(2000000000, 5), "base_link"));
-  container->Add("scan", kRos2LaserScan, EncodeLaserScan(test::SampleScan(3000000000, 5), "base_link"));
+  container->Add("scan", kRos2LaserScan,
+                 EncodeLaserScan(test::SampleScan(2000000000, 5), "base_link"));
+  container->Add("scan", kRos2LaserScan,
+                 EncodeLaserScan(test::SampleScan(3000000000, 5), "base_link"));
   container->FailAfter(1);
-  EXPECT_EQ(OpenRosRecording("memory", std::move(container), {}).status().code(), absl::StatusCode::kDataLoss);
-  EXPECT_THAT(std::string(
-                  OpenRosRecording("memory", absl::make_unique<MemoryContainer>(), {}).status().message()),
-              HasSubstr("memory: no topic of type sensor_msgs/LaserScan"));
+  EXPECT_EQ(
+      OpenRosRecording("memory", std::move(container), {}).status().code(),
+      absl::StatusCode::kDataLoss);
+  EXPECT_THAT(
+      std::string(
+          OpenRosRecording("memory", absl::make_unique<MemoryContainer>(), {})
+              .status()
+              .message()),
+      HasSubstr("memory: no topic of type sensor_msgs/LaserScan"));
 }
 
 std::vector<SensorEvent> ReadAll(SensorSource* const source) {
@@ -107,8 +123,10 @@ std::vector<SensorEvent> ReadAll(SensorSource* const source) {
 
 TEST(RosRecordingTest, SeveralLasersAreReadTogether) {
   auto container = absl::make_unique<MemoryContainer>();
-  container->Add("/front", kRos2LaserScan, EncodeLaserScan(test::SampleScan(2000000000, 5), "base_link"));
-  container->Add("/rear", kRos2LaserScan, EncodeLaserScan(test::SampleScan(3000000000, 5), "base_link"));
+  container->Add("/front", kRos2LaserScan,
+                 EncodeLaserScan(test::SampleScan(2000000000, 5), "base_link"));
+  container->Add("/rear", kRos2LaserScan,
+                 EncodeLaserScan(test::SampleScan(3000000000, 5), "base_link"));
   SensorSourceOptions options;
   options.scan_topic = "front,rear";
   auto source = OpenRosRecording("memory", std::move(container), options);
@@ -122,21 +140,29 @@ TEST(RosRecordingTest, SeveralLasersAreReadTogether) {
 }
 
 // Transforms from a robot to "odom" at 1 s and 2 s, and a scan between.
-std::unique_ptr<MemoryContainer> OdometryInTransforms(const Pose2& first, const Pose2& second) {
+std::unique_ptr<MemoryContainer> OdometryInTransforms(const Pose2& first,
+                                                      const Pose2& second) {
   auto container = absl::make_unique<MemoryContainer>();
-  container->Add("/tf", kRos2Transforms, EncodeTransform(1000000000, "odom", "base_link", first));
-  container->Add("/scan", kRos2LaserScan, EncodeLaserScan(test::SampleScan(1500000000, 5), "base_link"));
-  container->Add("/tf", kRos2Transforms, EncodeTransform(2000000000, "odom", "base_link", second));
-  container->Add("/tf", kRos2Transforms, EncodeTransform(2000000000, "map", "odom", Pose2(9., 9., 0.)));
+  container->Add("/tf", kRos2Transforms,
+                 EncodeTransform(1000000000, "odom", "base_link", first));
+  container->Add("/scan", kRos2LaserScan,
+                 EncodeLaserScan(test::SampleScan(1500000000, 5), "base_link"));
+  container->Add("/tf", kRos2Transforms,
+                 EncodeTransform(2000000000, "odom", "base_link", second));
+  container->Add("/tf", kRos2Transforms,
+                 EncodeTransform(2000000000, "map", "odom", Pose2(9., 9., 0.)));
   return container;
 }
 
 TEST(RosRecordingTest, OdometryFromTransforms) {
-  auto source = OpenRosRecording("memory", OdometryInTransforms(Pose2(1., 2., 0.5), Pose2(2., 2., 0.6)), {});
+  auto source = OpenRosRecording(
+      "memory", OdometryInTransforms(Pose2(1., 2., 0.5), Pose2(2., 2., 0.6)),
+      {});
   ASSERT_TRUE(source.ok()) << source.status();
   EXPECT_EQ((*source)->info().num_odometry, 2);
   EXPECT_THAT((*source)->info().warnings,
-              testing::Contains(HasSubstr("taking the transforms from \"base_link\" to \"odom\"")));
+              testing::Contains(HasSubstr(
+                  "taking the transforms from \"base_link\" to \"odom\"")));
   const auto events = ReadAll(source->get());
   ASSERT_EQ(events.size(), 3u);
   EXPECT_EQ(EventTime(events[0]), 1000000000);
@@ -145,7 +171,8 @@ TEST(RosRecordingTest, OdometryFromTransforms) {
 }
 
 TEST(RosRecordingTest, TransformsThatNeverChangeAreNoOdometry) {
-  auto source = OpenRosRecording("memory", OdometryInTransforms(Pose2(), Pose2()), {});
+  auto source =
+      OpenRosRecording("memory", OdometryInTransforms(Pose2(), Pose2()), {});
   ASSERT_TRUE(source.ok()) << source.status();
   EXPECT_EQ((*source)->info().num_odometry, 0);
   EXPECT_EQ(ReadAll(source->get()).size(), 1u);
@@ -154,8 +181,11 @@ TEST(RosRecordingTest, TransformsThatNeverChangeAreNoOdometry) {
 TEST(RosRecordingTest, PointsOfAPlanarLaser) {
   auto container = absl::make_unique<MemoryContainer>();
   container->Add("/points", "sensor_msgs/msg/PointCloud2",
-                 test::PointCloud2Bytes(RosEncoding::kCdr, 2, "laser", {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.01f}}));
-  container->Add("/tf", kRos2Transforms, EncodeTransform(1000000000, "base_link", "laser", Pose2(0.5, 0., kPi / 2.)));
+                 test::PointCloud2Bytes(RosEncoding::kCdr, 2, "laser",
+                                        {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.01f}}));
+  container->Add("/tf", kRos2Transforms,
+                 EncodeTransform(1000000000, "base_link", "laser",
+                                 Pose2(0.5, 0., kPi / 2.)));
   auto source = OpenRosRecording("memory", std::move(container), {});
   ASSERT_TRUE(source.ok()) << source.status();
   EXPECT_EQ((*source)->info().num_scans, 1);
@@ -165,22 +195,29 @@ TEST(RosRecordingTest, PointsOfAPlanarLaser) {
   EXPECT_TRUE(scan.ranges.empty());
   ASSERT_EQ(scan.points.size(), 2u);
   EXPECT_NEAR((scan.points[1] - Eigen::Vector2d(0., 2.)).norm(), 0., 1e-9);
-  EXPECT_NEAR((scan.laser_pose * scan.points[0] - Eigen::Vector2d(0.5, 1.)).norm(), 0., 1e-9);
+  EXPECT_NEAR(
+      (scan.laser_pose * scan.points[0] - Eigen::Vector2d(0.5, 1.)).norm(), 0.,
+      1e-9);
 }
 
 TEST(RosRecordingTest, TheScanIsStampedWithItsLastPoint) {
   constexpr uint8_t kUint32 = 6;
-  const auto raw = [](const uint32_t nanoseconds) { return test::Bytes().Add(nanoseconds).data(); };
+  const auto raw = [](const uint32_t nanoseconds) {
+    return test::Bytes().Add(nanoseconds).data();
+  };
   auto container = absl::make_unique<MemoryContainer>();
-  container->Add("/points", "sensor_msgs/msg/PointCloud2",
-                 test::PointCloud2Bytes(RosEncoding::kCdr, 2, "base_link", {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.f}}, "t", kUint32,
-                                        {raw(100000000), raw(25000000)}));
+  container->Add(
+      "/points", "sensor_msgs/msg/PointCloud2",
+      test::PointCloud2Bytes(RosEncoding::kCdr, 2, "base_link",
+                             {{1.f, 0.f, 0.f}, {0.f, 2.f, 0.f}}, "t", kUint32,
+                             {raw(100000000), raw(25000000)}));
   auto source = OpenRosRecording("memory", std::move(container), {});
   ASSERT_TRUE(source.ok()) << source.status();
   const auto events = ReadAll(source->get());
   const auto& scan = absl::get<LaserScan>(events.at(0));
   EXPECT_EQ(scan.time, 2100000000);
-  EXPECT_THAT(scan.point_times, ElementsAre(0.f, ::testing::FloatNear(-0.075f, 1e-6f)));
+  EXPECT_THAT(scan.point_times,
+              ElementsAre(0.f, ::testing::FloatNear(-0.075f, 1e-6f)));
 }
 
 // Twenty scans a tenth of a second apart, whose beams claim to take `sweep`.
@@ -203,7 +240,9 @@ std::unique_ptr<MemoryContainer> TwentyScans(const double sweep) {
 TEST(RosRecordingTest, BeamsThatTakeLongerThanThereIsTimeAreAtOnce) {
   auto source = OpenRosRecording("memory", TwentyScans(0.4), {});
   ASSERT_TRUE(source.ok()) << source.status();
-  EXPECT_THAT((*source)->info().warnings, ::testing::Contains(HasSubstr("make a scan take 0.4 s, but one comes every 0.1 s")));
+  EXPECT_THAT((*source)->info().warnings,
+              ::testing::Contains(HasSubstr(
+                  "make a scan take 0.4 s, but one comes every 0.1 s")));
   const auto events = ReadAll(source->get());
   ASSERT_EQ(events.size(), 20u);
   EXPECT_EQ(absl::get<LaserScan>(events[0]).time_increment, 0.);
@@ -214,7 +253,9 @@ TEST(RosRecordingTest, BeamsThatTakeLongerThanThereIsTimeAreAtOnce) {
 TEST(RosRecordingTest, PossibleTimesOfBeamsAreKept) {
   auto source = OpenRosRecording("memory", TwentyScans(0.1), {});
   ASSERT_TRUE(source.ok()) << source.status();
-  EXPECT_THAT((*source)->info().warnings, ::testing::Not(::testing::Contains(HasSubstr("taken as measured at once"))));
+  EXPECT_THAT((*source)->info().warnings,
+              ::testing::Not(
+                  ::testing::Contains(HasSubstr("taken as measured at once"))));
   const auto events = ReadAll(source->get());
   EXPECT_NEAR(absl::get<LaserScan>(events.at(0)).time_increment, 0.025, 1e-9);
 }
@@ -222,14 +263,18 @@ TEST(RosRecordingTest, PossibleTimesOfBeamsAreKept) {
 TEST(RosRecordingTest, MissingTimesOfBeamsAreSaid) {
   auto source = OpenRosRecording("memory", TwentyScans(0.), {});
   ASSERT_TRUE(source.ok()) << source.status();
-  EXPECT_THAT((*source)->info().warnings, ::testing::Contains(HasSubstr("no times of beams on /scan")));
+  EXPECT_THAT((*source)->info().warnings,
+              ::testing::Contains(HasSubstr("no times of beams on /scan")));
 }
 
 TEST(RosRecordingTest, PointsInSpaceAreRefused) {
   auto container = absl::make_unique<MemoryContainer>();
   container->Add("/points", "sensor_msgs/msg/PointCloud2",
-                 test::PointCloud2Bytes(RosEncoding::kCdr, 2, "base_link", {{1.f, 0.f, 0.f}, {0.f, 2.f, 1.f}}));
-  EXPECT_THAT(std::string(OpenRosRecording("memory", std::move(container), {}).status().message()),
+                 test::PointCloud2Bytes(RosEncoding::kCdr, 2, "base_link",
+                                        {{1.f, 0.f, 0.f}, {0.f, 2.f, 1.f}}));
+  EXPECT_THAT(std::string(OpenRosRecording("memory", std::move(container), {})
+                              .status()
+                              .message()),
               HasSubstr("do not lie in one plane"));
 }
 
