@@ -106,17 +106,20 @@ bool IsAbove(const CostComparison& comparison) {
   return comparison.excess > kCostTolerance;
 }
 
-// Compares one data set or family with one type and count of outliers over all
-// seeds.
+// Compares one data set, or where there is none the family `name`, with one
+// type and count of outliers over all seeds.
 absl::Status CompareCell(const SweepOptions& options, const std::string& name,
-                         const bool is_family, const CostComparison& cell,
-                         Progress* const progress,
+                         const SweepGraph* const loaded,
+                         const CostComparison& cell, Progress* const progress,
                          std::vector<CostComparison>* const result) {
   for (int seed = options.first_seed;
        seed != options.first_seed + options.seeds; ++seed) {
-    const auto dataset =
-        is_family ? MakeFamilyGraph(name, seed) : LoadSweepGraph(options, name);
-    if (!dataset.ok()) return dataset.status();
+    absl::StatusOr<SweepGraph> family;
+    if (loaded == nullptr) {
+      family = MakeFamilyGraph(name, seed);
+      if (!family.ok()) return family.status();
+    }
+    const SweepGraph* const dataset = loaded != nullptr ? loaded : &*family;
     const auto count = OutlierCount(cell.requested_count, dataset->num_loops);
     if (!count.ok()) return count.status();
     CostComparison comparison = cell;
@@ -131,7 +134,7 @@ absl::Status CompareCell(const SweepOptions& options, const std::string& name,
     result->push_back(comparison);
     progress->Update(result->size(), comparison.dataset);
     // Without outliers the seed changes nothing but a family's graph.
-    if (!is_family && comparison.type == "none") break;
+    if (loaded != nullptr && comparison.type == "none") break;
   }
   return absl::OkStatus();
 }
@@ -157,9 +160,15 @@ absl::StatusOr<std::vector<CostComparison>> CompareCosts(
   std::vector<CostComparison> result;
   Progress progress("graphs", names.size() * cells.size() * options.seeds);
   for (size_t n = 0; n != names.size(); ++n) {
+    absl::StatusOr<SweepGraph> loaded;
+    const bool is_family = n >= options.datasets.size();
+    if (!is_family) {
+      loaded = LoadSweepGraph(options, names[n]);
+      if (!loaded.ok()) return loaded.status();
+    }
     for (const CostComparison& cell : cells) {
       const absl::Status status =
-          CompareCell(options, names[n], n >= options.datasets.size(), cell,
+          CompareCell(options, names[n], is_family ? nullptr : &*loaded, cell,
                       &progress, &result);
       if (!status.ok()) return status;
     }

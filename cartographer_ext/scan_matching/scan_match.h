@@ -261,11 +261,14 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
                                 return !point.allFinite();
                               }),
                points.end());
-  const auto limit = std::stable_partition(
-      points.begin(), points.end(), [&](const Eigen::Vector2d& point) {
-        return point.norm() < prediction.limit_of_sight;
-      });
-  const int num_near = static_cast<int>(limit - points.begin());
+  int num_near = static_cast<int>(points.size());
+  if (std::isfinite(prediction.limit_of_sight)) {
+    const auto limit = std::stable_partition(
+        points.begin(), points.end(), [&](const Eigen::Vector2d& point) {
+          return point.norm() < prediction.limit_of_sight;
+        });
+    num_near = static_cast<int>(limit - points.begin());
+  }
   Pose2 start = internal::IsFinite(initial) ? initial : prediction.pose;
   if (!internal::IsFinite(start)) start = Pose2();
   Prediction predicted = prediction;

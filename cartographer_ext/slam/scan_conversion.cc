@@ -19,6 +19,14 @@ cartographer::sensor::TimedPointCloudData ToTimedPointCloudData(
   data.origin = Eigen::Vector3f(static_cast<float>(scan.laser_pose.x),
                                 static_cast<float>(scan.laser_pose.y), 0.f);
   data.ranges.reserve(scan.ranges.size());
+  const auto add = [&](const Eigen::Vector2d& in_laser, const float time) {
+    const Eigen::Vector2d point = scan.laser_pose * in_laser;
+    cartographer::sensor::TimedRangefinderPoint timed_point;
+    timed_point.position = Eigen::Vector3f(static_cast<float>(point.x()),
+                                           static_cast<float>(point.y()), 0.f);
+    timed_point.time = time;
+    data.ranges.push_back(timed_point);
+  };
   const double last = static_cast<double>(scan.ranges.size()) - 1.;
   for (size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
@@ -26,26 +34,15 @@ cartographer::sensor::TimedPointCloudData ToTimedPointCloudData(
     if (!(range >= nearest && range <= furthest) || std::isinf(range)) continue;
     const double angle =
         scan.angle_min + static_cast<double>(i) * scan.angle_increment;
-    const Eigen::Vector2d point =
-        scan.laser_pose *
-        Eigen::Vector2d(range * std::cos(angle), range * std::sin(angle));
-    cartographer::sensor::TimedRangefinderPoint timed_point;
-    timed_point.position = Eigen::Vector3f(static_cast<float>(point.x()),
-                                           static_cast<float>(point.y()), 0.f);
-    timed_point.time = static_cast<float>(
-        std::min(0., (static_cast<double>(i) - last) * scan.time_increment));
-    data.ranges.push_back(timed_point);
+    add(Eigen::Vector2d(range * std::cos(angle), range * std::sin(angle)),
+        static_cast<float>(std::min(
+            0., (static_cast<double>(i) - last) * scan.time_increment)));
   }
   for (size_t i = 0; i < scan.points.size(); ++i) {
     const Eigen::Vector2d& in_laser = scan.points[i];
     const double range = in_laser.norm();
     if (!(range >= nearest && range <= furthest)) continue;
-    const Eigen::Vector2d point = scan.laser_pose * in_laser;
-    cartographer::sensor::TimedRangefinderPoint timed_point;
-    timed_point.position = Eigen::Vector3f(static_cast<float>(point.x()),
-                                           static_cast<float>(point.y()), 0.f);
-    timed_point.time = scan.point_times.empty() ? 0.f : scan.point_times[i];
-    data.ranges.push_back(timed_point);
+    add(in_laser, scan.point_times.empty() ? 0.f : scan.point_times[i]);
   }
   return data;
 }

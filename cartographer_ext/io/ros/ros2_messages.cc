@@ -111,8 +111,7 @@ void AppendNested(const std::string& fields, std::set<std::string>* seen, std::s
 }  // namespace
 
 TimeNs FirstBeamTime(const LaserScan& scan) {
-  const size_t n = scan.ranges.size();
-  return n == 0 ? scan.time : scan.time - FromSeconds(scan.time_increment * (n - 1));
+  return scan.time - FromSeconds(SweepSeconds(scan));
 }
 
 std::string EncodeLaserScan(const LaserScan& scan, const std::string& frame) {

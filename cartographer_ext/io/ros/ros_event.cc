@@ -21,15 +21,6 @@ bool IsOdometryFrame(const std::string& frame) {
   return frame == "odom" || absl::EndsWith(frame, "/odom");
 }
 
-double Sweep(const LaserScan& scan) {
-  if (!scan.point_times.empty())
-    return -*std::min_element(scan.point_times.begin(), scan.point_times.end());
-  return scan.ranges.empty()
-             ? 0.
-             : scan.time_increment *
-                   (static_cast<double>(scan.ranges.size()) - 1.);
-}
-
 // The scan's time becomes that of the last point.
 void TakePointTimes(const RosPointCloud& cloud, LaserScan* scan) {
   if (cloud.times.empty()) return;
@@ -125,7 +116,7 @@ bool RosEventDecoder::FindOdometry(const RosMessage& message,
 void AddScanTiming(const std::string& topic, const RosEvent& decoded,
                    ScanTiming* const timing) {
   const LaserScan& scan = absl::get<LaserScan>(decoded.event);
-  const double sweep = Sweep(scan);
+  const double sweep = SweepSeconds(scan);
   // Points tell nothing about where a turning laser sees nothing.
   const double field_of_view =
       scan.ranges.empty() ? 2. * kPi

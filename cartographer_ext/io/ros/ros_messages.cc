@@ -221,11 +221,19 @@ bool FinishScan(const RosHeader& header, LaserScan* scan) {
       !(scan->time_increment >= 0.) || !(scan->time_increment * n <= 10.)) {
     return false;
   }
-  scan->time = header.time + FromSeconds(scan->time_increment * (n - 1));
+  scan->time = header.time + FromSeconds(SweepSeconds(*scan));
   return true;
 }
 
 }  // namespace
+
+double SweepSeconds(const LaserScan& scan) {
+  if (!scan.point_times.empty()) {
+    return -*std::min_element(scan.point_times.begin(), scan.point_times.end());
+  }
+  if (scan.ranges.empty()) return 0.;
+  return scan.time_increment * (static_cast<double>(scan.ranges.size()) - 1.);
+}
 
 bool DecodeLaserScan(RosEncoding encoding, absl::string_view data,
                      RosHeader* header, LaserScan* scan) {

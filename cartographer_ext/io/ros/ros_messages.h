@@ -64,6 +64,9 @@ struct RosPointCloud {
   std::vector<double> times;
 };
 
+// From the first beam or point of a scan to the last.
+double SweepSeconds(const LaserScan& scan);
+
 // All return false for messages that are too short, too long, or hold numbers
 // that make no sense (poses that are not finite, no beams or more than
 // CarmenLine::kMaxReadings, beams over more than a full turn).

@@ -4,9 +4,9 @@
 #include "cartographer_ext/io/ros/scan_timing.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
@@ -30,9 +30,7 @@ double Median(std::vector<double> values) {
 }
 
 std::string Seconds(const double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g s", value);
-  return text;
+  return absl::StrFormat("%.3g s", value);
 }
 
 }  // namespace

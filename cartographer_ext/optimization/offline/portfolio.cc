@@ -227,12 +227,17 @@ bool Portfolio::RejectedContradict() {
   return possible <= kMaxPossible;
 }
 
+bool Portfolio::AddReplay(ReplayResult* const replay) {
+  if (!Replay(graph_, options_.smoother, replay).ok()) return false;
+  lowest_of_solvers_ =
+      std::min(lowest_of_solvers_, TruncatedCost(edges_, replay->poses));
+  Add("r_isam", replay->poses);
+  return true;
+}
+
 bool Portfolio::SettleByReplay() {
   ReplayResult replay;
-  if (!Replay(graph_, options_.smoother, &replay).ok()) return false;
-  lowest_of_solvers_ =
-      std::min(lowest_of_solvers_, TruncatedCost(edges_, replay.poses));
-  Add("r_isam", replay.poses);
+  if (!AddReplay(&replay)) return false;
   replayed_ = true;
   const size_t first = members_.size();
   AddKernels("r_isam, ", replay.poses, false);
@@ -241,13 +246,8 @@ bool Portfolio::SettleByReplay() {
 
 void Portfolio::AddReplays() {
   ReplayResult replay;
-  if (replayed_ || Replay(graph_, options_.smoother, &replay).ok()) {
-    if (!replayed_) {
-      lowest_of_solvers_ =
-          std::min(lowest_of_solvers_, TruncatedCost(edges_, replay.poses));
-      Add("r_isam", replay.poses);
-      AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
-    }
+  if (replayed_ || AddReplay(&replay)) {
+    if (!replayed_) AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
     if (graph_.poses.size() > kLargeGraph) return;
     // The failures of a softer and of a harder epoch kernel differ.
     SmootherOptions softer = options_.smoother;

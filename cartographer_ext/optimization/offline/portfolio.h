@@ -101,6 +101,8 @@ class Portfolio {
   void AddFullKernels(const std::string& start_name,
                       const std::vector<Pose2>& start);
   void AddGnc(const std::string& start_name, const std::vector<Pose2>& start);
+  // The incremental replay itself; false where it is not possible.
+  bool AddReplay(ReplayResult* replay);
   void AddReplays();
   // From the best, kernels as wide as the gate.
   void Soften();

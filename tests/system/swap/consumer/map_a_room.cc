@@ -4,6 +4,7 @@
 // map_a_room CONFIGURATION_DIRECTORY: maps a room of 8 by 6 metres from a drive through it, once without and once with our
 // include in the Lua code, and prints the nodes and the error of the last pose of each.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
