@@ -28,7 +28,7 @@ struct Handles {
   metrics::Counter* relocated = metrics::Counter::Null();
   metrics::Histogram* scores = metrics::Histogram::Null();
   metrics::Gauge* time_offset = metrics::Gauge::Null();
-  metrics::Gauge* way_scale = metrics::Gauge::Null();
+  metrics::Gauge* odometry_scale = metrics::Gauge::Null();
 
   Handles() { scans.fill(metrics::Counter::Null()); }
 };
@@ -70,9 +70,9 @@ void RegisterFrontEndMetrics(metrics::FamilyFactory* const family_factory) {
           ->NewGaugeFamily(absl::StrCat(kPrefix, "time_offset"),
                            "Seconds from odometry to scan stamps")
           ->Add({});
-  handles->way_scale =
+  handles->odometry_scale =
       family_factory
-          ->NewGaugeFamily(absl::StrCat(kPrefix, "way_scale"),
+          ->NewGaugeFamily(absl::StrCat(kPrefix, "odometry_scale"),
                            "Estimated scale of odometry translation")
           ->Add({});
 }
@@ -92,7 +92,7 @@ void CountMatch(const MatchRecord& record) {
   }
   handles->scores->Observe(record.score());
   handles->time_offset->Set(record.time_offset());
-  handles->way_scale->Set(record.way_scale());
+  handles->odometry_scale->Set(record.way_scale());
 }
 
 }  // namespace front_end

@@ -8,7 +8,7 @@
 //   searches{outcome=kept|relocated}     counter
 //   scores                               histogram, mean probability
 //   time_offset                          gauge, seconds
-//   way_scale                            gauge, of odometry
+//   odometry_scale                       gauge
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_FRONT_END_METRICS_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_FRONT_END_METRICS_H_
 

@@ -93,7 +93,8 @@ int MapRoom(const std::string& folder, const std::string& include) {
   const auto& last = std::prev(nodes.end())->data;
   // Where the drive was when the last node was made.
   const double expected =
-      0.4 * cartographer::common::ToSeconds(last.time() - start);
+      0.4 * cartographer::common::ToSeconds(
+                last.constant_pose_data.value().time - start);
   const double error = std::hypot(last.global_pose.translation().x() - expected,
                                   last.global_pose.translation().y());
   std::printf("%s: %d nodes, error %.3f m\n",
