@@ -102,17 +102,18 @@ absl::Status RunOne(const SweepOptions& options, const SweepGraph& dataset,
   run->success = run->ate <= AteLimit(options, dataset, run->type);
   run->inherent_ate = dataset.inherent_ate;
   // What the right map costs in the metric of the result.
-  const std::vector<optimization::WhitenedEdge> edges = optimization::Whiten(
-      optimization::WithNoiseScale(graph, result->applied_odometry_scale,
-                                   result->applied_loop_scale)
-          .edges);
+  const PoseGraph scaled = optimization::WithNoiseScale(
+      graph, result->applied_odometry_scale, result->applied_loop_scale);
+  const std::vector<optimization::WhitenedEdge> edges =
+      optimization::Whiten(scaled.edges);
   const optimization::LoopScore score = optimization::ScoreLoops(
       edges, first_outlier, result->accepted, dataset.optimum);
   run->precision = score.precision;
   run->recall = score.recall;
   std::vector<Pose2> right = dataset.optimum;
-  optimization::PolishTruncated(edges, optimization::kChi2Gate, 30, &right,
-                                nullptr);
+  optimization::PolishTruncated(
+      optimization::Whiten(optimization::HoldFixedPoses(scaled).edges),
+      optimization::kChi2Gate, 30, &right, nullptr);
   run->right_truncated = optimization::TruncatedCost(edges, right);
   run->undecidable =
       !run->success && run->truncated < run->right_truncated * (1. - 1e-9);

@@ -113,8 +113,9 @@ absl::StatusOr<SweepGraph> MakeFamilyGraph(const std::string& family,
   optimization::SolverOptions solver;
   solver.max_iterations = 500;
   solver.cost_tolerance = 1e-10;
-  optimization::SolveRobust(optimization::Whiten(honest.edges), solver,
-                            &result.optimum);
+  optimization::SolveRobust(
+      optimization::Whiten(optimization::HoldFixedPoses(honest).edges), solver,
+      &result.optimum);
   result.inherent_ate =
       optimization::AbsoluteTrajectoryError(result.optimum, generated->truth);
   result.graph = std::move(generated->graph);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/experiments/graph_families.h"
 
+#include "cartographer_ext/experiments/sweep_graphs.h"
 #include "gmock/gmock.h"
 
 namespace cartographer_ext {
@@ -59,6 +60,25 @@ TEST(GraphFamiliesTest, IdsTellLoopsFromOdometry) {
           << family << " " << i;
     }
   }
+}
+
+// The right map of a graph that holds a pose holds it, too.
+TEST(GraphFamiliesTest, OptimumHoldsTheFixedPoses) {
+  int graphs = 0;
+  for (int seed = 1; seed != 40 && graphs != 2; ++seed) {
+    const auto sweep = MakeFamilyGraph("road", seed);
+    ASSERT_TRUE(sweep.ok()) << sweep.status();
+    if (sweep->graph.fixed.size() < 2) continue;
+    ++graphs;
+    const int first = sweep->graph.fixed[0], other = sweep->graph.fixed[1];
+    const Pose2 held =
+        Between(sweep->graph.poses[first], sweep->graph.poses[other]);
+    const Pose2 found = Between(sweep->optimum[first], sweep->optimum[other]);
+    EXPECT_NEAR(found.x, held.x, 1e-3);
+    EXPECT_NEAR(found.y, held.y, 1e-3);
+    EXPECT_NEAR(found.theta, held.theta, 1e-3);
+  }
+  EXPECT_EQ(graphs, 2);
 }
 
 }  // namespace

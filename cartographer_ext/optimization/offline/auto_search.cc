@@ -33,9 +33,19 @@ constexpr double kNearlyAll = 0.98;
 // 99.9 % quantile of chi2 with three degrees of freedom.
 constexpr double kWideGate = 16.26623619623813;
 
+// By what odometry and loops have to differ for a metric that has both as they
+// are, and the share of its loops that it keeps.
+constexpr double kMinRatio = 1.25;
+constexpr double kMostly = 0.75;
+
 struct Metric {
   double odometry = 1.;  // factors of the standard deviations
   double loops = 1.;
+};
+
+enum class Floor {
+  kEach,    // no factor is below one
+  kLargest  // the larger one is not
 };
 
 std::vector<double> Decisions(const std::vector<WhitenedEdge>& edges,
@@ -57,6 +67,29 @@ int CountLoops(const std::vector<WhitenedEdge>& edges,
   return result;
 }
 
+// Whether right loops seem to lie behind the gate: more loops just beyond it
+// than it rejects right ones, and fewer farther out. Wrong loops, which may lead
+// anywhere, are three times as many from two to four gates as from one to two.
+bool LieBehindGate(const std::vector<double>& weights, const int accepted,
+                   Portfolio* const portfolio) {
+  std::vector<int> rejected;
+  for (size_t i = 0; i != weights.size(); ++i) {
+    if (weights[i] == 0.) rejected.push_back(i);
+  }
+  const double expected = 0.01 * accepted;
+  const double many = expected + 3. * std::sqrt(expected) + 2.;
+  // More than these have many wrong ones among them.
+  if (rejected.size() < many || rejected.size() > 0.5 * accepted) return false;
+  int near = 0, far = 0;
+  for (const Innovation& innovation : PredictLoops(
+           rejected, weights, portfolio->best().poses, portfolio->solver())) {
+    const double gates = innovation.chi2 / kChi2Gate;
+    near += gates < 2.;
+    far += gates >= 2. && gates < 4.;
+  }
+  return near > many && near > far;
+}
+
 // Whether the noise may be larger than the matrices say.
 bool IsSuspicious(Portfolio* const portfolio) {
   const std::vector<WhitenedEdge>& edges = portfolio->edges();
@@ -69,6 +102,7 @@ bool IsSuspicious(Portfolio* const portfolio) {
   const NoiseScale noise =
       EstimateNoiseScale(poses, weights, portfolio->solver());
   return noise.odometry.low > 1.1 || noise.loops.low > 1.1 ||
+         LieBehindGate(weights, accepted, portfolio) ||
          IsCutByGate(LeaveOneOutInnovations(poses, weights, kMaxInnovations,
                                             portfolio->solver()),
                      kChi2Gate);
@@ -109,11 +143,22 @@ struct NoiseHypothesis {
   int accepted = 0;
 };
 
+// A search with a narrower gate than the given one would lose what the given
+// one keeps.
+Metric WithFloor(const Metric& metric, const Floor floor) {
+  if (floor == Floor::kEach) {
+    return {std::max(1., metric.odometry), std::max(1., metric.loops)};
+  }
+  const double larger = std::min(1., std::max(metric.odometry, metric.loops));
+  return {metric.odometry / larger, metric.loops / larger};
+}
+
 // Alternates between solving in a metric and estimating the metric.
-NoiseHypothesis EstimateMetric(const PoseGraph& graph, const double variance,
+NoiseHypothesis EstimateMetric(const PoseGraph& graph, const Metric& first,
+                               const Floor floor,
                                const std::vector<std::vector<Pose2>>& starts) {
   NoiseHypothesis result;
-  result.metric.odometry = result.metric.loops = std::sqrt(variance);
+  result.metric = WithFloor(first, floor);
   std::vector<std::vector<Pose2>> all_starts = starts;
   for (int round = 0; round != kMaxNoiseRounds; ++round) {
     const PoseGraph scaled =
@@ -131,11 +176,10 @@ NoiseHypothesis EstimateMetric(const PoseGraph& graph, const double variance,
         Decisions(edges, result.poses, kChi2Gate);
     result.accepted = CountLoops(edges, weights);
     const NoiseScale noise = EstimateNoiseScale(result.poses, weights, &solver);
-    // Never below one: a search with a narrower gate than the given one would
-    // lose what the given one keeps.
-    const Metric next{
-        std::max(1., result.metric.odometry * noise.odometry.factor),
-        std::max(1., result.metric.loops * noise.loops.factor)};
+    const Metric next =
+        WithFloor({result.metric.odometry * noise.odometry.factor,
+                   result.metric.loops * noise.loops.factor},
+                  floor);
     const double change =
         std::max(std::abs(std::log(next.odometry / result.metric.odometry)),
                  std::abs(std::log(next.loops / result.metric.loops)));
@@ -144,10 +188,16 @@ NoiseHypothesis EstimateMetric(const PoseGraph& graph, const double variance,
       // chi2; where nearly all loops agree there is nothing to mistake.
       const int loops =
           CountLoops(edges, std::vector<double>(edges.size(), 1.));
-      result.valid = change < 0.3 &&
-                     (result.accepted >= kNearlyAll * loops ||
-                      IsLikeChi2(LeaveOneOutInnovations(
-                          result.poses, weights, kMaxInnovations, &solver)));
+      std::vector<double> innovations = LeaveOneOutInnovations(
+          result.poses, weights, kMaxInnovations, &solver);
+      if (floor == Floor::kLargest) {
+        // Both factors may be below what the floor has made of them.
+        const double factor =
+            std::min(1., std::max(noise.odometry.factor, noise.loops.factor));
+        for (double& value : innovations) value /= factor * factor;
+      }
+      result.valid = change < 0.3 && (result.accepted >= kNearlyAll * loops ||
+                                      IsLikeChi2(innovations));
       break;
     }
     result.metric = next;
@@ -157,7 +207,7 @@ NoiseHypothesis EstimateMetric(const PoseGraph& graph, const double variance,
 
 // In steps, so that two searches of the same graph measure alike.
 double Rounded(const double scale) {
-  if (scale < kMinScale) return 1.;
+  if (scale < kMinScale && scale > 1. / kMinScale) return 1.;
   return std::exp2(std::round(4. * std::log2(scale)) / 4.);
 }
 
@@ -173,7 +223,9 @@ bool FindLargerNoise(const PoseGraph& graph, Portfolio* const portfolio,
       Decisions(portfolio->edges(), portfolio->best().poses, kChi2Gate));
   bool any = false;
   for (const double variance : kFirstVariances) {
-    const NoiseHypothesis hypothesis = EstimateMetric(graph, variance, starts);
+    const NoiseHypothesis hypothesis =
+        EstimateMetric(graph, {std::sqrt(variance), std::sqrt(variance)},
+                       Floor::kEach, starts);
     if (!hypothesis.valid || hypothesis.accepted < found->accepted) continue;
     *found = hypothesis;
     any = true;
@@ -182,6 +234,33 @@ bool FindLargerNoise(const PoseGraph& graph, Portfolio* const portfolio,
   found->metric.odometry = Rounded(found->metric.odometry);
   found->metric.loops = Rounded(found->metric.loops);
   return found->metric.odometry > 1. || found->metric.loops > 1.;
+}
+
+// The metric in which odometry and loops count as they are, where they differ
+// in what their matrices claim; false where they do not. `applied` is the
+// metric of the portfolio, whose best map has to be explained as well.
+bool FindNoiseRatio(const PoseGraph& graph, const Metric& applied,
+                    Portfolio* const portfolio, NoiseHypothesis* const found) {
+  const std::vector<Pose2>& poses = portfolio->best().poses;
+  const std::vector<double> weights =
+      Decisions(portfolio->edges(), poses, kChi2Gate);
+  const int accepted = CountLoops(portfolio->edges(), weights);
+  if (accepted < 10) return false;
+  const NoiseScale noise =
+      EstimateNoiseScale(poses, weights, portfolio->solver());
+  if (noise.loops.high * kMinRatio > noise.odometry.low &&
+      noise.odometry.high * kMinRatio > noise.loops.low) {
+    return false;
+  }
+  *found = EstimateMetric(graph,
+                          {applied.odometry * noise.odometry.factor,
+                           applied.loops * noise.loops.factor},
+                          Floor::kLargest, {poses});
+  if (!found->valid || found->accepted < kMostly * accepted) return false;
+  found->metric.odometry = Rounded(found->metric.odometry);
+  found->metric.loops = Rounded(found->metric.loops);
+  return found->metric.odometry != applied.odometry ||
+         found->metric.loops != applied.loops;
 }
 
 // Steps 3 and 4 of the header.
@@ -260,23 +339,33 @@ void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
 AutoResult SearchAutomatically(const PoseGraph& graph,
                                const AutoOptions& options) {
   AutoResult result;
+  std::vector<PoseGraph> scaled(2);  // outlive the portfolios
   auto portfolio = absl::make_unique<Portfolio>(graph, options.portfolio);
   portfolio->Run();
-  PoseGraph scaled;
-  NoiseHypothesis larger;
-  if (options.estimate_noise && graph.edges.size() < kMaxEdgesForNoise &&
-      FindLargerNoise(graph, portfolio.get(), &larger)) {
-    result.applied_odometry_scale = larger.metric.odometry;
-    result.applied_loop_scale = larger.metric.loops;
-    scaled = WithNoiseScale(graph, larger.metric.odometry, larger.metric.loops);
-    auto other = absl::make_unique<Portfolio>(scaled, options.portfolio);
+  NoiseHypothesis noise;
+  const auto search_with_noise = [&](PoseGraph* const with_noise) {
+    result.applied_odometry_scale = noise.metric.odometry;
+    result.applied_loop_scale = noise.metric.loops;
+    *with_noise =
+        WithNoiseScale(graph, noise.metric.odometry, noise.metric.loops);
+    auto other = absl::make_unique<Portfolio>(*with_noise, options.portfolio);
     other->Run();
     for (const Portfolio::Member& member : portfolio->members()) {
       other->Add(member.name, member.poses);
     }
-    other->Add("noise", larger.poses);
+    other->Add("noise", noise.poses);
     other->Improve();
     portfolio = std::move(other);
+  };
+  if (options.estimate_noise && graph.edges.size() < kMaxEdgesForNoise) {
+    if (FindLargerNoise(graph, portfolio.get(), &noise)) {
+      search_with_noise(&scaled[0]);
+    }
+    const Metric applied{result.applied_odometry_scale,
+                         result.applied_loop_scale};
+    if (FindNoiseRatio(graph, applied, portfolio.get(), &noise)) {
+      search_with_noise(&scaled[1]);
+    }
   }
   result.iterations = portfolio->iterations();
   result.converged = portfolio->converged();

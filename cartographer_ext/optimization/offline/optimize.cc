@@ -171,8 +171,18 @@ void MeasureWithEstimatedNoise(const PoseGraph& graph,
   edges->resize(size);
 }
 
-// The graph with edges that hold its fixed poses in place.
-PoseGraph Held(const PoseGraph& graph) {
+// Moves the whole so that the fixed poses are where they were.
+void MoveBack(const PoseGraph& graph, std::vector<Pose2>* const poses) {
+  if (graph.fixed.empty()) return;
+  const int first = graph.fixed.front();
+  const Pose2 motion = graph.poses[first] * (*poses)[first].Inverse();
+  for (Pose2& pose : *poses) pose = motion * pose;
+  for (const int pose : graph.fixed) (*poses)[pose] = graph.poses[pose];
+}
+
+}  // namespace
+
+PoseGraph HoldFixedPoses(const PoseGraph& graph) {
   PoseGraph result = graph;
   for (size_t k = 1; k < graph.fixed.size(); ++k) {
     PoseGraphEdge edge;
@@ -186,17 +196,6 @@ PoseGraph Held(const PoseGraph& graph) {
   }
   return result;
 }
-
-// Moves the whole so that the fixed poses are where they were.
-void MoveBack(const PoseGraph& graph, std::vector<Pose2>* const poses) {
-  if (graph.fixed.empty()) return;
-  const int first = graph.fixed.front();
-  const Pose2 motion = graph.poses[first] * (*poses)[first].Inverse();
-  for (Pose2& pose : *poses) pose = motion * pose;
-  for (const int pose : graph.fixed) (*poses)[pose] = graph.poses[pose];
-}
-
-}  // namespace
 
 const std::vector<std::string>& MethodNames() {
   static const auto* const kNames = new std::vector<std::string>{
@@ -222,7 +221,7 @@ absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
   }
   const double start = ThreadCpuSeconds();
   PoseGraph with_fixed_poses;
-  if (graph.fixed.size() > 1) with_fixed_poses = Held(graph);
+  if (graph.fixed.size() > 1) with_fixed_poses = HoldFixedPoses(graph);
   const PoseGraph& held = graph.fixed.size() > 1 ? with_fixed_poses : graph;
   std::vector<WhitenedEdge> edges = Whiten(held.edges);
   OptimizeResult result;

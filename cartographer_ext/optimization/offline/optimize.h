@@ -85,6 +85,10 @@ struct OptimizeResult {
 // Names accepted as OptimizeOptions::method.
 const std::vector<std::string>& MethodNames();
 
+// The graph with edges behind its own that hold the fixed poses where they are,
+// seen from the first of them.
+PoseGraph HoldFixedPoses(const PoseGraph& graph);
+
 // The fixed poses of the graph, or else the first, end where they were. An
 // error for an invalid graph (ValidatePoseGraph), an unknown method or, with
 // r_isam, a graph that cannot be replayed.

@@ -50,6 +50,33 @@ TEST(AutoSearchTest, HonestMatricesAreTakenAtTheirWord) {
   }
 }
 
+TEST(AutoSearchTest, LoopsThatClaimTooLittleCountAsTheyAre) {
+  const test::GridWorld world = test::MakeGridWorld(300, 5, 3);
+  const AutoResult honest = SearchAutomatically(world.graph, AutoOptions());
+  const AutoResult result =
+      SearchAutomatically(WithNoiseScale(world.graph, 1., 5.), AutoOptions());
+  EXPECT_EQ(result.applied_odometry_scale, 1.);
+  EXPECT_NEAR(result.applied_loop_scale, 0.2, 0.05);
+  EXPECT_NEAR(result.noise.loops.factor, 0.2, 0.03);
+  EXPECT_LT(AbsoluteTrajectoryError(result.poses, honest.poses), 0.02);
+  // Where both claim too little there is no other map to be had.
+  const AutoResult both =
+      SearchAutomatically(WithNoiseScale(world.graph, 5., 5.), AutoOptions());
+  EXPECT_EQ(both.applied_odometry_scale, 1.);
+  EXPECT_EQ(both.applied_loop_scale, 1.);
+}
+
+// Too narrow by a factor that leaves most loops inside the gate.
+TEST(AutoSearchTest, LoopsJustBehindTheGateAreKept) {
+  const test::GridWorld world = test::MakeGridWorld(300, 5, 3);
+  int loops = 0;
+  for (const PoseGraphEdge& edge : world.graph.edges) loops += edge.is_loop;
+  const PoseGraph graph = WithNoiseScale(world.graph, 1., 1. / 1.7);
+  const AutoResult result = SearchAutomatically(graph, AutoOptions());
+  EXPECT_NEAR(result.applied_loop_scale, 1.7, 0.3);
+  EXPECT_GE(CountAccepted(graph, result), 0.98 * loops);
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext
