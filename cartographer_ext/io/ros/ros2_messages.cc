@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "cartographer_ext/io/ros/ros_messages.h"
 
 namespace cartographer_ext {
 namespace io {
