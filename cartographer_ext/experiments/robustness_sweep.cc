@@ -102,18 +102,19 @@ absl::Status RunOne(const SweepOptions& options, const SweepGraph& dataset,
   run->success = run->ate <= AteLimit(options, dataset, run->type);
   run->inherent_ate = dataset.inherent_ate;
   // What the right map costs in the metric of the result.
-  const PoseGraph scaled = optimization::WithNoiseScale(
-      graph, result->applied_odometry_scale, result->applied_loop_scale);
-  const std::vector<optimization::WhitenedEdge> edges =
-      optimization::Whiten(scaled.edges);
+  std::vector<optimization::WhitenedEdge> edges = optimization::WithNoiseScale(
+      optimization::Whiten(graph.edges), result->applied_odometry_scale,
+      result->applied_loop_scale);
   const optimization::LoopScore score = optimization::ScoreLoops(
       edges, first_outlier, result->accepted, dataset.optimum);
   run->precision = score.precision;
   run->recall = score.recall;
   std::vector<Pose2> right = dataset.optimum;
-  optimization::PolishTruncated(
-      optimization::Whiten(optimization::HoldFixedPoses(scaled).edges),
-      optimization::kChi2Gate, 30, &right, nullptr);
+  const auto fixed = optimization::Whiten(optimization::FixedPoseEdges(graph));
+  edges.insert(edges.end(), fixed.begin(), fixed.end());
+  optimization::PolishTruncated(edges, optimization::kChi2Gate, 30, &right,
+                                nullptr);
+  edges.resize(graph.edges.size());
   run->right_truncated = optimization::TruncatedCost(edges, right);
   run->undecidable =
       !run->success && run->truncated < run->right_truncated * (1. - 1e-9);

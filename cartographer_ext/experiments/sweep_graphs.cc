@@ -113,9 +113,10 @@ absl::StatusOr<SweepGraph> MakeFamilyGraph(const std::string& family,
   optimization::SolverOptions solver;
   solver.max_iterations = 500;
   solver.cost_tolerance = 1e-10;
-  optimization::SolveRobust(
-      optimization::Whiten(optimization::HoldFixedPoses(honest).edges), solver,
-      &result.optimum);
+  const auto fixed = optimization::FixedPoseEdges(honest);
+  honest.edges.insert(honest.edges.end(), fixed.begin(), fixed.end());
+  optimization::SolveRobust(optimization::Whiten(honest.edges), solver,
+                            &result.optimum);
   result.inherent_ate =
       optimization::AbsoluteTrajectoryError(result.optimum, generated->truth);
   result.graph = std::move(generated->graph);

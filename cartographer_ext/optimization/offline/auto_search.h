@@ -5,13 +5,13 @@
 //
 //   1. a search by many solvers from many starts (portfolio.h) with the noise
 //      that the information matrices claim;
-//   2. where these turn out to claim too much (noise_scale.h: a gate that cuts
+//   2. where these turn out to claim too much (noise_metric.h: a gate that cuts
 //      through the loops or has many just behind it, chi2 of the odometry
 //      above its redundancy), the same search with the estimated noise, if the
 //      loops then look as they should. That noise is the metric of all that
-//      follows, the result included. The same where one of odometry and loops
-//      claims too much noise in relation to the other; the larger of both
-//      factors stays at least one;
+//      follows, the result included. Where one of odometry and loops claims too
+//      much noise in relation to the other, the search continues from its
+//      members with the estimate; the larger of both factors stays at least one;
 //   3. the members near the lowest truncated cost polished with a gate adapted
 //      to the scale of the accepted loops, where the matrices claim too little;
 //      the lowest cost truncated there is taken;

@@ -155,5 +155,14 @@ PoseGraph WithNoiseScale(const PoseGraph& graph, const double odometry,
   return result;
 }
 
+std::vector<WhitenedEdge> WithNoiseScale(std::vector<WhitenedEdge> edges,
+                                         const double odometry,
+                                         const double loops) {
+  for (WhitenedEdge& edge : edges) {
+    edge.whitening /= edge.is_loop ? loops : odometry;
+  }
+  return edges;
+}
+
 }  // namespace optimization
 }  // namespace cartographer_ext

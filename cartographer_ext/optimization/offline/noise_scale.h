@@ -64,6 +64,8 @@ bool IsCutByGate(const std::vector<double>& values, double gate);
 
 // The graph with the standard deviations of odometry and loops multiplied.
 PoseGraph WithNoiseScale(const PoseGraph& graph, double odometry, double loops);
+std::vector<WhitenedEdge> WithNoiseScale(std::vector<WhitenedEdge> edges,
+                                         double odometry, double loops);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

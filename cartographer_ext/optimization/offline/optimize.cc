@@ -153,22 +153,14 @@ void Summarize(const std::vector<WhitenedEdge>& edges,
   result->truncated_chi2 = TruncatedCost(edges, result->poses);
 }
 
-// Replaces `edges`, those of the graph, by what the noise that `auto` uses
-// makes of them.
-void MeasureWithEstimatedNoise(const PoseGraph& graph,
-                               const OptimizeOptions& options,
-                               std::vector<WhitenedEdge>* const edges,
-                               OptimizeResult* const result) {
+// The noise that `auto` uses.
+void TakeEstimatedNoise(const PoseGraph& graph, const OptimizeOptions& options,
+                        OptimizeResult* const result) {
   OptimizeResult automatic;
   RunAuto(graph, options, &automatic);
   result->noise = automatic.noise;
   result->applied_odometry_scale = automatic.applied_odometry_scale;
   result->applied_loop_scale = automatic.applied_loop_scale;
-  const size_t size = edges->size();
-  *edges = Whiten(WithNoiseScale(graph, result->applied_odometry_scale,
-                                 result->applied_loop_scale)
-                      .edges);
-  edges->resize(size);
 }
 
 // Moves the whole so that the fixed poses are where they were.
@@ -182,8 +174,8 @@ void MoveBack(const PoseGraph& graph, std::vector<Pose2>* const poses) {
 
 }  // namespace
 
-PoseGraph HoldFixedPoses(const PoseGraph& graph) {
-  PoseGraph result = graph;
+std::vector<PoseGraphEdge> FixedPoseEdges(const PoseGraph& graph) {
+  std::vector<PoseGraphEdge> result;
   for (size_t k = 1; k < graph.fixed.size(); ++k) {
     PoseGraphEdge edge;
     edge.from = std::min(graph.fixed[0], graph.fixed[k]);
@@ -192,7 +184,7 @@ PoseGraph HoldFixedPoses(const PoseGraph& graph) {
     edge.measurement = Between(graph.poses[edge.from], graph.poses[edge.to]);
     edge.information =
         Eigen::Matrix3d::Identity() / (kFixedSigma * kFixedSigma);
-    result.edges.push_back(edge);
+    result.push_back(edge);
   }
   return result;
 }
@@ -220,17 +212,19 @@ absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
                      graph.poses.size(), " poses"));
   }
   const double start = ThreadCpuSeconds();
+  const std::vector<PoseGraphEdge> fixed = FixedPoseEdges(graph);
   PoseGraph with_fixed_poses;
-  if (graph.fixed.size() > 1) with_fixed_poses = HoldFixedPoses(graph);
-  const PoseGraph& held = graph.fixed.size() > 1 ? with_fixed_poses : graph;
+  if (!fixed.empty()) {
+    with_fixed_poses = graph;
+    with_fixed_poses.edges.insert(with_fixed_poses.edges.end(), fixed.begin(),
+                                  fixed.end());
+  }
+  const PoseGraph& held = fixed.empty() ? graph : with_fixed_poses;
   std::vector<WhitenedEdge> edges = Whiten(held.edges);
   OptimizeResult result;
   result.poses = options.start.empty() ? graph.poses : options.start;
   if (options.method == "auto") {
     RunAuto(held, options, &result);
-    edges = Whiten(WithNoiseScale(held, result.applied_odometry_scale,
-                                  result.applied_loop_scale)
-                       .edges);
   } else if (options.method == "r_isam") {
     const absl::Status status = RunReplay(held, options, &result);
     if (!status.ok()) return status;
@@ -243,15 +237,16 @@ absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
   }
   MoveBack(graph, &result.poses);
   edges.resize(graph.edges.size());
+  result.truncated_chi2_as_given = TruncatedCost(edges, result.poses);
   if (!result.weights.empty()) result.weights.resize(edges.size());
   if (!result.accepted.empty()) result.accepted.resize(edges.size());
   result.cpu_seconds = ThreadCpuSeconds() - start;
   if (options.measure_with_estimated_noise && options.method != "auto") {
-    MeasureWithEstimatedNoise(held, options, &edges, &result);
+    TakeEstimatedNoise(held, options, &result);
   }
-  Summarize(edges, &result);
-  result.truncated_chi2_as_given =
-      TruncatedCost(Whiten(graph.edges), result.poses);
+  Summarize(WithNoiseScale(std::move(edges), result.applied_odometry_scale,
+                           result.applied_loop_scale),
+            &result);
   return result;
 }
 

@@ -85,9 +85,9 @@ struct OptimizeResult {
 // Names accepted as OptimizeOptions::method.
 const std::vector<std::string>& MethodNames();
 
-// The graph with edges behind its own that hold the fixed poses where they are,
-// seen from the first of them.
-PoseGraph HoldFixedPoses(const PoseGraph& graph);
+// Edges that hold the fixed poses of the graph where they are, seen from the
+// first of them.
+std::vector<PoseGraphEdge> FixedPoseEdges(const PoseGraph& graph);
 
 // The fixed poses of the graph, or else the first, end where they were. An
 // error for an invalid graph (ValidatePoseGraph), an unknown method or, with

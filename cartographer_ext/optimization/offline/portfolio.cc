@@ -147,6 +147,8 @@ double Portfolio::FullWork() {
   return *full_work_;
 }
 
+bool Portfolio::CanKeepAllLoops() { return FullWork() <= kAffordableWork; }
+
 double Portfolio::WorkOf(const std::vector<double>& weights) const {
   std::vector<std::pair<int, int>> pairs;
   for (size_t i = 0; i != edges_.size(); ++i) {
@@ -186,7 +188,8 @@ const LoopSupport& Portfolio::support() {
 void Portfolio::RunQuick() {
   AddKernels("", graph_.poses, false);
   // With few wrong loops the solvers that keep all of them cost little more.
-  if (CountRejected() <= 0.1 * num_loops_ && FullWork() <= kLittleWork) {
+  if (!continued_ && CountRejected() <= 0.1 * num_loops_ &&
+      FullWork() <= kLittleWork) {
     AddFullKernels("", graph_.poses);
   }
 }
@@ -205,14 +208,10 @@ bool Portfolio::IsSettled(const size_t first) {
 
 bool Portfolio::RejectedContradict() {
   const std::vector<Pose2>& poses = best().poses;
-  std::vector<double> weights(edges_.size(), 1.);
+  const std::vector<double> weights = DecideLoops(edges_, poses, kChi2Gate);
   std::vector<int> rejected;
   for (size_t i = 0; i != edges_.size(); ++i) {
-    if (edges_[i].is_loop && Chi2(edges_[i], poses[edges_[i].from],
-                                  poses[edges_[i].to]) >= kChi2Gate) {
-      weights[i] = 0.;
-      rejected.push_back(i);
-    }
+    if (weights[i] == 0.) rejected.push_back(i);
   }
   if (rejected.empty()) return true;
   // A map without loops explains nothing.
@@ -327,11 +326,11 @@ void Portfolio::Run() {
   const size_t first = members_.size();
   RunQuick();
   const bool settled = IsSettled(first);
-  if (settled && size > kSmallGraph) return;
+  if (settled && (continued_ || size > kSmallGraph)) return;
   if (large && SettleByReplay()) return;
   // Where many loops contradict a map that the robust kernels agree on, the
   // solvers that keep them all are far off.
-  RunStarts(FullWork() <= kAffordableWork &&
+  RunStarts(!continued_ && CanKeepAllLoops() &&
             (!settled || CountRejected() <= 0.25 * num_loops_));
   if (!settled && size <= kMaxGrowthWork) {
     RunGroups();
@@ -339,6 +338,22 @@ void Portfolio::Run() {
     AddCertain();
   }
   Improve();
+}
+
+void Portfolio::Continue(const std::vector<Member>& known) {
+  continued_ = true;
+  std::vector<double> costs;
+  for (const Member& member : known) {
+    // One and the same optimum.
+    const bool again =
+        std::any_of(costs.begin(), costs.end(), [&](const double cost) {
+          return std::abs(member.cost - cost) <= kSame * cost;
+        });
+    if (again) continue;
+    costs.push_back(member.cost);
+    Add(member.name, member.poses);
+  }
+  Run();
 }
 
 void Portfolio::Soften() {
@@ -361,11 +376,7 @@ void Portfolio::Improve() {
   }
   // To the last digit, which decisions near the gate may depend on.
   SolverOptions options;
-  options.edge_weights = Chi2OfEdges(edges_, best().poses);
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    double& weight = options.edge_weights[i];
-    weight = !edges_[i].is_loop || weight < kChi2Gate ? 1. : 0.;
-  }
+  options.edge_weights = DecideLoops(edges_, best().poses, kChi2Gate);
   options.cost_tolerance = 1e-12;
   options.max_iterations = 20;
   poses = best().poses;
@@ -374,7 +385,6 @@ void Portfolio::Improve() {
 }
 
 void Portfolio::RunStarts(const bool with_full_kernels) {
-  const bool affordable = FullWork() <= kAffordableWork;
   if (with_full_kernels && !ran_full_kernels_) {
     AddFullKernels("", graph_.poses);
   }
@@ -382,9 +392,10 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
   const std::vector<Pose2> chained = ChainOdometry(graph_);
   const bool same = AreChained(edges_, graph_.poses);
   if (!same) AddKernels("odometry, ", chained, with_full_kernels);
-  if (!affordable) return;
+  if (!CanKeepAllLoops()) return;
   AddGnc("", graph_.poses);
   if (!same) AddGnc("odometry, ", chained);
+  if (continued_) return;
   std::vector<Pose2> chordal = chained;
   if (RobustChordalPoses(edges_, &chordal)) {
     AddKernels("chordal, ", chordal, with_full_kernels);
@@ -398,11 +409,9 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
 
 void Portfolio::RunGroups() {
   AddGrowth(ChainOdometry(graph_));
-  std::vector<double> in_force = Chi2OfEdges(edges_, best().poses);
-  std::vector<double> supported = SupportedLoops();
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    in_force[i] = !edges_[i].is_loop || in_force[i] < kChi2Gate ? 1. : 0.;
-  }
+  const std::vector<double> in_force =
+      DecideLoops(edges_, best().poses, kChi2Gate);
+  const std::vector<double> supported = SupportedLoops();
   AddKernel("tree, ", KernelType::kGemanMcClure,
             SpanningTree(graph_, in_force));
   for (const auto* const weights : {&in_force, &supported}) {

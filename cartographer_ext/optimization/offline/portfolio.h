@@ -67,6 +67,9 @@ class Portfolio {
   void Add(const std::string& name, std::vector<Pose2> poses);
 
   void Run();
+  // The same from members of a search of the graph with other information
+  // matrices. What keeps all loops in its equations has had its part there.
+  void Continue(const std::vector<Member>& known);
   // The best member solved with softer kernels, single decisions changed where
   // that lowers its cost, and solved to the last digit.
   void Improve();
@@ -82,6 +85,8 @@ class Portfolio {
   int iterations() const { return iterations_; }
   bool converged() const { return converged_; }
   const LoopSupport& support();
+  // Whether solutions with all loops in the equations are worth their price.
+  bool CanKeepAllLoops();
 
  private:
   void RunQuick();
@@ -134,6 +139,7 @@ class Portfolio {
   absl::optional<LoopSupport> support_;
   int iterations_ = 0;
   bool converged_ = true;
+  bool continued_ = false;
   bool ran_full_kernels_ = false;
   bool replayed_ = false;
 };

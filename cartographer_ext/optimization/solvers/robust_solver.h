@@ -172,6 +172,10 @@ SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
 SolverSummary SolveGnc(const GncOptions& options, RobustSolver* solver,
                        std::vector<Pose2>* poses, std::vector<double>* weights);
 
+// 1 for odometry and for loops whose chi2 is below the gate, 0 for the others.
+std::vector<double> DecideLoops(const std::vector<WhitenedEdge>& edges,
+                                const std::vector<Pose2>& poses, double gate);
+
 // Alternates between deciding each loop by `gate` on chi2 (weight 1 inside, 0
 // outside) and solving with those weights, until the decisions no longer
 // change. Each half lowers the truncated cost, so this ends; loops judged wrong

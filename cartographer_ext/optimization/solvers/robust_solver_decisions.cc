@@ -79,6 +79,16 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
   return total;
 }
 
+std::vector<double> DecideLoops(const std::vector<WhitenedEdge>& edges,
+                                const std::vector<Pose2>& poses,
+                                const double gate) {
+  std::vector<double> result = Chi2OfEdges(edges, poses);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    result[i] = !edges[i].is_loop || result[i] < gate ? 1. : 0.;
+  }
+  return result;
+}
+
 SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
                               const double gate, const int max_rounds,
                               std::vector<Pose2>* const poses,
@@ -98,10 +108,7 @@ SolverSummary PolishTruncated(const double gate, const int max_rounds,
   options.initial_lambda = 1e-8;
   options.max_iterations = 20;
   for (int round = 0; round < max_rounds; ++round) {
-    std::vector<double> decisions = Chi2OfEdges(edges, *poses);
-    for (size_t i = 0; i != edges.size(); ++i) {
-      decisions[i] = !edges[i].is_loop || decisions[i] < gate ? 1. : 0.;
-    }
+    const std::vector<double> decisions = DecideLoops(edges, *poses, gate);
     if (decisions == options.edge_weights) {
       total.converged = true;
       break;

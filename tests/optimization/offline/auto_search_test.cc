@@ -66,6 +66,24 @@ TEST(AutoSearchTest, LoopsThatClaimTooLittleCountAsTheyAre) {
   EXPECT_EQ(both.applied_loop_scale, 1.);
 }
 
+// The second search knows what the first has found.
+TEST(AutoSearchTest, AnotherRatioCostsLessThanAnotherSearch) {
+  test::GridWorld world = test::MakeGridWorld(250, 5, 1);
+  OutlierOptions outliers;
+  outliers.count = 150;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  const PoseGraph graph = WithNoiseScale(world.graph, 1., 5.);
+  AutoOptions options;
+  const AutoResult result = SearchAutomatically(graph, options);
+  EXPECT_NEAR(result.applied_loop_scale, 0.2, 0.05);
+  EXPECT_LT(AbsoluteTrajectoryError(result.poses, world.truth), 0.3);
+  const PoseGraph scaled = WithNoiseScale(graph, 1., result.applied_loop_scale);
+  Portfolio whole(scaled, options.portfolio);
+  whole.Run();
+  EXPECT_LE(result.member_cost, whole.best().cost * (1. + 1e-6));
+  EXPECT_LT(result.iterations, 0.7 * whole.iterations());
+}
+
 // Too narrow by a factor that leaves most loops inside the gate.
 TEST(AutoSearchTest, LoopsJustBehindTheGateAreKept) {
   const test::GridWorld world = test::MakeGridWorld(300, 5, 3);

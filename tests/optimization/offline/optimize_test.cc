@@ -94,6 +94,44 @@ TEST(OptimizeTest, FixedPosesStay) {
   }
 }
 
+TEST(OptimizeTest, EdgesHoldFixedPoses) {
+  PoseGraph graph = test::MakeGridWorld(60, 4, 5).graph;
+  EXPECT_TRUE(FixedPoseEdges(graph).empty());
+  graph.fixed = {40};
+  EXPECT_TRUE(FixedPoseEdges(graph).empty());
+  graph.fixed = {40, 10, 40, 50};
+  const std::vector<PoseGraphEdge> edges = FixedPoseEdges(graph);
+  ASSERT_EQ(edges.size(), 2u);
+  EXPECT_EQ(edges[0].from, 10);
+  EXPECT_EQ(edges[0].to, 40);
+  EXPECT_EQ(edges[1].from, 40);
+  EXPECT_EQ(edges[1].to, 50);
+  EXPECT_FALSE(edges[0].is_loop);
+  EXPECT_LT(AbsoluteTrajectoryError(
+                {graph.poses[40] * edges[1].measurement, graph.poses[40]},
+                {graph.poses[50], graph.poses[40]}),
+            1e-9);
+}
+
+TEST(OptimizeTest, MeasuresWithBothNoises) {
+  const PoseGraph graph =
+      WithNoiseScale(test::MakeGridWorld(200, 5, 3).graph, 0.25, 0.25);
+  for (const char* method : {"auto", "huber"}) {
+    OptimizeOptions options;
+    options.method = method;
+    options.measure_with_estimated_noise = true;
+    const auto result = Optimize(graph, options);
+    ASSERT_TRUE(result.ok());
+    EXPECT_GT(result->applied_loop_scale, 2.);
+    const PoseGraph scaled = WithNoiseScale(
+        graph, result->applied_odometry_scale, result->applied_loop_scale);
+    EXPECT_NEAR(result->truncated_chi2,
+                TruncatedCost(Whiten(scaled.edges), result->poses), 1e-6);
+    EXPECT_NEAR(result->truncated_chi2_as_given,
+                TruncatedCost(Whiten(graph.edges), result->poses), 1e-6);
+  }
+}
+
 TEST(OptimizeTest, StartsFromGivenPoses) {
   const test::GridWorld world = test::MakeGridWorld(120, 6, 2);
   OptimizeOptions options;

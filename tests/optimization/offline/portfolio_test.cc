@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/portfolio.h"
 
+#include "cartographer_ext/optimization/offline/noise_scale.h"
 #include "cartographer_ext/optimization/offline/optimize.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/weak_ring.h"
@@ -83,6 +84,37 @@ TEST(PortfolioTest, TakesWhatIsAdded) {
   EXPECT_EQ(portfolio.best().name, "truth");
   portfolio.Run();
   EXPECT_LE(portfolio.best().cost, portfolio.members()[0].cost);
+}
+
+// In another metric, from what is known: the map of a search from nothing, for
+// less.
+TEST(PortfolioTest, ContinuesInAnotherMetric) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    test::GridWorld world = seed == 1 ? test::MakeGridWorld(250, 5, seed)
+                                      : test::MakeWeakRing(seed);
+    OutlierOptions outliers;
+    outliers.count = 60;
+    outliers.seed = seed;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    Portfolio first(world.graph, PortfolioOptions());
+    first.Run();
+    const PoseGraph scaled = WithNoiseScale(world.graph, 0.5, 1.);
+    Portfolio whole(scaled, PortfolioOptions());
+    whole.Run();
+    Portfolio continued(scaled, PortfolioOptions());
+    continued.Continue(first.members());
+    EXPECT_LE(continued.best().cost, whole.best().cost * (1. + 1e-6)) << seed;
+    EXPECT_LT(continued.iterations(), 0.7 * whole.iterations()) << seed;
+  }
+}
+
+TEST(PortfolioTest, KnowsWhatAllLoopsCost) {
+  test::GridWorld world = test::MakeGridWorld(400, 5, 1);
+  EXPECT_TRUE(Portfolio(world.graph, PortfolioOptions()).CanKeepAllLoops());
+  OutlierOptions outliers;
+  outliers.count = 4000;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  EXPECT_FALSE(Portfolio(world.graph, PortfolioOptions()).CanKeepAllLoops());
 }
 
 }  // namespace

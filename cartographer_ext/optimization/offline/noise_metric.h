@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The metric of a search: by what the standard deviations of odometry and of
+// loops are multiplied. Where the map of a portfolio shows that the information
+// matrices claim too much, or that one of odometry and loops claims too much in
+// relation to the other, solving in a metric and estimating the metric
+// (noise_scale.h) alternate until both agree.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_METRIC_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_METRIC_H_
+
+#include <vector>
+
+#include "cartographer_ext/optimization/offline/noise_scale.h"
+#include "cartographer_ext/optimization/offline/portfolio.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+struct NoiseMetric {
+  double odometry = 1.;  // factors of the standard deviations
+  double loops = 1.;
+};
+
+struct NoiseHypothesis {
+  NoiseMetric metric;
+  std::vector<Pose2> poses;  // that the metric was estimated from
+  bool valid = false;
+  int accepted = 0;  // loops
+};
+
+// What the best map of a portfolio says about the noise of its graph.
+struct NoiseOfMap {
+  std::vector<double> decisions;  // per edge
+  int loops = 0;
+  int accepted = 0;
+  NoiseScale scale;  // where ten loops are accepted
+};
+
+NoiseOfMap MeasureNoise(Portfolio* portfolio);
+
+// The noise that explains the graph better than its matrices do; false where
+// there is none. `map` is that of the portfolio, which has the metric of the
+// graph.
+bool FindLargerNoise(const PoseGraph& graph, const NoiseOfMap& map,
+                     Portfolio* portfolio, NoiseHypothesis* found);
+
+// The metric in which odometry and loops count as they are, where they differ
+// in what their matrices claim; false where they do not. `applied` is the
+// metric of the portfolio, whose best map has to be explained as well.
+bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
+                    const Portfolio& portfolio, NoiseHypothesis* found);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_METRIC_H_
