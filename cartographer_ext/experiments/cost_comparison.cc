@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/io/line_journal.h"
 #include "cartographer_ext/optimization/offline/starts.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
@@ -106,37 +109,127 @@ bool IsAbove(const CostComparison& comparison) {
   return comparison.excess > kCostTolerance;
 }
 
-// Compares one data set, or where there is none the family `name`, with one
-// type and count of outliers over all seeds.
-absl::Status CompareCell(const SweepOptions& options, const std::string& name,
-                         const SweepGraph* const loaded,
-                         const CostComparison& cell, Progress* const progress,
-                         std::vector<CostComparison>* const result) {
-  for (int seed = options.first_seed;
-       seed != options.first_seed + options.seeds; ++seed) {
-    absl::StatusOr<SweepGraph> family;
-    if (loaded == nullptr) {
-      family = MakeFamilyGraph(name, seed);
-      if (!family.ok()) return family.status();
-    }
-    const SweepGraph* const dataset = loaded != nullptr ? loaded : &*family;
-    const auto count = OutlierCount(cell.requested_count, dataset->num_loops);
-    if (!count.ok()) return count.status();
-    CostComparison comparison = cell;
-    comparison.dataset = dataset->name;
-    comparison.seed = seed;
-    comparison.count = cell.type == "none" ? 0 : *count;
-    const auto graph = WithOutliers(options, *dataset, comparison.type,
-                                    comparison.count, seed);
-    if (!graph.ok()) return graph.status();
-    const absl::Status status = Compare(*graph, options, &comparison);
-    if (!status.ok()) return status;
-    result->push_back(comparison);
-    progress->Update(result->size(), comparison.dataset);
-    // Without outliers the seed changes nothing but a family's graph.
-    if (loaded != nullptr && comparison.type == "none") break;
+nlohmann::ordered_json ToJson(const CostComparison& comparison) {
+  return {{"dataset", comparison.dataset},
+          {"type", comparison.type},
+          {"requested_count", comparison.requested_count},
+          {"count", comparison.count},
+          {"seed", comparison.seed},
+          {"poses", comparison.poses},
+          {"loops", comparison.loops},
+          {"cpu_seconds", comparison.cpu_seconds},
+          {"cost", comparison.cost},
+          {"member", comparison.member},
+          {"rival", comparison.rival},
+          {"rival_cost", comparison.rival_cost},
+          {"excess", comparison.excess}};
+}
+
+bool FromJson(const nlohmann::json& json, CostComparison* const comparison) {
+  for (const char* key :
+       {"dataset", "type", "requested_count", "member", "rival"}) {
+    if (!json.contains(key) || !json[key].is_string()) return false;
   }
-  return absl::OkStatus();
+  for (const char* key : {"count", "seed", "poses", "loops", "cpu_seconds",
+                          "cost", "rival_cost", "excess"}) {
+    if (!json.contains(key) || !json[key].is_number()) return false;
+  }
+  comparison->dataset = json["dataset"].get<std::string>();
+  comparison->type = json["type"].get<std::string>();
+  comparison->requested_count = json["requested_count"].get<std::string>();
+  comparison->count = json["count"].get<int>();
+  comparison->seed = json["seed"].get<int>();
+  comparison->poses = json["poses"].get<int>();
+  comparison->loops = json["loops"].get<int>();
+  comparison->cpu_seconds = json["cpu_seconds"].get<double>();
+  comparison->cost = json["cost"].get<double>();
+  comparison->member = json["member"].get<std::string>();
+  comparison->rival = json["rival"].get<std::string>();
+  comparison->rival_cost = json["rival_cost"].get<double>();
+  comparison->excess = json["excess"].get<double>();
+  return true;
+}
+
+// What has been compared, by the name that was asked for, type, count and seed.
+class CostJournal {
+ public:
+  absl::Status Open(const SweepOptions& options) {
+    // What else the costs depend on.
+    const std::string fingerprint =
+        absl::StrCat("group_size ", options.group_size, ", adaptive_gate ",
+                     options.optimize.adaptive_gate, ", lowest_cost ",
+                     options.optimize.lowest_cost, ", max_seconds ",
+                     options.optimize.max_seconds);
+    auto lines = io::LineJournal::Open(
+        options.journal_filename,
+        {"cartographer_ext_compare_cost", "journal of costs", "comparison",
+         "graphs are made or solved with other options"},
+        fingerprint, [this](const nlohmann::json& line) -> absl::Status {
+          CostComparison comparison;
+          if (!line.is_object() || !line.contains("source") ||
+              !line["source"].is_string() || !FromJson(line, &comparison)) {
+            return absl::InvalidArgumentError("not a comparison of costs");
+          }
+          known_[Key(line["source"].get<std::string>(), comparison)] =
+              comparison;
+          return absl::OkStatus();
+        });
+    if (!lines.ok()) return lines.status();
+    lines_ = *std::move(lines);
+    return absl::OkStatus();
+  }
+
+  bool Find(const std::string& source, CostComparison* const comparison) const {
+    const auto found = known_.find(Key(source, *comparison));
+    if (found == known_.end()) return false;
+    *comparison = found->second;
+    return true;
+  }
+
+  absl::Status Append(const std::string& source,
+                      const CostComparison& comparison) {
+    nlohmann::ordered_json line = ToJson(comparison);
+    line["source"] = source;
+    return lines_->Append(line);
+  }
+
+ private:
+  static std::string Key(const std::string& source,
+                         const CostComparison& comparison) {
+    return absl::StrCat(source, "|", comparison.type, "|",
+                        comparison.requested_count, "|", comparison.seed);
+  }
+
+  std::unique_ptr<io::LineJournal> lines_;
+  std::map<std::string, CostComparison> known_;
+};
+
+// Compares one data set, or where there is none the family `name`, with the
+// outliers and the seed of `comparison`.
+absl::Status CompareOnce(const SweepOptions& options, const std::string& name,
+                         const SweepGraph* const loaded,
+                         CostJournal* const journal,
+                         CostComparison* const comparison) {
+  const std::string source =
+      absl::StrCat(loaded == nullptr ? "family " : "", name);
+  if (journal->Find(source, comparison)) return absl::OkStatus();
+  absl::StatusOr<SweepGraph> family;
+  if (loaded == nullptr) {
+    family = MakeFamilyGraph(name, comparison->seed);
+    if (!family.ok()) return family.status();
+  }
+  const SweepGraph& dataset = loaded != nullptr ? *loaded : *family;
+  const auto count =
+      OutlierCount(comparison->requested_count, dataset.num_loops);
+  if (!count.ok()) return count.status();
+  comparison->dataset = dataset.name;
+  comparison->count = comparison->type == "none" ? 0 : *count;
+  const auto graph = WithOutliers(options, dataset, comparison->type,
+                                  comparison->count, comparison->seed);
+  if (!graph.ok()) return graph.status();
+  const absl::Status status = Compare(*graph, options, comparison);
+  if (!status.ok()) return status;
+  return journal->Append(source, *comparison);
 }
 
 }  // namespace
@@ -157,6 +250,9 @@ absl::StatusOr<std::vector<CostComparison>> CompareCosts(
   }
   std::vector<std::string> names = options.datasets;
   names.insert(names.end(), options.families.begin(), options.families.end());
+  CostJournal journal;
+  const absl::Status opened = journal.Open(options);
+  if (!opened.ok()) return opened;
   std::vector<CostComparison> result;
   Progress progress("graphs", names.size() * cells.size() * options.seeds);
   for (size_t n = 0; n != names.size(); ++n) {
@@ -167,10 +263,18 @@ absl::StatusOr<std::vector<CostComparison>> CompareCosts(
       if (!loaded.ok()) return loaded.status();
     }
     for (const CostComparison& cell : cells) {
-      const absl::Status status =
-          CompareCell(options, names[n], is_family ? nullptr : &*loaded, cell,
-                      &progress, &result);
-      if (!status.ok()) return status;
+      for (int k = 0; k != options.seeds; ++k) {
+        CostComparison comparison = cell;
+        comparison.seed = options.first_seed + k;
+        const absl::Status status =
+            CompareOnce(options, names[n], is_family ? nullptr : &*loaded,
+                        &journal, &comparison);
+        if (!status.ok()) return status;
+        result.push_back(comparison);
+        progress.Update(result.size(), comparison.dataset);
+        // Without outliers the seed changes nothing but a family's graph.
+        if (!is_family && cell.type == "none") break;
+      }
     }
   }
   progress.Finish();
@@ -230,21 +334,8 @@ nlohmann::ordered_json CostJson(
       std::count_if(comparisons.begin(), comparisons.end(), IsAbove);
   json["comparisons"] = nlohmann::ordered_json::array();
   for (const CostComparison& comparison : comparisons) {
-    json["comparisons"].push_back(
-        {{"dataset", comparison.dataset},
-         {"type", comparison.type},
-         {"requested_count", comparison.requested_count},
-         {"count", comparison.count},
-         {"seed", comparison.seed},
-         {"poses", comparison.poses},
-         {"loops", comparison.loops},
-         {"cpu_seconds", comparison.cpu_seconds},
-         {"cost", comparison.cost},
-         {"member", comparison.member},
-         {"rival", comparison.rival},
-         {"rival_cost", comparison.rival_cost},
-         {"excess", comparison.excess},
-         {"above", IsAbove(comparison)}});
+    json["comparisons"].push_back(ToJson(comparison));
+    json["comparisons"].back()["above"] = IsAbove(comparison);
   }
   return json;
 }

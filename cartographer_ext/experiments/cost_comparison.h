@@ -40,8 +40,10 @@ struct CostComparison {
 // Kernels none, huber, gm, dcs, acs and gnc_tls from the poses of the graph, a
 // spanning tree of short paths over all edges and a robust chordal relaxation;
 // r_isam, which starts from nothing. With the information matrices as they are
-// and as `auto` scales them. Of `options`, kernels, journal and limits are not
-// used; without outliers each graph is compared once, whatever the counts.
+// and as `auto` scales them. Of `options`, kernels and limits are not used;
+// without outliers each graph is compared once, whatever the counts. What the
+// journal holds is not compared again; one of a sweep, or of other options, is
+// an error.
 absl::StatusOr<std::vector<CostComparison>> CompareCosts(
     const SweepOptions& options);
 

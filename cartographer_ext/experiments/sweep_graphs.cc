@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/numbers.h"
@@ -16,6 +17,7 @@
 #include "cartographer_ext/experiments/outliers/outlier_generator.h"
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/starts.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
@@ -30,6 +32,46 @@ namespace {
 bool Exists(const std::string& path) {
   struct stat unused;
   return stat(path.c_str(), &unused) == 0;
+}
+
+// Plain least squares to the last digit.
+double SolveToTheEnd(const std::vector<optimization::WhitenedEdge>& edges,
+                     std::vector<Pose2>* const poses) {
+  optimization::SolverOptions options;
+  options.max_iterations = 500;
+  options.cost_tolerance = 1e-10;
+  return optimization::SolveRobust(edges, options, poses).final_cost;
+}
+
+// The lowest cost that plain least squares reaches, as given poses may lead to
+// a local minimum.
+std::vector<Pose2> OptimumOfRightLoops(const PoseGraph& graph) {
+  const std::vector<optimization::WhitenedEdge> edges =
+      optimization::Whiten(graph.edges);
+  const std::vector<double> all(edges.size(), 1.);
+  std::vector<std::vector<Pose2>> starts = {
+      graph.poses, optimization::ChainOdometry(graph),
+      optimization::SpanningTree(graph, all)};
+  std::vector<Pose2> chordal = graph.poses;
+  if (optimization::ChordalPoses(edges, all, &chordal)) {
+    starts.push_back(chordal);
+  }
+  optimization::SolverOptions huber;
+  huber.kernel = optimization::DefaultKernel(optimization::KernelType::kHuber);
+  std::vector<Pose2> best = graph.poses;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const std::vector<Pose2>& start : starts) {
+    for (const bool by_huber : {false, true}) {
+      std::vector<Pose2> poses = start;
+      if (by_huber) optimization::SolveRobust(edges, huber, &poses);
+      const double cost = SolveToTheEnd(edges, &poses);
+      // Not for the sake of rounding.
+      if (cost > lowest * (1. - 1e-9)) continue;
+      lowest = cost;
+      best = std::move(poses);
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -76,9 +118,6 @@ absl::StatusOr<SweepGraph> LoadSweepGraph(const SweepOptions& options,
   result.name = DatasetName(dataset);
   result.graph = *std::move(graph);
   result.optimum = result.graph.poses;
-  optimization::SolverOptions solver;
-  solver.max_iterations = 500;
-  solver.cost_tolerance = 1e-10;
   // Sets that come with wrong loops of their own have no plain optimum.
   const bool own_outliers = options.truths.count(result.name) > 0;
   if (own_outliers) {
@@ -86,8 +125,7 @@ absl::StatusOr<SweepGraph> LoadSweepGraph(const SweepOptions& options,
     const auto best = optimization::Optimize(result.graph, automatic);
     if (best.ok()) result.optimum = best->poses;
   } else {
-    optimization::SolveRobust(optimization::Whiten(result.graph.edges), solver,
-                              &result.optimum);
+    result.optimum = OptimumOfRightLoops(result.graph);
   }
   for (const PoseGraphEdge& edge : result.graph.edges) {
     result.num_loops += edge.is_loop;
@@ -110,13 +148,9 @@ absl::StatusOr<SweepGraph> MakeFamilyGraph(const std::string& family,
     result.num_loops += edge.is_loop;
   }
   result.optimum = generated->truth;
-  optimization::SolverOptions solver;
-  solver.max_iterations = 500;
-  solver.cost_tolerance = 1e-10;
   const auto fixed = optimization::FixedPoseEdges(honest);
   honest.edges.insert(honest.edges.end(), fixed.begin(), fixed.end());
-  optimization::SolveRobust(optimization::Whiten(honest.edges), solver,
-                            &result.optimum);
+  SolveToTheEnd(optimization::Whiten(honest.edges), &result.optimum);
   result.inherent_ate =
       optimization::AbsoluteTrajectoryError(result.optimum, generated->truth);
   result.graph = std::move(generated->graph);

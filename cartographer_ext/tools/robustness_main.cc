@@ -72,7 +72,7 @@ DEFINE_bool(compare_cost, false,
             "Instead of a sweep: compares the truncated cost of auto with that "
             "of every other kernel from the given poses, a spanning tree and a "
             "chordal relaxation, and lists the graphs in which it is above. "
-            "Uses neither -kernels nor -journal_filename.");
+            "Does not use -kernels; its journal is another than a sweep's.");
 DEFINE_string(journal_filename, "",
               "Every finished run is added here at once; a sweep started again "
               "with the same journal skips what it holds.");
@@ -93,9 +93,10 @@ Generated graphs with known truth, clean and with outliers:
   cartographer_ext_robustness -family=ring,road,grid -outlier_types=none,R,RG
       -outlier_counts=50%,80% -seeds=10 -json=families.json
 
-Does auto end with the lowest cost? 1053 graphs:
+Does auto end with the lowest cost? 1053 graphs, to be stopped and resumed:
   cartographer_ext_robustness -compare_cost -family=all -seeds=9
       -outlier_types=none,R,RG,L,LG -outlier_counts=10%,50%,80%
+      -journal_filename=costs.jsonl
 
 The tables of the papers, printed values beside ours:
   cartographer_ext_robustness -preset=a_table_2 -journal_filename=a.jsonl

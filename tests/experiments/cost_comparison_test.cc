@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/experiments/cost_comparison.h"
 
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/test_data.h"
@@ -12,6 +18,21 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+
+std::string NewFile() {
+  const std::string filename = testing::TempDir() + "/costs.jsonl";
+  std::remove(filename.c_str());
+  return filename;
+}
+
+std::string ReadFile(const std::string& filename) {
+  std::ifstream stream(filename);
+  return std::string(std::istreambuf_iterator<char>(stream), {});
+}
+
+void WriteFile(const std::string& filename, const std::string& content) {
+  std::ofstream(filename) << content;
+}
 
 TEST(CostComparisonTest, ComparesEachGraphOnce) {
   SweepOptions options;
@@ -45,6 +66,60 @@ TEST(CostComparisonTest, DataSetWithoutOutliersDoesNotChangeWithTheSeed) {
   ASSERT_TRUE(comparisons.ok()) << comparisons.status();
   ASSERT_EQ(comparisons->size(), 1u);
   EXPECT_EQ(comparisons->front().dataset, "square");
+}
+
+TEST(CostComparisonTest, GoesOnWhereItWasKilled) {
+  SweepOptions options;
+  options.families = {"few"};
+  options.types = {"none", "L"};
+  options.counts = {"30%"};
+  options.first_seed = 5;
+  options.seeds = 2;
+  options.journal_filename = NewFile();
+  const auto whole = CompareCosts(options);
+  ASSERT_TRUE(whole.ok()) << whole.status();
+  const std::string text = ReadFile(options.journal_filename);
+  ASSERT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
+  // Killed in the third line; what is in the file is believed.
+  std::vector<std::string> lines = absl::StrSplit(text, '\n');
+  nlohmann::json first = nlohmann::json::parse(lines[1]);
+  EXPECT_EQ(first["cost"].get<double>(), whole->front().cost);
+  first["cost"] = 1e9;
+  WriteFile(options.journal_filename,
+            absl::StrCat(lines[0], "\n", first.dump(), "\n",
+                         lines[2].substr(0, lines[2].size() / 2)));
+  const auto rest = CompareCosts(options);
+  ASSERT_TRUE(rest.ok()) << rest.status();
+  ASSERT_EQ(rest->size(), 4u);
+  EXPECT_EQ(rest->front().cost, 1e9);
+  EXPECT_EQ(rest->front().rival, whole->front().rival);
+  for (size_t i = 1; i != rest->size(); ++i) {
+    EXPECT_EQ((*rest)[i].cost, (*whole)[i].cost);
+    EXPECT_EQ((*rest)[i].dataset, "few");
+  }
+  // Other seeds are not those of the journal.
+  options.first_seed = 6;
+  options.types = {"none"};
+  const auto other = CompareCosts(options);
+  ASSERT_TRUE(other.ok()) << other.status();
+  EXPECT_EQ(other->front().cost, (*whole)[1].cost);
+  EXPECT_EQ(other->back().seed, 7);
+  EXPECT_NE(other->back().cost, 1e9);
+}
+
+TEST(CostComparisonTest, AJournalOfOtherOptionsIsAnError) {
+  SweepOptions options;
+  options.datasets = {test::OwnData("square.g2o")};
+  options.types = {"none"};
+  options.counts = {"0"};
+  options.journal_filename = NewFile();
+  ASSERT_TRUE(CompareCosts(options).ok());
+  options.group_size = 3;
+  EXPECT_THAT(std::string(CompareCosts(options).status().message()),
+              HasSubstr("other options"));
+  WriteFile(options.journal_filename, "{\"dataset\":\"intel\"}\n");
+  EXPECT_THAT(std::string(CompareCosts(options).status().message()),
+              HasSubstr("not a journal of costs"));
 }
 
 TEST(CostComparisonTest, TableAndJsonNameWhatIsAbove) {
