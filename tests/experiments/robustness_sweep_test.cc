@@ -87,6 +87,23 @@ TEST(RobustnessSweepTest, JournalIsContinued) {
   std::remove(options.journal_filename.c_str());
 }
 
+// Single loops and groups that a replay has refused come back at its end.
+TEST(RobustnessSweepTest, AReplayEndsWithTheLoopsOfAllFloors) {
+  SweepOptions options;
+  options.families = {"floors"};
+  options.kernels = {"r_isam"};
+  options.types = {"R", "LG"};
+  options.counts = {"50%"};
+  options.first_seed = 411;
+  options.seeds = 2;
+  const auto runs = RunSweep(options);
+  ASSERT_TRUE(runs.ok()) << runs.status();
+  ASSERT_EQ(runs->size(), 4u);
+  for (const SweepRun& run : *runs) {
+    EXPECT_GT(run.recall, 0.95) << run.type << " " << run.seed;
+  }
+}
+
 TEST(RobustnessSweepTest, BadInputIsNamed) {
   SweepOptions options = SquareOptions();
   options.kernels = {"magic"};

@@ -6,7 +6,7 @@
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 #include "gmock/gmock.h"
-#include "tests/optimization/test_graphs.h"
+#include "tests/optimization/weak_ring.h"
 #include "tests/test_data.h"
 
 namespace cartographer_ext {
@@ -148,6 +148,28 @@ TEST(OptimizeTest, StartsFromGivenPoses) {
   options.start.pop_back();
   EXPECT_THAT(std::string(Optimize(world.graph, options).status().message()),
               HasSubstr("119 poses to start from"));
+}
+
+// Loops that end just behind the gate of a replay, or in groups that it has
+// lost, come back at the end of the data.
+TEST(OptimizeTest, ReplayEndsNearTheLowestCost) {
+  for (const uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}) {
+    test::GridWorld world = test::MakeWeakRing(seed);
+    OutlierOptions outliers;
+    outliers.count = 60;
+    outliers.seed = seed;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    OptimizeOptions options;
+    options.estimate_noise = false;
+    options.adaptive_gate = false;
+    const auto automatic = Optimize(world.graph, options);
+    options.method = "r_isam";
+    const auto replayed = Optimize(world.graph, options);
+    ASSERT_TRUE(automatic.ok() && replayed.ok());
+    EXPECT_LT(replayed->truncated_chi2,
+              automatic->truncated_chi2 + 3. * kChi2Gate)
+        << seed;
+  }
 }
 
 TEST(OptimizeTest, Errors) {
