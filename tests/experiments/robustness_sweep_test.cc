@@ -104,6 +104,24 @@ TEST(RobustnessSweepTest, AReplayEndsWithTheLoopsOfAllFloors) {
   }
 }
 
+// All kernels agree on a map that is folded; a group of the loops that it has
+// lost shows it.
+TEST(RobustnessSweepTest, KernelsThatAgreeMayBeWrong) {
+  SweepOptions options;
+  options.families = {"floors"};
+  options.kernels = {"auto"};
+  options.types = {"R"};
+  options.counts = {"80%"};
+  options.first_seed = 406;
+  const auto runs = RunSweep(options);
+  ASSERT_TRUE(runs.ok()) << runs.status();
+  ASSERT_EQ(runs->size(), 1u);
+  EXPECT_TRUE(runs->front().success);
+  EXPECT_GE(runs->front().recall, 0.99);
+  EXPECT_LE(runs->front().truncated,
+            runs->front().right_truncated * (1. + 1e-6));
+}
+
 TEST(RobustnessSweepTest, BadInputIsNamed) {
   SweepOptions options = SquareOptions();
   options.kernels = {"magic"};

@@ -38,8 +38,10 @@ constexpr size_t kQuickKernels = 3;
 constexpr size_t kLargeGraph = 30000;
 // Share of the supported loops that a map in which they agree keeps.
 constexpr double kNearlyAll = 0.98;
-// Groups of a large graph that are forced in.
+// Groups that are forced in: of a large graph, and where the kernels agree on a
+// map that these contradict, which may be folded.
 constexpr int kMaxTrialsOnLargeGraph = 4;
+constexpr int kMaxTrialsOfSettled = 3;
 // A graph of fewer poses times loops is searched from all starts in any case.
 constexpr double kSmallGraph = 2.5e5;
 // Multiplications of one factorisation that are worth it while the search is
@@ -206,6 +208,19 @@ bool Portfolio::IsSettled(const size_t first) {
   return RejectedContradict();
 }
 
+bool Portfolio::FindsLostGroup() {
+  ForceOptions force;
+  force.max_trials = kMaxTrialsOfSettled;
+  force.min_members = kSupported + 1;
+  std::vector<Pose2> poses = best().poses;
+  if (ForceGroups(support(), force, &edges_, &solver_, &poses,
+                  &alternatives_) == 0) {
+    return false;
+  }
+  Add(absl::StrCat(best().name, ", groups"), std::move(poses));
+  return true;
+}
+
 bool Portfolio::RejectedContradict() {
   const std::vector<Pose2>& poses = best().poses;
   const std::vector<double> weights = DecideLoops(edges_, poses, kChi2Gate);
@@ -325,7 +340,7 @@ void Portfolio::Run() {
   if (large && SettleBySupport()) return;
   const size_t first = members_.size();
   RunQuick();
-  const bool settled = IsSettled(first);
+  const bool settled = IsSettled(first) && !FindsLostGroup();
   if (settled && (continued_ || size > kSmallGraph)) return;
   if (large && SettleByReplay()) return;
   // Where many loops contradict a map that the robust kernels agree on, the
@@ -378,7 +393,7 @@ void Portfolio::Improve() {
   SolverOptions options;
   options.edge_weights = DecideLoops(edges_, best().poses, kChi2Gate);
   options.cost_tolerance = 1e-12;
-  options.max_iterations = 20;
+  options.max_iterations = options_.max_iterations;
   poses = best().poses;
   Count(solver_.Solve(options, &poses));
   Add(best().name, std::move(poses));

@@ -8,9 +8,10 @@
 //
 //   Quick   dcs, gm and acs from the given poses, none and huber where few
 //           loops are wrong. Where these agree up to decisions near the gate,
-//           no single decision can be improved and the rejected loops
-//           contradict the map beyond its uncertainty, the search of a large
-//           graph ends here: other starts end in the same optimum.
+//           no single decision can be improved, the rejected loops contradict
+//           the map beyond its uncertainty and none of the largest groups of
+//           them is right, the search of a large graph ends here: other starts
+//           end in the same optimum.
 //   Starts  chained odometry, chordal relaxation, a spanning tree of short
 //           paths and an incremental replay (R-iSAM) as starts of the same
 //           kernels; graduated non-convexity.
@@ -92,6 +93,9 @@ class Portfolio {
   void RunQuick();
   // Whether the quick members, from `first` on, agree.
   bool IsSettled(size_t first);
+  // Whether one of the largest groups of rejected loops that agree with each
+  // other, forced in, lowers the cost.
+  bool FindsLostGroup();
   // Whether the rejected loops lie beyond the uncertainty of the best map.
   bool RejectedContradict();
   void RunStarts(bool with_full_kernels);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/portfolio.h"
 
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/offline/noise_scale.h"
 #include "cartographer_ext/optimization/offline/optimize.h"
 #include "gmock/gmock.h"
@@ -106,6 +107,45 @@ TEST(PortfolioTest, ContinuesInAnotherMetric) {
     EXPECT_LE(continued.best().cost, whole.best().cost * (1. + 1e-6)) << seed;
     EXPECT_LT(continued.iterations(), 0.7 * whole.iterations()) << seed;
   }
+}
+
+// A robot that walks straight on for thousands of poses, and loops to another
+// that does the same: what bends both has hardly any curvature.
+TEST(PortfolioTest, SolvesFlatValleysToTheEnd) {
+  constexpr int kLength = 1200;
+  Random random(1);
+  PoseGraph graph;
+  std::vector<Pose2> truth;
+  Pose2 pose;
+  for (int i = 0; i != 2 * kLength; ++i) {
+    graph.ids.push_back(i);
+    truth.push_back(pose);
+    pose = pose * Pose2(1., 0., i == kLength - 1 ? kPi : 0.);
+  }
+  const auto add = [&](const int from, const int to, const double sigma) {
+    PoseGraphEdge edge;
+    edge.from = from;
+    edge.to = to;
+    edge.is_loop = to != from + 1;
+    edge.measurement = Between(truth[from], truth[to]) *
+                       Pose2(random.Normal(0., sigma), random.Normal(0., sigma),
+                             random.Normal(0., sigma));
+    edge.information = Eigen::Matrix3d::Identity() / (sigma * sigma);
+    graph.edges.push_back(edge);
+  };
+  for (int i = 1; i != 2 * kLength; ++i) add(i - 1, i, 0.01);
+  for (int i = 0; i < kLength; i += 200) add(i, 2 * kLength - 1 - i, 0.1);
+  graph.poses.assign(2 * kLength, Pose2());
+  graph.poses = DeadReckoning(graph);
+  Portfolio portfolio(graph, PortfolioOptions());
+  portfolio.Run();
+  std::vector<Pose2> poses = portfolio.best().poses;
+  SolverOptions options;
+  options.edge_weights = DecideLoops(portfolio.edges(), poses, kChi2Gate);
+  options.cost_tolerance = 1e-12;
+  options.max_iterations = 1000;
+  portfolio.solver()->Solve(options, &poses);
+  EXPECT_LT(AbsoluteTrajectoryError(portfolio.best().poses, poses), 1e-3);
 }
 
 TEST(PortfolioTest, KnowsWhatAllLoopsCost) {
