@@ -217,8 +217,10 @@ bool Portfolio::FindsLostGroup() {
                   &alternatives_) == 0) {
     return false;
   }
+  const double before = best().cost;
   Add(absl::StrCat(best().name, ", groups"), std::move(poses));
-  return true;
+  // Less is a matter of loops near the gate.
+  return best().cost < before - kNearlySame * kChi2Gate;
 }
 
 bool Portfolio::RejectedContradict() {
@@ -340,7 +342,8 @@ void Portfolio::Run() {
   if (large && SettleBySupport()) return;
   const size_t first = members_.size();
   RunQuick();
-  const bool settled = IsSettled(first) && !FindsLostGroup();
+  const bool settled =
+      IsSettled(first) && (size > kMaxGrowthWork || !FindsLostGroup());
   if (settled && (continued_ || size > kSmallGraph)) return;
   if (large && SettleByReplay()) return;
   // Where many loops contradict a map that the robust kernels agree on, the

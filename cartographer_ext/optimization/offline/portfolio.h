@@ -10,8 +10,8 @@
 //           loops are wrong. Where these agree up to decisions near the gate,
 //           no single decision can be improved, the rejected loops contradict
 //           the map beyond its uncertainty and none of the largest groups of
-//           them is right, the search of a large graph ends here: other starts
-//           end in the same optimum.
+//           them is right (as long as these can be tried), the search of a
+//           large graph ends here: other starts end in the same optimum.
 //   Starts  chained odometry, chordal relaxation, a spanning tree of short
 //           paths and an incremental replay (R-iSAM) as starts of the same
 //           kernels; graduated non-convexity.
@@ -94,7 +94,7 @@ class Portfolio {
   // Whether the quick members, from `first` on, agree.
   bool IsSettled(size_t first);
   // Whether one of the largest groups of rejected loops that agree with each
-  // other, forced in, lowers the cost.
+  // other, forced in, leads to a map that costs less.
   bool FindsLostGroup();
   // Whether the rejected loops lie beyond the uncertainty of the best map.
   bool RejectedContradict();
