@@ -3,10 +3,8 @@
 #include "cartographer_ext/uncertainty/least_uncertain_paths.h"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <limits>
-#include <queue>
 #include <set>
 #include <utility>
 
@@ -20,7 +18,7 @@ constexpr size_t kNone = std::numeric_limits<size_t>::max();
 // Bounds of memory and work. Later loops are not stored; beyond the number of
 // trees all are searched again.
 constexpr size_t kMaxLoops = 5000;
-constexpr size_t kMaxTrees = 4;
+constexpr size_t kMaxTrees = 500;
 
 double TranslationVariance(const UncertainPose& pose) {
   return pose.covariance.topLeftCorner<2, 2>().trace();
@@ -29,9 +27,8 @@ double TranslationVariance(const UncertainPose& pose) {
 }  // namespace
 
 LeastUncertainPaths::LeastUncertainPaths(const double spacing,
-                                         const double stretch,
                                          const PathUncertainty* const paths)
-    : spacing_(spacing), stretch_(stretch), paths_(CHECK_NOTNULL(paths)) {}
+    : spacing_(spacing), paths_(CHECK_NOTNULL(paths)) {}
 
 bool LeastUncertainPaths::HasNear(const LoopEdge& loop) const {
   const auto is_near = [this](const VertexId& u, const VertexId& v) {
@@ -56,75 +53,10 @@ bool LeastUncertainPaths::HasNear(const LoopEdge& loop) const {
   return false;
 }
 
-void LeastUncertainPaths::AppendSteps(
-    const VertexId& from,
-    std::vector<std::pair<double, VertexId>>* const steps) const {
-  const auto append = [&](const VertexId& to) {
-    const absl::optional<double> cost = paths_->PathCost(from, to);
-    if (cost.has_value()) steps->emplace_back(*cost, to);
-  };
-  auto after = across_.lower_bound(from);
-  if (after != across_.begin()) append(std::prev(after)->first);
-  if (after != across_.end() && after->first == from) {
-    steps->insert(steps->end(), after->second.begin(), after->second.end());
-    ++after;
-  }
-  if (after != across_.end()) append(after->first);
-}
-
-bool LeastUncertainPaths::HasPath(const VertexId& a, const VertexId& b,
-                                  const double bound) const {
-  std::map<VertexId, double> reached = {{a, 0.}};
-  std::set<std::pair<double, VertexId>> queue = {{0., a}};
-  std::vector<std::pair<double, VertexId>> steps;
-  while (!queue.empty()) {
-    const double cost = queue.begin()->first;
-    const VertexId at = queue.begin()->second;
-    queue.erase(queue.begin());
-    const absl::optional<double> rest = paths_->PathCost(at, b);
-    if (rest.has_value() && cost + *rest <= bound) return true;
-    steps.clear();
-    AppendSteps(at, &steps);
-    for (const auto& step : steps) {
-      const double next = cost + step.first;
-      if (next > bound) continue;
-      const auto known = reached.emplace(step.second, next);
-      if (!known.second) {
-        if (known.first->second <= next) continue;
-        queue.erase(std::make_pair(known.first->second, step.second));
-        known.first->second = next;
-      }
-      queue.emplace(next, step.second);
-    }
-  }
-  return false;
-}
-
-void LeastUncertainPaths::Store(const LoopEdge& loop) {
-  const double cost = paths_->PathCostOf(loop.pose.covariance);
-  ends_[loop.b].push_back(loop.a);
-  across_[loop.a].emplace_back(cost, loop.b);
-  across_[loop.b].emplace_back(cost, loop.a);
-}
-
-bool LeastUncertainPaths::MakeRoom() {
-  if (loops_.size() < kMaxLoops) return true;
-  RemoveIf([this](const LoopEdge& loop) {
-    return !paths_->LocalPose(loop.a).has_value() ||
-           !paths_->LocalPose(loop.b).has_value();
-  });
-  return loops_.size() < kMaxLoops;
-}
-
 void LeastUncertainPaths::Add(const LoopEdge& loop) {
-  if (HasNear(loop) ||
-      HasPath(loop.a, loop.b,
-              stretch_ * paths_->PathCostOf(loop.pose.covariance)) ||
-      !MakeRoom()) {
-    return;
-  }
+  if (loops_.size() >= kMaxLoops || HasNear(loop)) return;
   loops_.push_back(loop);
-  Store(loop);
+  ends_[loop.b].push_back(loop.a);
   is_built_ = false;
 }
 
@@ -134,8 +66,7 @@ void LeastUncertainPaths::RemoveIf(
   if (end == loops_.end()) return;
   loops_.erase(end, loops_.end());
   ends_.clear();
-  across_.clear();
-  for (const LoopEdge& loop : loops_) Store(loop);
+  for (const LoopEdge& loop : loops_) ends_[loop.b].push_back(loop.a);
   is_built_ = false;
 }
 
@@ -155,7 +86,6 @@ void LeastUncertainPaths::BuildVertices() {
     vertex.id = entry.first;
     vertex.before = kNone;
     vertex.after = kNone;
-    vertex.cost_after = 0.;
     if (index > 0 && vertices_.back().id.InSequenceWith(vertex.id)) {
       vertex.before = index - 1;
       vertices_.back().after = index;
@@ -165,17 +95,6 @@ void LeastUncertainPaths::BuildVertices() {
   for (size_t i = 0; i < loops_.size(); ++i) {
     vertices_[index_of_.at(loops_[i].a)].loops.push_back(i);
     vertices_[index_of_.at(loops_[i].b)].loops.push_back(i);
-  }
-  MeasureSteps();
-}
-
-void LeastUncertainPaths::MeasureSteps() {
-  drift_version_ = paths_->drift_version();
-  trees_.clear();
-  for (Vertex& vertex : vertices_) {
-    if (vertex.after == kNone) continue;
-    vertex.cost_after = paths_->PathCost(vertex.id, vertices_[vertex.after].id)
-                            .value_or(std::numeric_limits<double>::infinity());
   }
 }
 
@@ -210,12 +129,12 @@ void LeastUncertainPaths::Search(Tree* const tree) const {
   unreached.loop = kNone;
   tree->branches.assign(vertices_.size(), unreached);
   // By cost and vertex, so that the result is the same everywhere.
-  using Entry = std::pair<double, size_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  std::set<std::pair<double, size_t>> queue;
   const auto reach = [&](const size_t vertex, const double cost,
                          const size_t from, const size_t loop) {
     Tree::Branch& branch = tree->branches[vertex];
     if (!(cost < branch.cost)) return;
+    queue.erase(std::make_pair(branch.cost, vertex));
     branch.cost = cost;
     branch.from = from;
     branch.loop = loop;
@@ -227,17 +146,15 @@ void LeastUncertainPaths::Search(Tree* const tree) const {
     if (cost.has_value()) reach(vertex, *cost, kNone, kNone);
   }
   while (!queue.empty()) {
-    const double cost = queue.top().first;
-    const size_t at = queue.top().second;
-    queue.pop();
-    if (cost > tree->branches[at].cost) continue;
+    const size_t at = queue.begin()->second;
+    const double cost = queue.begin()->first;
+    queue.erase(queue.begin());
     const Vertex& vertex = vertices_[at];
-    if (vertex.before != kNone) {
-      reach(vertex.before, cost + vertices_[vertex.before].cost_after, at,
-            kNone);
-    }
-    if (vertex.after != kNone) {
-      reach(vertex.after, cost + vertex.cost_after, at, kNone);
+    for (const size_t next : {vertex.before, vertex.after}) {
+      if (next == kNone) continue;
+      const absl::optional<double> step =
+          paths_->PathCost(vertex.id, vertices_[next].id);
+      if (step.has_value()) reach(next, cost + *step, at, kNone);
     }
     for (const size_t loop : vertex.loops) {
       const LoopEdge& edge = loops_[loop];
@@ -286,7 +203,10 @@ absl::optional<UncertainPose> LeastUncertainPaths::Between(const VertexId& a,
   absl::optional<UncertainPose> best = paths_->Between(a, b);
   if (loops_.empty()) return best;
   if (!is_built_) BuildVertices();
-  if (drift_version_ != paths_->drift_version()) MeasureSteps();
+  if (drift_version_ != paths_->drift_version()) {
+    drift_version_ = paths_->drift_version();
+    trees_.clear();
+  }
   Tree* const tree = TreeOf(a);
   for (const size_t vertex : Adjacent(b)) {
     const absl::optional<UncertainPose>& to = PoseOf(vertex, tree);

@@ -12,18 +12,14 @@
 // know more.
 //
 // One search of the graph serves all queries from the same vertex, until the
-// next loop or the next change of what drift is assumed. A loop is stored only
-// where the path between its ends costs several times as much without it: how
-// many are stored of a stretch hardly depends on how often it was driven, and no
-// path costs more than several times as much as with all of them. Not
-// thread-safe.
+// next loop or the next change of what drift is assumed. A loop close to
+// another one at both ends adds no path and is not stored. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 #define CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 
 #include <cstddef>
 #include <functional>
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "absl/types/optional.h"
@@ -38,11 +34,9 @@ namespace uncertainty {
 class LeastUncertainPaths {
  public:
   // A loop both of whose ends are within `spacing` metres of those of a stored
-  // one, measured along the trajectory, is not stored; nor is one if the cost of
-  // a path between its ends is at most `stretch` times its own. `paths` has to
-  // outlive this and to know the ends of the loops.
-  LeastUncertainPaths(double spacing, double stretch,
-                      const PathUncertainty* paths);
+  // one, measured along the trajectory, is not stored. `paths` has to outlive
+  // this and to know the ends of the loops.
+  LeastUncertainPaths(double spacing, const PathUncertainty* paths);
 
   void Add(const LoopEdge& loop);
   void RemoveIf(const std::function<bool(const LoopEdge&)>& condition);
@@ -60,7 +54,6 @@ class LeastUncertainPaths {
     // Neighbours along the trajectory, or kNone.
     size_t before;
     size_t after;
-    double cost_after;  // to `after`
   };
   // The paths from one vertex to all others.
   struct Tree {
@@ -76,17 +69,7 @@ class LeastUncertainPaths {
   };
 
   bool HasNear(const LoopEdge& loop) const;
-  // Whether a path over stored loops costs no more than `bound`.
-  bool HasPath(const VertexId& a, const VertexId& b, double bound) const;
-  // A loop end, or any vertex of a trajectory: the loop ends before and after,
-  // and those across loops, with the cost of going there.
-  void AppendSteps(const VertexId& from,
-                   std::vector<std::pair<double, VertexId>>* steps) const;
-  // Where there is no room, forgets loops with ends that are forgotten.
-  bool MakeRoom();
-  void Store(const LoopEdge& loop);
   void BuildVertices();
-  void MeasureSteps();
   // The vertex with this id, or its neighbours along the trajectory.
   std::vector<size_t> Adjacent(const VertexId& id) const;
   // The tree of `root`, searched for where it is not known.
@@ -96,12 +79,9 @@ class LeastUncertainPaths {
   const absl::optional<UncertainPose>& PoseOf(size_t vertex, Tree* tree) const;
 
   const double spacing_;
-  const double stretch_;
   const PathUncertainty* const paths_;
   std::vector<LoopEdge> loops_;
   std::map<VertexId, std::vector<VertexId>> ends_;  // from b to each a
-  // From each end of a loop to the other one, with its cost.
-  std::map<VertexId, std::vector<std::pair<double, VertexId>>> across_;
   std::vector<Vertex> vertices_;
   std::map<VertexId, size_t> index_of_;
   // What was built from the loops is valid.

@@ -15,7 +15,7 @@ namespace {
 // Straight on, a node every metre; one unit of variance per metre.
 class LeastUncertainPathsTest : public testing::Test {
  protected:
-  LeastUncertainPathsTest() : paths_(Noise(), 1000), least_(2., 0., &paths_) {
+  LeastUncertainPathsTest() : paths_(Noise(), 1000), least_(2., &paths_) {
     for (int i = 0; i <= 300; ++i) {
       paths_.Add(NodeId{0, i}, Pose2(i, 0., 0.));
     }
@@ -104,73 +104,6 @@ TEST_F(LeastUncertainPathsTest, LoopsBesideOthersAreNotStored) {
   EXPECT_EQ(least_.num_loops(), 3u);
 }
 
-// Round and round, 100 m a lap; every 5 m loops with all laps before.
-TEST(LeastUncertainPathsOfLapsTest, HardlyGrowWithTheVisits) {
-  constexpr int kLaps = 12;
-  constexpr double kStretch = 4.;
-  PathNoiseOptions noise = RandomWalk();
-  noise.translation_per_metre = 1.;
-  noise.translation_per_radian = 0.;
-  noise.rotation_per_metre = 1e-9;
-  noise.rotation_per_radian = 0.;
-  PathUncertainty paths(noise, 10000);
-  LeastUncertainPaths sparse(0., kStretch, &paths);
-  LeastUncertainPaths all(0., 0., &paths);
-  std::vector<size_t> stored;
-  for (int i = 0; i < 100 * kLaps; ++i) {
-    paths.Add(NodeId{0, i}, Pose2(i, 0., 0.));
-    for (int a = i - 100; i % 5 == 0 && a >= 0; a -= 100) {
-      LoopEdge loop;
-      loop.a = NodeId{0, a};
-      loop.b = NodeId{0, i};
-      loop.pose.pose = Pose2();
-      loop.pose.covariance = Eigen::Vector3d(4., 4., 0.).asDiagonal();
-      sparse.Add(loop);
-      all.Add(loop);
-    }
-    if (i % 100 == 99) stored.push_back(sparse.num_loops());
-  }
-  EXPECT_EQ(all.num_loops(), 20u * kLaps * (kLaps - 1) / 2);
-  // All of the last lap are 220.
-  for (size_t lap = 2; lap < kLaps; ++lap) {
-    EXPECT_LE(stored[lap] - stored[lap - 1], 50u) << lap;
-  }
-  // No loop that was left out could have been missed.
-  for (int i = 0; i < 100 * kLaps; i += 5) {
-    for (int a = i - 100; a >= 0; a -= 100) {
-      EXPECT_LE(sparse.Between(NodeId{0, a}, NodeId{0, i})->covariance(0, 0),
-                kStretch * 4. + 1e-6)
-          << a << " " << i;
-    }
-  }
-}
-
-TEST_F(LeastUncertainPathsTest, WhatHasAPathOfItsOwnIsNotStored) {
-  LeastUncertainPaths least(0., 4., &paths_);
-  LoopEdge loop;
-  loop.a = NodeId{0, 0};
-  loop.pose.covariance = Eigen::Vector3d(1.01, 1.01, 0.).asDiagonal();
-  // 4 m of driving are worth as much as four loops, 5 m are not.
-  loop.b = NodeId{0, 4};
-  least.Add(loop);
-  EXPECT_EQ(least.num_loops(), 0u);
-  loop.b = NodeId{0, 5};
-  least.Add(loop);
-  EXPECT_EQ(least.num_loops(), 1u);
-  // Over that loop and 3 m, or 4 m.
-  loop.b = NodeId{0, 8};
-  least.Add(loop);
-  EXPECT_EQ(least.num_loops(), 1u);
-  loop.b = NodeId{0, 9};
-  least.Add(loop);
-  EXPECT_EQ(least.num_loops(), 2u);
-  // What is removed no longer counts.
-  least.RemoveIf([](const LoopEdge& edge) { return edge.b == NodeId{0, 9}; });
-  loop.b = NodeId{0, 10};
-  least.Add(loop);
-  EXPECT_EQ(least.num_loops(), 2u);
-}
-
 TEST_F(LeastUncertainPathsTest, OtherTrajectoriesAreReachedOverLoops) {
   paths_.Add(NodeId{1, 0}, Pose2());
   paths_.Add(NodeId{1, 1}, Pose2(1., 0., 0.));
@@ -196,7 +129,7 @@ TEST(LeastUncertainPathsOfOneLoopTest, ALoopShortensThePath) {
   const auto key = [](const int index) { return NodeId{0, index}; };
   const auto path_over = [&paths](const std::vector<LoopEdge>& loops,
                                   const VertexId& a, const VertexId& b) {
-    LeastUncertainPaths least(0., 0., &paths);
+    LeastUncertainPaths least(0., &paths);
     for (const LoopEdge& loop : loops) least.Add(loop);
     return least.Between(a, b);
   };

@@ -21,11 +21,6 @@ using proto::LoopDecision;
 constexpr size_t kFullSearchesPerNode = 1;
 // Loops nearer than this to each other give the same paths, metres.
 constexpr double kLoopSpacing = 3.;
-// Stored paths cost at most this many times a loop, that is twice its standard
-// deviation: less than the smallest window holds.
-constexpr double kPathStretch = 4.;
-// Submaps that were not searched for longer wait alike, metres driven.
-constexpr double kLongestWait = 1e6;
 // Searched nodes remembered, oldest forgotten first.
 constexpr size_t kMaxNodesPerSubmap = 20000;
 
@@ -60,7 +55,7 @@ SearchPlanner::SearchPlanner(const SearchPlannerOptions& options,
       default_linear_window_(default_linear_window),
       default_angular_window_(default_angular_window),
       paths_(CHECK_NOTNULL(paths)),
-      least_uncertain_paths_(kLoopSpacing, kPathStretch, paths) {}
+      least_uncertain_paths_(kLoopSpacing, paths) {}
 
 bool SearchPlanner::HasNear(const Nodes& nodes, const LoopCandidate& candidate,
                             const double distance,
@@ -81,23 +76,13 @@ bool SearchPlanner::HasNear(const Nodes& nodes, const LoopCandidate& candidate,
   return after != nodes.begin() && near(*std::prev(after));
 }
 
-absl::optional<uncertainty::UncertainPose> SearchPlanner::Path(
-    const LoopCandidate& candidate) {
-  if (!candidate.anchor.has_value()) return absl::nullopt;
-  // From the end that many candidates have in common.
-  if (candidate.node != new_node_) {
-    return least_uncertain_paths_.Between(*candidate.anchor, candidate.node);
-  }
-  absl::optional<uncertainty::UncertainPose> path =
-      least_uncertain_paths_.Between(candidate.node, *candidate.anchor);
-  if (path.has_value()) path = Invert(*path);
-  return path;
-}
-
 bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
                                SearchPlan* const plan) {
   const double distance = candidate.SearchCenter().translation().norm();
-  const absl::optional<uncertainty::UncertainPose> path = Path(candidate);
+  const absl::optional<uncertainty::UncertainPose> path =
+      candidate.anchor.has_value()
+          ? least_uncertain_paths_.Between(*candidate.anchor, candidate.node)
+          : absl::nullopt;
   if (!path.has_value()) {
     plan->out_of_reach = distance > reach_;
     plan->linear_window = default_linear_window_;
@@ -163,69 +148,6 @@ SearchPlan SearchPlanner::PlanAlone(const LoopCandidate& candidate) {
   return plan;
 }
 
-bool SearchPlanner::IsKnown(const LoopCandidate& candidate,
-                            const SearchPlan& plan) const {
-  return !candidate.is_inter_trajectory() && plan.translation_sigma > 0. &&
-         !plan.full_submap && plan.translation_sigma <= options_.known_sigma;
-}
-
-int SearchPlanner::NumKnownSearches(const LoopCandidate& candidate) const {
-  const double ticks = 1e7 * options_.redundant_time;
-  int count = 0;
-  const auto count_near =
-      [&](const std::pair<const uncertainty::VertexId, KnownSearches>& other) {
-        const absl::optional<double> travelled =
-            paths_->Travelled(other.first, candidate.node);
-        if (!travelled.has_value() || *travelled >= options_.search_spacing) {
-          return false;
-        }
-        if (std::abs(static_cast<double>(other.second.time -
-                                         candidate.node_time)) <= ticks) {
-          count += other.second.count;
-        }
-        return true;
-      };
-  const auto middle = known_.lower_bound(candidate.node);
-  for (auto it = middle; it != known_.end() && count_near(*it);) ++it;
-  for (auto it = middle; it != known_.begin() && count_near(*std::prev(it));) {
-    --it;
-  }
-  return count;
-}
-
-absl::optional<uncertainty::VertexId> SearchPlanner::WaitsSince(
-    const LoopCandidate& candidate) const {
-  absl::optional<uncertainty::VertexId> since;
-  double waited = std::numeric_limits<double>::infinity();
-  const auto take = [&](const uncertainty::VertexId& other) {
-    const absl::optional<double> travelled =
-        paths_->Travelled(other, candidate.node);
-    if (!travelled.has_value() || *travelled >= waited) return;
-    waited = *travelled;
-    since = other;
-  };
-  if (candidate.anchor.has_value()) take(*candidate.anchor);
-  const auto found = submaps_.find(candidate.submap);
-  if (found == submaps_.end()) return since;
-  const Nodes& searched = found->second.searched;
-  // The node itself is entered already.
-  const auto after = searched.upper_bound(candidate.node);
-  if (after != searched.end()) take(after->first);
-  const auto at = searched.lower_bound(candidate.node);
-  if (at != searched.begin()) take(std::prev(at)->first);
-  return waited <= reach_ && found->second.waits_since.has_value()
-             ? found->second.waits_since
-             : since;
-}
-
-double SearchPlanner::Waited(const LoopCandidate& candidate) const {
-  const absl::optional<uncertainty::VertexId> since = WaitsSince(candidate);
-  const absl::optional<double> waited =
-      since.has_value() ? paths_->Travelled(*since, candidate.node)
-                        : absl::nullopt;
-  return waited.has_value() ? std::min(*waited, kLongestWait) : kLongestWait;
-}
-
 double SearchPlanner::Promise(const LoopCandidate& candidate,
                               const SearchPlan& plan) const {
   const double sigma = std::max(plan.translation_sigma, 1e-3);
@@ -244,34 +166,20 @@ void SearchPlanner::ApplyCap(
   std::vector<size_t> order(indices.size());
   std::iota(order.begin(), order.end(), 0);
   for (size_t k = 0; k < indices.size(); ++k) {
-    const LoopCandidate& candidate = *candidates[indices[k]];
-    const SearchPlan& plan = (*plans)[indices[k]];
-    promise[k] = Promise(candidate, plan);
-    // In turn, so that none is left out for ever, but the same ones during one
-    // visit: they support each other, and are in the cache.
-    promise[k] *= IsKnown(candidate, plan) ? Waited(candidate) : kLongestWait;
+    promise[k] = Promise(*candidates[indices[k]], (*plans)[indices[k]]);
   }
   std::stable_sort(
       order.begin(), order.end(),
       [&](const size_t a, const size_t b) { return promise[a] > promise[b]; });
   size_t num_searched = 0;
   size_t num_searched_fully = 0;
-  int num_known = NumKnownSearches(*candidates[indices.front()]);
   for (const size_t k : order) {
     const LoopCandidate& candidate = *candidates[indices[k]];
     SearchPlan& plan = (*plans)[indices[k]];
     if (num_searched < cap &&
         (!plan.full_submap || num_searched_fully < kFullSearchesPerNode) &&
-        (!IsKnown(candidate, plan) || num_known < options_.known_searches) &&
         credit_.Pay(plan)) {
       ++num_searched;
-      if (IsKnown(candidate, plan)) {
-        ++num_known;
-        KnownSearches& known = known_[candidate.node];
-        known.time = candidate.node_time;
-        ++known.count;
-        submaps_[candidate.submap].waits_since = WaitsSince(candidate);
-      }
       if (plan.full_submap) ++num_searched_fully;
       continue;
     }
@@ -285,7 +193,6 @@ std::vector<SearchPlan> SearchPlanner::Plan(
     const std::vector<const LoopCandidate*>& candidates) {
   std::vector<SearchPlan> plans(candidates.size());
   std::map<uncertainty::NodeId, std::vector<size_t>> of_node;
-  if (!candidates.empty()) new_node_ = candidates.front()->node;
   for (size_t i = 0; i < candidates.size(); ++i) {
     credit_.AddNode(candidates[i]->node);
     // One by one, since the searches of a burst space each other out.

@@ -12,9 +12,7 @@
 //              submap.
 //   spacing    A submap is searched again after some distance only; after an
 //              accepted loop after a longer one or some time; not at all while
-//              the path to it is less uncertain than a loop would be. Places
-//              that are known share what is searched of them per metre, however
-//              often they were seen, and take turns from visit to visit.
+//              the path to it is less uncertain than a loop would be.
 //   cap        Of the candidates of one node that remain the most promising are
 //              searched: those with much to gain that are near enough to
 //              overlap; wide windows only while there is credit for them
@@ -31,7 +29,6 @@
 #include <vector>
 
 #include "Eigen/Core"
-#include "absl/types/optional.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_credit.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_result.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
@@ -69,15 +66,6 @@ struct SearchPlannerOptions {
   // nodes that temporal verification compares.
   double search_spacing = 0.5;
   double full_search_spacing = 3.;
-  // Where the path to the submap is less uncertain, metres, the place is known,
-  // as it is for the consensus (weak_prior_sigma), and a loop can only refine
-  // it. Of all such submaps this number is searched in each `search_spacing`,
-  // > 0. The error of the mean of n matches that are independent falls by
-  // 1 - sqrt(n / (n + 1)) with another one: over 2 m of driving, along which
-  // local SLAM adds as much as a match has, 16 are reached with 4, and another
-  // one gains 3 %.
-  double known_sigma = 1.;
-  int known_searches = 4;
   // Metres. Where the path to the submap is less uncertain, a loop, which is as
   // uncertain itself, would add nothing.
   double informative_sigma = 0.05;
@@ -119,17 +107,10 @@ class SearchPlanner {
     Nodes searched;
     Nodes searched_fully;
     Nodes accepted;
-    // Where it was searched last before the latest visit.
-    absl::optional<uncertainty::VertexId> waits_since;
 
     Nodes* Searched(const SearchPlan& plan) {
       return plan.full_submap ? &searched_fully : &searched;
     }
-  };
-
-  struct KnownSearches {
-    int64_t time = 0;
-    int count = 0;
   };
 
   // Whether a node of `nodes` is nearer to that of the candidate than
@@ -138,20 +119,6 @@ class SearchPlanner {
                double distance, double duration) const;
   // Without regard to the other candidates of the node.
   SearchPlan PlanAlone(const LoopCandidate& candidate);
-  // Whether a loop could only refine what is known of a place. With another
-  // trajectory there may be a map that does not grow.
-  bool IsKnown(const LoopCandidate& candidate, const SearchPlan& plan) const;
-  // How many searches of known places are near the node of a candidate.
-  int NumKnownSearches(const LoopCandidate& candidate) const;
-  // Where the submap was searched last or, before that, made; not counting the
-  // visit that goes on. Empty: never, as far as is known.
-  absl::optional<uncertainty::VertexId> WaitsSince(
-      const LoopCandidate& candidate) const;
-  // Metres driven since then.
-  double Waited(const LoopCandidate& candidate) const;
-  // (anchor <- node).
-  absl::optional<uncertainty::UncertainPose> Path(
-      const LoopCandidate& candidate);
   // The window for the uncertainty of the prediction, into the plan; returns
   // whether the uncertainty is known.
   bool PlanWindow(const LoopCandidate& candidate, SearchPlan* plan);
@@ -169,11 +136,7 @@ class SearchPlanner {
   const double default_angular_window_;
   const uncertainty::PathUncertainty* const paths_;
   std::map<uncertainty::SubmapId, SubmapMemory> submaps_;
-  // Nodes with searches of known places, with their times and numbers.
-  std::map<uncertainty::VertexId, KnownSearches> known_;
   SearchCredit credit_;
-  // Of the first candidate of a call: the newest one.
-  uncertainty::NodeId new_node_{-1, -1};
   uncertainty::LeastUncertainPaths least_uncertain_paths_;
 };
 

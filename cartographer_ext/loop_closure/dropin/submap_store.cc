@@ -103,16 +103,12 @@ absl::optional<uncertainty::VertexId> SubmapStore::Anchor(
   if (node_trajectory_id != id.trajectory_id) {
     return uncertainty::VertexId(id);
   }
-  if (entry.anchor.has_value()) return entry.anchor;
   if (entry.newest_node_at_first < 0) return absl::nullopt;
   const absl::optional<uncertainty::NodeId> nearest =
       paths.Nearest(id.trajectory_id, entry.local_pose.translation(),
                     OldestNode(id), entry.newest_node_at_first);
   if (!nearest.has_value()) return absl::nullopt;
-  const uncertainty::VertexId anchor(*nearest);
-  // In the first group its nodes may still be coming in.
-  if (num_groups_ > entry.first_group) entry.anchor = anchor;
-  return anchor;
+  return uncertainty::VertexId(*nearest);
 }
 
 LoopCandidate SubmapStore::MakeCandidate(

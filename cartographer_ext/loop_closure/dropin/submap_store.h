@@ -41,10 +41,6 @@ struct SubmapEntry {
   int newest_node_at_first = -1;
   int64_t time_at_first = 0;
   int64_t first_group = 0;
-  // Where paths to nodes of its trajectory begin, from the second group on: that
-  // of the first one may lack nodes. To look for it takes as long as its nodes
-  // are many, and it is wanted for every node of the run.
-  mutable absl::optional<uncertainty::VertexId> anchor;
   // No node of the submap is newer.
   int newest_node_bound = kUnknownNode;
   bool is_searched = false;  // or has been

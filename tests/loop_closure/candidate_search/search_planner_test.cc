@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <memory>
-#include <set>
 #include <vector>
 
 #include "gtest/gtest.h"
@@ -193,71 +192,6 @@ TEST_F(SearchPlannerTest, CapsTheSearchesOfANode) {
   EXPECT_EQ(plans[3].skipped, LoopDecision::NONE);
   // What was skipped may be searched from the next node.
   EXPECT_EQ(PlanOne(Pair(0, 0, 101, 14.)).skipped, LoopDecision::NONE);
-}
-
-// A place seen so often that many submaps know it.
-TEST_F(SearchPlannerTest, KnownPlacesShareTheirSearches) {
-  options_.max_searches_per_node = 100;
-  options_.known_searches = 2;
-  for (const int num_submaps : {4, 40}) {
-    MakePlanner();
-    int count = 0;
-    for (int node = 40; node < 80; ++node) {
-      std::vector<LoopCandidate> pairs;
-      for (int s = 0; s < num_submaps; ++s)
-        pairs.push_back(Pair(s, 0, node, 1.));
-      for (const SearchPlan& plan : PlanAll(pairs)) {
-        count += plan.skipped == LoopDecision::NONE;
-      }
-    }
-    // 40 m, two in each 2 m.
-    EXPECT_LE(count, 40) << num_submaps;
-    EXPECT_GE(count, 30) << num_submaps;
-  }
-}
-
-TEST_F(SearchPlannerTest, KnownPlacesTakeTurnsFromVisitToVisit) {
-  options_.max_searches_per_node = 100;
-  options_.known_searches = 2;
-  options_.known_sigma = 10.;
-  MakePlanner();
-  constexpr int kSubmaps = 12;
-  std::vector<std::set<int>> searched;
-  // Visits of 4 m, 20 m apart.
-  for (int visit = 0; visit < 6; ++visit) {
-    searched.emplace_back();
-    for (int node = 40 + 24 * visit; node < 44 + 24 * visit; ++node) {
-      std::vector<LoopCandidate> pairs;
-      for (int s = 0; s < kSubmaps; ++s) {
-        pairs.push_back(Pair(s, s, node, 1.));
-      }
-      const std::vector<SearchPlan> plans = PlanAll(pairs);
-      for (int s = 0; s < kSubmaps; ++s) {
-        if (plans[s].skipped == LoopDecision::NONE) searched.back().insert(s);
-      }
-    }
-  }
-  // The same during a visit, and all of them in the end.
-  std::set<int> all;
-  for (const std::set<int>& visit : searched) {
-    EXPECT_EQ(visit.size(), 2u);
-    all.insert(visit.begin(), visit.end());
-  }
-  EXPECT_EQ(all.size(), kSubmaps);
-}
-
-TEST_F(SearchPlannerTest, UnknownPlacesAreNotHeldBackByKnownOnes) {
-  options_.max_searches_per_node = 100;
-  options_.known_searches = 1;
-  MakePlanner();
-  // Known to 0.7 m and to 1.2 m.
-  const std::vector<SearchPlan> plans =
-      PlanAll({Pair(0, 101, 150, 1.), Pair(1, 101, 150, 2.),
-               Pair(2, 6, 150, 1.), Pair(3, 6, 150, 2.)});
-  EXPECT_EQ(plans[0].skipped, LoopDecision::NONE);
-  EXPECT_EQ(plans[1].skipped, LoopDecision::SKIPPED_BUDGET);
-  EXPECT_EQ(plans[2].skipped, LoopDecision::NONE);
-  EXPECT_EQ(plans[3].skipped, LoopDecision::NONE);
 }
 
 TEST_F(SearchPlannerTest, OneWholeSubmapANode) {

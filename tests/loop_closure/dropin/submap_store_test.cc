@@ -74,31 +74,6 @@ TEST_F(SubmapStoreTest, AnchorsCandidatesAtANodeOrTheSubmap) {
   EXPECT_EQ(*other.anchor, uncertainty::VertexId(SubmapId{0, 3}));
 }
 
-TEST_F(SubmapStoreTest, AnchorsAreLookedForOnce) {
-  const auto entry = Add(3, 8);
-  const uncertainty::VertexId anchor =
-      *store_->MakeCandidate(SubmapId{0, 3}, *entry, 0, paths_).anchor;
-  // Paths that have forgotten its nodes.
-  uncertainty::PathUncertainty forgetful(uncertainty::RandomWalk(), 10);
-  for (int i = 0; i < 30; ++i) forgetful.Add(NodeId{0, i}, Pose2(i, 0., 0.));
-  const auto candidate =
-      store_->MakeCandidate(SubmapId{0, 3}, *entry, 0, forgetful);
-  ASSERT_TRUE(candidate.anchor.has_value());
-  EXPECT_EQ(*candidate.anchor, anchor);
-}
-
-TEST_F(SubmapStoreTest, AnchorsOfTheFirstGroupMayChange) {
-  store_->AddNode(NodeId{0, 8}, 80);
-  const auto entry = store_->AddPair(SubmapId{0, 3}, &submap_, 0);
-  uncertainty::PathUncertainty paths(uncertainty::RandomWalk(), 10);
-  paths.Add(NodeId{0, 8}, Pose2(8., 0., 0.));
-  EXPECT_EQ(*store_->MakeCandidate(SubmapId{0, 3}, *entry, 0, paths).anchor,
-            uncertainty::VertexId(NodeId{0, 8}));
-  paths.Add(NodeId{0, 2}, Pose2(2., 0., 0.));
-  EXPECT_EQ(*store_->MakeCandidate(SubmapId{0, 3}, *entry, 0, paths).anchor,
-            uncertainty::VertexId(NodeId{0, 2}));
-}
-
 TEST_F(SubmapStoreTest, MapsAreThoseOfSubmapsNearASearch) {
   Add(3, 8);
   Add(5, 9);

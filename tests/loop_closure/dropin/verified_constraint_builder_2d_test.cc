@@ -115,7 +115,6 @@ TEST_F(VerifiedConstraintBuilder2DTest, FloorFollowsWhatScansReach) {
   options.search.enabled = true;
   options.search.informative_sigma = 0.;
   options.search.search_spacing = 0.;
-  options.search.known_sigma = 0.;  // every node
   std::vector<size_t> found;
   for (const double reference : {0., 0.65}) {
     cartographer::common::ThreadPool pool(2);
