@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/common/squared.h"
@@ -14,11 +15,13 @@ namespace uncertainty {
 namespace {
 
 // Covariance of one step, in the frame of its end. Only steps between nodes can
-// be jumps; submaps are as far apart as their size. `num_steps`: from node to
-// node, with those that are not known.
+// be jumps; submaps are as far apart as their size. `num_thresholds`: the steps
+// from node to node, with those that are not known, times how much longer than
+// usual they are.
 CovarianceParts StepCovariance(const PathNoiseOptions& options,
-                               const bool are_nodes, const int num_steps,
-                               const double metres, const double radians) {
+                               const bool are_nodes,
+                               const double num_thresholds, const double metres,
+                               const double radians) {
   const auto diagonal = [](const double translation, const double rotation) {
     return Eigen::Matrix3d(
         Eigen::Vector3d(translation, translation, rotation).asDiagonal());
@@ -32,13 +35,18 @@ CovarianceParts StepCovariance(const PathNoiseOptions& options,
   parts.turning = diagonal(0., Squared(options.rotation_per_radian) * radians);
   if (are_nodes) {
     parts.other = diagonal(
-        Squared(
-            std::max(0., metres - num_steps * options.jump_threshold_metres)),
         Squared(std::max(
-            0., radians - num_steps * options.jump_threshold_radians)));
+            0., metres - num_thresholds * options.jump_threshold_metres)),
+        Squared(std::max(
+            0., radians - num_thresholds * options.jump_threshold_radians)));
   }
   return parts;
 }
+
+// Steps whose median is the ordinary one: enough to outlast a turn on the spot,
+// in which the robot hardly moves; fewer than the least tell nothing.
+constexpr size_t kMostStepsBefore = 31;
+constexpr size_t kFewestStepsBefore = 3;
 
 // Keeps costs finite where driving is configured to be exact.
 constexpr double kMinNoise = 1e-4;
@@ -135,7 +143,22 @@ void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose) {
   }
 }
 
-void PathUncertainty::Accumulate(const bool are_nodes,
+double PathUncertainty::Stride(const std::deque<Entry>& entries,
+                               const size_t position) const {
+  const size_t first =
+      position > kMostStepsBefore ? position - kMostStepsBefore : 1;
+  if (position < first + kFewestStepsBefore) return 1.;
+  std::vector<double> steps;
+  for (size_t i = first; i < position; ++i) {
+    steps.push_back((entries[i].travelled - entries[i - 1].travelled) /
+                    (entries[i].index - entries[i - 1].index));
+  }
+  const auto median = steps.begin() + steps.size() / 2;
+  std::nth_element(steps.begin(), median, steps.end());
+  return std::max(1., 2. * *median / options_.jump_threshold_metres);
+}
+
+void PathUncertainty::Accumulate(const bool are_nodes, const double stride,
                                  const Eigen::Vector3d& common,
                                  const Entry& before,
                                  Entry* const entry) const {
@@ -145,9 +168,9 @@ void PathUncertainty::Accumulate(const bool are_nodes,
   const Pose2 corrected((1. + common.z()) * step.x, (1. + common.z()) * step.y,
                         (1. + common.y()) * step.theta + common.x() * metres);
   entry->corrected = before.corrected * corrected;
-  const CovarianceParts step_parts =
-      StepCovariance(options_, are_nodes, entry->index - before.index, metres,
-                     std::abs(step.theta));
+  const CovarianceParts step_parts = StepCovariance(
+      options_, are_nodes, stride * (entry->index - before.index), metres,
+      std::abs(step.theta));
   entry->travelled = before.travelled + metres;
   entry->cost = before.cost + PathCostOf(step_parts.Total(
                                   DriftFactors(), Eigen::Matrix3d::Zero()));
@@ -176,8 +199,8 @@ const PathUncertainty::Entry* PathUncertainty::Find(
       entry.sum = CovarianceParts();
       entry.corrected = entry.local_pose;
       if (sequence.num_valid == 0) continue;
-      Accumulate(vertex.is_node(), common, entries[sequence.num_valid - 1],
-                 &entry);
+      Accumulate(vertex.is_node(), Stride(entries, sequence.num_valid), common,
+                 entries[sequence.num_valid - 1], &entry);
     }
   }
   const auto place = LowerBound(entries, vertex.index());

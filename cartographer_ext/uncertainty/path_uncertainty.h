@@ -23,7 +23,9 @@
 // apart, it may have been misled (a jump of the odometry, a gap in the data):
 // the excess of a step over the jump thresholds counts as its standard
 // deviation. Where nodes between two known ones have not been added yet, the
-// thresholds apply to each of the steps between them.
+// thresholds apply to each of the steps between them. Where the nodes before
+// were farther apart than the thresholds assume (a slow laser, a fast robot),
+// both thresholds are longer by as much.
 //
 // The sums are kept apart for the errors of translation, of rotation per metre
 // and of rotation while turning, so that each can be scaled for a trajectory
@@ -178,8 +180,11 @@ class PathUncertainty {
     CommonDrift common;
   };
 
+  // How much longer the steps before `position` were than the thresholds for
+  // jumps assume, at least 1.
+  double Stride(const std::deque<Entry>& entries, size_t position) const;
   // Computes the sums of `entry` from those of the entry before.
-  void Accumulate(bool are_nodes, const Eigen::Vector3d& common,
+  void Accumulate(bool are_nodes, double stride, const Eigen::Vector3d& common,
                   const Entry& before, Entry* entry) const;
   const Entry* Find(const VertexId& vertex) const;
   // Of the path from the older to the newer entry, frame of the newer.

@@ -167,6 +167,46 @@ TEST(PathUncertaintyTest, NodesThatAreStillMissingAreNoJump) {
   EXPECT_NEAR(paths.Between(Key(10), Key(12))->covariance(0, 0), 1., 1e-12);
 }
 
+// A slow laser on a fast robot: nodes are a metre and half a radian apart.
+TEST(PathUncertaintyTest, NodesThatAreAlwaysFarApartAreNoJumps) {
+  PathNoiseOptions options = RandomWalk();
+  options.translation_per_metre = 0.;
+  options.rotation_per_metre = 0.;
+  options.translation_per_radian = 0.;
+  options.rotation_per_radian = 0.;
+  options.jump_threshold_metres = 0.5;
+  options.jump_threshold_radians = 0.4;
+  PathUncertainty paths(options, 100);
+  for (int i = 0; i <= 20; ++i) {
+    paths.Add(Key(i), Pose2(i, 0., i % 2 == 0 ? 0. : 0.5));
+  }
+  EXPECT_TRUE(paths.Between(Key(4), Key(20))->covariance.isZero(1e-12));
+  // The first ones are compared with the thresholds as they are.
+  EXPECT_NEAR(paths.Between(Key(0), Key(1))->covariance(0, 0), 0.25, 1e-12);
+  // Both thresholds are four times as long: twice the median step of 1 m.
+  paths.Add(Key(21), Pose2(25., 0., 2.));
+  const auto jump = paths.Between(Key(20), Key(21));
+  EXPECT_NEAR(jump->covariance(0, 0), 3. * 3., 1e-12);
+  EXPECT_NEAR(jump->covariance(2, 2), 0.4 * 0.4, 1e-12);
+}
+
+TEST(PathUncertaintyTest, AnOrdinaryStepIsTheMedianWhicheverOrderNodesCome) {
+  PathNoiseOptions options = RandomWalk();
+  options.jump_threshold_metres = 0.5;
+  PathUncertainty in_order(options, 100), backwards(options, 100);
+  const auto pose = [](const int i) {
+    return Pose2(i + (i > 10 ? 4. : 0.), 0., 0.);
+  };
+  for (int i = 0; i <= 20; ++i) in_order.Add(Key(i), pose(i));
+  for (int i = 20; i >= 0; --i) {
+    backwards.Add(Key(i), pose(i));
+    // Computes sums that later nodes make invalid.
+    backwards.Between(Key(i), Key(20));
+  }
+  EXPECT_EQ(in_order.Between(Key(2), Key(19))->covariance,
+            backwards.Between(Key(2), Key(19))->covariance);
+}
+
 TEST(PathUncertaintyTest, DriftScalesEachPart) {
   PathNoiseOptions options = Noise();
   options.translation_per_radian = 0.03;

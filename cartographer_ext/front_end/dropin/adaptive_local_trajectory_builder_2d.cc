@@ -14,6 +14,7 @@
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
+#include "cartographer_ext/front_end/insertion_count.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/match_record.pb.h"
 #include "cartographer_ext/scan_matching/dropin/scan_evidence.h"
@@ -338,7 +339,7 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
     with_filling.returns.push_back(point);
   }
   auto result = absl::make_unique<InsertionResult>();
-  for (auto& submap : active_submaps_.InsertRangeData(with_filling)) {
+  for (auto& submap : Insert(with_filling)) {
     result->insertion_submaps.push_back(submap);
   }
   auto data = std::make_shared<mapping::TrajectoryNode::Data>();
@@ -349,6 +350,23 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
   result->constant_data = std::move(data);
   predictor_.AddInsertion();
   return result;
+}
+
+std::vector<std::shared_ptr<const mapping::Submap2D>>
+AdaptiveLocalTrajectoryBuilder2D::Insert(const RangeData& in_local) {
+  const Pose2 since_insertion = Between(insertion_pose_, pose_);
+  insertion_pose_ = pose_;
+  auto submaps = active_submaps_.InsertRangeData(in_local);
+  // Not beyond a full submap: the scan belongs to those it was inserted into
+  // first, and the host looks there for what is finished.
+  const int most = options_.submaps_options().num_range_data();
+  for (int count = InsertionCount(
+           since_insertion,
+           options_.motion_filter_options().max_distance_meters());
+       count > 1 && submaps.back()->num_range_data() < most; --count) {
+    submaps = active_submaps_.InsertRangeData(in_local);
+  }
+  return submaps;
 }
 
 void AdaptiveLocalTrajectoryBuilder2D::Record(

@@ -110,6 +110,9 @@ class AdaptiveLocalTrajectoryBuilder2D {
       cartographer::common::Time time, const AssembledScan& scan_in_local,
       const cartographer::sensor::PointCloud& cloud,
       const Eigen::Quaterniond& alignment);
+  // As often as it stands for (insertion_count.h).
+  std::vector<std::shared_ptr<const cartographer::mapping::Submap2D>> Insert(
+      const cartographer::sensor::RangeData& in_local);
   void Record(cartographer::common::Time time, double interval,
               const MotionPrediction& prediction, const LocalMatch& match,
               OdometryState odometry, bool is_node);
@@ -137,7 +140,8 @@ class AdaptiveLocalTrajectoryBuilder2D {
   cartographer::common::Time start_;
   bool has_pose_ = false;
   double last_seconds_ = 0.;
-  Pose2 pose_;  // (local <- gravity-aligned robot) at the last match
+  Pose2 pose_;            // (local <- gravity-aligned robot) at the last match
+  Pose2 insertion_pose_;  // the same at the last scan that was inserted
   // Scans are dropped after a gap until odometry has caught up.
   bool is_waiting_ = false;
   double waiting_since_ = 0.;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "Eigen/Eigenvalues"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/planar_matrix.h"
@@ -43,6 +44,11 @@ constexpr size_t kMaxSearches = 4;
 // Scales the covariance of a motion after a search, so that the motion hardly
 // constrains the match.
 constexpr double kCovarianceScaleAfterSearch = 100.;
+
+// The cost of a point has a slope within two cells of a wall, and walls are a
+// cell or two thick. A prediction that puts points farther off than that leads
+// to the next wall, if anywhere.
+constexpr double kBasinCells = 3.;
 
 // The walls of a submap end where the sight of the scans before did, which are
 // inserted every 0.2 m; the laser may be half of this off the robot's origin.
@@ -94,6 +100,27 @@ bool IsNear(const Pose2& a, const Pose2& b) {
          std::abs(NormalizeAngle(a.theta - b.theta)) < 0.01;
 }
 
+// Standard deviation of the place of a point of the cloud, metres: the root mean
+// square over the cloud, along the worst direction.
+double PointSpread(const Eigen::Matrix3d& covariance, const PointCloud& cloud) {
+  double squares = 0.;
+  for (const auto& point : cloud)
+    squares += point.position.head<2>().squaredNorm();
+  squares /= std::max<size_t>(1, cloud.size());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
+      Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()),
+      Eigen::EigenvaluesOnly);
+  return std::sqrt(solver.eigenvalues()(1) + squares * covariance(2, 2));
+}
+
+// Whether scan and prediction together speak for `a` rather than for `b`, two
+// matches from one prediction: the difference of their logarithms.
+bool IsLikelier(const LocalMatch& a, const LocalMatch& b,
+                const PointCloud& cloud, const Grid2D& grid) {
+  return scan_matching::ScanEvidence(a.pose, b.pose, cloud, grid) >
+         0.5 * (a.report.mahalanobis - b.report.mahalanobis);
+}
+
 // The predicted motion and its alternatives, without near duplicates.
 std::vector<Pose2> MotionsToSearch(const MotionPrediction& prediction) {
   std::vector<Pose2> motions = {prediction.motion};
@@ -139,8 +166,12 @@ LocalMatch LocalMatcher::MatchFrom(const Prediction& prediction,
 }
 
 bool LocalMatcher::IsDoubtful(const LocalMatch& match,
-                              const MotionPrediction& prediction) const {
+                              const MotionPrediction& prediction,
+                              const PointCloud& cloud,
+                              const Grid2D& grid) const {
   return prediction.is_uncertain ||
+         PointSpread(prediction.covariance, cloud) >
+             kBasinCells * grid.limits().resolution() ||
          (has_mean_score_ && match.score < mean_score_ - options_.score_drop) ||
          match.report.mahalanobis > options_.gate;
 }
@@ -203,7 +234,7 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   UpdateRange(last_pose, cloud);
   predicted.limit_of_sight = LimitOfSight();
   LocalMatch match = MatchFrom(predicted, predicted.pose, cloud, grid);
-  if (options_.enabled && IsDoubtful(match, prediction)) {
+  if (options_.enabled && IsDoubtful(match, prediction, cloud, grid)) {
     match =
         MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
     if (!match.relocated && match.report.mahalanobis > options_.gate &&
@@ -230,13 +261,22 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
   best.searched = true;
   double to_beat = matched.score + options_.min_gain;
   for (const Pose2& motion : MotionsToSearch(prediction)) {
+    const Pose2 found =
+        Search(last_pose * motion, motion, prediction, cloud, grid);
+    const LocalMatch consistent = MatchFrom(predicted, found, cloud, grid);
+    if (!prediction.is_uncertain &&
+        consistent.report.mahalanobis <= options_.gate) {
+      if (!IsLikelier(consistent, best, cloud, grid)) continue;
+      best = consistent;
+      best.searched = best.relocated = true;
+      to_beat = best.score + options_.min_gain;
+      continue;
+    }
     Prediction start = ToPrediction(
         last_pose, motion, kCovarianceScaleAfterSearch * prediction.covariance);
     start.scans_in_map = predicted.scans_in_map;
     start.limit_of_sight = predicted.limit_of_sight;
-    const LocalMatch match =
-        MatchFrom(start, Search(start.pose, motion, prediction, cloud, grid),
-                  cloud, grid);
+    const LocalMatch match = MatchFrom(start, found, cloud, grid);
     const double gain = options_.min_gain +
                         (prediction.is_uncertain
                              ? 0.

@@ -5,8 +5,13 @@
 // prediction, and where that is not enough, a correlative search around the
 // motions that the robot may have made.
 //
-// The search only provides initial poses. Each of them is matched with the
-// motion it came from as prediction, so that along a direction that the scan
+// A match finds the nearest minimum only. Where the prediction may be farther
+// off than that reaches (a slow laser, a sharp turn), the search looks for other
+// minima. One that is consistent with the prediction is taken if it is likelier,
+// scan and prediction together.
+//
+// Elsewhere the search only provides initial poses. Each of them is matched with
+// the motion it came from as prediction, so that along a direction that the scan
 // does not determine (a corridor) the result is still that motion and not where
 // the search happened to score best. The result with the highest score wins if
 // its score exceeds that of the match without search by a margin, which is
@@ -56,8 +61,9 @@ class LocalMatcher {
                        const Pose2& initial,
                        const cartographer::sensor::PointCloud& cloud,
                        const cartographer::mapping::Grid2D& grid) const;
-  bool IsDoubtful(const LocalMatch& match,
-                  const MotionPrediction& prediction) const;
+  bool IsDoubtful(const LocalMatch& match, const MotionPrediction& prediction,
+                  const cartographer::sensor::PointCloud& cloud,
+                  const cartographer::mapping::Grid2D& grid) const;
   // The best of `matched` and the matches started from searches.
   LocalMatch MatchWithSearch(const Pose2& last_pose,
                              const MotionPrediction& prediction,

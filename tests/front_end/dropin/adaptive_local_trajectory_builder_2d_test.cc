@@ -61,6 +61,39 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, FollowsARobotWithoutOdometry) {
   EXPECT_EQ(result.records.back().odometry(), MatchRecord::ABSENT);
 }
 
+// A scan every 0.8 m fills a submap along the same path as one every 0.2 m, and
+// the host sees every submap when it is finished.
+TEST(AdaptiveLocalTrajectoryBuilder2DTest, SparseScansFillSubmapsByTheMetre) {
+  LocalTrajectoryBuilderOptions2D stock = StockOptions();
+  stock.mutable_submaps_options()->set_num_range_data(10);
+  stock.mutable_motion_filter_options()->set_max_distance_meters(0.2);
+  AdaptiveLocalTrajectoryBuilder2D builder(stock, FrontEndOptions(), {"scan"});
+  Random random(7);
+  int finished = 0;
+  const cartographer::mapping::Submap2D* front = nullptr;
+  for (int i = 0; i <= 40; ++i) {
+    // To and fro, and a little to the side.
+    const double phase = std::abs(i % 8 - 4) * 0.8 - 1.6;
+    const Pose2 pose(phase, 0.02 * i - 0.5, 0.);
+    builder.AddOdometryData(test::Odometry(i, pose));
+    const auto matched = builder.AddRangeData(
+        "scan", test::Scan(test::Room(), i, pose, 12., &random));
+    ASSERT_NE(matched, nullptr);
+    ASSERT_NE(matched->insertion_result, nullptr);
+    const auto& submaps = matched->insertion_result->insertion_submaps;
+    EXPECT_LE(submaps.back()->num_range_data(), 10);
+    if (front != nullptr && submaps.front().get() != front) {
+      // The one before was finished at a scan that was inserted into it.
+      EXPECT_GE(finished, 1);
+    }
+    front = submaps.front().get();
+    finished += submaps.front()->insertion_finished();
+  }
+  // 40 times 0.8 m in submaps that begin every 2 m.
+  EXPECT_GE(finished, 11);
+  EXPECT_LE(finished, 14);
+}
+
 // Half a round wall hardly determines a rotation about its centre. Whoever
 // begins one there by chance must not go on with it.
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, NoTurnIsInventedWithinARoundWall) {

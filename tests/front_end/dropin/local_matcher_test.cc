@@ -113,6 +113,22 @@ TEST_F(LocalMatcherTest, AMuchBetterPlaceOverrulesThePrediction) {
   EXPECT_NEAR(match.pose.theta, 0., 0.02);
 }
 
+// A slow laser: the prediction spans several minima, none of which contradicts
+// it, and there is no usual score to miss.
+TEST_F(LocalMatcherTest, AWidePredictionIsSearchedForTheLikeliestMinimum) {
+  LocalMatcher matcher(options_, matcher_options_);
+  prediction_.motion = Pose2(0.15, -0.1, DegToRad(9.));
+  prediction_.covariance =
+      Eigen::Vector3d(0.01, 0.01, std::pow(DegToRad(5.), 2)).asDiagonal();
+  const LocalMatch match = matcher.Match(Pose2(), prediction_, Cloud(),
+                                         *submaps_->submaps().front());
+  EXPECT_TRUE(match.searched);
+  EXPECT_TRUE(match.relocated);
+  EXPECT_NEAR(match.pose.x, 0., 0.02);
+  EXPECT_NEAR(match.pose.y, 0., 0.02);
+  EXPECT_NEAR(match.pose.theta, 0., 0.02);
+}
+
 TEST_F(LocalMatcherTest, ASlightlyBetterPlaceDoesNot) {
   options_.contradiction_gain = 1.;
   const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
