@@ -7,9 +7,11 @@ include "common_2d.lua"
 include "front_end_default.lua"
 include "loop_closure_default.lua"
 
--- Of the recording the newest submaps only are kept.
+-- Of the recording the newest submaps only are kept. A loop that waits for
+-- others to confirm it goes with its node: with the three submaps of stock, one
+-- drive in ten through an office lost all of them and drifted by up to 0.13 m.
 TRAJECTORY_BUILDER.pure_localization_trimmer = {
-  max_submaps_to_keep = 3,
+  max_submaps_to_keep = 8,
 }
 POSE_GRAPH.optimize_every_n_nodes = 20
 -- Every pair of a node and a submap of the map is offered while the place in it

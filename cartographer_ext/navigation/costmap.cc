@@ -24,8 +24,9 @@ absl::Status CheckOptions(const CostmapOptions& options) {
         "the robot's radius %g m and padding %g m make no sense",
         options.inscribed_radius, options.padding));
   }
-  if (!(options.inflation_radius >=
-        options.inscribed_radius + options.padding)) {
+  if (!(options.tight >= 0.) ||
+      !(options.inflation_radius >=
+        options.inscribed_radius + options.padding + options.tight)) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "the inflation radius %g m is less than the robot's radius and padding",
         options.inflation_radius));
@@ -133,8 +134,10 @@ uint8_t Costmap::WeightAt(const double distance) const {
   // Distances are of single precision.
   if (distance <= inner + 1e-6) return kBlocked;
   if (distance >= options_.inflation_radius) return kMinWeight;
+  const double roomy = inner + options_.tight;
+  if (distance <= roomy + 1e-6) return kMaxWeight;
   const double ratio = (options_.inflation_radius - distance) /
-                       (options_.inflation_radius - inner);
+                       (options_.inflation_radius - roomy);
   return static_cast<uint8_t>(std::lround(
       kMinWeight * (1. + options_.clearance_weight * ratio * ratio)));
 }

@@ -6,12 +6,17 @@
 //
 // With d the exact distance from the centre of a cell to the centre of the
 // nearest cell that is occupied or unknown, r the inscribed radius of the
-// footprint plus the padding and R the inflation radius,
+// footprint plus the padding, s what is tight on top of it and R the inflation
+// radius,
 //   d <= r      blocked,
+//   d <= r + s  the highest weight, kMaxWeight,
 //   d >= R      weight 1,
-//   otherwise   1 + clearance_weight ((R - d) / (R - r))^2,
+//   otherwise   1 + clearance_weight ((R - d) / (R - r - s))^2,
 // in units of GridSearch's kMinWeight: a metre of path costs between 1 and
-// 1 + clearance_weight metres.
+// 1 + clearance_weight metres, and 16 where it is tight. An echo is known to a
+// cell only: without the tight cells a narrow passage would come and go from
+// scan to scan, and the robot with it from one side of an obstacle to the
+// other.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_COSTMAP_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_COSTMAP_H_
 
@@ -30,7 +35,8 @@ namespace navigation {
 struct CostmapOptions {
   double inscribed_radius = 0.25;  // metres, of the footprint
   double padding = 0.05;           // metres, on top of it
-  double inflation_radius = 0.9;   // metres, at least inscribed and padding
+  double tight = 0.05;             // metres, a cell: on top of both
+  double inflation_radius = 0.9;   // metres, at least these three
   double clearance_weight = 4.;    // at most kMaxWeight / kMinWeight - 1
   // A cell of at least this probability is occupied, any other known one is
   // free.

@@ -17,6 +17,7 @@ namespace {
 constexpr double kMaxStride = 0.05;      // metres between two looks at an arc
 constexpr double kMaxTurn = 0.1;         // radians
 constexpr double kTimeStep = 0.1;        // seconds, for what moves
+constexpr double kNearer = 0.002;        // metres: less is rounding
 constexpr double kStandingSpeed = 1e-3;  // m/s
 constexpr double kCreepingSpeed = 0.02;  // m/s
 constexpr double kHeadingSeconds = 0.8;  // ahead, where the heading is judged
@@ -76,6 +77,22 @@ bool DynamicWindow::TouchesMoving(const std::vector<MovingDisc>& moving,
   return false;
 }
 
+bool DynamicWindow::IsWithinReach(const std::vector<MovingDisc>& moving,
+                                  const Pose2& pose,
+                                  const double seconds) const {
+  for (const MovingDisc& disc : moving) {
+    const double reach =
+        seconds * std::max(options_.walking_speed, disc.velocity.norm());
+    for (const Footprint::Part& part : robot_.footprint.parts) {
+      if ((pose * part.center - disc.position).norm() <
+          part.radius + disc.radius + reach + options_.reach_margin) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 bool DynamicWindow::MeetsMoving(const DynamicWindowInput& input,
                                 const Velocity& velocity) const {
   if (input.moving.empty()) return false;
@@ -93,7 +110,10 @@ bool DynamicWindow::MeetsMoving(const DynamicWindowInput& input,
         std::min(now, reaction) + braking * (done - 0.5 * done * done);
     const Pose2 pose = input.pose * ArcPose(velocity.linear * seconds,
                                             velocity.angular * seconds);
-    if (TouchesMoving(input.moving, pose, now)) return true;
+    if (TouchesMoving(input.moving, pose, now) ||
+        IsWithinReach(input.moving, pose, now)) {
+      return true;
+    }
   }
   return false;
 }
@@ -117,13 +137,15 @@ EvaluatedVelocity DynamicWindow::Evaluate(const DynamicWindowInput& input,
   double path_sum = 0.;
   int path_count = 0;
   double margin = options_.margin_cap;
+  const bool standing = std::abs(v) < kStandingSpeed;
   const double now = input.obstacles->Clearance(robot_.footprint, input.pose);
   for (int i = 1; i <= steps; ++i) {
     const double seconds = i * step;
     const Pose2 pose = input.pose * ArcPose(v * seconds, w * seconds);
     const double clearance = input.obstacles->Clearance(robot_.footprint, pose);
-    // A robot that is too near already may leave.
-    if (clearance < options_.margin && clearance <= now) {
+    // A robot that is too near already may leave, and turn or drive past where
+    // that brings nothing nearer.
+    if (clearance < std::min(options_.margin, now - kNearer)) {
       free_seconds = (i - 1) * step;
       unmet_seconds = std::min(unmet_seconds, free_seconds);
       break;
@@ -139,7 +161,6 @@ EvaluatedVelocity DynamicWindow::Evaluate(const DynamicWindowInput& input,
       ++path_count;
     }
   }
-  const bool standing = std::abs(v) < kStandingSpeed;
   result.free_length = std::abs(v) * free_seconds;
   result.margin = margin;
   // Eq. 14.

@@ -22,7 +22,9 @@
 //
 // Moving obstacles are predicted with their velocity. An arc is not admissible
 // either if the robot, braking after the reaction time, would touch one before
-// it is stationary.
+// it is stationary; nor if one could reach it by then that turned round and
+// came its way (separation by speed, as ISO 13855 has it for people near
+// machines): until the robot stands, `walking_speed` t from where it is now.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_DYNAMIC_WINDOW_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_DYNAMIC_WINDOW_H_
 
@@ -50,8 +52,11 @@ struct DynamicWindowOptions {
   double margin_weight = 0.3;    // epsilon
   // Kept free around the footprint, metres: from stationary and moving
   // obstacles.
-  double margin = 0.04;
+  double margin = 0.05;
   double moving_margin = 0.2;
+  // What somebody may do within the time that the robot needs to stop.
+  double walking_speed = 1.;   // m/s, at least
+  double reach_margin = 0.05;  // metres, of position and radius
   // Distances at which the terms saturate, metres.
   double distance_cap = 1.5;
   double path_cap = 0.6;
@@ -103,6 +108,9 @@ class DynamicWindow {
   bool MeetsMoving(const DynamicWindowInput& input,
                    const Velocity& velocity) const;
   bool TouchesMoving(const std::vector<MovingDisc>& moving, const Pose2& pose,
+                     double seconds) const;
+  // Whether one of them could touch the robot, whatever way it goes.
+  bool IsWithinReach(const std::vector<MovingDisc>& moving, const Pose2& pose,
                      double seconds) const;
 
   const RobotLimits robot_;

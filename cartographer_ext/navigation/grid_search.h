@@ -19,6 +19,7 @@
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_GRID_SEARCH_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_GRID_SEARCH_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -63,14 +64,17 @@ class GridSearch {
 
  private:
   void Reset(const WeightGrid& grid);
-  // Follows the steps back from an expanded goal.
-  std::vector<Cell> PathTo(const Cell& goal, const Cell& start,
-                           int width) const;
+  size_t Index(const int x, const int y) const {
+    return (static_cast<size_t>(y) + 1) * stride_ + x + 1;
+  }
+  // Goes back from the goal to neighbours from which the costs agree.
+  std::vector<Cell> PathTo(const WeightGrid& grid, const Cell& goal,
+                           const Cell& start) const;
 
-  std::vector<uint32_t> cost_;  // g, from the start
-  // The step that led here, whether expanded, whether blocked.
-  std::vector<uint8_t> state_;
-  std::vector<std::vector<uint32_t>> buckets_;
+  // g, from the start, with a border of blocked cells.
+  std::vector<uint32_t> cost_;
+  size_t stride_ = 0;                           // of a row of costs
+  std::vector<std::vector<uint32_t>> buckets_;  // x and y, 16 bits each
 };
 
 }  // namespace navigation

@@ -25,14 +25,19 @@ class LocalObstacles {
                  const std::vector<Eigen::Vector2d>& echoes,
                  const Eigen::Vector2d& center, double half_width);
 
-  // Metres from a point to the nearest obstacle: to the centre of its cell,
-  // from the centre of the point's cell. 0 outside the window.
+  // Metres from a point to the centre of the nearest obstacle cell, by bilinear
+  // interpolation between the centres of cells: in steps of a cell, driving past
+  // an obstacle and driving at it would look alike. 0 outside the window.
   double Distance(const Eigen::Vector2d& point) const {
     const Eigen::Vector2d p = geometry_->ToGrid(point);
-    const int x = static_cast<int>(std::floor(p.x())) - first_.x;
-    const int y = static_cast<int>(std::floor(p.y())) - first_.y;
-    if (x < 0 || y < 0 || x >= width_ || y >= width_) return 0.;
-    return distances_[y * width_ + x];
+    const double x = p.x() - 0.5 - first_.x, y = p.y() - 0.5 - first_.y;
+    if (!(x >= 0. && y >= 0. && x < width_ - 1 && y < width_ - 1)) return 0.;
+    const int column = static_cast<int>(x), row = static_cast<int>(y);
+    const float* const low = &distances_[row * width_ + column];
+    const float* const high = low + width_;
+    const double right = x - column, up = y - row;
+    return (1. - up) * ((1. - right) * low[0] + right * low[1]) +
+           up * ((1. - right) * high[0] + right * high[1]);
   }
 
   // Metres from the outline at `pose` (map <- robot) to the nearest obstacle;

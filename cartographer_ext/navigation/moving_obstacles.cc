@@ -53,8 +53,48 @@ std::vector<MovingObstacles::Cluster> MovingObstacles::FindClusters(
   return clusters;
 }
 
-void MovingObstacles::Update(const std::vector<Echo>& echoes,
-                             const double time) {
+void MovingObstacles::Correct(const Cluster& cluster, const double time,
+                              Track* const track) const {
+  const double elapsed = time - track->seen;
+  if (elapsed <= 0.) return;
+  const Eigen::Vector2d predicted = track->disc.At(elapsed);
+  const Eigen::Vector2d innovation = cluster.center - predicted;
+  track->disc.position = predicted + options_.position_gain * innovation;
+  track->disc.velocity += options_.velocity_gain / elapsed * innovation;
+  const double speed = track->disc.velocity.norm();
+  if (speed > options_.max_speed) {
+    track->disc.velocity *= options_.max_speed / speed;
+  }
+  track->disc.radius = std::max(cluster.radius, 0.9 * track->disc.radius);
+  track->seen = time;
+  track->missed = 0.;
+  ++track->updates;
+  if (speed >= options_.moving_speed) track->fast = time;
+  track->has_moved =
+      track->has_moved ||
+      (cluster.center - track->begin).norm() >= options_.min_displacement;
+  track->is_stationary = cluster.old_share > options_.max_old_share;
+  if (track->is_stationary) {
+    // Motion has to be shown anew.
+    track->has_moved = false;
+    track->begin = cluster.center;
+  }
+}
+
+bool MovingObstacles::IsForgotten(const double time, const InView& in_view,
+                                  Track* const track) const {
+  const double unseen = time - track->seen;
+  if (unseen <= 0.) return false;
+  if (in_view == nullptr || in_view(track->disc.At(unseen))) {
+    track->missed += time - updated_;
+  }
+  return track->missed > options_.memory_seconds ||
+         unseen > (track->has_moved ? options_.unseen_memory_seconds
+                                    : options_.memory_seconds);
+}
+
+void MovingObstacles::Update(const std::vector<Echo>& echoes, const double time,
+                             const InView& in_view) {
   const std::vector<Cluster> clusters = FindClusters(echoes);
   // Nearest pairs first.
   struct Pair {
@@ -77,36 +117,21 @@ void MovingObstacles::Update(const std::vector<Echo>& echoes,
   for (const Pair& pair : pairs) {
     if (track_used[pair.track] || cluster_used[pair.cluster]) continue;
     track_used[pair.track] = cluster_used[pair.cluster] = true;
-    Track& track = tracks_[pair.track];
-    const Cluster& cluster = clusters[pair.cluster];
-    const double elapsed = time - track.seen;
-    if (elapsed <= 0.) continue;
-    const Eigen::Vector2d predicted = track.disc.At(elapsed);
-    const Eigen::Vector2d innovation = cluster.center - predicted;
-    track.disc.position = predicted + options_.position_gain * innovation;
-    track.disc.velocity += options_.velocity_gain / elapsed * innovation;
-    const double speed = track.disc.velocity.norm();
-    if (speed > options_.max_speed) {
-      track.disc.velocity *= options_.max_speed / speed;
-    }
-    track.disc.radius = std::max(cluster.radius, 0.9 * track.disc.radius);
-    track.seen = time;
-    ++track.updates;
-    track.is_stationary = cluster.old_share > options_.max_old_share;
+    Correct(clusters[pair.cluster], time, &tracks_[pair.track]);
   }
-  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
-                               [&](const Track& track) {
-                                 return time - track.seen >
-                                        options_.memory_seconds;
-                               }),
-                tracks_.end());
+  std::vector<Track> kept;
+  for (Track& track : tracks_) {
+    if (!IsForgotten(time, in_view, &track)) kept.push_back(track);
+  }
+  tracks_ = std::move(kept);
+  updated_ = time;
   for (size_t j = 0; j != clusters.size(); ++j) {
     if (cluster_used[j] ||
         tracks_.size() >= static_cast<size_t>(options_.max_tracks)) {
       continue;
     }
     Track track;
-    track.disc.position = clusters[j].center;
+    track.disc.position = track.begin = clusters[j].center;
     track.disc.radius = clusters[j].radius;
     track.seen = time;
     tracks_.push_back(track);
@@ -116,8 +141,9 @@ void MovingObstacles::Update(const std::vector<Echo>& echoes,
 std::vector<MovingDisc> MovingObstacles::Moving(const double time) const {
   std::vector<MovingDisc> moving;
   for (const Track& track : tracks_) {
-    if (track.is_stationary || track.updates < options_.min_updates ||
-        track.disc.velocity.norm() < options_.moving_speed) {
+    if (track.is_stationary || !track.has_moved ||
+        track.updates < options_.min_updates ||
+        track.seen - track.fast > options_.slow_seconds) {
       continue;
     }
     MovingDisc disc = track.disc;

@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/navigation/field_of_view.h"
 #include "cartographer_ext/navigation/speed_limiter.h"
 
 namespace cartographer_ext {
@@ -25,14 +26,17 @@ constexpr double kProgress = 0.25;  // metres
 constexpr double kReplanSeconds = 0.3;  // soonest after a failure while driving
 constexpr double kBackUpSpeed = 0.1;    // m/s
 constexpr double kBackUpSeconds = 3.;
-constexpr double kTurnSeconds = 4.;
+constexpr double kTurnSeconds = 10.;  // once round at 0.8 rad/s
 constexpr double kWaitSeconds = 5.;
 constexpr double kKeepPathDistance = 0.4;  // metres
-constexpr double kKeepPathRatio = 1.15;    // of costs
-constexpr double kPersonMargin = 0.2;      // metres around what moves
-constexpr double kHoldDistance = 0.3;      // metres from the outline
-constexpr double kHoldSeconds = 0.8;
-constexpr double kForgetRadius = 3.;  // metres
+// Metres of free path that a new path has to be shorter by, or what costs as
+// much: about what turning round and back again takes.
+constexpr double kKeepPathMetres = 3.;
+constexpr double kPersonMargin = 0.2;   // metres around what moves
+constexpr double kTrailLength = 1.;     // metres
+constexpr double kTrailSpacing = 0.05;  // metres
+constexpr double kTrailWidth = 0.1;     // metres: so far it is still free
+constexpr double kForgetRadius = 3.;    // metres
 
 bool IsFinite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) &&
@@ -52,19 +56,6 @@ bool IsAtAny(const std::vector<MovingDisc>& discs,
     }
   }
   return false;
-}
-
-// Reasons that waiting does not change.
-bool IsFinal(const PlanOutcome outcome) {
-  switch (outcome) {
-    case PlanOutcome::kFound:
-    case PlanOutcome::kGoalObstructed:
-    case PlanOutcome::kStartBlocked:
-    case PlanOutcome::kObstructed:
-      return false;
-    default:
-      return true;
-  }
 }
 
 }  // namespace
@@ -129,7 +120,13 @@ void Navigator::AddScan(const NavigatorScan& scan) {
     if (end.allFinite()) in_map.free_ends.push_back(scan.map_from_robot * end);
   }
   layer_.Update(in_map);
-  moving_.Update(unexplained, scan.time);
+  FieldOfView view;
+  view.AddBeams(scan.laser, scan.echoes);
+  view.AddBeams(scan.laser, scan.free_ends);
+  const Pose2 robot_from_map = scan.map_from_robot.Inverse();
+  moving_.Update(unexplained, scan.time, [&](const Eigen::Vector2d& point) {
+    return view.Contains(robot_from_map * point);
+  });
 }
 
 Velocity Navigator::Stop(const DriveState state, const std::string& message) {
@@ -179,20 +176,16 @@ bool Navigator::KeepsPath(const Plan& plan,
   std::vector<Eigen::Vector2d> rest =
       tracker_.PointsAhead(std::numeric_limits<double>::infinity());
   if ((rest.front() - place).norm() > kKeepPathDistance) return false;
-  return planner_.Cost(rest) <= kKeepPathRatio * planner_.Cost(plan.points);
+  return planner_.Cost(rest) <= planner_.Cost(plan.points) + kKeepPathMetres;
 }
 
-bool Navigator::HoldsStill(const NavigatorStep& step) {
-  if (std::abs(step.velocity.linear) > kSlowSpeed) return false;
-  const double reach =
-      options_.robot.footprint.circumscribed_radius() + kHoldDistance;
-  for (const MovingDisc& disc : moving_.Moving(step.time)) {
-    if ((disc.position - step.map_from_robot.translation()).norm() <
-        reach + disc.radius) {
-      hold_until_ = step.time + kHoldSeconds;
-    }
+bool Navigator::CameFromBehind(const Pose2& pose) const {
+  const Eigen::Vector2d behind =
+      pose * Eigen::Vector2d(-kBackUpSpeed * kBackUpSeconds, 0.);
+  for (const Eigen::Vector2d& place : trail_) {
+    if ((place - behind).norm() <= kTrailWidth) return true;
   }
-  return step.time < hold_until_;
+  return false;
 }
 
 bool Navigator::FollowsPlan(const NavigatorStep& step) {
@@ -227,7 +220,7 @@ void Navigator::WatchProgress(const NavigatorStep& step) {
                          (place - progress_place_).norm() > kProgress)) {
     has_progress_ = true;
     progress_place_ = place;
-    progress_time_ = step.time;
+    progress_time_ = trying_since_ = step.time;
     recovery_count_ = 0;
     return;
   }
@@ -240,20 +233,23 @@ void Navigator::WatchProgress(const NavigatorStep& step) {
                step.time);
     return;
   }
-  if (step.time < recovery_end_ ||
-      idle < options_.stuck_seconds * (1 + recovery_count_)) {
-    return;
+  // Each recovery is given time to show what it was good for.
+  if (step.time < recovery_end_ || waits_for_somebody_) {
+    trying_since_ = step.time;
   }
+  if (step.time - trying_since_ < options_.stuck_seconds) return;
   recovery_ = static_cast<Recovery>(recovery_count_ % 4);
   ++recovery_count_;
   ++recoveries_;
+  recovery_begin_ = trying_since_ = step.time;
   switch (recovery_) {
-    case Recovery::kForget:
-      layer_.Clear(place, kForgetRadius);
-      planned_ = -1e9;
-      break;
     case Recovery::kTurn:
+      looked_ = step.time;
       recovery_end_ = step.time + kTurnSeconds;
+      break;
+    case Recovery::kForget:
+      layer_.Clear(place, kForgetRadius, looked_);
+      planned_ = -1e9;
       break;
     case Recovery::kBackUp:
       recovery_end_ = step.time + kBackUpSeconds;
@@ -283,13 +279,31 @@ Velocity Navigator::Recover(const NavigatorStep& step) {
   Velocity wish;
   if (recovery_ == Recovery::kTurn) {
     message_ = "no progress: turning";
-    wish.angular = 0.6 * options_.robot.max_turn_rate;
+    wish.angular = options_.robot.max_turn_rate;
+  } else if (step.time == recovery_begin_ && !CameFromBehind(input.pose)) {
+    recovery_end_ = step.time;
+    return Velocity();
   } else {
     message_ = "no progress: backing up";
     wish.linear = -std::min(kBackUpSpeed, options_.robot.max_reverse_speed);
   }
-  const Velocity command = Reach(step.velocity, wish);
-  return window_.Evaluate(input, command).admissible ? command : Velocity();
+  return Admit(input, Reach(step.velocity, wish));
+}
+
+void Navigator::SayWhyBraking(const DynamicWindowInput& input) {
+  DynamicWindowInput alone = input;
+  alone.moving.clear();
+  waits_for_somebody_ =
+      !input.moving.empty() && window_.Choose(alone).has_value();
+  message_ = waits_for_somebody_ ? "waiting: somebody passes by"
+                                 : "braking: no admissible velocity";
+}
+
+Velocity Navigator::Admit(const DynamicWindowInput& input,
+                          const Velocity& command) {
+  if (window_.Evaluate(input, command).admissible) return command;
+  SayWhyBraking(input);
+  return Velocity();
 }
 
 Velocity Navigator::Reach(const Velocity& current, const Velocity& wish) const {
@@ -334,8 +348,7 @@ Velocity Navigator::Approach(const NavigatorStep& step,
     wish.linear = std::max(0.05, std::min(input.max_speed, 0.8 * distance));
   }
   wish.angular = std::max(-0.6, std::min(0.6, 1.5 * error));
-  const Velocity command = Reach(step.velocity, wish);
-  return window_.Evaluate(input, command).admissible ? command : Velocity();
+  return Admit(input, Reach(step.velocity, wish));
 }
 
 Velocity Navigator::Follow(const NavigatorStep& step) {
@@ -370,14 +383,13 @@ Velocity Navigator::Follow(const NavigatorStep& step) {
         std::min(options_.robot.max_turn_rate,
                  std::sqrt(options_.robot.turn_acceleration * std::abs(error)));
     if (slow) wish.angular = error > 0. ? rate : -rate;
-    const Velocity command = Reach(step.velocity, wish);
-    return window_.Evaluate(input, command).admissible ? command : Velocity();
+    return Admit(input, Reach(step.velocity, wish));
   }
   const absl::optional<EvaluatedVelocity> best = window_.Choose(input);
   if (!best.has_value()) {
     planned_ =
         std::min(planned_, step.time - options_.plan_period + kReplanSeconds);
-    message_ = "braking: no admissible velocity";
+    SayWhyBraking(input);
     return Velocity();
   }
   return best->velocity;
@@ -404,12 +416,16 @@ Velocity Navigator::Step(const NavigatorStep& step) {
     }
     return Stop(DriveState::kDriving, "stopping at the goal");
   }
+  const Eigen::Vector2d place = step.map_from_robot.translation();
+  if (trail_.empty() || (trail_.back() - place).norm() >= kTrailSpacing) {
+    trail_.push_back(place);
+    if (trail_.size() * kTrailSpacing > kTrailLength) trail_.pop_front();
+  }
   WatchProgress(step);
+  waits_for_somebody_ = false;
   if (finished()) return Stop(DriveState::kFinished, "all goals done");
   Velocity command;
-  if (HoldsStill(step)) {
-    Stop(DriveState::kObstructed, "waiting: somebody passes by");
-  } else if (step.time < recovery_end_ && recovery_count_ > 0) {
+  if (step.time < recovery_end_ && recovery_count_ > 0) {
     command = Recover(step);
   } else if (FollowsPlan(step)) {
     tracker_.Advance(step.map_from_robot.translation());

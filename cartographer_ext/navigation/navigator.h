@@ -8,11 +8,13 @@
 //
 // once a second a new path, ten times a second a new command. It stops where it
 // does not know its place or sees nothing, and says why. Where it makes no
-// progress it recovers: it forgets old obstacles, turns, backs up, waits, and
-// at last gives the goal up. Plain types only, deterministic.
+// progress it recovers: it turns once round and looks, forgets obstacles that it
+// has not seen since, backs up the way it came, waits, and at last gives the
+// goal up. Plain types only, deterministic.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_
 
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -43,7 +45,7 @@ struct NavigatorOptions {
   double stop_margin = 0.02;        // metres, kept by LimitSpeed
   double max_scan_age = 0.5;        // seconds
   int min_echoes = 10;              // fewer: the laser sees nothing
-  double stuck_seconds = 5.;        // without progress: recover
+  double stuck_seconds = 8.;        // of trying without progress: recover
   double give_up_seconds = 90.;     // without progress: next goal
 };
 
@@ -107,7 +109,7 @@ class Navigator {
   int recoveries() const { return recoveries_; }
 
  private:
-  enum class Recovery { kForget, kTurn, kBackUp, kWait };
+  enum class Recovery { kTurn, kForget, kBackUp, kWait };
 
   Velocity Stop(DriveState state, const std::string& message);
   // Whether scan and pose allow to drive at all; else stops.
@@ -117,14 +119,19 @@ class Navigator {
   // Whether the path followed so far is still free and hardly worse than a new
   // one: changing one's mind at every turn of the laser gets nowhere.
   bool KeepsPath(const Plan& plan, const Eigen::Vector2d& place) const;
-  // Whether somebody passes by so close that the robot had better not start.
-  bool HoldsStill(const NavigatorStep& step);
+  // Whether the robot was a little behind its place a moment ago: a laser that
+  // looks forward only does not see where it backs up to.
+  bool CameFromBehind(const Pose2& pose) const;
   void FinishGoal(bool reached, const std::string& reason, double time);
   // Starts or ends a recovery where there was no progress.
   void WatchProgress(const NavigatorStep& step);
   Velocity Recover(const NavigatorStep& step);
   Velocity Follow(const NavigatorStep& step);
   Velocity Approach(const NavigatorStep& step, const DynamicWindowInput& input);
+  // The command if it is admissible; else stops and says whether it waits for
+  // somebody.
+  Velocity Admit(const DynamicWindowInput& input, const Velocity& command);
+  void SayWhyBraking(const DynamicWindowInput& input);
   DynamicWindowInput WindowInput(const NavigatorStep& step,
                                  const LocalObstacles* obstacles) const;
   // Nearest to the wish that acceleration allows.
@@ -148,7 +155,7 @@ class Navigator {
   PathTracker tracker_;
   double planned_ = -1e9;  // when
   bool turning_ = false;
-  double hold_until_ = -1e9;  // seconds
+  std::deque<Eigen::Vector2d> trail_;  // the last metre, newest last
 
   DriveState state_ = DriveState::kDriving;
   std::string message_;
@@ -157,8 +164,11 @@ class Navigator {
   // Progress: where and when the robot last came nearer to the goal.
   Eigen::Vector2d progress_place_ = Eigen::Vector2d::Zero();
   double progress_time_ = 0.;
+  double trying_since_ = 0.;  // neither recovering nor waiting for somebody
+  bool waits_for_somebody_ = false;
   bool has_progress_ = false;
-  double recovery_end_ = 0.;
+  double recovery_begin_ = 0., recovery_end_ = 0.;
+  double looked_ = 0.;  // when the last look around began
   Recovery recovery_ = Recovery::kForget;
   int recovery_count_ = 0;  // since the last progress
 };

@@ -22,7 +22,8 @@ ObstacleLayer::ObstacleLayer(const Costmap* const costmap,
     : costmap_(costmap),
       options_(options),
       times_(costmap->geometry().size(), kNoMark),
-      first_times_(costmap->geometry().size(), kNoMark) {
+      first_times_(costmap->geometry().size(), kNoMark),
+      past_times_(costmap->geometry().size(), kNoMark) {
   CHECK_GT(options.range, 0.);
   CHECK_GT(options.max_marks, 0);
   const double resolution = costmap->geometry().resolution();
@@ -39,6 +40,12 @@ ObstacleLayer::ObstacleLayer(const Costmap* const costmap,
 bool ObstacleLayer::IsMarked(const Cell& cell) const {
   const GridGeometry& geometry = costmap_->geometry();
   return geometry.Contains(cell) && !std::isnan(times_[geometry.Index(cell)]);
+}
+
+bool ObstacleLayer::IsSettled(const Cell& cell) const {
+  if (!IsMarked(cell)) return false;
+  const size_t index = costmap_->geometry().Index(cell);
+  return times_[index] - first_times_[index] >= options_.settle_seconds;
 }
 
 double ObstacleLayer::MarkAge(const Eigen::Vector2d& point,
@@ -73,7 +80,10 @@ void ObstacleLayer::ClearBeam(const Eigen::Vector2d& laser,
             [&](const Cell& cell, double /*length*/) {
               if (!geometry.Contains(cell)) return true;
               if (keep_end && cell == end_cell) return true;
-              times_[geometry.Index(cell)] = kNoMark;
+              const size_t index = geometry.Index(cell);
+              if (std::isnan(times_[index])) return true;
+              past_times_[index] = times_[index];
+              times_[index] = kNoMark;
               return true;
             });
 }
@@ -99,18 +109,23 @@ void ObstacleLayer::Update(const ScanInMap& scan) {
     if (!geometry.Contains(cell) || IsWall(echo)) continue;
     float& time = times_[geometry.Index(cell)];
     if (std::isnan(time)) {
+      const size_t index = geometry.Index(cell);
       marks_.push_back(cell);
-      first_times_[geometry.Index(cell)] = static_cast<float>(scan.time);
+      if (!(scan.time - past_times_[index] <= options_.renewal_seconds)) {
+        first_times_[index] = static_cast<float>(scan.time);
+      }
     }
     time = static_cast<float>(scan.time);
   }
   Compact(scan.time);
 }
 
-void ObstacleLayer::Clear(const Eigen::Vector2d& center, const double radius) {
+void ObstacleLayer::Clear(const Eigen::Vector2d& center, const double radius,
+                          const double since) {
   const GridGeometry& geometry = costmap_->geometry();
   for (const Cell& cell : marks_) {
-    if ((geometry.Center(cell) - center).norm() <= radius) {
+    if ((geometry.Center(cell) - center).norm() <= radius &&
+        times_[geometry.Index(cell)] < since) {
       times_[geometry.Index(cell)] = kNoMark;
     }
   }
@@ -126,9 +141,7 @@ void ObstacleLayer::Compact(const double now) {
   const auto forget = [&](const Cell& cell) {
     float& time = times_[geometry.Index(cell)];
     if (std::isnan(time)) return true;
-    const bool settled =
-        time - first_times_[geometry.Index(cell)] >= options_.settle_seconds;
-    if (time >= (settled ? oldest : oldest_unsettled)) return false;
+    if (time >= (IsSettled(cell) ? oldest : oldest_unsettled)) return false;
     time = kNoMark;
     return true;
   };
@@ -147,6 +160,7 @@ void ObstacleLayer::ApplyTo(WeightGrid* const weights) const {
   const GridGeometry& geometry = costmap_->geometry();
   *weights = costmap_->weights();
   for (const Cell& mark : marks_) {
+    if (!IsSettled(mark)) continue;
     for (const StampedWeight& stamped : stamp_) {
       const Cell cell{mark.x + stamped.dx, mark.y + stamped.dy};
       if (!geometry.Contains(cell)) continue;

@@ -8,8 +8,9 @@
 // `range` of the laser are touched, so the layer rolls along with the robot.
 // Marks out of sight are kept for `memory_seconds`, which is how a closed door
 // is remembered while the robot looks for another path. Those that have not
-// been there for `settle_seconds` yet, as of somebody who walked by, are
-// forgotten sooner.
+// been there for `settle_seconds` yet, as of somebody who walks by, are
+// forgotten sooner, and no path is planned around them: it would be wrong a
+// moment later. What the robot does next heeds them all.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_OBSTACLE_LAYER_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_OBSTACLE_LAYER_H_
 
@@ -27,6 +28,9 @@ struct ObstacleLayerOptions {
   double wall_tolerance = 0.15;  // metres
   double memory_seconds = 60.;
   double settle_seconds = 1.;
+  // A mark that a beam clears and another one makes again within this time was
+  // there all the while: beams graze the cells at the border of an obstacle.
+  double renewal_seconds = 0.5;
   double unsettled_memory_seconds = 1.5;
   // Most marks kept; the oldest go first.
   int max_marks = 20000;
@@ -48,20 +52,23 @@ class ObstacleLayer {
 
   // Points that are not finite are ignored.
   void Update(const ScanInMap& scan);
-  // Forgets all marks within `radius` metres.
-  void Clear(const Eigen::Vector2d& center, double radius);
+  // Forgets the marks within `radius` metres that have not been made again
+  // since a time.
+  void Clear(const Eigen::Vector2d& center, double radius, double since);
 
   bool IsMarked(const Cell& cell) const;
   // Seconds since the oldest mark in the cell of a point or beside it was made;
   // 0 where there is none.
   double MarkAge(const Eigen::Vector2d& point, double now) const;
+  // Whether there has been a mark for `settle_seconds`.
+  bool IsSettled(const Cell& cell) const;
   // Cells that are marked, in order of their first mark.
   const std::vector<Cell>& marks() const { return marks_; }
 
   // Whether the map explains an echo by one of its walls.
   bool IsWall(const Eigen::Vector2d& echo) const;
 
-  // The weights of the map with all marks inflated.
+  // The weights of the map with all settled marks inflated.
   void ApplyTo(WeightGrid* weights) const;
 
  private:
@@ -81,6 +88,7 @@ class ObstacleLayer {
   const ObstacleLayerOptions options_;
   std::vector<float> times_;        // of the last mark of each cell; NaN: none
   std::vector<float> first_times_;  // since when it is marked
+  std::vector<float> past_times_;   // of the last mark that was cleared
   std::vector<Cell> marks_;
   std::vector<StampedWeight> stamp_;  // of one mark on the weights around it
 };

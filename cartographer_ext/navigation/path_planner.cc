@@ -46,6 +46,18 @@ std::string ToString(const PlanOutcome outcome) {
   return "";
 }
 
+bool IsFinal(const PlanOutcome outcome) {
+  switch (outcome) {
+    case PlanOutcome::kFound:
+    case PlanOutcome::kGoalObstructed:
+    case PlanOutcome::kStartBlocked:
+    case PlanOutcome::kObstructed:
+      return false;
+    default:
+      return true;
+  }
+}
+
 double LineCost(const WeightGrid& grid, const Cell& from, const Cell& to) {
   double cost = 0.;
   const bool free =
@@ -143,7 +155,7 @@ double PathPlanner::Cost(const std::vector<Eigen::Vector2d>& points) const {
     cost += LineCost(weights, geometry.CellAt(points[i - 1]),
                      geometry.CellAt(points[i]));
   }
-  return cost;
+  return cost * geometry.resolution() / kMinWeight;
 }
 
 Plan PathPlanner::MakePlan(const Eigen::Vector2d& start,

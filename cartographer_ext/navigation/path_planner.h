@@ -33,6 +33,8 @@ enum class PlanOutcome {
 
 // A sentence for the user.
 std::string ToString(PlanOutcome outcome);
+// Whether waiting does not change it.
+bool IsFinal(PlanOutcome outcome);
 
 struct Plan {
   PlanOutcome outcome = PlanOutcome::kUnreachable;
@@ -65,8 +67,8 @@ class PathPlanner {
   Plan MakePlan(const Eigen::Vector2d& start, const Eigen::Vector2d& goal,
                 const ObstacleLayer* obstacles);
 
-  // Cost of a path, by LineCost, among the obstacles of the last plan; infinite
-  // where something blocks it.
+  // Cost of a path, by LineCost, among the obstacles of the last plan, as metres
+  // of free path; infinite where something blocks it.
   double Cost(const std::vector<Eigen::Vector2d>& points) const;
 
   static constexpr double kStartTolerance = 0.5;   // metres

@@ -38,9 +38,11 @@ TEST(CostmapTest, AgreesWithBruteForce) {
         EXPECT_NEAR(costmap.ObstacleDistance({x, y}), obstacle, 1e-5);
         const double r = options.inscribed_radius + options.padding;
         const double big_r = options.inflation_radius;
-        const double ratio = (big_r - obstacle) / (big_r - r);
+        const double roomy = r + options.tight;
+        const double ratio = (big_r - obstacle) / (big_r - roomy);
         const double expected =
-            obstacle <= r + 1e-6 ? 0.
+            obstacle <= r + 1e-6       ? 0.
+            : obstacle <= roomy + 1e-6 ? kMaxWeight
             : obstacle >= big_r
                 ? kMinWeight
                 : kMinWeight * (1. + options.clearance_weight * ratio * ratio);

@@ -60,7 +60,7 @@ TEST_F(DynamicWindowTest, AdmissibleSetIsThatOfTheDefinition) {
   // reaction time, can brake to a stop with the margin kept.
   Random random(6);
   int admissible = 0, inadmissible = 0, unclear = 0;
-  for (int trial = 0; trial != 40; ++trial) {
+  for (int trial = 0; trial != 160; ++trial) {
     const io::OccupancyMap map = RandomMap(80, 80, 0.006, 0., &random);
     const Costmap costmap = MakeCostmap(map);
     const Pose2 pose(4., 4., random.Uniform(-kPi, kPi));
@@ -141,6 +141,53 @@ TEST_F(DynamicWindowTest, NothingIsAdmissibleBeforeAWallTooNear) {
   EXPECT_FALSE(window_.Choose(input).has_value());
 }
 
+TEST_F(DynamicWindowTest, NobodyCanReachItBeforeItStands) {
+  // Against every way that somebody could go at a walking pace.
+  const Costmap costmap = MakeCostmap(RoomMap(10., 10.));
+  const LocalObstacles local(costmap, nullptr, {}, {5., 5.}, 2.5);
+  DynamicWindowInput input = Input(&local, Pose2(5., 5., 0.));
+  MovingDisc person;
+  person.radius = 0.2;
+  int admissible = 0;
+  for (double bearing = -3.; bearing <= 3.; bearing += 0.25) {
+    for (double distance = 0.5; distance <= 2.; distance += 0.1) {
+      const Eigen::Vector2d away(std::cos(bearing), std::sin(bearing));
+      person.position = Eigen::Vector2d(5., 5.) + distance * away;
+      person.velocity = 0.6 * away;
+      input.moving = {person};
+      for (double v = 0.05; v <= 0.7; v += 0.05) {
+        if (!window_.Evaluate(input, {v, 0.}).admissible) continue;
+        ++admissible;
+        const double reaction = robot_.reaction_seconds;
+        const double end = reaction + v / robot_.deceleration;
+        for (double time = 0.; time <= end; time += 0.05) {
+          const double braked = std::max(0., time - reaction);
+          const double x =
+              5. + v * time - 0.5 * robot_.deceleration * braked * braked;
+          EXPECT_GT((Eigen::Vector2d(x, 5.) - person.position).norm(),
+                    0.25 + 0.2 + options_.walking_speed * time)
+              << bearing << " " << distance << " " << v << " " << time;
+        }
+      }
+    }
+  }
+  EXPECT_GT(admissible, 500);
+}
+
+TEST_F(DynamicWindowTest, WhatIsTooNearMayBeLeftAndPassed) {
+  const Costmap costmap = MakeCostmap(RoomMap(10., 10.));
+  std::vector<Eigen::Vector2d> echoes;
+  for (double x = 4.; x <= 6.; x += 0.02) echoes.emplace_back(x, 5.275);
+  const LocalObstacles local(costmap, nullptr, echoes, {5., 5.}, 2.5);
+  const Pose2 pose(5., 5., 0.);
+  DynamicWindowInput input = Input(&local, pose);
+  ASSERT_LT(local.Clearance(robot_.footprint, pose), options_.margin);
+  EXPECT_TRUE(window_.Evaluate(input, {0., 0.6}).admissible);
+  EXPECT_TRUE(window_.Evaluate(input, {0.2, 0.}).admissible);
+  EXPECT_TRUE(window_.Evaluate(input, {0.2, -0.4}).admissible);
+  EXPECT_FALSE(window_.Evaluate(input, {0.2, 0.4}).admissible);
+}
+
 TEST_F(DynamicWindowTest, GivesWayToWhatMoves) {
   const Costmap costmap = MakeCostmap(RoomMap(10., 10.));
   const LocalObstacles local(costmap, nullptr, {}, {5., 5.}, 2.5);
@@ -155,8 +202,12 @@ TEST_F(DynamicWindowTest, GivesWayToWhatMoves) {
   EXPECT_FALSE(window_.Evaluate(input, {0.6, 0.}).admissible);
   // Standing is always permitted.
   EXPECT_TRUE(window_.Evaluate(input, {0., 0.}).admissible);
-  // One that walks away is no reason to stop.
+  // One that walks away is no reason to stop, unless so near that it could
+  // turn round and reach the robot before that stands.
   input.moving[0].velocity = Eigen::Vector2d(0., 1.);
+  EXPECT_FALSE(window_.Evaluate(input, {0.6, 0.}).admissible);
+  EXPECT_TRUE(window_.Evaluate(input, {0.1, 0.}).admissible);
+  input.moving[0].position.y() = 6.5;
   EXPECT_TRUE(window_.Evaluate(input, {0.6, 0.}).admissible);
   // From behind, faster than the robot: it has to stand before.
   input.moving[0].position = Eigen::Vector2d(4.2, 5.);

@@ -46,6 +46,12 @@ TEST(LocalObstaclesTest, AgreesWithBruteForce) {
     }
   }
   EXPECT_EQ(local.Distance({3., 4.7}), 0.);
+  // Between the centres of cells there are no steps.
+  for (double x = 2.3; x < 3.7; x += 0.013) {
+    EXPECT_NEAR(local.Distance({x, 3.01}), local.Distance({x + 0.005, 3.01}),
+                0.00501)
+        << x;
+  }
 }
 
 TEST(LocalObstaclesTest, ClearanceIsThatOfTheNearestPart) {

@@ -49,6 +49,54 @@ TEST(MovingObstaclesTest, MeasuresTheVelocityOfAPerson) {
   EXPECT_TRUE(obstacles.Moving(3.5).empty());
 }
 
+// Updates for a person at each of the places, 0.1 s apart.
+void Walk(const std::vector<Eigen::Vector2d>& places,
+          MovingObstacles* const obstacles) {
+  Random random(4);
+  for (size_t i = 0; i != places.size(); ++i) {
+    std::vector<MovingObstacles::Echo> echoes;
+    AddDisc(places[i], 0.2, &random, &echoes);
+    obstacles->Update(echoes, 0.1 * i);
+  }
+}
+
+TEST(MovingObstaclesTest, RemembersForLongerWhereItDoesNotLook) {
+  std::vector<Eigen::Vector2d> places;
+  for (int i = 0; i != 10; ++i) places.emplace_back(-1., -2. + 0.1 * i);
+  for (const bool in_view : {false, true}) {
+    MovingObstacles obstacles((MovingObstacleOptions()));
+    Walk(places, &obstacles);
+    const auto sees = [in_view](const Eigen::Vector2d&) { return in_view; };
+    for (int i = 10; i != 50; ++i) obstacles.Update({}, 0.1 * i, sees);
+    EXPECT_EQ(obstacles.Moving(4.9).size(), in_view ? 0u : 1u);
+    for (int i = 50; i != 70; ++i) obstacles.Update({}, 0.1 * i, sees);
+    EXPECT_TRUE(obstacles.Moving(6.9).empty());
+  }
+}
+
+TEST(MovingObstaclesTest, SomebodyWhoTurnsRoundGoesOnBeingSomebody) {
+  std::vector<Eigen::Vector2d> places;
+  for (int i = 0; i != 12; ++i) places.emplace_back(2., 0.08 * i);
+  MovingObstacles obstacles((MovingObstacleOptions()));
+  Walk(places, &obstacles);
+  Random random(5);
+  for (int i = 12; i != 24; ++i) {
+    std::vector<MovingObstacles::Echo> echoes;
+    AddDisc({2., 0.08 * (23 - i)}, 0.2, &random, &echoes);
+    obstacles.Update(echoes, 0.1 * i);
+    EXPECT_EQ(obstacles.Moving(0.1 * i).size(), 1u) << i;
+  }
+}
+
+TEST(MovingObstaclesTest, WhatOnlySeemsToMoveStays) {
+  // Seen from here and from there: fast, but to and fro within a decimetre.
+  std::vector<Eigen::Vector2d> places;
+  for (int i = 0; i != 30; ++i) places.emplace_back(2., i % 2 == 0 ? 0. : 0.1);
+  MovingObstacles obstacles((MovingObstacleOptions()));
+  Walk(places, &obstacles);
+  EXPECT_TRUE(obstacles.Moving(2.9).empty());
+}
+
 TEST(MovingObstaclesTest, LeavesOutWallsAndSingleEchoes) {
   MovingObstacles obstacles((MovingObstacleOptions()));
   for (int i = 0; i != 10; ++i) {

@@ -133,6 +133,26 @@ TEST(NavigatorTest, WaitsAndGivesUpBehindAClosedDoor) {
   EXPECT_GT(loop.navigator_->recoveries(), 2);
 }
 
+TEST(NavigatorTest, BacksUpOnlyTheWayItCame) {
+  // Before a closed door, from where it has not moved yet: what is behind it
+  // has never been driven.
+  io::OccupancyMap map = RoomMap(8., 6.);
+  FillBox(5., 0., 5.1, 6., 1.f, &map);
+  FillBox(5., 2.4, 5.1, 3.6, 0.f, &map);
+  io::OccupancyMap world = map;
+  FillBox(5., 2.4, 5.1, 3.6, 1.f, &world);
+  const Pose2 start(4.65, 3., 0.);
+  Loop loop(map, world, start, {{7., 3.}});
+  double moved = 0.;
+  for (int i = 0; i != 3000 && !loop.navigator_->finished(); ++i) {
+    loop.Step();
+    moved = std::max(moved,
+                     (loop.pose_.translation() - start.translation()).norm());
+  }
+  EXPECT_GT(loop.navigator_->recoveries(), 2);
+  EXPECT_LT(moved, 0.15);
+}
+
 class NavigatorStopTest : public testing::Test {
  protected:
   NavigatorStopTest()

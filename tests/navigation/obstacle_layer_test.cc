@@ -65,8 +65,46 @@ TEST_F(ObstacleLayerTest, ForgetsAfterAWhile) {
   layer.Update(Scan(10.4, {}));
   EXPECT_FALSE(layer.IsMarked(At(4., 3.)));
   EXPECT_TRUE(layer.IsMarked(At(3., 4.5)));
-  layer.Clear({3., 4.}, 1.);
+  layer.Clear({3., 4.}, 1., 10.);
   EXPECT_TRUE(layer.marks().empty());
+}
+
+TEST_F(ObstacleLayerTest, NoPathIsPlannedAroundWhatPassesBy) {
+  ObstacleLayer layer(&costmap_, ObstacleLayerOptions());
+  for (int i = 0; i != 20; ++i) {
+    // Somebody walks across, something else stays.
+    layer.Update(Scan(0.1 * i, {{5.02, 1.02 + 0.1 * i}, {4., 4.5}}));
+  }
+  EXPECT_TRUE(layer.IsMarked(At(5.02, 2.92)));
+  EXPECT_FALSE(layer.IsSettled(At(5.02, 2.92)));
+  EXPECT_TRUE(layer.IsSettled(At(4., 4.5)));
+  WeightGrid weights;
+  layer.ApplyTo(&weights);
+  EXPECT_EQ(weights.at(At(5.02, 2.92)), costmap_.weights().at(At(5.02, 2.92)));
+  EXPECT_EQ(weights.at(At(4., 4.5)), kBlocked);
+}
+
+TEST_F(ObstacleLayerTest, BeamsThatGrazeAnObstacleDoNotMakeItNew) {
+  // In every scan one beam ends in the cell and another passes through it.
+  ObstacleLayer layer(&costmap_, ObstacleLayerOptions());
+  for (int i = 0; i <= 12; ++i) {
+    layer.Update(Scan(0.1 * i, {{5.01, 3.01}, {9.95, 3.03}}));
+  }
+  EXPECT_TRUE(layer.IsSettled(At(5.01, 3.01)));
+  // Away for longer, it is new.
+  layer.Update(Scan(1.3, {{9.95, 3.03}}));
+  layer.Update(Scan(2.5, {{5.01, 3.01}}));
+  EXPECT_TRUE(layer.IsMarked(At(5.01, 3.01)));
+  EXPECT_FALSE(layer.IsSettled(At(5.01, 3.01)));
+}
+
+TEST_F(ObstacleLayerTest, ClearsOnlyWhatWasNotSeenAgain) {
+  ObstacleLayer layer(&costmap_, ObstacleLayerOptions());
+  layer.Update(Scan(0., {{4., 3.}, {4., 4.}}));
+  layer.Update(Scan(1., {{4., 4.}}));
+  layer.Clear({4., 3.5}, 3., 0.5);
+  EXPECT_FALSE(layer.IsMarked(At(4., 3.)));
+  EXPECT_TRUE(layer.IsMarked(At(4., 4.)));
 }
 
 TEST_F(ObstacleLayerTest, KnowsTheAgeOfMarks) {
@@ -108,6 +146,7 @@ TEST_F(ObstacleLayerTest, InflatesMarksLikeTheMap) {
   // The weights around a mark are those of a map with a wall there.
   ObstacleLayer layer(&costmap_, ObstacleLayerOptions());
   layer.Update(Scan(0., {{5., 3.}, {5.6, 3.3}}));
+  layer.Update(Scan(1., {{5., 3.}, {5.6, 3.3}}));
   WeightGrid weights;
   layer.ApplyTo(&weights);
   io::OccupancyMap map = RoomMap(10., 6.);

@@ -73,6 +73,10 @@ TEST(PathPlannerTest, TellsObstaclesFromWalls) {
   scan.laser = Eigen::Vector2d(3., 3.);
   for (double y = 2.4; y < 3.6; y += 0.05) scan.echoes.emplace_back(5., y);
   layer.Update(scan);
+  // What has just appeared may be somebody who passes by.
+  EXPECT_TRUE(planner.MakePlan({1., 1.}, {9., 1.}, &layer).found());
+  scan.time = 1.;
+  layer.Update(scan);
   EXPECT_EQ(planner.MakePlan({1., 1.}, {9., 1.}, &layer).outcome,
             PlanOutcome::kObstructed);
   EXPECT_EQ(planner.MakePlan({1., 1.}, {4.6, 3.}, &layer).outcome,

@@ -22,12 +22,17 @@ struct Contact {
   Eigen::Vector2d place;  // of the robot
   bool with_moving = false;
   double speed = 0.;  // of the robot, m/s
+  // Of what moves: seconds since an echo came from it; infinite for never.
+  double unseen_seconds = 0.;
 };
 
 class ContactCounter {
  public:
   explicit ContactCounter(double robot_radius) : radius_(robot_radius) {}
 
+  // The echoes of a scan and what moves, at the time of the scan.
+  void AddScan(const std::vector<Eigen::Vector2d>& echoes,
+               const std::vector<simulation::Disc>& moving, double time);
   // A few times a decimetre of driving; everything in the world frame.
   void Check(const LiveRobot& robot, const simulation::RayCaster& plan,
              const std::vector<simulation::Disc>& standing,
@@ -35,13 +40,23 @@ class ContactCounter {
 
   int static_collisions() const { return static_collisions_; }
   int moving_collisions() const { return moving_collisions_; }
+  // Of these the ones with somebody whom the laser had not shown for longer
+  // than a robot needs to stop: from behind a laser that looks forward only.
+  int unseen_collisions() const { return unseen_collisions_; }
   int run_into() const { return run_into_; }
   // Metres from the outline to stationary things, the least so far.
   double least_clearance() const { return least_clearance_; }
   const std::vector<Contact>& contacts() const { return contacts_; }
 
  private:
-  void Record(const LiveRobot& robot, bool with_moving);
+  struct Seen {
+    Eigen::Vector2d center;
+    double time;
+  };
+
+  void Record(const LiveRobot& robot, bool with_moving, double unseen_seconds);
+  // When what is here now was last seen.
+  double LastSeen(const Eigen::Vector2d& center) const;
 
   const double radius_;
   bool touches_static_ = false;
@@ -49,6 +64,8 @@ class ContactCounter {
   bool collision_counted_ = false;  // of the present contact
   int static_collisions_ = 0;
   int moving_collisions_ = 0;
+  int unseen_collisions_ = 0;
+  std::vector<Seen> seen_;  // all that moves, at the last scan
   int run_into_ = 0;
   double least_clearance_ = std::numeric_limits<double>::infinity();
   std::vector<Contact> contacts_;

@@ -18,6 +18,8 @@ using simulation::RayCaster;
 
 constexpr uint64_t kStream = 102;
 constexpr int kAttempts = 4000;
+// The first things drawn may leave no room for the others.
+constexpr int kDraws = 10;
 constexpr double kFromGoals = 1.5;  // metres kept free around goals
 constexpr double kApart = 2.;       // metres between two disturbances
 constexpr double kPersonRadius = 0.2;
@@ -162,11 +164,22 @@ absl::StatusOr<Disturbances> Disturbances::Create(
     const RayCaster& plan,
     const std::vector<std::vector<Eigen::Vector2d>>& legs,
     const DisturbanceOptions& options, const uint64_t seed) {
+  Random random(simulation::MixBits(simulation::MixBits(seed) ^ kStream));
+  auto result = Draw(plan, legs, options, &random);
+  for (int i = 1; i < kDraws && !result.ok(); ++i) {
+    result = Draw(plan, legs, options, &random);
+  }
+  return result;
+}
+
+absl::StatusOr<Disturbances> Disturbances::Draw(
+    const RayCaster& plan,
+    const std::vector<std::vector<Eigen::Vector2d>>& legs,
+    const DisturbanceOptions& options, Random* const random) {
   Disturbances result;
   result.min_distance_ = options.min_distance;
   const int wanted = options.obstacles + options.crossings + options.doors;
   if (wanted == 0) return result;
-  Random random(simulation::MixBits(simulation::MixBits(seed) ^ kStream));
   std::vector<Eigen::Vector2d> goals, taken;
   for (const auto& leg : legs) {
     goals.push_back(leg.front());
@@ -177,16 +190,16 @@ absl::StatusOr<Disturbances> Disturbances::Create(
   for (int attempt = 0; attempt != kAttempts; ++attempt) {
     const int count = static_cast<int>(result.disturbances_.size());
     if (count == wanted) break;
-    const PathPlace place = DrawPlace(legs, &random);
+    const PathPlace place = DrawPlace(legs, random);
     Disturbance drawn;
     bool fits =
         !IsNear(place, goals, kFromGoals) && !IsNear(place, taken, kApart);
     if (doors < options.doors) {
-      fits = DrawDoor(plan, place, &random, &drawn) && fits;
+      fits = DrawDoor(plan, place, random, &drawn) && fits;
     } else if (obstacles < options.obstacles) {
-      drawn = DrawObstacle(place, &random);
+      drawn = DrawObstacle(place, random);
     } else {
-      fits = DrawCrossing(plan, place, &random, &drawn) && fits;
+      fits = DrawCrossing(plan, place, random, &drawn) && fits;
     }
     if (!fits) continue;
     if (drawn.kind != Disturbance::Kind::kCrossing) {

@@ -65,6 +65,11 @@ class Disturbances {
   const std::vector<simulation::Disc>& moving() const { return moving_; }
 
  private:
+  static absl::StatusOr<Disturbances> Draw(
+      const simulation::RayCaster& plan,
+      const std::vector<std::vector<Eigen::Vector2d>>& legs,
+      const DisturbanceOptions& options, Random* random);
+
   std::vector<Disturbance> disturbances_;
   std::vector<simulation::Disc> standing_;
   std::vector<simulation::Disc> moving_;

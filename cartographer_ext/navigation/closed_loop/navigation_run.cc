@@ -84,6 +84,7 @@ class ClosedLoop {
   void RecordFrame();
   void MeasurePath();
   std::vector<Disc> Everything() const;
+  std::vector<Disc> People() const;
   io::TimeNs Stamp() const { return io::FromSeconds(kBegin + robot_.time()); }
   Pose2 TruePoseInMap() const { return run_->map_from_world * robot_.pose(); }
 
@@ -120,9 +121,14 @@ class ClosedLoop {
 };
 
 std::vector<Disc> ClosedLoop::Everything() const {
-  std::vector<Disc> discs = people_.At(robot_.time());
+  std::vector<Disc> discs = People();
   discs.insert(discs.end(), disturbances_.standing().begin(),
                disturbances_.standing().end());
+  return discs;
+}
+
+std::vector<Disc> ClosedLoop::People() const {
+  std::vector<Disc> discs = people_.At(robot_.time());
   discs.insert(discs.end(), disturbances_.moving().begin(),
                disturbances_.moving().end());
   return discs;
@@ -219,6 +225,11 @@ void ClosedLoop::SenseScan() {
                  : Interpolate(odometry_before_, odometry_,
                                (robot_.time() - odometry_before_time_) / span);
   taken.true_pose = TruePoseInMap();
+  std::vector<Eigen::Vector2d> echoes;  // world frame
+  for (const Eigen::Vector2d& echo : taken.scan.echoes) {
+    echoes.push_back(robot_.pose() * echo);
+  }
+  contacts_.AddScan(echoes, People(), robot_.time());
   run_->true_path.push_back(taken.true_pose);
   scans_.push_back(taken);
   if (scans_.size() > 20) scans_.erase(scans_.begin());
@@ -282,10 +293,7 @@ void ClosedLoop::Control() {
 }
 
 void ClosedLoop::CheckContacts() {
-  std::vector<Disc> people = people_.At(robot_.time());
-  people.insert(people.end(), disturbances_.moving().begin(),
-                disturbances_.moving().end());
-  contacts_.Check(robot_, plan_, disturbances_.standing(), people);
+  contacts_.Check(robot_, plan_, disturbances_.standing(), People());
 }
 
 void ClosedLoop::RecordFrame() {
@@ -307,10 +315,7 @@ void ClosedLoop::RecordFrame() {
     return discs;
   };
   frame.standing = to_map(disturbances_.standing());
-  std::vector<Disc> people = people_.At(robot_.time());
-  people.insert(people.end(), disturbances_.moving().begin(),
-                disturbances_.moving().end());
-  frame.moving = to_map(people);
+  frame.moving = to_map(People());
   if (!scans_.empty() && estimate_.has_value()) {
     const auto& echoes = scans_.back().scan.echoes;
     for (size_t i = 0; i < echoes.size(); i += 4) {
@@ -376,6 +381,7 @@ absl::Status ClosedLoop::Run(
   run_->disturbances = disturbances_.all();
   run_->static_collisions = contacts_.static_collisions();
   run_->moving_collisions = contacts_.moving_collisions();
+  run_->unseen_collisions = contacts_.unseen_collisions();
   run_->run_into = contacts_.run_into();
   run_->least_clearance = contacts_.least_clearance();
   run_->contacts = contacts_.contacts();

@@ -78,6 +78,7 @@ struct NavigationRun {
   double path_ratio = 0.;
   int static_collisions = 0;
   int moving_collisions = 0;    // with the robot moving
+  int unseen_collisions = 0;    // of these, with somebody not seen of late
   int run_into = 0;             // with the robot standing still
   double least_clearance = 0.;  // metres, to stationary things
   std::vector<Disturbance> disturbances;

@@ -39,6 +39,7 @@ nlohmann::ordered_json ToJson(const NavigationRun& run) {
   json["reached"] = run.reached();
   json["collisions"] = {{"static", run.static_collisions},
                         {"moving", run.moving_collisions},
+                        {"moving_unseen", run.unseen_collisions},
                         {"run_into_standing_still", run.run_into}};
   json["path_ratio"] = run.path_ratio;
   json["travelled_metres"] = run.travelled;
@@ -79,6 +80,9 @@ nlohmann::ordered_json ToJson(const NavigationRun& run) {
          {"y", contact.place.y()},
          {"with", contact.with_moving ? "moving" : "static"},
          {"speed", contact.speed}});
+    if (contact.with_moving && std::isfinite(contact.unseen_seconds)) {
+      json["contacts"].back()["unseen_seconds"] = contact.unseen_seconds;
+    }
   }
   json["disturbances"] = nlohmann::ordered_json::array();
   for (const Disturbance& disturbance : run.disturbances) {

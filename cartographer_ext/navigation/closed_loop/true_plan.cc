@@ -86,6 +86,7 @@ absl::StatusOr<Plan> ShortestPath(
   CostmapOptions options;
   options.inscribed_radius = radius;
   options.padding = 0.;
+  options.tight = 0.;
   options.inflation_radius = radius;
   options.clearance_weight = 0.;
   const auto costmap = Costmap::Create(*map, options);

@@ -62,6 +62,28 @@ TEST_F(ContactCounterTest, ARobotThatStandsIsRunInto) {
   EXPECT_EQ(counter_.moving_collisions(), 2);
 }
 
+TEST_F(ContactCounterTest, TellsWhetherSomebodyWasSeen) {
+  robot_.Command({0.1, 0.});
+  Drive(0.5, {}, {});
+  const Disc person{robot_.pose() * Eigen::Vector2d(0.4, 0.), 0.2};
+  for (const bool seen : {true, false}) {
+    // The first echo is his, the second one is not.
+    const Eigen::Vector2d echo(seen ? 0.22 : 0.9, 0.);
+    counter_.AddScan({robot_.pose() * echo}, {person}, robot_.time());
+    Drive(0.1, {}, {person});
+    Drive(0.1, {}, {});
+  }
+  EXPECT_EQ(counter_.moving_collisions(), 2);
+  EXPECT_EQ(counter_.unseen_collisions(), 0);  // he had been seen just before
+  ASSERT_EQ(counter_.contacts().size(), 2u);
+  EXPECT_NEAR(counter_.contacts()[0].unseen_seconds, 0.1, 0.1);
+  Drive(1.5, {}, {});
+  counter_.AddScan({}, {person}, robot_.time());
+  Drive(0.1, {}, {person});
+  EXPECT_EQ(counter_.moving_collisions(), 3);
+  EXPECT_EQ(counter_.unseen_collisions(), 1);
+}
+
 }  // namespace
 }  // namespace navigation
 }  // namespace cartographer_ext

@@ -111,6 +111,21 @@ TEST_F(DisturbancesTest, ADoorLeavesAnotherPath) {
             absl::string_view::npos);
 }
 
+TEST_F(DisturbancesTest, DrawsAnewWhereTheFirstOnesLeaveNoRoom) {
+  // On a way of 11 m between goals that keep 1.5 m: four at 2 m fit, if
+  // the first ones are not in the way.
+  const simulation::RayCaster corridor(
+      {{{-2., -2.}, {15., -2.}}, {{-2., 2.}, {15., 2.}}}, {});
+  DisturbanceOptions options;
+  options.obstacles = 4;
+  for (int seed = 1; seed <= 30; ++seed) {
+    EXPECT_TRUE(
+        Disturbances::Create(corridor, {{{0., 0.}, {11.5, 0.}}}, options, seed)
+            .ok())
+        << seed;
+  }
+}
+
 TEST_F(DisturbancesTest, TheSeedDecides) {
   DisturbanceOptions options;
   options.obstacles = 2;

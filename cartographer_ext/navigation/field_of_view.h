@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Where a scan looks: the bearings of its beams, with or without an echo. Known
+// without a description of the laser.
+#ifndef CARTOGRAPHER_EXT_NAVIGATION_FIELD_OF_VIEW_H_
+#define CARTOGRAPHER_EXT_NAVIGATION_FIELD_OF_VIEW_H_
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "Eigen/Core"
+
+namespace cartographer_ext {
+namespace navigation {
+
+class FieldOfView {
+ public:
+  // Ends of beams in the robot frame; those that are not finite are left out.
+  void AddBeams(const Eigen::Vector2d& laser,
+                const std::vector<Eigen::Vector2d>& ends) {
+    laser_ = laser;
+    for (const Eigen::Vector2d& end : ends) {
+      if (end.allFinite()) bearings_.push_back(Bearing(end));
+    }
+    std::sort(bearings_.begin(), bearings_.end());
+  }
+
+  // Whether a beam goes towards a point (robot frame), whatever is before it.
+  bool Contains(const Eigen::Vector2d& point) const {
+    // About the gap between beams of which one gave no echo.
+    constexpr double kGap = 0.05;  // radians
+    const double bearing = Bearing(point);
+    const auto next =
+        std::lower_bound(bearings_.begin(), bearings_.end(), bearing - kGap);
+    return next != bearings_.end() && *next <= bearing + kGap;
+  }
+
+ private:
+  double Bearing(const Eigen::Vector2d& point) const {
+    const Eigen::Vector2d beam = point - laser_;
+    return std::atan2(beam.y(), beam.x());
+  }
+
+  Eigen::Vector2d laser_ = Eigen::Vector2d::Zero();
+  std::vector<double> bearings_;  // sorted
+};
+
+}  // namespace navigation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_NAVIGATION_FIELD_OF_VIEW_H_
