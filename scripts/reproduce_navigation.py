@@ -49,6 +49,7 @@ def summary(world, case, runs):
             "%d of %d" % (sum(run["reached"] for run in runs), sum(run["goals"] for run in runs)),
             number(max(errors), 3) if errors else "-",
             sum(run["collisions"]["static"] for run in runs), sum(run["collisions"]["moving"] for run in runs),
+            sum(run["collisions"]["moving_unseen"] for run in runs),
             sum(run["collisions"]["run_into_standing_still"] for run in runs),
             "%s, %s" % (number(statistics.median(ratios), 2), number(max(ratios), 2)) if ratios else "-",
             "%.1f %%" % (100. * statistics.mean(run["cpu_share"]["total"] for run in runs)),
@@ -74,7 +75,7 @@ def c_navigation(commands, options):
             if case == "free":
                 poses.append(localization(world, "stock, " + case, [run["other_localization"] for run in runs]))
     text = common.table(["world", "case", "runs", "goals reached", "largest true error at a goal m", "collisions with stationary things",
-                         "with people, moving", "run into standing still", "path ratio median, worst", "CPU of a core",
+                         "with people, moving", "of these unseen", "run into standing still", "path ratio median, worst", "CPU of a core",
                          "control cycle p99 ms"], lines)
     text += "\nLocalisation on these drives:\n\n" + common.table(
         ["world", "method", "runs", "median m", "largest m", "jumps > 0.5 m"], poses)

@@ -98,7 +98,7 @@ bool DynamicWindow::MeetsMoving(const DynamicWindowInput& input,
   if (input.moving.empty()) return false;
   const double reaction = robot_.reaction_seconds;
   const double braking =
-      std::max(velocity.linear / robot_.deceleration,
+      std::max(std::abs(velocity.linear) / robot_.deceleration,
                std::abs(velocity.angular) / robot_.turn_acceleration);
   if (braking == 0.) return false;
   const double end = reaction + braking;

@@ -174,6 +174,19 @@ TEST_F(DynamicWindowTest, NobodyCanReachItBeforeItStands) {
   EXPECT_GT(admissible, 500);
 }
 
+TEST_F(DynamicWindowTest, BackingUpHeedsPeople) {
+  const Costmap costmap = MakeCostmap(RoomMap(10., 10.));
+  const LocalObstacles local(costmap, nullptr, {}, {5., 5.}, 2.5);
+  DynamicWindowInput input = Input(&local, Pose2(5., 5., 0.));
+  EXPECT_TRUE(window_.Evaluate(input, {-0.1, 0.}).admissible);
+  MovingDisc person;
+  person.radius = 0.2;
+  person.position = Eigen::Vector2d(4.2, 5.);
+  person.velocity = Eigen::Vector2d(0., 0.6);
+  input.moving = {person};
+  EXPECT_FALSE(window_.Evaluate(input, {-0.1, 0.}).admissible);
+}
+
 TEST_F(DynamicWindowTest, WhatIsTooNearMayBeLeftAndPassed) {
   const Costmap costmap = MakeCostmap(RoomMap(10., 10.));
   std::vector<Eigen::Vector2d> echoes;
