@@ -12,7 +12,7 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/io/line_journal.h"
-#include "cartographer_ext/optimization/offline/starts.h"
+#include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {

@@ -17,7 +17,7 @@
 #include "cartographer_ext/experiments/outliers/outlier_generator.h"
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
-#include "cartographer_ext/optimization/offline/starts.h"
+#include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {

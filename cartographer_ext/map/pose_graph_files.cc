@@ -10,7 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/io/picture.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
-#include "cartographer_ext/optimization/offline/starts.h"
+#include "cartographer_ext/optimization/offline/starts/starts.h"
 
 namespace cartographer_ext {
 namespace evaluation {

@@ -3,6 +3,7 @@
 #include "cartographer_ext/optimization/offline/auto_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -19,10 +20,45 @@ namespace {
 constexpr int kPolishRounds = 30;
 // A map that has lost fewer loops than this is not folded.
 constexpr int kUnfolded = 20;
+// Relative difference of the costs of members that are one and the same.
+constexpr double kSameOptimum = 1e-9;
 // Larger graphs are taken at their word.
 constexpr size_t kMaxEdgesForNoise = 100000;
 // 99.9 % quantile of chi2 with three degrees of freedom.
 constexpr double kWideGate = 16.26623619623813;
+
+// Where most loops are wrong, one that saves hardly more than what it costs to
+// refuse it is more likely wrong, too: the gate is meant for even odds, and twice
+// the logarithm of the odds is what other odds change.
+double GateOfOdds(const std::vector<WhitenedEdge>& edges,
+                  const std::vector<Pose2>& poses) {
+  double loops = 0., accepted = 0.;
+  for (const WhitenedEdge& edge : edges) {
+    loops += edge.is_loop;
+    accepted += edge.is_loop &&
+                Chi2(edge, poses[edge.from], poses[edge.to]) < kChi2Gate;
+  }
+  const double odds = (accepted + 1.) / (loops - accepted + 1.);
+  return kChi2Gate + std::min(0., 2. * std::log(odds));
+}
+
+// Of the members that cost at most `limit`, that with the lowest cost by the
+// gate of the odds.
+const Portfolio::Member& LikeliestMember(const Portfolio& portfolio,
+                                         const double limit) {
+  const std::vector<WhitenedEdge>& edges = portfolio.edges();
+  const Portfolio::Member* result = &portfolio.best();
+  const double gate = GateOfOdds(edges, result->poses);
+  double lowest = TruncatedCost(edges, result->poses, gate);
+  for (const Portfolio::Member& member : portfolio.members()) {
+    if (member.cost > limit) continue;
+    const double cost = TruncatedCost(edges, member.poses, gate);
+    if (cost >= lowest) continue;
+    lowest = cost;
+    result = &member;
+  }
+  return *result;
+}
 
 // Steps 3 and 4 of the header.
 void Decide(const AutoOptions& options, Portfolio* const portfolio,
@@ -38,11 +74,26 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
   const double gate =
       options.adaptive_gate ? AdaptiveGate(edges, best.poses) : kChi2Gate;
   const double limit = best.cost + kUnfolded * kChi2Gate;
+  // Half way to what a solver alone reaches, to stay below others, too.
+  const double enough =
+      best.cost +
+      0.5 * std::max(0., portfolio->lowest_of_solvers() - best.cost);
+  // Here solvers took part that have been polished, too.
+  const Portfolio::Member& likeliest = LikeliestMember(
+      *portfolio, std::max(best.cost, portfolio->lowest_of_solvers()) *
+                      (1. + kSameOptimum));
   double lowest = std::numeric_limits<double>::infinity();
+  std::vector<double> polished;
   for (const Portfolio::Member& member : portfolio->members()) {
-    if (member.cost > limit || (gate == kChi2Gate && &member != &best)) {
+    if (member.cost > limit || (gate == kChi2Gate && &member != &likeliest)) {
       continue;
     }
+    const bool again =
+        std::any_of(polished.begin(), polished.end(), [&](const double cost) {
+          return std::abs(member.cost - cost) <= kSameOptimum * cost;
+        });
+    if (again && &member != &likeliest) continue;
+    polished.push_back(member.cost);
     std::vector<Pose2> poses = member.poses;
     std::vector<double> weights;
     count(PolishTruncated(gate, kPolishRounds, &solver, &poses, &weights));
@@ -56,18 +107,17 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
   if (!options.adaptive_gate) return;
   count(
       PolishAdapted(kPolishRounds, &solver, &result->poses, &result->weights));
-  // Half way to what a solver alone reaches, to stay below others, too.
-  const double enough =
-      best.cost +
-      0.5 * std::max(0., portfolio->lowest_of_solvers() - best.cost);
-  if (!options.lowest_cost || TruncatedCost(edges, result->poses) <= enough) {
+  const double most =
+      gate == kChi2Gate ? std::max(enough, likeliest.cost * (1. + kSameOptimum))
+                        : enough;
+  if (!options.lowest_cost || TruncatedCost(edges, result->poses) <= most) {
     return;
   }
   const std::vector<Pose2> adapted = result->poses;
-  result->poses = best.poses;
-  result->member = best.name;
-  result->weights = DecideLoops(edges, best.poses, kChi2Gate);
-  count(PolishNear(edges, adapted, enough, &result->poses, &result->weights));
+  result->poses = likeliest.poses;
+  result->member = likeliest.name;
+  result->weights = DecideLoops(edges, likeliest.poses, kChi2Gate);
+  count(PolishNear(edges, adapted, most, &result->poses, &result->weights));
 }
 
 // Step 5. A gate of 99 % rejects one right loop in a hundred.

@@ -14,7 +14,8 @@
 //      members with the estimate; the larger of both factors stays at least one;
 //   3. the members near the lowest truncated cost polished with a gate adapted
 //      to the scale of the accepted loops, where the matrices claim too little;
-//      the lowest cost truncated there is taken;
+//      the lowest cost truncated there is taken. Where they do not, that of
+//      the members of (4) which the odds of a wrong loop favour;
 //   4. where that costs more than half of what separates the lowest truncated
 //      cost from the best single solver, the lowest is taken, brought near to
 //      (3) (polish_near.h);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "Eigen/Cholesky"
+#include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
 #include "glog/logging.h"
 
@@ -86,6 +87,27 @@ std::vector<Flip> PromisingFlips(const FlipOptions& options,
   return result;
 }
 
+// Puts a group in force, releases it and polishes. With `relax` from a chordal
+// relaxation of what is in force then; false where there is none.
+bool SolveForced(const std::vector<int>& group, const double gate,
+                 const bool relax, std::vector<WhitenedEdge>* const edges,
+                 RobustSolver* const solver, std::vector<Pose2>* const poses) {
+  SolverOptions robust;
+  robust.kernel = DefaultKernel(KernelType::kDcs);
+  robust.kernel.parameter = gate;
+  robust.cost_tolerance = 1e-4;
+  robust.max_iterations = 40;
+  for (const int i : group) (*edges)[i].is_loop = false;
+  const bool started =
+      !relax || ChordalPoses(*edges, DecideLoops(*edges, *poses, gate), poses);
+  if (started) solver->Solve(robust, poses);
+  for (const int i : group) (*edges)[i].is_loop = true;
+  if (!started) return false;
+  solver->Solve(robust, poses);
+  PolishTruncated(gate, kPolishRounds, solver, poses, nullptr);
+  return true;
+}
+
 }  // namespace
 
 int FlipLoops(const FlipOptions& options, RobustSolver* const solver,
@@ -130,11 +152,6 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
   CHECK_EQ(&solver->edges(), edges);
   double cost = TruncatedCost(*edges, *poses, options.gate);
   int kept = 0, trials = 0;
-  SolverOptions robust;
-  robust.kernel = DefaultKernel(KernelType::kDcs);
-  robust.kernel.parameter = options.gate;
-  robust.cost_tolerance = 1e-4;
-  robust.max_iterations = 40;
   std::vector<bool> tried(support.groups.size(), false);
   while (trials < options.max_trials) {
     // The largest group with most of its loops rejected.
@@ -156,25 +173,28 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
     if (best < 0) break;
     tried[best] = true;
     ++trials;
-    std::vector<Pose2> moved = *poses;
-    for (const int i : support.groups[best]) (*edges)[i].is_loop = false;
-    solver->Solve(robust, &moved);
-    for (const int i : support.groups[best]) (*edges)[i].is_loop = true;
-    solver->Solve(robust, &moved);
-    PolishTruncated(options.gate, kPolishRounds, solver, &moved, nullptr);
-    const double moved_cost = TruncatedCost(*edges, moved, options.gate);
-    const bool better = moved_cost < cost * (1. - kProgress);
-    if (better) std::swap(moved, *poses);
-    if (alternatives != nullptr && std::abs(moved_cost - cost) < options.gate) {
-      alternatives->push_back({std::max(cost, moved_cost), moved});
+    bool better = false;
+    for (const bool relax : {false, true}) {
+      if (better || (relax && !options.relax)) break;
+      std::vector<Pose2> moved = *poses;
+      if (!SolveForced(support.groups[best], options.gate, relax, edges, solver,
+                       &moved)) {
+        break;
+      }
+      const double moved_cost = TruncatedCost(*edges, moved, options.gate);
+      better = moved_cost < cost * (1. - kProgress);
+      if (better) std::swap(moved, *poses);
+      if (alternatives != nullptr &&
+          std::abs(moved_cost - cost) < options.gate) {
+        alternatives->push_back({std::max(cost, moved_cost), moved});
+      }
+      if (better) cost = moved_cost;
     }
-    if (better) {
-      cost = moved_cost;
-      ++kept;
-      // What failed before may succeed now.
-      std::fill(tried.begin(), tried.end(), false);
-      tried[best] = true;
-    }
+    if (!better) continue;
+    ++kept;
+    // What failed before may succeed now.
+    std::fill(tried.begin(), tried.end(), false);
+    tried[best] = true;
   }
   return kept;
 }

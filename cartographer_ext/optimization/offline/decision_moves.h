@@ -11,7 +11,10 @@
 //   ForceGroups  one group of loops at a time is put in force whatever it
 //                costs, all others judged by a robust kernel; then the group is
 //                released and decided like the rest. This is how a wrong group
-//                is replaced by several right ones that it keeps out.
+//                is replaced by several right ones that it keeps out. Where
+//                that fails from the poses as they are, a chordal relaxation of
+//                what is in force then is the start: a folded ring does not
+//                unfold by descent.
 //
 // A move is kept only where the truncated cost of the graph has fallen.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_
@@ -41,6 +44,7 @@ struct ForceOptions {
   double gate = kChi2Gate;
   int max_trials = 30;
   int min_members = 1;  // of a group
+  bool relax = true;    // try from a chordal relaxation, too
 };
 
 // A solution that was found and not kept.

@@ -9,7 +9,7 @@
 
 #include "Eigen/Cholesky"
 #include "Eigen/LU"
-#include "cartographer_ext/optimization/offline/starts.h"
+#include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
 
 namespace cartographer_ext {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cartographer_ext/optimization/offline/loop_growth.h"
-#include "cartographer_ext/optimization/offline/starts.h"
+#include "cartographer_ext/optimization/offline/starts/starts.h"
 
 namespace cartographer_ext {
 namespace optimization {

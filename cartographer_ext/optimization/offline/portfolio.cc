@@ -7,12 +7,12 @@
 #include <limits>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
-#include "cartographer_ext/optimization/offline/joined_trajectories.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
-#include "cartographer_ext/optimization/offline/starts.h"
+#include "cartographer_ext/optimization/offline/starts/starts.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -21,8 +21,6 @@ namespace {
 constexpr int kPolishRounds = 30;
 // Relative difference of truncated costs of one and the same optimum.
 constexpr double kSame = 1e-6;
-// chi2 of an odometry edge that the digits of a file leave.
-constexpr double kRounding = 1e-3;
 // Loops by which solvers differ that decide only what is near the gate
 // differently.
 constexpr double kNearlySame = 3.;
@@ -34,8 +32,6 @@ constexpr int kMaxPossible = 2;
 constexpr size_t kSupported = 2;
 // Kernels that have to agree.
 constexpr size_t kQuickKernels = 3;
-// Poses of a graph on which each solution counts.
-constexpr size_t kLargeGraph = 30000;
 // Share of the supported loops that a map in which they agree keeps.
 constexpr double kNearlyAll = 0.98;
 // Groups that are forced in: of a large graph, and where the kernels agree on a
@@ -50,18 +46,8 @@ constexpr double kAffordableWork = 6e7;
 constexpr double kLittleWork = 3e6;
 // Beyond so many poses times loops, the search by groups is too dear.
 constexpr double kMaxGrowthWork = 4e6;
-
-// Whether the poses differ from chained odometry by rounding only.
-bool AreChained(const std::vector<WhitenedEdge>& edges,
-                const std::vector<Pose2>& poses) {
-  for (const WhitenedEdge& edge : edges) {
-    if (!edge.is_loop &&
-        !(Chi2(edge, poses[edge.from], poses[edge.to]) < kRounding)) {
-      return false;
-    }
-  }
-  return true;
-}
+// Gates up to which loops count where non-convexity is graduated from a map.
+constexpr double kReaches[] = {10., 100.};
 
 std::vector<int> Thinned(const std::vector<int>& values, const size_t limit) {
   if (values.size() <= limit) return values;
@@ -70,6 +56,11 @@ std::vector<int> Thinned(const std::vector<int>& values, const size_t limit) {
     result.push_back(values[k * values.size() / limit]);
   }
   return result;
+}
+
+// Names what was improved in the same way twice only once.
+std::string Suffixed(const std::string& name, const std::string& suffix) {
+  return absl::EndsWith(name, suffix) ? name : absl::StrCat(name, suffix);
 }
 
 }  // namespace
@@ -105,6 +96,12 @@ void Portfolio::Add(const std::string& name, std::vector<Pose2> poses) {
   if (members_.back().cost < members_[best_].cost) best_ = members_.size() - 1;
 }
 
+void Portfolio::NoteSolver(const std::vector<Pose2>& poses) {
+  if (!starts_alone_) return;
+  lowest_of_solvers_ =
+      std::min(lowest_of_solvers_, TruncatedCost(edges_, poses));
+}
+
 void Portfolio::AddKernel(const std::string& start_name, const KernelType type,
                           const std::vector<Pose2>& start) {
   SolverOptions options;
@@ -112,8 +109,7 @@ void Portfolio::AddKernel(const std::string& start_name, const KernelType type,
   options.max_iterations = options_.max_iterations;
   std::vector<Pose2> poses = start;
   Count(solver_.Solve(options, &poses));
-  lowest_of_solvers_ =
-      std::min(lowest_of_solvers_, TruncatedCost(edges_, poses));
+  NoteSolver(poses);
   Add(absl::StrCat(start_name, KernelName(type)), std::move(poses));
 }
 
@@ -137,8 +133,7 @@ void Portfolio::AddGnc(const std::string& start_name,
                        const std::vector<Pose2>& start) {
   std::vector<Pose2> poses = start;
   Count(SolveGnc(GncOptions(), &solver_, &poses, nullptr));
-  lowest_of_solvers_ =
-      std::min(lowest_of_solvers_, TruncatedCost(edges_, poses));
+  NoteSolver(poses);
   Add(absl::StrCat(start_name, "gnc_tls"), std::move(poses));
 }
 
@@ -212,6 +207,7 @@ bool Portfolio::FindsLostGroup() {
   ForceOptions force;
   force.max_trials = kMaxTrialsOfSettled;
   force.min_members = kSupported + 1;
+  force.relax = false;  // the price of a graph that is settled
   std::vector<Pose2> poses = best().poses;
   if (ForceGroups(support(), force, &edges_, &solver_, &poses,
                   &alternatives_) == 0) {
@@ -243,47 +239,6 @@ bool Portfolio::RejectedContradict() {
   return possible <= kMaxPossible;
 }
 
-bool Portfolio::AddReplay(ReplayResult* const replay) {
-  if (!Replay(graph_, options_.smoother, replay).ok()) return false;
-  lowest_of_solvers_ =
-      std::min(lowest_of_solvers_, TruncatedCost(edges_, replay->poses));
-  Add("r_isam", replay->poses);
-  return true;
-}
-
-bool Portfolio::SettleByReplay() {
-  ReplayResult replay;
-  if (!AddReplay(&replay)) return false;
-  replayed_ = true;
-  const size_t first = members_.size();
-  AddKernels("r_isam, ", replay.poses, false);
-  return IsSettled(first);
-}
-
-void Portfolio::AddReplays() {
-  ReplayResult replay;
-  if (replayed_ || AddReplay(&replay)) {
-    if (!replayed_) AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
-    if (graph_.poses.size() > kLargeGraph) return;
-    // The failures of a softer and of a harder epoch kernel differ.
-    SmootherOptions softer = options_.smoother;
-    softer.epoch_kernel.parameter *= 4.;
-    if (Replay(graph_, softer, &replay).ok()) Add("r_isam, soft", replay.poses);
-  } else if (JoinTrajectories(graph_, options_.smoother, &replay.poses)) {
-    Add("joined", replay.poses);
-  }
-}
-
-void Portfolio::AddGrowth(const std::vector<Pose2>& start) {
-  std::vector<Pose2> poses = start;
-  std::vector<double> weights;
-  if (!GrowLoops(support(), GrowthOptions(), &solver_, &poses, &weights)) {
-    return;
-  }
-  Add("growth", poses);
-  AddKernel("growth, ", KernelType::kDcs, poses);
-}
-
 bool Portfolio::AddCertain() {
   std::vector<Pose2> poses = ChainOdometry(graph_);
   std::vector<double> weights;
@@ -297,6 +252,7 @@ bool Portfolio::AddCertain() {
   ForceOptions force;
   force.max_trials = kMaxTrialsOnLargeGraph;
   force.min_members = kSupported + 1;
+  force.relax = false;  // two more factorisations a trial
   poses = best().poses;
   if (ForceGroups(support(), force, &edges_, &solver_, &poses, &alternatives_) >
       0) {
@@ -352,8 +308,9 @@ void Portfolio::Run() {
             (!settled || CountRejected() <= 0.25 * num_loops_));
   if (!settled && size <= kMaxGrowthWork) {
     RunGroups();
-  } else if (!settled) {
-    AddCertain();
+  } else {
+    if (!settled) AddCertain();
+    Graduate();
   }
   Improve();
 }
@@ -382,7 +339,17 @@ void Portfolio::Soften() {
     options.kernel.parameter = kChi2Gate;
     std::vector<Pose2> poses = best().poses;
     Count(solver_.Solve(options, &poses));
-    Add(absl::StrCat(best().name, ", softened"), std::move(poses));
+    Add(Suffixed(best().name, ", softened"), std::move(poses));
+  }
+}
+
+void Portfolio::Graduate() {
+  for (const double reach : kReaches) {
+    GncOptions options;
+    options.reach = reach * kChi2Gate;
+    std::vector<Pose2> poses = best().poses;
+    Count(SolveGnc(options, &solver_, &poses, nullptr));
+    Add(Suffixed(best().name, ", graduated"), std::move(poses));
   }
 }
 
@@ -400,49 +367,6 @@ void Portfolio::Improve() {
   poses = best().poses;
   Count(solver_.Solve(options, &poses));
   Add(best().name, std::move(poses));
-}
-
-void Portfolio::RunStarts(const bool with_full_kernels) {
-  if (with_full_kernels && !ran_full_kernels_) {
-    AddFullKernels("", graph_.poses);
-  }
-  AddReplays();
-  const std::vector<Pose2> chained = ChainOdometry(graph_);
-  const bool same = AreChained(edges_, graph_.poses);
-  if (!same) AddKernels("odometry, ", chained, with_full_kernels);
-  if (!CanKeepAllLoops()) return;
-  AddGnc("", graph_.poses);
-  if (!same) AddGnc("odometry, ", chained);
-  if (continued_) return;
-  std::vector<Pose2> chordal = chained;
-  if (RobustChordalPoses(edges_, &chordal)) {
-    AddKernels("chordal, ", chordal, with_full_kernels);
-    AddGnc("chordal, ", chordal);
-  }
-  const std::vector<Pose2> tree =
-      SpanningTree(graph_, std::vector<double>(edges_.size(), 1.));
-  AddKernels("tree of all, ", tree, with_full_kernels);
-  AddGnc("tree of all, ", tree);
-}
-
-void Portfolio::RunGroups() {
-  AddGrowth(ChainOdometry(graph_));
-  const std::vector<double> in_force =
-      DecideLoops(edges_, best().poses, kChi2Gate);
-  const std::vector<double> supported = SupportedLoops();
-  AddKernel("tree, ", KernelType::kGemanMcClure,
-            SpanningTree(graph_, in_force));
-  for (const auto* const weights : {&in_force, &supported}) {
-    std::vector<Pose2> poses = best().poses;
-    if (ChordalPoses(edges_, *weights, &poses)) {
-      AddKernel("relaxed, ", KernelType::kDcs, poses);
-    }
-  }
-  std::vector<Pose2> poses = best().poses;
-  if (ForceGroups(support(), ForceOptions(), &edges_, &solver_, &poses,
-                  &alternatives_) > 0) {
-    Add(absl::StrCat(best().name, ", groups"), std::move(poses));
-  }
 }
 
 }  // namespace optimization

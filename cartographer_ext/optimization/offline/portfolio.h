@@ -18,7 +18,12 @@
 //   Groups  where the rejected loops are within the uncertainty of the map or
 //           the kernels disagree: growth by groups of loops (loop_growth.h), a
 //           spanning tree over the loops in force, groups forced in one by one
-//           (decision_moves.h).
+//           (decision_moves.h), in turn with chordal relaxations of what is in
+//           force, as long as that finds loops.
+//
+// From the best of these, non-convexity is graduated once more, with the loops
+// near the map only: that finds what many decisions at once would gain, and
+// does not fill the factor.
 //
 // A large graph is first solved with the loops that agree with others over
 // short stretches, where those do not fill the factor; if the kernels agree
@@ -79,7 +84,8 @@ class Portfolio {
   const Member& best() const { return members_[best_]; }
   // What groups that were forced in and given up led to.
   const std::vector<Alternative>& alternatives() const { return alternatives_; }
-  // The lowest truncated cost of a solver before any polish.
+  // The lowest truncated cost of a solver before any polish, from a start that
+  // it would have alone.
   double lowest_of_solvers() const { return lowest_of_solvers_; }
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
   RobustSolver* solver() { return &solver_; }
@@ -90,6 +96,9 @@ class Portfolio {
   bool CanKeepAllLoops();
 
  private:
+  // Poses of a graph on which each solution counts.
+  static constexpr size_t kLargeGraph = 30000;
+
   void RunQuick();
   // Whether the quick members, from `first` on, agree.
   bool IsSettled(size_t first);
@@ -102,6 +111,8 @@ class Portfolio {
   void RunGroups();
   FlipOptions flip_options() const;
   void Count(const SolverSummary& summary);
+  // A solver's own result.
+  void NoteSolver(const std::vector<Pose2>& poses);
   void AddKernel(const std::string& start_name, KernelType type,
                  const std::vector<Pose2>& start);
   void AddKernels(const std::string& start_name,
@@ -115,6 +126,9 @@ class Portfolio {
   void AddReplays();
   // From the best, kernels as wide as the gate.
   void Soften();
+  // From the best, graduated non-convexity in which what is far beyond the gate
+  // takes no part, so that it does not fill the factor.
+  void Graduate();
   // False where no loop is certain.
   bool AddCertain();
   // 1 for the loops that several others agree with, and for odometry.
@@ -146,6 +160,7 @@ class Portfolio {
   bool continued_ = false;
   bool ran_full_kernels_ = false;
   bool replayed_ = false;
+  bool starts_alone_ = true;  // from starts that no search has found
 };
 
 }  // namespace optimization

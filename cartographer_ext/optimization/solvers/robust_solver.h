@@ -159,6 +159,9 @@ struct GncOptions {
   // Each round starts from the given poses instead of from the last solution,
   // which with many outliers is folded in the first rounds.
   bool restart = true;
+  // Chi2 at the given poses up to which a loop counts in the first round. 0: all
+  // loops count, and are solved once with full weights before.
+  double reach = 0.;
   // Processor time. Asked after each round, so that the rounds of the first,
   // full graphs may exceed it; what it ends has not converged.
   double max_seconds = 1e9;

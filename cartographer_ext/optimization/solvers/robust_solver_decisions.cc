@@ -30,9 +30,14 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
   inner.cost_tolerance = 1e-4;
   inner.edge_weights.assign(edges.size(), 1.);
   const std::vector<Pose2> given = *poses;
-  SolverSummary total = solver->Solve(inner, poses);
   const double c = options.truncation;
+  SolverSummary total;
   double mu = -1.;
+  if (options.reach > c) {
+    mu = c / (options.reach - c);
+  } else {
+    total = solver->Solve(inner, poses);
+  }
   const auto in_time = [&] {
     return ThreadCpuSeconds() - start <= options.max_seconds;
   };

@@ -95,6 +95,36 @@ TEST(DecisionMovesTest, RightGroupsPushOutAWrongOne) {
   EXPECT_EQ(wrong_in_force, 0);
 }
 
+// A ring that wrong groups have folded does not unfold by descent.
+TEST(DecisionMovesTest, AChordalRelaxationUnfoldsARing) {
+  int unfolded = 0;
+  for (const uint64_t seed : {1, 6, 8, 10, 12, 14, 16}) {
+    test::GridWorld world = test::MakeWeakRing(seed, 0.2, true);
+    OutlierOptions outliers;
+    outliers.type = OutlierType::kRandomGrouped;
+    outliers.count = 20;
+    outliers.seed = seed;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+    RobustSolver solver(edges);
+    std::vector<Pose2> start = world.graph.poses;
+    PolishTruncated(kChi2Gate, 30, &solver, &start, nullptr);
+    const LoopSupport support =
+        FindLoopSupport(world.graph, LoopSupportOptions());
+    double cost[2];
+    for (const bool relax : {false, true}) {
+      ForceOptions options;
+      options.relax = relax;
+      std::vector<Pose2> poses = start;
+      ForceGroups(support, options, &edges, &solver, &poses, nullptr);
+      cost[relax] = TruncatedCost(edges, poses);
+    }
+    EXPECT_LE(cost[1], cost[0] * (1. + 1e-6)) << seed;
+    unfolded += cost[1] < cost[0] - 5. * kChi2Gate;
+  }
+  EXPECT_GE(unfolded, 3);
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext

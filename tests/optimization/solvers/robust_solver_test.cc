@@ -337,6 +337,29 @@ TEST_F(RobustSolverTest, GncStartsEachRoundFromTheGivenPoses) {
   EXPECT_GT(AbsoluteTrajectoryError(poses, optimum_), 0.1);
 }
 
+// From a map that is right, loops far beyond the gate take no part: the same
+// inliers, and a factor that they do not fill.
+TEST_F(RobustSolverTest, GncWithinReach) {
+  std::vector<Pose2> all = optimum_, near = optimum_;
+  std::vector<double> weights_all, weights_near;
+  GncOptions options;
+  options.max_outer_iterations = 1;
+  const size_t filled = SolveGnc(dirty_, options, &all, nullptr).factor_blocks;
+  const auto reaching = [&](const int rounds, std::vector<Pose2>* const poses,
+                            std::vector<double>* const weights) {
+    options.max_outer_iterations = rounds;
+    options.reach = 10. * kChi2Gate;
+    *poses = optimum_;
+    return SolveGnc(dirty_, options, poses, weights).factor_blocks;
+  };
+  EXPECT_LT(reaching(1, &near, nullptr), filled);
+  reaching(100, &near, &weights_near);
+  all = optimum_;
+  SolveGnc(dirty_, GncOptions(), &all, &weights_all);
+  EXPECT_EQ(weights_near, weights_all);
+  EXPECT_LT(AbsoluteTrajectoryError(near, all), 1e-5);
+}
+
 TEST_F(RobustSolverTest, GncEndsInTime) {
   GncOptions options;
   options.max_seconds = 0.;

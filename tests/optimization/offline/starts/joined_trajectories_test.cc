@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/optimization/offline/joined_trajectories.h"
+#include "cartographer_ext/optimization/offline/starts/joined_trajectories.h"
 
 #include <cmath>
 

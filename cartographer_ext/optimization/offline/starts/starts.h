@@ -13,8 +13,8 @@
 //                   length of the drift does not matter.
 //
 // All keep the first pose where it is.
-#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_H_
-#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_H_
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_STARTS_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_STARTS_H_
 
 #include <vector>
 
@@ -57,4 +57,4 @@ bool RobustChordalPoses(const std::vector<WhitenedEdge>& edges,
 }  // namespace optimization
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_H_
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_STARTS_H_

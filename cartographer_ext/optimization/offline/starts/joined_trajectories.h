@@ -11,8 +11,8 @@
 //      which the drift between two loops would exceed;
 //   3. with the chosen loops in force whatever their error, the whole is solved
 //      by kernels that narrow down to the gate.
-#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_JOINED_TRAJECTORIES_H_
-#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_JOINED_TRAJECTORIES_H_
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_JOINED_TRAJECTORIES_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_JOINED_TRAJECTORIES_H_
 
 #include <vector>
 
@@ -30,4 +30,4 @@ bool JoinTrajectories(const PoseGraph& graph, const SmootherOptions& options,
 }  // namespace optimization
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_JOINED_TRAJECTORIES_H_
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_JOINED_TRAJECTORIES_H_

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What R-iSAM does at the end of the data, where odometry was too weak to
+// accept a loop by itself: a map that costs less than the replay's by more than
+// the gate's own doubt replaces it. It is grown by groups of loops
+// (loop_growth.h), solved by kernels as wide as the gate, which see what has
+// ended up just behind it, and then lost groups are forced in
+// (decision_moves.h).
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_READMISSION_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_READMISSION_H_
+
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/solvers/incremental_smoother.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+// Replaces poses and decisions of `replay` and returns true where there is such
+// a map. Does nothing where no loop may be lost, and on graphs of too many
+// poses and loops.
+bool ReadmitGroups(const PoseGraph& graph, ReplayResult* replay);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_READMISSION_H_
