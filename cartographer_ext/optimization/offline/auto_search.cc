@@ -78,10 +78,12 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
   const double enough =
       best.cost +
       0.5 * std::max(0., portfolio->lowest_of_solvers() - best.cost);
-  // Here solvers took part that have been polished, too.
-  const Portfolio::Member& likeliest = LikeliestMember(
-      *portfolio, std::max(best.cost, portfolio->lowest_of_solvers()) *
-                      (1. + kSameOptimum));
+  // What any solver reaches is known only where all have taken part.
+  const double known = portfolio->ran_all_solvers()
+                           ? std::max(best.cost, portfolio->lowest_of_solvers())
+                           : best.cost;
+  const Portfolio::Member& likeliest =
+      LikeliestMember(*portfolio, known * (1. + kSameOptimum));
   double lowest = std::numeric_limits<double>::infinity();
   std::vector<double> polished;
   for (const Portfolio::Member& member : portfolio->members()) {

@@ -38,6 +38,10 @@ constexpr double kNearlyAll = 0.98;
 // map that these contradict, which may be folded.
 constexpr int kMaxTrialsOnLargeGraph = 4;
 constexpr int kMaxTrialsOfSettled = 3;
+// Share of rejected loops from which kernels that agree are asked whether a
+// replay, which does not start from the same poses, ends lower: where more loops
+// are wrong than right, a rough start may fold them all in the same way.
+constexpr double kMostlyWrong = 0.6;
 // A graph of fewer poses times loops is searched from all starts in any case.
 constexpr double kSmallGraph = 2.5e5;
 // Multiplications of one factorisation that are worth it while the search is
@@ -46,8 +50,6 @@ constexpr double kAffordableWork = 6e7;
 constexpr double kLittleWork = 3e6;
 // Beyond so many poses times loops, the search by groups is too dear.
 constexpr double kMaxGrowthWork = 4e6;
-// Gates up to which loops count where non-convexity is graduated from a map.
-constexpr double kReaches[] = {10., 100.};
 
 std::vector<int> Thinned(const std::vector<int>& values, const size_t limit) {
   if (values.size() <= limit) return values;
@@ -219,6 +221,12 @@ bool Portfolio::FindsLostGroup() {
   return best().cost < before - kNearlySame * kChi2Gate;
 }
 
+bool Portfolio::ReplayIsLower() {
+  if (continued_ || CountRejected() <= kMostlyWrong * num_loops_) return false;
+  const double before = best().cost;
+  return !SettleByReplay() && best().cost < before - kNearlySame * kChi2Gate;
+}
+
 bool Portfolio::RejectedContradict() {
   const std::vector<Pose2>& poses = best().poses;
   const std::vector<double> weights = DecideLoops(edges_, poses, kChi2Gate);
@@ -298,10 +306,15 @@ void Portfolio::Run() {
   if (large && SettleBySupport()) return;
   const size_t first = members_.size();
   RunQuick();
-  const bool settled =
-      IsSettled(first) && (size > kMaxGrowthWork || !FindsLostGroup());
-  if (settled && (continued_ || size > kSmallGraph)) return;
-  if (large && SettleByReplay()) return;
+  bool settled = IsSettled(first);
+  if (settled) {
+    settled = size > kMaxGrowthWork ? !ReplayIsLower() : !FindsLostGroup();
+  }
+  if (settled && (continued_ || size > kSmallGraph)) {
+    if (size <= kMaxGrowthWork) Graduate(kNear);
+    return;
+  }
+  if (large && !replayed_ && SettleByReplay()) return;
   // Where many loops contradict a map that the robust kernels agree on, the
   // solvers that keep them all are far off.
   RunStarts(!continued_ && CanKeepAllLoops() &&
@@ -310,7 +323,8 @@ void Portfolio::Run() {
     RunGroups();
   } else {
     if (!settled) AddCertain();
-    Graduate();
+    Graduate(kNear);
+    Graduate(kFar);
   }
   Improve();
 }
@@ -343,14 +357,12 @@ void Portfolio::Soften() {
   }
 }
 
-void Portfolio::Graduate() {
-  for (const double reach : kReaches) {
-    GncOptions options;
-    options.reach = reach * kChi2Gate;
-    std::vector<Pose2> poses = best().poses;
-    Count(SolveGnc(options, &solver_, &poses, nullptr));
-    Add(Suffixed(best().name, ", graduated"), std::move(poses));
-  }
+void Portfolio::Graduate(const double reach) {
+  GncOptions options;
+  options.reach = reach * kChi2Gate;
+  std::vector<Pose2> poses = best().poses;
+  Count(SolveGnc(options, &solver_, &poses, nullptr));
+  Add(Suffixed(best().name, ", graduated"), std::move(poses));
 }
 
 void Portfolio::Improve() {

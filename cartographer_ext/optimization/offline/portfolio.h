@@ -87,6 +87,8 @@ class Portfolio {
   // The lowest truncated cost of a solver before any polish, from a start that
   // it would have alone.
   double lowest_of_solvers() const { return lowest_of_solvers_; }
+  // Whether every solver has taken part from every start.
+  bool ran_all_solvers() const { return ran_all_solvers_; }
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
   RobustSolver* solver() { return &solver_; }
   int iterations() const { return iterations_; }
@@ -98,6 +100,9 @@ class Portfolio {
  private:
   // Poses of a graph on which each solution counts.
   static constexpr size_t kLargeGraph = 30000;
+  // Gates up to which loops count where non-convexity is graduated from a map.
+  static constexpr double kNear = 10.;
+  static constexpr double kFar = 100.;
 
   void RunQuick();
   // Whether the quick members, from `first` on, agree.
@@ -105,6 +110,9 @@ class Portfolio {
   // Whether one of the largest groups of rejected loops that agree with each
   // other, forced in, leads to a map that costs less.
   bool FindsLostGroup();
+  // Whether, where most loops are rejected, a replay ends lower and nothing is
+  // settled by it.
+  bool ReplayIsLower();
   // Whether the rejected loops lie beyond the uncertainty of the best map.
   bool RejectedContradict();
   void RunStarts(bool with_full_kernels);
@@ -126,9 +134,9 @@ class Portfolio {
   void AddReplays();
   // From the best, kernels as wide as the gate.
   void Soften();
-  // From the best, graduated non-convexity in which what is far beyond the gate
-  // takes no part, so that it does not fill the factor.
-  void Graduate();
+  // From the best, graduated non-convexity in which what is more than `reach`
+  // gates off takes no part, so that it does not fill the factor.
+  void Graduate(double reach);
   // False where no loop is certain.
   bool AddCertain();
   // 1 for the loops that several others agree with, and for odometry.
@@ -159,6 +167,7 @@ class Portfolio {
   bool converged_ = true;
   bool continued_ = false;
   bool ran_full_kernels_ = false;
+  bool ran_all_solvers_ = false;
   bool replayed_ = false;
   bool starts_alone_ = true;  // from starts that no search has found
 };

@@ -22,7 +22,7 @@ namespace {
 constexpr double kRounding = 1e-3;
 // Poses times loops up to which groups are forced in more than once: at the end
 // of a replay, and from chordal relaxations.
-constexpr double kMaxRepeatedWork = 1e6;
+constexpr double kMaxRepeatedWork = 2e6;
 // Rounds of the search by groups, as long as each finds a loop.
 constexpr int kMaxGroupRounds = 4;
 // Whether the poses differ from chained odometry by rounding only.
@@ -106,6 +106,7 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
       SpanningTree(graph_, std::vector<double>(edges_.size(), 1.));
   AddKernels("tree of all, ", tree, with_full_kernels);
   AddGnc("tree of all, ", tree);
+  ran_all_solvers_ = true;
 }
 
 void Portfolio::RunGroups() {
@@ -133,7 +134,8 @@ void Portfolio::RunGroups() {
                     &alternatives_) > 0) {
       Add(absl::StrCat(best().name, ", groups"), std::move(poses));
     }
-    Graduate();
+    Graduate(kNear);
+    Graduate(kFar);
     if (best().cost > before - kChi2Gate) break;
   }
 }
