@@ -66,12 +66,9 @@ bool DynamicWindow::TouchesMoving(const std::vector<MovingDisc>& moving,
                                   const Pose2& pose,
                                   const double seconds) const {
   for (const MovingDisc& disc : moving) {
-    const Eigen::Vector2d position = disc.At(seconds);
-    for (const Footprint::Part& part : robot_.footprint.parts) {
-      if ((pose * part.center - position).norm() <
-          part.radius + disc.radius + options_.moving_margin) {
-        return true;
-      }
+    if (robot_.footprint.Distance(pose, disc.At(seconds)) <
+        disc.radius + options_.moving_margin) {
+      return true;
     }
   }
   return false;
@@ -83,11 +80,9 @@ bool DynamicWindow::IsWithinReach(const std::vector<MovingDisc>& moving,
   for (const MovingDisc& disc : moving) {
     const double reach =
         seconds * std::max(options_.walking_speed, disc.velocity.norm());
-    for (const Footprint::Part& part : robot_.footprint.parts) {
-      if ((pose * part.center - disc.position).norm() <
-          part.radius + disc.radius + reach + options_.reach_margin) {
-        return true;
-      }
+    if (robot_.footprint.Distance(pose, disc.position) <
+        disc.radius + reach + options_.reach_margin) {
+      return true;
     }
   }
   return false;

@@ -109,7 +109,7 @@ class DynamicWindow {
                    const Velocity& velocity) const;
   bool TouchesMoving(const std::vector<MovingDisc>& moving, const Pose2& pose,
                      double seconds) const;
-  // Whether one of them could touch the robot, whatever way it goes.
+  // Whether one of them could touch the robot, wherever it walks.
   bool IsWithinReach(const std::vector<MovingDisc>& moving, const Pose2& pose,
                      double seconds) const;
 

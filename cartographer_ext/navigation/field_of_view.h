@@ -17,12 +17,16 @@ namespace navigation {
 
 class FieldOfView {
  public:
-  // Ends of beams in the robot frame; those that are not finite are left out.
-  void AddBeams(const Eigen::Vector2d& laser,
-                const std::vector<Eigen::Vector2d>& ends) {
-    laser_ = laser;
-    for (const Eigen::Vector2d& end : ends) {
-      if (end.allFinite()) bearings_.push_back(Bearing(end));
+  // Ends of beams with and without an echo in the robot frame; those that are
+  // not finite are left out.
+  FieldOfView(const Eigen::Vector2d& laser,
+              const std::vector<Eigen::Vector2d>& echoes,
+              const std::vector<Eigen::Vector2d>& free_ends)
+      : laser_(laser) {
+    for (const auto* const ends : {&echoes, &free_ends}) {
+      for (const Eigen::Vector2d& end : *ends) {
+        if (end.allFinite()) bearings_.push_back(Bearing(end));
+      }
     }
     std::sort(bearings_.begin(), bearings_.end());
   }
@@ -43,7 +47,7 @@ class FieldOfView {
     return std::atan2(beam.y(), beam.x());
   }
 
-  Eigen::Vector2d laser_ = Eigen::Vector2d::Zero();
+  const Eigen::Vector2d laser_;
   std::vector<double> bearings_;  // sorted
 };
 

@@ -9,9 +9,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
 namespace navigation {
@@ -63,6 +65,17 @@ struct Footprint {
       radius = std::max(radius, part.radius + part.center.norm());
     }
     return radius;
+  }
+
+  // Metres from the outline at `pose` to a point in the frame that the pose is
+  // in; negative inside. Infinite without parts.
+  double Distance(const Pose2& pose, const Eigen::Vector2d& point) const {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const Part& part : parts) {
+      distance =
+          std::min(distance, (pose * part.center - point).norm() - part.radius);
+    }
+    return distance;
   }
 };
 

@@ -120,9 +120,7 @@ void Navigator::AddScan(const NavigatorScan& scan) {
     if (end.allFinite()) in_map.free_ends.push_back(scan.map_from_robot * end);
   }
   layer_.Update(in_map);
-  FieldOfView view;
-  view.AddBeams(scan.laser, scan.echoes);
-  view.AddBeams(scan.laser, scan.free_ends);
+  const FieldOfView view(scan.laser, scan.echoes, scan.free_ends);
   const Pose2 robot_from_map = scan.map_from_robot.Inverse();
   moving_.Update(unexplained, scan.time, [&](const Eigen::Vector2d& point) {
     return view.Contains(robot_from_map * point);

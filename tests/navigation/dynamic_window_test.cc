@@ -142,7 +142,7 @@ TEST_F(DynamicWindowTest, NothingIsAdmissibleBeforeAWallTooNear) {
 }
 
 TEST_F(DynamicWindowTest, NobodyCanReachItBeforeItStands) {
-  // Against every way that somebody could go at a walking pace.
+  // Wherever somebody walks.
   const Costmap costmap = MakeCostmap(RoomMap(10., 10.));
   const LocalObstacles local(costmap, nullptr, {}, {5., 5.}, 2.5);
   DynamicWindowInput input = Input(&local, Pose2(5., 5., 0.));

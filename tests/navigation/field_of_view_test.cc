@@ -12,7 +12,6 @@ namespace navigation {
 namespace {
 
 TEST(FieldOfViewTest, HalfATurnDoesNotSeeBehind) {
-  FieldOfView view;
   const Eigen::Vector2d laser(0.2, 0.);
   std::vector<Eigen::Vector2d> echoes, free_ends;
   for (int degrees = -90; degrees <= 90; ++degrees) {
@@ -22,14 +21,13 @@ TEST(FieldOfViewTest, HalfATurnDoesNotSeeBehind) {
                    3. * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)));
   }
   echoes.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0.);
-  view.AddBeams(laser, echoes);
-  view.AddBeams(laser, free_ends);
+  const FieldOfView view(laser, echoes, free_ends);
   EXPECT_TRUE(view.Contains({5., 0.}));
   EXPECT_TRUE(view.Contains({0.5, -2.}));
   EXPECT_TRUE(view.Contains({0.21, 1.}));
   EXPECT_FALSE(view.Contains({0., 1.}));
   EXPECT_FALSE(view.Contains({-1., 0.}));
-  EXPECT_FALSE(FieldOfView().Contains({1., 0.}));
+  EXPECT_FALSE(FieldOfView(laser, {}, {}).Contains({1., 0.}));
 }
 
 }  // namespace

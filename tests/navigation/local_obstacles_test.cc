@@ -65,6 +65,16 @@ TEST(LocalObstaclesTest, ClearanceIsThatOfTheNearestPart) {
   EXPECT_NEAR(local.Clearance(footprint, Pose2(3., 3., kPi)), 0.8, 0.05);
 }
 
+TEST(FootprintTest, DistanceIsThatOfTheNearestPart) {
+  Footprint footprint;
+  footprint.parts = {{{0., 0.}, 0.2}, {{0.5, 0.}, 0.1}};
+  // Turned left: the second part is at (1, 2.5).
+  const Pose2 pose(1., 2., 0.5 * kPi);
+  EXPECT_NEAR(footprint.Distance(pose, {1., 3.}), 0.4, 1e-12);
+  EXPECT_NEAR(footprint.Distance(pose, {1., 1.5}), 0.3, 1e-12);
+  EXPECT_NEAR(footprint.Distance(pose, {1.1, 2.}), -0.1, 1e-12);
+}
+
 }  // namespace
 }  // namespace navigation
 }  // namespace cartographer_ext

@@ -68,6 +68,17 @@ class Loop {
   std::unique_ptr<Navigator> navigator_;
 };
 
+// Two rooms with a door between them that is open in the map only.
+struct ClosedDoor {
+  ClosedDoor() : map(RoomMap(8., 6.)) {
+    FillBox(5., 0., 5.1, 6., 1.f, &map);
+    FillBox(5., 2.4, 5.1, 3.6, 0.f, &map);
+    world = map;
+    FillBox(5., 2.4, 5.1, 3.6, 1.f, &world);
+  }
+  io::OccupancyMap map, world;
+};
+
 TEST(NavigatorTest, ReachesItsGoals) {
   const io::OccupancyMap map = RoomMap(8., 6.);
   Loop loop(map, map, Pose2(1., 1., 0.), {{6., 4.}, {1., 1.}});
@@ -112,13 +123,9 @@ TEST(NavigatorTest, GivesReasonsForBadGoals) {
 }
 
 TEST(NavigatorTest, WaitsAndGivesUpBehindAClosedDoor) {
-  io::OccupancyMap map = RoomMap(8., 6.);
-  FillBox(5., 0., 5.1, 6., 1.f, &map);
-  FillBox(5., 2.4, 5.1, 3.6, 0.f, &map);
-  io::OccupancyMap world = map;
-  FillBox(5., 2.4, 5.1, 3.6, 1.f, &world);
+  const ClosedDoor rooms;
   // Echoes at the closed door are far enough from the door posts of the map.
-  Loop loop(map, world, Pose2(2., 3., 0.), {{7., 3.}});
+  Loop loop(rooms.map, rooms.world, Pose2(2., 3., 0.), {{7., 3.}});
   bool obstructed = false;
   for (int i = 0; i != 3000 && !loop.navigator_->finished(); ++i) {
     loop.Step();
@@ -136,13 +143,9 @@ TEST(NavigatorTest, WaitsAndGivesUpBehindAClosedDoor) {
 TEST(NavigatorTest, BacksUpOnlyTheWayItCame) {
   // Before a closed door, from where it has not moved yet: what is behind it
   // has never been driven.
-  io::OccupancyMap map = RoomMap(8., 6.);
-  FillBox(5., 0., 5.1, 6., 1.f, &map);
-  FillBox(5., 2.4, 5.1, 3.6, 0.f, &map);
-  io::OccupancyMap world = map;
-  FillBox(5., 2.4, 5.1, 3.6, 1.f, &world);
+  const ClosedDoor rooms;
   const Pose2 start(4.65, 3., 0.);
-  Loop loop(map, world, start, {{7., 3.}});
+  Loop loop(rooms.map, rooms.world, start, {{7., 3.}});
   double moved = 0.;
   for (int i = 0; i != 3000 && !loop.navigator_->finished(); ++i) {
     loop.Step();

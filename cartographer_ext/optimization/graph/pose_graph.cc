@@ -25,16 +25,6 @@ bool IsFinite(const Pose2& pose) {
          std::isfinite(pose.theta);
 }
 
-// Indices of the edges at each pose.
-std::vector<std::vector<int>> EdgesOfPoses(const PoseGraph& graph) {
-  std::vector<std::vector<int>> result(graph.poses.size());
-  for (size_t i = 0; i != graph.edges.size(); ++i) {
-    result[graph.edges[i].from].push_back(i);
-    result[graph.edges[i].to].push_back(i);
-  }
-  return result;
-}
-
 std::string Name(const PoseGraph& graph, size_t edge_index) {
   const PoseGraphEdge& edge = graph.edges[edge_index];
   return absl::StrCat("edge ", edge_index, " (", graph.ids[edge.from], " -> ",
@@ -174,10 +164,19 @@ absl::Status ValidatePoseGraph(const PoseGraph& graph) {
   return absl::OkStatus();
 }
 
+std::vector<std::vector<int>> EdgesAtPoses(const PoseGraph& graph) {
+  std::vector<std::vector<int>> result(graph.poses.size());
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    result[graph.edges[i].from].push_back(i);
+    result[graph.edges[i].to].push_back(i);
+  }
+  return result;
+}
+
 std::vector<Pose2> DeadReckoning(const PoseGraph& graph) {
   std::vector<Pose2> poses = graph.poses;
   if (poses.empty()) return poses;
-  const std::vector<std::vector<int>> edges_of_poses = EdgesOfPoses(graph);
+  const std::vector<std::vector<int>> edges_of_poses = EdgesAtPoses(graph);
   std::vector<bool> reached(poses.size(), false);
   std::vector<int> queue = {0};
   reached[0] = true;

@@ -62,6 +62,9 @@ void MarkLoops(PoseGraph* graph);
 // from the first one.
 absl::Status ValidatePoseGraph(const PoseGraph& graph);
 
+// Indices of the edges at each pose.
+std::vector<std::vector<int>> EdgesAtPoses(const PoseGraph& graph);
+
 // Poses by chaining odometry edges from the first pose (breadth first, over
 // non-loop edges in both directions). Poses out of reach keep their estimate.
 std::vector<Pose2> DeadReckoning(const PoseGraph& graph);

@@ -17,7 +17,6 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-constexpr int kPolishRounds = 30;
 // A map that has lost fewer loops than this is not folded.
 constexpr int kUnfolded = 20;
 // Relative difference of the costs of members that are one and the same.
@@ -74,10 +73,6 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
   const double gate =
       options.adaptive_gate ? AdaptiveGate(edges, best.poses) : kChi2Gate;
   const double limit = best.cost + kUnfolded * kChi2Gate;
-  // Half way to what a solver alone reaches, to stay below others, too.
-  const double enough =
-      best.cost +
-      0.5 * std::max(0., portfolio->lowest_of_solvers() - best.cost);
   // What any solver reaches is known only where all have taken part.
   const double known = portfolio->ran_all_solvers()
                            ? std::max(best.cost, portfolio->lowest_of_solvers())
@@ -98,7 +93,7 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
     polished.push_back(member.cost);
     std::vector<Pose2> poses = member.poses;
     std::vector<double> weights;
-    count(PolishTruncated(gate, kPolishRounds, &solver, &poses, &weights));
+    count(PolishTruncated(gate, kFullPolishRounds, &solver, &poses, &weights));
     const double cost = TruncatedCost(edges, poses, gate);
     if (cost >= lowest) continue;
     lowest = cost;
@@ -107,8 +102,12 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
     result->member = member.name;
   }
   if (!options.adaptive_gate) return;
-  count(
-      PolishAdapted(kPolishRounds, &solver, &result->poses, &result->weights));
+  count(PolishAdapted(kFullPolishRounds, &solver, &result->poses,
+                      &result->weights));
+  // Half way to what a solver alone reaches, to stay below others, too.
+  const double enough =
+      best.cost +
+      0.5 * std::max(0., portfolio->lowest_of_solvers() - best.cost);
   const double most =
       gate == kChi2Gate ? std::max(enough, likeliest.cost * (1. + kSameOptimum))
                         : enough;

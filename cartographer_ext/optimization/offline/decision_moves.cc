@@ -16,7 +16,6 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-constexpr int kPolishRounds = 30;
 // Loops with a chi2 beyond so many gates are not worth a look.
 constexpr double kNear = 100.;
 // Relative decrease of the cost that counts.
@@ -104,7 +103,7 @@ bool SolveForced(const std::vector<int>& group, const double gate,
   for (const int i : group) (*edges)[i].is_loop = true;
   if (!started) return false;
   solver->Solve(robust, poses);
-  PolishTruncated(gate, kPolishRounds, solver, poses, nullptr);
+  PolishTruncated(gate, kFullPolishRounds, solver, poses, nullptr);
   return true;
 }
 
@@ -131,7 +130,8 @@ int FlipLoops(const FlipOptions& options, RobustSolver* const solver,
       solve.max_iterations = 20;
       std::vector<Pose2> flipped = *poses;
       solver->Solve(solve, &flipped);
-      PolishTruncated(options.gate, kPolishRounds, solver, &flipped, nullptr);
+      PolishTruncated(options.gate, kFullPolishRounds, solver, &flipped,
+                      nullptr);
       const double flipped_cost = TruncatedCost(edges, flipped, options.gate);
       if (flipped_cost < cost * (1. - kProgress)) {
         cost = flipped_cost;

@@ -193,6 +193,15 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
   return result;
 }
 
+bool MorePossibleThanByChance(const std::vector<Innovation>& innovations) {
+  // Wrong loops that lie within the uncertainty of a right map.
+  constexpr int kMaxByChance = 2;
+  const int possible = std::count_if(
+      innovations.begin(), innovations.end(),
+      [](const Innovation& innovation) { return innovation.chi2 < kChi2Gate; });
+  return possible > kMaxByChance;
+}
+
 double LogArea(const std::vector<Pose2>& poses) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Pose2& pose : poses) mean += pose.translation();

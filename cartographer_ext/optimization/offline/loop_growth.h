@@ -39,6 +39,9 @@ struct GrowthOptions {
   int max_support = 8;
 };
 
+// Poses times loops beyond which the search by groups is too dear.
+constexpr double kMaxGrowthWork = 4e6;
+
 // Squared innovation of a loop and the size of its covariance.
 struct Innovation {
   double chi2 = 0.;             // d2
@@ -52,6 +55,10 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
                                      const std::vector<double>& weights,
                                      const std::vector<Pose2>& poses,
                                      RobustSolver* solver);
+
+// Whether more rejected loops lie within the gate than wrong ones do by chance:
+// then the map may have lost right ones.
+bool MorePossibleThanByChance(const std::vector<Innovation>& innovations);
 
 // Logarithm of the area (square metres) that poses are spread over.
 double LogArea(const std::vector<Pose2>& poses);

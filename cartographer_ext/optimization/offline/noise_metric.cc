@@ -14,7 +14,6 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-constexpr int kPolishRounds = 30;
 // Fewer loops say nothing about the noise.
 constexpr int kMinLoops = 10;
 constexpr size_t kMaxInnovations = 300;
@@ -97,7 +96,7 @@ std::vector<Pose2> SearchShortly(const std::vector<KernelType>& kernels,
         options.cost_tolerance = 1e-5;
         solver->Solve(options, &poses);
       }
-      PolishTruncated(kChi2Gate, kPolishRounds, solver, &poses, nullptr);
+      PolishTruncated(kChi2Gate, kFullPolishRounds, solver, &poses, nullptr);
       const double cost = TruncatedCost(solver->edges(), poses);
       if (cost >= lowest) continue;
       lowest = cost;

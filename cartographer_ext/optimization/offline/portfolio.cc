@@ -18,16 +18,13 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-constexpr int kPolishRounds = 30;
 // Relative difference of truncated costs of one and the same optimum.
 constexpr double kSame = 1e-6;
 // Loops by which solvers differ that decide only what is near the gate
 // differently.
 constexpr double kNearlySame = 3.;
-// Rejected loops whose innovation is looked at, and how many of them may lie
-// within the gate where the search ends.
+// Rejected loops whose innovation is looked at.
 constexpr size_t kMaxInnovations = 200;
-constexpr int kMaxPossible = 2;
 // Loops that agree with one that is relied on without regard to the rest.
 constexpr size_t kSupported = 2;
 // Kernels that have to agree.
@@ -48,8 +45,6 @@ constexpr double kSmallGraph = 2.5e5;
 // open, and those that cost nothing worth mentioning.
 constexpr double kAffordableWork = 6e7;
 constexpr double kLittleWork = 3e6;
-// Beyond so many poses times loops, the search by groups is too dear.
-constexpr double kMaxGrowthWork = 4e6;
 
 std::vector<int> Thinned(const std::vector<int>& values, const size_t limit) {
   if (values.size() <= limit) return values;
@@ -76,6 +71,10 @@ Portfolio::Portfolio(const PoseGraph& graph, const PortfolioOptions& options)
   for (const WhitenedEdge& edge : edges_) num_loops_ += edge.is_loop;
 }
 
+double Portfolio::PosesTimesLoops() const {
+  return static_cast<double>(graph_.poses.size()) * num_loops_;
+}
+
 FlipOptions Portfolio::flip_options() const {
   FlipOptions options;
   if (graph_.poses.size() > kLargeGraph) options.max_trials = 2;
@@ -91,7 +90,7 @@ void Portfolio::Add(const std::string& name, std::vector<Pose2> poses) {
   Member member;
   member.name = name;
   member.poses = std::move(poses);
-  Count(PolishTruncated(kChi2Gate, kPolishRounds, &solver_, &member.poses,
+  Count(PolishTruncated(kChi2Gate, kFullPolishRounds, &solver_, &member.poses,
                         nullptr));
   member.cost = TruncatedCost(edges_, member.poses);
   members_.push_back(std::move(member));
@@ -210,15 +209,21 @@ bool Portfolio::FindsLostGroup() {
   force.max_trials = kMaxTrialsOfSettled;
   force.min_members = kSupported + 1;
   force.relax = false;  // the price of a graph that is settled
+  const double before = best().cost;
+  // Less is a matter of loops near the gate.
+  return AddForced(best().name, force) &&
+         best().cost < before - kNearlySame * kChi2Gate;
+}
+
+bool Portfolio::AddForced(const std::string& start_name,
+                          const ForceOptions& options) {
   std::vector<Pose2> poses = best().poses;
-  if (ForceGroups(support(), force, &edges_, &solver_, &poses,
+  if (ForceGroups(support(), options, &edges_, &solver_, &poses,
                   &alternatives_) == 0) {
     return false;
   }
-  const double before = best().cost;
-  Add(absl::StrCat(best().name, ", groups"), std::move(poses));
-  // Less is a matter of loops near the gate.
-  return best().cost < before - kNearlySame * kChi2Gate;
+  Add(absl::StrCat(start_name, ", groups"), std::move(poses));
+  return true;
 }
 
 bool Portfolio::ReplayIsLower() {
@@ -239,12 +244,7 @@ bool Portfolio::RejectedContradict() {
   if (rejected.size() == num_loops_) return false;
   const std::vector<Innovation> innovations = PredictLoops(
       Thinned(rejected, kMaxInnovations), weights, poses, &solver_);
-  if (innovations.empty()) return false;
-  int possible = 0;
-  for (const Innovation& innovation : innovations) {
-    possible += innovation.chi2 < kChi2Gate;
-  }
-  return possible <= kMaxPossible;
+  return !innovations.empty() && !MorePossibleThanByChance(innovations);
 }
 
 bool Portfolio::AddCertain() {
@@ -261,11 +261,7 @@ bool Portfolio::AddCertain() {
   force.max_trials = kMaxTrialsOnLargeGraph;
   force.min_members = kSupported + 1;
   force.relax = false;  // two more factorisations a trial
-  poses = best().poses;
-  if (ForceGroups(support(), force, &edges_, &solver_, &poses, &alternatives_) >
-      0) {
-    Add("certain, groups", std::move(poses));
-  }
+  AddForced("certain", force);
   return true;
 }
 
@@ -299,7 +295,7 @@ bool Portfolio::SettleBySupport() {
 }
 
 void Portfolio::Run() {
-  const double size = static_cast<double>(graph_.poses.size()) * num_loops_;
+  const double size = PosesTimesLoops();
   // What else there is would take minutes on a large graph.
   if (graph_.poses.size() > kLargeGraph && AddCertain()) return;
   const bool large = size > options_.large_search;

@@ -117,6 +117,7 @@ class Portfolio {
   bool RejectedContradict();
   void RunStarts(bool with_full_kernels);
   void RunGroups();
+  double PosesTimesLoops() const;
   FlipOptions flip_options() const;
   void Count(const SolverSummary& summary);
   // A solver's own result.
@@ -137,6 +138,8 @@ class Portfolio {
   // From the best, graduated non-convexity in which what is more than `reach`
   // gates off takes no part, so that it does not fill the factor.
   void Graduate(double reach);
+  // From the best, groups forced in; false where none was kept.
+  bool AddForced(const std::string& start_name, const ForceOptions& options);
   // False where no loop is certain.
   bool AddCertain();
   // 1 for the loops that several others agree with, and for odometry.

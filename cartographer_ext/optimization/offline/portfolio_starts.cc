@@ -25,6 +25,7 @@ constexpr double kRounding = 1e-3;
 constexpr double kMaxRepeatedWork = 2e6;
 // Rounds of the search by groups, as long as each finds a loop.
 constexpr int kMaxGroupRounds = 4;
+
 // Whether the poses differ from chained odometry by rounding only.
 bool AreChained(const std::vector<WhitenedEdge>& edges,
                 const std::vector<Pose2>& poses) {
@@ -43,9 +44,7 @@ bool Portfolio::AddReplay(ReplayResult* const replay) {
   if (!Replay(graph_, options_.smoother, replay).ok()) return false;
   NoteSolver(replay->poses);
   Add("r_isam", replay->poses);
-  if (static_cast<double>(graph_.poses.size()) * num_loops_ <=
-          kMaxRepeatedWork &&
-      ReadmitGroups(graph_, replay)) {
+  if (PosesTimesLoops() <= kMaxRepeatedWork && ReadmitGroups(graph_, replay)) {
     NoteSolver(replay->poses);
     Add("r_isam, readmitted", replay->poses);
   }
@@ -126,14 +125,9 @@ void Portfolio::RunGroups() {
       AddKernel("relaxed, ", KernelType::kAcs, poses);
       if (CanKeepAllLoops()) AddGnc("relaxed, ", poses);
     }
-    std::vector<Pose2> poses = best().poses;
     ForceOptions force;
-    force.relax = static_cast<double>(graph_.poses.size()) * num_loops_ <=
-                  kMaxRepeatedWork;
-    if (ForceGroups(support(), force, &edges_, &solver_, &poses,
-                    &alternatives_) > 0) {
-      Add(absl::StrCat(best().name, ", groups"), std::move(poses));
-    }
+    force.relax = PosesTimesLoops() <= kMaxRepeatedWork;
+    AddForced(best().name, force);
     Graduate(kNear);
     Graduate(kFar);
     if (best().cost > before - kChi2Gate) break;

@@ -21,10 +21,6 @@ namespace {
 // least size: a loop agrees by chance with another one, but hardly with two.
 constexpr int kMaxForcedGroups = 10;
 constexpr int kMinForcedGroup = 3;
-// Wrong loops that lie within the uncertainty of a right map.
-constexpr int kMaxPossible = 2;
-// Poses times loops beyond which the growth is too dear.
-constexpr double kMaxWork = 4e6;
 
 // Whether a group of rejected loops contradicts the map, or more than a few lie
 // within its uncertainty.
@@ -41,13 +37,9 @@ bool MayHaveLostLoops(const LoopSupport& support,
   for (size_t i = 0; i != accepted.size(); ++i) {
     if (!accepted[i]) rejected.push_back(i);
   }
-  int possible = 0;
-  for (const Innovation& innovation : PredictLoops(
-           rejected, std::vector<double>(accepted.begin(), accepted.end()),
-           poses, solver)) {
-    possible += innovation.chi2 < kChi2Gate;
-  }
-  return possible > kMaxPossible;
+  return MorePossibleThanByChance(PredictLoops(
+      rejected, std::vector<double>(accepted.begin(), accepted.end()), poses,
+      solver));
 }
 
 }  // namespace
@@ -56,7 +48,7 @@ bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
   std::vector<WhitenedEdge> edges = Whiten(graph.edges);
   double loops = 0.;
   for (const WhitenedEdge& edge : edges) loops += edge.is_loop;
-  if (graph.poses.size() * loops > kMaxWork) return false;
+  if (graph.poses.size() * loops > kMaxGrowthWork) return false;
   RobustSolver solver(edges);
   const LoopSupport support = FindLoopSupport(graph, LoopSupportOptions());
   if (!MayHaveLostLoops(support, replay->accepted, replay->poses, &solver)) {
@@ -66,7 +58,7 @@ bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
   std::vector<Pose2> best = replay->poses, poses = ChainOdometry(graph);
   double lowest = std::numeric_limits<double>::infinity();
   const auto offer = [&] {
-    PolishTruncated(kChi2Gate, 30, &solver, &poses, nullptr);
+    PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &poses, nullptr);
     const double cost = TruncatedCost(edges, poses);
     if (cost >= lowest) return;
     lowest = cost;

@@ -179,6 +179,9 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* solver,
 std::vector<double> DecideLoops(const std::vector<WhitenedEdge>& edges,
                                 const std::vector<Pose2>& poses, double gate);
 
+// Rounds of the polishes below where a graph is solved at leisure.
+constexpr int kFullPolishRounds = 30;
+
 // Alternates between deciding each loop by `gate` on chi2 (weight 1 inside, 0
 // outside) and solving with those weights, until the decisions no longer
 // change. Each half lowers the truncated cost, so this ends; loops judged wrong

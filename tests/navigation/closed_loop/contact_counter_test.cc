@@ -67,14 +67,14 @@ TEST_F(ContactCounterTest, TellsWhetherSomebodyWasSeen) {
   Drive(0.5, {}, {});
   const Disc person{robot_.pose() * Eigen::Vector2d(0.4, 0.), 0.2};
   for (const bool seen : {true, false}) {
-    // The first echo is his, the second one is not.
+    // The first echo comes from the person, the second one does not.
     const Eigen::Vector2d echo(seen ? 0.22 : 0.9, 0.);
     counter_.AddScan({robot_.pose() * echo}, {person}, robot_.time());
     Drive(0.1, {}, {person});
     Drive(0.1, {}, {});
   }
   EXPECT_EQ(counter_.moving_collisions(), 2);
-  EXPECT_EQ(counter_.unseen_collisions(), 0);  // he had been seen just before
+  EXPECT_EQ(counter_.unseen_collisions(), 0);  // seen just before
   ASSERT_EQ(counter_.contacts().size(), 2u);
   EXPECT_NEAR(counter_.contacts()[0].unseen_seconds, 0.1, 0.1);
   Drive(1.5, {}, {});

@@ -112,8 +112,8 @@ TEST_F(DisturbancesTest, ADoorLeavesAnotherPath) {
 }
 
 TEST_F(DisturbancesTest, DrawsAnewWhereTheFirstOnesLeaveNoRoom) {
-  // On a way of 11 m between goals that keep 1.5 m: four at 2 m fit, if
-  // the first ones are not in the way.
+  // On a path of 11.5 m between goals that keep 1.5 m: four at 2 m fit, unless
+  // the first ones take up the room.
   const simulation::RayCaster corridor(
       {{{-2., -2.}, {15., -2.}}, {{-2., 2.}, {15., 2.}}}, {});
   DisturbanceOptions options;

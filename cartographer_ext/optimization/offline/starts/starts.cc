@@ -23,16 +23,6 @@ constexpr int kRobustRounds = 6;
 // Width of the kernel in the first round; it narrows to the gate in the last.
 constexpr double kFirstWidth = 1e4;
 
-// Edges at each pose.
-std::vector<std::vector<int>> EdgesAtPoses(const PoseGraph& graph) {
-  std::vector<std::vector<int>> result(graph.poses.size());
-  for (size_t i = 0; i != graph.edges.size(); ++i) {
-    result[graph.edges[i].from].push_back(i);
-    result[graph.edges[i].to].push_back(i);
-  }
-  return result;
-}
-
 Pose2 Neighbour(const PoseGraphEdge& edge, const int pose,
                 const std::vector<Pose2>& poses) {
   return edge.from == pose ? poses[pose] * edge.measurement
@@ -125,34 +115,53 @@ Eigen::Matrix2d Rotation(const double angle) {
   return (Eigen::Matrix2d() << c, -s, s, c).finished();
 }
 
-// Solves for the angles; `factor` has been analysed.
+// Solves for a planar unknown of each pose but the first, whose is held, from
+// the terms of the edges in force: `make_term(edge, covariance, weight)`.
+// `factor` has been analysed; the third of each three results is void.
+template <typename MakeTerm>
+bool SolvePlanar(const std::vector<WhitenedEdge>& edges,
+                 const std::vector<double>& weights,
+                 const Eigen::Vector2d& held, const MakeTerm& make_term,
+                 BlockLdlt* const factor, Eigen::VectorXd* const result) {
+  result->setZero();
+  factor->SetZero();
+  PinThird(result->size() / 3, factor);
+  int pair = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!(weights[i] > 0.)) continue;
+    const Eigen::Matrix3d covariance =
+        (edges[i].whitening.transpose() * edges[i].whitening).inverse();
+    AddTerm(make_term(edges[i], covariance, weights[i]), edges[i], held, &pair,
+            factor, result);
+  }
+  if (!factor->Factorize(0.)) return false;
+  factor->Solve(result);
+  return result->allFinite();
+}
+
 bool SolveRotations(const std::vector<WhitenedEdge>& edges,
                     const std::vector<double>& weights, BlockLdlt* const factor,
                     std::vector<Pose2>* const poses) {
   const int size = poses->size() - 1;
   const Eigen::Vector2d held(std::cos((*poses)[0].theta),
                              std::sin((*poses)[0].theta));
-  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * size);
-  factor->SetZero();
-  PinThird(size, factor);
-  int pair = 0;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    if (!(weights[i] > 0.)) continue;
+  const auto make_term = [](const WhitenedEdge& edge,
+                            const Eigen::Matrix3d& covariance,
+                            const double weight) {
     // The marginal information of the angle.
-    const Eigen::Matrix3d covariance =
-        (edges[i].whitening.transpose() * edges[i].whitening).inverse();
-    const double strength = std::sqrt(weights[i] / covariance(2, 2));
+    const double strength = std::sqrt(weight / covariance(2, 2));
     PlanarTerm term;
     term.of_to = strength * Eigen::Matrix2d::Identity();
-    term.of_from = strength * Rotation(edges[i].measurement.z());
+    term.of_from = strength * Rotation(edge.measurement.z());
     term.target.setZero();
-    AddTerm(term, edges[i], held, &pair, factor, &rhs);
+    return term;
+  };
+  Eigen::VectorXd axes(3 * size);
+  if (!SolvePlanar(edges, weights, held, make_term, factor, &axes)) {
+    return false;
   }
-  if (!factor->Factorize(0.)) return false;
-  factor->Solve(&rhs);
-  if (!rhs.allFinite()) return false;
   for (int i = 0; i != size; ++i) {
-    (*poses)[i + 1].theta = std::atan2(rhs[3 * i + 1], rhs[3 * i]);
+    (*poses)[i + 1].theta = std::atan2(axes[3 * i + 1], axes[3 * i]);
   }
   return true;
 }
@@ -161,30 +170,27 @@ bool SolvePositions(const std::vector<WhitenedEdge>& edges,
                     const std::vector<double>& weights, BlockLdlt* const factor,
                     std::vector<Pose2>* const poses) {
   const int size = poses->size() - 1;
-  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(3 * size);
-  factor->SetZero();
-  PinThird(size, factor);
-  int pair = 0;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    if (!(weights[i] > 0.)) continue;
-    const Eigen::Matrix3d covariance =
-        (edges[i].whitening.transpose() * edges[i].whitening).inverse();
+  const auto make_term = [&](const WhitenedEdge& edge,
+                             const Eigen::Matrix3d& covariance,
+                             const double weight) {
     const Eigen::LLT<Eigen::Matrix2d> root(
         covariance.topLeftCorner<2, 2>().inverse());
     const Eigen::Matrix2d upper =
-        std::sqrt(weights[i]) * Eigen::Matrix2d(root.matrixU());
+        std::sqrt(weight) * Eigen::Matrix2d(root.matrixU());
     PlanarTerm term;
-    term.of_to = upper * Rotation((*poses)[edges[i].from].theta).transpose();
+    term.of_to = upper * Rotation((*poses)[edge.from].theta).transpose();
     term.of_from = term.of_to;
-    term.target = upper * edges[i].measurement.head<2>();
-    AddTerm(term, edges[i], (*poses)[0].translation(), &pair, factor, &rhs);
+    term.target = upper * edge.measurement.head<2>();
+    return term;
+  };
+  Eigen::VectorXd positions(3 * size);
+  if (!SolvePlanar(edges, weights, (*poses)[0].translation(), make_term, factor,
+                   &positions)) {
+    return false;
   }
-  if (!factor->Factorize(0.)) return false;
-  factor->Solve(&rhs);
-  if (!rhs.allFinite()) return false;
   for (int i = 0; i != size; ++i) {
-    (*poses)[i + 1].x = rhs[3 * i];
-    (*poses)[i + 1].y = rhs[3 * i + 1];
+    (*poses)[i + 1].x = positions[3 * i];
+    (*poses)[i + 1].y = positions[3 * i + 1];
   }
   return true;
 }
