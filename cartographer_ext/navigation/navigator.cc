@@ -20,9 +20,11 @@ constexpr double kTurnFrom = 0.9;   // radians off the path: turn on the spot
 constexpr double kTurnUntil = 0.2;  // radians
 constexpr double kSlowSpeed = 0.1;  // m/s: slow enough to turn on the spot
 constexpr double kBendSpeed = 0.3;  // m/s, at least, where the path bends
-constexpr double kLookahead = 0.5;  // metres, and what one second covers
-constexpr double kPathAhead = 3.;   // metres of path the window looks at
-constexpr double kProgress = 0.25;  // metres
+constexpr double kAhead = 0.3;      // radians: near enough to drive at a goal
+constexpr double kStandingSpeed = 0.02;  // m/s, measured
+constexpr double kLookahead = 0.5;       // metres, and what one second covers
+constexpr double kPathAhead = 3.;        // metres of path the window looks at
+constexpr double kProgress = 0.25;       // metres
 constexpr double kReplanSeconds = 0.3;  // soonest after a failure while driving
 constexpr double kBackUpSpeed = 0.1;    // m/s
 constexpr double kBackUpSeconds = 3.;
@@ -342,11 +344,21 @@ Velocity Navigator::Approach(const NavigatorStep& step,
   const double distance = (goal - step.map_from_robot.translation()).norm();
   const double error = BearingError(step.map_from_robot, goal);
   Velocity wish;
-  if (std::abs(error) < 0.3) {
+  if (std::abs(error) < kAhead) {
     wish.linear = std::max(0.05, std::min(input.max_speed, 0.8 * distance));
   }
   wish.angular = std::max(-0.6, std::min(0.6, 1.5 * error));
   return Admit(input, Reach(step.velocity, wish));
+}
+
+bool Navigator::IsAtGoal(const NavigatorStep& step) const {
+  const double to_goal =
+      (goals_[goal_] - step.map_from_robot.translation()).norm();
+  if (!(to_goal <= options_.goal_tolerance)) return false;
+  // A robot that stands was stopped: by itself, or by what is beside the goal.
+  return to_goal <= options_.goal_aim ||
+         std::abs(step.velocity.linear) < kStandingSpeed ||
+         std::abs(BearingError(step.map_from_robot, goals_[goal_])) > kAhead;
 }
 
 Velocity Navigator::Follow(const NavigatorStep& step) {
@@ -405,10 +417,8 @@ Velocity Navigator::Step(const NavigatorStep& step) {
     has_progress_ = false;
     return Velocity();
   }
-  const double to_goal =
-      (goals_[goal_] - step.map_from_robot.translation()).norm();
-  if (to_goal <= options_.goal_tolerance) {
-    if (std::abs(step.velocity.linear) < 0.02) {
+  if (IsAtGoal(step)) {
+    if (std::abs(step.velocity.linear) < kStandingSpeed) {
       FinishGoal(true, "", step.time);
       if (finished()) return Stop(DriveState::kFinished, "all goals done");
     }

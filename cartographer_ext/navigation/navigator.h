@@ -38,8 +38,11 @@ struct NavigatorOptions {
   MovingObstacleOptions moving;
   DynamicWindowOptions window;
   LocalizationMonitorOptions localization;
-  double plan_period = 1.;          // seconds
-  double goal_tolerance = 0.05;     // metres, by the pose reported
+  double plan_period = 1.;  // seconds
+  // Metres, by the pose reported: within the first a goal is reached; the robot
+  // drives on until the second as long as the goal is ahead of it.
+  double goal_tolerance = 0.05;
+  double goal_aim = 0.015;
   double approach_distance = 0.25;  // metres: straight to the goal from here
   double window_half_width = 2.5;   // metres, of the local obstacles
   double stop_margin = 0.02;        // metres, kept by LimitSpeed
@@ -128,6 +131,8 @@ class Navigator {
   Velocity Recover(const NavigatorStep& step);
   Velocity Follow(const NavigatorStep& step);
   Velocity Approach(const NavigatorStep& step, const DynamicWindowInput& input);
+  // Whether the robot is as near to its goal as it gets without turning.
+  bool IsAtGoal(const NavigatorStep& step) const;
   // The command if it is admissible; else stops and says whether it waits for
   // somebody.
   Velocity Admit(const DynamicWindowInput& input, const Velocity& command);

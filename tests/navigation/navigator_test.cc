@@ -86,7 +86,8 @@ TEST(NavigatorTest, ReachesItsGoals) {
   ASSERT_EQ(loop.navigator_->results().size(), 2u);
   EXPECT_TRUE(loop.navigator_->results()[0].reached);
   EXPECT_TRUE(loop.navigator_->results()[1].reached);
-  EXPECT_LT((loop.pose_.translation() - Eigen::Vector2d(1., 1.)).norm(), 0.06);
+  // Nearer than the tolerance: localisation adds its error to this.
+  EXPECT_LT((loop.pose_.translation() - Eigen::Vector2d(1., 1.)).norm(), 0.025);
   EXPECT_EQ(loop.navigator_->state(), DriveState::kFinished);
   EXPECT_EQ(loop.Step().linear, 0.);
 }
