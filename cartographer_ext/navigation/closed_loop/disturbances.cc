@@ -25,6 +25,9 @@ constexpr double kApart = 2.;       // metres between two disturbances
 constexpr double kPersonRadius = 0.2;
 constexpr double kDoorSpacing = 0.08;  // metres between discs of a door
 constexpr double kWidest = 3.;         // metres, of a door
+// The way round the other side of an obstacle is longer by so many metres at
+// most; what is longer is another way.
+constexpr double kRoundObstacle = 1.;
 
 // A place on one of the legs and the direction of the path there.
 struct PathPlace {
@@ -132,16 +135,25 @@ bool IsNear(const PathPlace& place, const std::vector<Eigen::Vector2d>& taken,
   return false;
 }
 
-// Whether every leg can still be driven, with some room to spare.
+// Whether every leg can still be driven with some room to spare, and that is
+// the way which a robot of this radius would take without: where an obstacle
+// leaves a gap in a door that hardly holds the robot, the leg is "free" by
+// another door only.
 bool LegsAreFree(const RayCaster& plan, const std::vector<Disc>& standing,
                  const std::vector<std::vector<Eigen::Vector2d>>& legs,
-                 const double radius) {
+                 const DisturbanceOptions& options) {
   std::vector<Disc> discs = plan.discs();
   discs.insert(discs.end(), standing.begin(), standing.end());
+  const double wide = options.robot_radius + 0.5 * options.spare_width;
   for (const auto& leg : legs) {
     const auto path =
-        ShortestPath(plan.segments(), discs, radius, leg.front(), leg.back());
+        ShortestPath(plan.segments(), discs, wide, leg.front(), leg.back());
     if (!path.ok() || !path->found()) return false;
+    const auto tight = ShortestPath(
+        plan.segments(), discs, options.robot_radius, leg.front(), leg.back());
+    if (!tight.ok() || path->length > tight->length + kRoundObstacle) {
+      return false;
+    }
   }
   return true;
 }
@@ -205,10 +217,7 @@ absl::StatusOr<Disturbances> Disturbances::Draw(
     if (drawn.kind != Disturbance::Kind::kCrossing) {
       std::vector<Disc> more = standing;
       more.insert(more.end(), drawn.discs.begin(), drawn.discs.end());
-      if (!LegsAreFree(plan, more, legs,
-                       options.robot_radius + 0.5 * options.spare_width)) {
-        continue;
-      }
+      if (!LegsAreFree(plan, more, legs, options)) continue;
       standing = more;
     }
     doors += drawn.kind == Disturbance::Kind::kDoor;

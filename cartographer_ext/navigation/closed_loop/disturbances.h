@@ -7,7 +7,8 @@
 //
 // Places are drawn along the shortest paths between the goals, so that the
 // robot meets them; they come to be when it is near, but never nearer than it
-// can react to. Stationary things leave a path to every goal.
+// can react to. Stationary things leave a path to every goal, and each obstacle
+// leaves `spare_width` beside it: what closes a way is a door.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_DISTURBANCES_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_DISTURBANCES_H_
 

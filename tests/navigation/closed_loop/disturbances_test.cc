@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cartographer_ext/navigation/closed_loop/true_plan.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -109,6 +110,34 @@ TEST_F(DisturbancesTest, ADoorLeavesAnotherPath) {
   ASSERT_FALSE(too_many.ok());
   EXPECT_NE(too_many.status().message().find("there is room for"),
             absl::string_view::npos);
+}
+
+TEST_F(DisturbancesTest, AnObstacleLeavesAWayBesideIt) {
+  // Doors of 1.8 m, six metres apart: by the other one it is 9 m farther.
+  const auto p = [](const double x, const double y) {
+    return Eigen::Vector2d(x, y);
+  };
+  const simulation::RayCaster rooms({{p(0, 0), p(24, 0)},
+                                     {p(24, 0), p(24, 9)},
+                                     {p(24, 9), p(0, 9)},
+                                     {p(0, 9), p(0, 0)},
+                                     {p(12, 0), p(12, 0.3)},
+                                     {p(12, 2.1), p(12, 6.9)},
+                                     {p(12, 8.7), p(12, 9)}},
+                                    {});
+  DisturbanceOptions options;
+  options.obstacles = 1;
+  const double radius = options.robot_radius + 0.5 * options.spare_width;
+  for (int seed = 1; seed <= 30; ++seed) {
+    auto disturbances =
+        Disturbances::Create(rooms, {{{9.9, 1.2}, {14.1, 1.2}}}, options, seed);
+    if (!disturbances.ok()) continue;
+    const auto path =
+        ShortestPath(rooms.segments(), disturbances->all()[0].discs, radius,
+                     p(9.9, 1.2), p(14.1, 1.2));
+    ASSERT_TRUE(path.ok() && path->found());
+    EXPECT_LT(path->length, 5.5) << seed;
+  }
 }
 
 TEST_F(DisturbancesTest, DrawsAnewWhereTheFirstOnesLeaveNoRoom) {
