@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "Eigen/Cholesky"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/optimization/offline/certain_growth.h"
@@ -23,6 +24,11 @@ constexpr double kSame = 1e-6;
 // Loops by which solvers differ that decide only what is near the gate
 // differently.
 constexpr double kNearlySame = 3.;
+// Gates beyond which a loop is rejected in a map that is another one: twice the
+// residual that is accepted at most.
+constexpr double kDecisive = 4.;
+// Wrong loops that may fit into a map by chance for the search to end early.
+constexpr double kFewByChance = 3.;
 // Rejected loops whose innovation is looked at.
 constexpr size_t kMaxInnovations = 200;
 // Loops that agree with one that is relied on without regard to the rest.
@@ -114,13 +120,15 @@ void Portfolio::AddKernel(const std::string& start_name, const KernelType type,
   Add(absl::StrCat(start_name, KernelName(type)), std::move(poses));
 }
 
-void Portfolio::AddKernels(const std::string& start_name,
-                           const std::vector<Pose2>& start,
-                           const bool with_full_kernels) {
+size_t Portfolio::AddKernels(const std::string& start_name,
+                             const std::vector<Pose2>& start,
+                             const bool with_full_kernels) {
+  const size_t first = members_.size();
   AddKernel(start_name, KernelType::kDcs, start);
   AddKernel(start_name, KernelType::kGemanMcClure, start);
   AddKernel(start_name, KernelType::kAcs, start);
   if (with_full_kernels) AddFullKernels(start_name, start);
+  return first;
 }
 
 void Portfolio::AddFullKernels(const std::string& start_name,
@@ -183,13 +191,28 @@ const LoopSupport& Portfolio::support() {
   return *support_;
 }
 
-void Portfolio::RunQuick() {
-  AddKernels("", graph_.poses, false);
+size_t Portfolio::RunQuick() {
+  const size_t first = AddKernels("", graph_.poses, false);
   // With few wrong loops the solvers that keep all of them cost little more.
   if (!continued_ && CountRejected() <= 0.1 * num_loops_ &&
       FullWork() <= kLittleWork) {
     AddFullKernels("", graph_.poses);
   }
+  return first;
+}
+
+bool Portfolio::DecideAlike(const size_t first) const {
+  const std::vector<double> ours = Chi2OfEdges(edges_, best().poses);
+  for (size_t m = first; m != first + kQuickKernels; ++m) {
+    const std::vector<double> theirs = Chi2OfEdges(edges_, members_[m].poses);
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (edges_[i].is_loop && std::min(ours[i], theirs[i]) < kChi2Gate &&
+          std::max(ours[i], theirs[i]) >= kDecisive * kChi2Gate) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 bool Portfolio::IsSettled(const size_t first) {
@@ -198,10 +221,26 @@ bool Portfolio::IsSettled(const size_t first) {
     highest = std::max(highest, members_[i].cost);
   }
   if (highest > best().cost * (1. + kSame) + kNearlySame * kChi2Gate) {
-    return false;
+    if (!DecideAlike(first)) return false;
+    Graduate(kNear);
   }
   Improve();
   return RejectedContradict();
+}
+
+double Portfolio::FitsByChance() const {
+  const double log_gate =
+      std::log(4. / 3. * kPi) + 1.5 * std::log(kChi2Gate / (2. * kPi));
+  const double log_area = LogArea(best().poses);
+  double result = 0.;
+  for (const WhitenedEdge& edge : edges_) {
+    if (!edge.is_loop || Chi2(edge, best().poses[edge.from],
+                              best().poses[edge.to]) < kChi2Gate) {
+      continue;
+    }
+    result += std::exp(std::min(0., log_gate - LogVolume(edge, log_area)));
+  }
+  return result;
 }
 
 bool Portfolio::FindsLostGroup() {
@@ -227,9 +266,14 @@ bool Portfolio::AddForced(const std::string& start_name,
 }
 
 bool Portfolio::ReplayIsLower() {
-  if (continued_ || CountRejected() <= kMostlyWrong * num_loops_) return false;
+  if (continued_ || replayed_ || CountRejected() <= kMostlyWrong * num_loops_) {
+    return false;
+  }
   const double before = best().cost;
-  return !SettleByReplay() && best().cost < before - kNearlySame * kChi2Gate;
+  ReplayResult replay;
+  if (!AddReplay(&replay)) return false;
+  const size_t first = AddKernels("r_isam, ", replay.poses, false);
+  return best().cost < before - kNearlySame * kChi2Gate && !IsSettled(first);
 }
 
 bool Portfolio::RejectedContradict() {
@@ -274,16 +318,33 @@ std::vector<double> Portfolio::SupportedLoops() {
   return result;
 }
 
+void Portfolio::DropContradicted(const std::vector<Pose2>& chained,
+                                 std::vector<double>* const weights) const {
+  const std::vector<Eigen::Matrix3d> covariances =
+      PredictAlongChain(graph_, edges_, chained);
+  for (size_t i = 0; i != covariances.size(); ++i) {
+    const WhitenedEdge& edge = edges_[i];
+    if (!edge.is_loop || (*weights)[i] == 0.) continue;
+    const Eigen::Vector3d residual =
+        Residual(edge, chained[edge.from], chained[edge.to]);
+    if (residual.dot(covariances[i].llt().solve(residual)) >= kChi2Gate) {
+      (*weights)[i] = 0.;
+    }
+  }
+}
+
 bool Portfolio::SettleBySupport() {
-  const std::vector<double> supported = SupportedLoops();
-  // Wrong loops that agree with each other fill the factor.
-  if (WorkOf(supported) > kAffordableWork) return false;
+  std::vector<double> supported = SupportedLoops();
   std::vector<Pose2> poses = ChainOdometry(graph_);
+  if (WorkOf(supported) > kAffordableWork) {
+    // Wrong loops that agree with each other fill the factor, for the quick
+    // solvers, too; a replay lets few of them in.
+    DropContradicted(poses, &supported);
+    if (WorkOf(supported) > kAffordableWork) return SettleByReplay();
+  }
   if (!ChordalPoses(edges_, supported, &poses)) return false;
   Add("supported", poses);
-  const size_t first = members_.size();
-  AddKernels("supported, ", poses, false);
-  if (!IsSettled(first)) return false;
+  if (!IsSettled(AddKernels("supported, ", poses, false))) return false;
   size_t loops = 0, in_force = 0;
   for (size_t i = 0; i != edges_.size(); ++i) {
     if (!edges_[i].is_loop || supported[i] == 0.) continue;
@@ -300,13 +361,12 @@ void Portfolio::Run() {
   if (graph_.poses.size() > kLargeGraph && AddCertain()) return;
   const bool large = size > options_.large_search;
   if (large && SettleBySupport()) return;
-  const size_t first = members_.size();
-  RunQuick();
-  bool settled = IsSettled(first);
+  bool settled = IsSettled(RunQuick());
   if (settled) {
     settled = size > kMaxGrowthWork ? !ReplayIsLower() : !FindsLostGroup();
   }
-  if (settled && (continued_ || size > kSmallGraph)) {
+  if (settled && (continued_ || size > kMaxGrowthWork ||
+                  (size > kSmallGraph && FitsByChance() < kFewByChance))) {
     if (size <= kMaxGrowthWork) Graduate(kNear);
     return;
   }

@@ -104,9 +104,15 @@ class Portfolio {
   static constexpr double kNear = 10.;
   static constexpr double kFar = 100.;
 
-  void RunQuick();
+  // Returns the first of the members that have to agree.
+  size_t RunQuick();
   // Whether the quick members, from `first` on, agree.
   bool IsSettled(size_t first);
+  // Whether they differ from the best in loops near the gate only.
+  bool DecideAlike(size_t first) const;
+  // How many of the rejected loops would fit into the best map if they led
+  // anywhere in it: where that are many, so may other maps fit them.
+  double FitsByChance() const;
   // Whether one of the largest groups of rejected loops that agree with each
   // other, forced in, leads to a map that costs less.
   bool FindsLostGroup();
@@ -124,8 +130,9 @@ class Portfolio {
   void NoteSolver(const std::vector<Pose2>& poses);
   void AddKernel(const std::string& start_name, KernelType type,
                  const std::vector<Pose2>& start);
-  void AddKernels(const std::string& start_name,
-                  const std::vector<Pose2>& start, bool with_full_kernels);
+  // Returns the first member, which kQuickKernels begin with.
+  size_t AddKernels(const std::string& start_name,
+                    const std::vector<Pose2>& start, bool with_full_kernels);
   // Those that keep all loops.
   void AddFullKernels(const std::string& start_name,
                       const std::vector<Pose2>& start);
@@ -144,6 +151,10 @@ class Portfolio {
   bool AddCertain();
   // 1 for the loops that several others agree with, and for odometry.
   std::vector<double> SupportedLoops();
+  // Takes weight from loops that chained odometry contradicts, as far as it is
+  // a chain.
+  void DropContradicted(const std::vector<Pose2>& chained,
+                        std::vector<double>* weights) const;
   // Whether the supported loops alone lead to a map that ends the search.
   bool SettleBySupport();
   // The same for the incremental replay.

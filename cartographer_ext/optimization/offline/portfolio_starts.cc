@@ -42,6 +42,7 @@ bool AreChained(const std::vector<WhitenedEdge>& edges,
 
 bool Portfolio::AddReplay(ReplayResult* const replay) {
   if (!Replay(graph_, options_.smoother, replay).ok()) return false;
+  replayed_ = true;
   NoteSolver(replay->poses);
   Add("r_isam", replay->poses);
   if (PosesTimesLoops() <= kMaxRepeatedWork && ReadmitGroups(graph_, replay)) {
@@ -53,17 +54,15 @@ bool Portfolio::AddReplay(ReplayResult* const replay) {
 
 bool Portfolio::SettleByReplay() {
   ReplayResult replay;
-  if (!AddReplay(&replay)) return false;
-  replayed_ = true;
-  const size_t first = members_.size();
-  AddKernels("r_isam, ", replay.poses, false);
-  return IsSettled(first);
+  return AddReplay(&replay) &&
+         IsSettled(AddKernels("r_isam, ", replay.poses, false));
 }
 
 void Portfolio::AddReplays() {
   ReplayResult replay;
-  if (replayed_ || AddReplay(&replay)) {
-    if (!replayed_) AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
+  const bool again = replayed_;
+  if (again || AddReplay(&replay)) {
+    if (!again) AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
     if (graph_.poses.size() > kLargeGraph) return;
     // The failures of a softer and of a harder epoch kernel differ.
     SmootherOptions softer = options_.smoother;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "camd.h"
+#include "cartographer_ext/optimization/solvers/block_product.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -252,10 +253,13 @@ bool BlockLdlt::Factorize(const double lambda) {
       const int next_in_list = link[k];
       const int p0 = reached[k], end = starts_[k + 1];
       factor.noalias() = pivots_[k] * blocks_[p0].transpose();
-      SubtractProduct(blocks_[p0].data(), factor.data(), pivot.data());
+      const RightFactor right(factor);
+      right.SubtractedFrom(PackedBlock(pivot), PackedBlock(blocks_[p0]))
+          .CopyTo(&pivot);
       for (int p = p0 + 1; p < end; ++p) {
-        SubtractProduct(blocks_[p].data(), factor.data(),
-                        blocks_[index_of_row[rows_[p]]].data());
+        Eigen::Matrix3d& block = blocks_[index_of_row[rows_[p]]];
+        right.SubtractedFrom(PackedBlock(block), PackedBlock(blocks_[p]))
+            .CopyTo(&block);
       }
       if (p0 + 1 < end) {
         reached[k] = p0 + 1;

@@ -20,24 +20,6 @@
 namespace cartographer_ext {
 namespace optimization {
 
-// y -= a * b, y += a * b for column-major 3 x 3 blocks.
-inline void SubtractProduct(const double* a, const double* b, double* y) {
-  for (int c = 0; c != 3; ++c) {
-    for (int r = 0; r != 3; ++r) {
-      y[3 * c + r] -=
-          a[r] * b[3 * c] + a[3 + r] * b[3 * c + 1] + a[6 + r] * b[3 * c + 2];
-    }
-  }
-}
-inline void AddProduct(const double* a, const double* b, double* y) {
-  for (int c = 0; c != 3; ++c) {
-    for (int r = 0; r != 3; ++r) {
-      y[3 * c + r] +=
-          a[r] * b[3 * c] + a[3 + r] * b[3 * c + 1] + a[6 + r] * b[3 * c + 2];
-    }
-  }
-}
-
 // Makes a block symmetric by what is below its diagonal, all that InvertSpd
 // reads.
 void CopyLowerTriangle(Eigen::Matrix3d* block);

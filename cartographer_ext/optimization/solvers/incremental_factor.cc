@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "cartographer_ext/optimization/solvers/block_product.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -118,11 +119,14 @@ bool IncrementalFactor::Update(const LinearFactor& factor,
       break;
     }
     const Eigen::Matrix3d gain = middle_head * column.pivot_inverse;
+    const RightFactor of_head(head), of_gain(gain);
     for (size_t k = 0; k != column.rows.size(); ++k) {
-      double* const below = work_[column.rows[k]].data();
-      double* const block = column.blocks[k].data();
-      SubtractProduct(block, head.data(), below);
-      AddProduct(below, gain.data(), block);
+      Eigen::Matrix3d& work = work_[column.rows[k]];
+      const PackedBlock block(column.blocks[k]);
+      const PackedBlock below =
+          of_head.SubtractedFrom(PackedBlock(work), block);
+      below.CopyTo(&work);
+      of_gain.AddedTo(block, below).CopyTo(&column.blocks[k]);
     }
     work_rhs.noalias() -= column.rhs.transpose() * head;
     column.rhs.noalias() += gain.transpose() * work_rhs.transpose();
@@ -154,9 +158,11 @@ Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
     const Eigen::Matrix3d head = work_[j];
     work_[j].setZero();
     result.noalias() += head.transpose() * column.pivot_inverse * head;
+    const RightFactor of_head(head);
     for (size_t k = 0; k != column.rows.size(); ++k) {
-      SubtractProduct(column.blocks[k].data(), head.data(),
-                      work_[column.rows[k]].data());
+      Eigen::Matrix3d& work = work_[column.rows[k]];
+      of_head.SubtractedFrom(PackedBlock(work), PackedBlock(column.blocks[k]))
+          .CopyTo(&work);
     }
     const int parent = column.rows.empty() ? kEnd : column.rows.front();
     if (a == j) a = parent;

@@ -63,6 +63,45 @@ TEST(PortfolioTest, ALargeGraphIsSettledByLoopsThatAgree) {
   }
 }
 
+// Wrong loops that agree with each other fill the factor. Odometry contradicts
+// those over short stretches; what leads anywhere is left to a replay.
+TEST(PortfolioTest, ALargeGraphWithWrongGroupsIsSettledAtOnce) {
+  for (const bool local : {false, true}) {
+    test::GridWorld world = test::MakeGridWorld(900, 10, 1);
+    OutlierOptions outliers;
+    outliers.type =
+        local ? OutlierType::kLocalGrouped : OutlierType::kRandomGrouped;
+    outliers.count = local ? 12000 : 3000;
+    outliers.group_size = local ? 3 : 10;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    for (PoseGraphEdge& edge : world.graph.edges) edge.information /= 100.;
+    PortfolioOptions options;
+    options.large_search = 0.;
+    Portfolio portfolio(world.graph, options);
+    ASSERT_FALSE(portfolio.CanKeepAllLoops());
+    portfolio.Run();
+    EXPECT_EQ(portfolio.members().front().name, local ? "supported" : "r_isam");
+    EXPECT_FALSE(portfolio.ran_all_solvers());
+    EXPECT_LT(AbsoluteTrajectoryError(portfolio.best().poses, world.truth),
+              0.2);
+  }
+}
+
+// Where the gate is nearly as wide as the map, many maps fit; that solvers agree
+// on one is no reason to stop.
+TEST(PortfolioTest, SearchesOnWhereWrongLoopsFitByChance) {
+  for (const double share : {1e-2, 1e-3}) {
+    test::GridWorld world = test::MakeGridWorld(500, 5, 1);
+    OutlierOptions outliers;
+    outliers.count = 300;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    for (PoseGraphEdge& edge : world.graph.edges) edge.information *= share;
+    Portfolio portfolio(world.graph, PortfolioOptions());
+    portfolio.Run();
+    EXPECT_EQ(portfolio.ran_all_solvers(), share < 1e-2);
+  }
+}
+
 TEST(PortfolioTest, KeepsAllLoopsOfACleanGraphFromAPoorStart) {
   test::GridWorld world = test::MakeWeakRing(3);
   Portfolio portfolio(world.graph, PortfolioOptions());
