@@ -28,7 +28,7 @@ constexpr double kNearlySame = 3.;
 // residual that is accepted at most.
 constexpr double kDecisive = 4.;
 // Wrong loops that may fit into a map by chance for the search to end early.
-constexpr double kFewByChance = 3.;
+constexpr double kFewByChance = 1.;
 // Rejected loops whose innovation is looked at.
 constexpr size_t kMaxInnovations = 200;
 // Loops that agree with one that is relied on without regard to the rest.

@@ -104,7 +104,9 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
       SpanningTree(graph_, std::vector<double>(edges_.size(), 1.));
   AddKernels("tree of all, ", tree, with_full_kernels);
   AddGnc("tree of all, ", tree);
-  ran_all_solvers_ = true;
+  // R-iSAM alone readmits groups in larger graphs than here.
+  ran_all_solvers_ = PosesTimesLoops() <= kMaxRepeatedWork ||
+                     PosesTimesLoops() > kMaxGrowthWork;
 }
 
 void Portfolio::RunGroups() {
