@@ -19,8 +19,12 @@ namespace {
 // loops in, then ten to one, then one to one.
 const double kFirstLogOdds = std::log(100.);
 // A round that brings in less than this share of what is in force is the last
-// with these odds.
-constexpr double kProgress = 1e-3;
+// with these odds, and the last of all.
+constexpr double kSlowProgress = 0.02;
+constexpr double kNoProgress = 1e-3;
+// Share of the loops in force that is worth another look at those that fit,
+// before any is predicted.
+constexpr double kMuch = 0.05;
 
 // Ad_T, which turns twists of a pose into twists of the map.
 Eigen::Matrix3d Adjoint(const Pose2& pose) {
@@ -56,18 +60,26 @@ class CertainGrowth {
     given_up_.assign(edges_.size(), 0);
     int in_force = 0;
     double log_odds = kFirstLogOdds;
+    bool predicted = true;
     for (int round = 0; round != options_.max_rounds; ++round) {
-      const int entered = TakeInCertain(log_odds);
       const int before = in_force;
-      if (entered > 0) {
+      const bool knows_all = predicted;
+      const int entered = TakeInCertain(log_odds);
+      const int fitting = TakeInFitting(log_odds);
+      if (entered + fitting > 0) {
         Solve();
         in_force = LetGo();
+        predicted = false;
       }
-      if (in_force - before <= kProgress * before) {
+      // With the poses of so many more, others may fit.
+      if (fitting > kMuch * before && in_force > before) continue;
+      const double little = log_odds > 0. ? kSlowProgress : kNoProgress;
+      if (knows_all && in_force - before <= little * before) {
         if (log_odds <= 0.) break;
         log_odds -= 0.5 * kFirstLogOdds;
       }
-      if (entered > 0) PredictByFactor();
+      if (!predicted) PredictByFactor();
+      predicted = true;
     }
     return in_force;
   }
@@ -106,6 +118,24 @@ class CertainGrowth {
     return entered;
   }
 
+  // Loops that fit the poses as they are, where few would do so by chance.
+  int TakeInFitting(const double log_odds) {
+    const double log_area = LogArea(poses_);
+    std::vector<int> fitting;
+    double by_chance = 0.;
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (!edges_[i].is_loop || weights_[i] > 0. || given_up_[i] > 1) continue;
+      by_chance += ChanceToFit(edges_[i], log_area, options_.gate);
+      if (Chi2(edges_[i], poses_[edges_[i].from], poses_[edges_[i].to]) <
+          options_.gate) {
+        fitting.push_back(i);
+      }
+    }
+    if (fitting.size() < std::exp(log_odds) * by_chance) return 0;
+    for (const int i : fitting) weights_[i] = 1.;
+    return fitting.size();
+  }
+
   void Solve() {
     SolverOptions options;
     options.kernel = DefaultKernel(KernelType::kDcs);
@@ -136,6 +166,12 @@ class CertainGrowth {
   // Covariances of those open loops that contradict the last ones least.
   void PredictByFactor() {
     std::vector<Candidate> candidates = OpenLoops();
+    candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                    [this](const Candidate& candidate) {
+                                      return candidate.chi2 >=
+                                             options_.max_gates * options_.gate;
+                                    }),
+                     candidates.end());
     const size_t limit = options_.max_predictions;
     if (candidates.size() > limit) {
       std::nth_element(

@@ -11,8 +11,10 @@
 //   log N(r; 0, S) - log 1 / (2 pi A det W^-1)  >  log n + log k,
 //
 // so that of all that are taken in at once 1 / k is expected to be wrong; k
-// falls from 100 to 1 where no more come in. First these are loops over short stretches of odometry; with them in
-// force the next ones are sharply predicted.
+// falls from 100 to 1 where no more come in. First these are loops over short
+// stretches of odometry; with them in force the next ones are sharply predicted.
+// Of loops that fit the poses as they are, whatever S, 1 / k is expected to be
+// wrong when they are k times as many as would fit by chance: these come in, too.
 //
 // Before the first round S follows from sums along the chain of odometry: with
 // Ad_k the adjoint of pose k and C_k the covariance of the step to it,
@@ -38,9 +40,13 @@ namespace optimization {
 
 struct CertainGrowthOptions {
   double gate = kChi2Gate;  // of the innovation
-  int max_rounds = 25;
-  // Open loops that are predicted by the factor in one round.
-  int max_predictions = 4000;
+  // It ends before where nothing more comes in.
+  int max_rounds = 100;
+  // Open loops that are predicted by the factor in one round, and the chi2 of
+  // their last prediction, which further loops only make sharper, in gates; poses
+  // may have moved since.
+  int max_predictions = 2000;
+  double max_gates = 10.;
 };
 
 // Covariance S = I + J C J' of the whitened innovation of each loop with regard

@@ -219,6 +219,13 @@ double LogVolume(const WhitenedEdge& edge, const double log_area) {
          1.5 * std::log(2. * kPi);
 }
 
+double ChanceToFit(const WhitenedEdge& edge, const double log_area,
+                   const double gate) {
+  const double log_ball =
+      std::log(4. / 3. * kPi) + 1.5 * std::log(gate / (2. * kPi));
+  return std::exp(std::min(0., log_ball - LogVolume(edge, log_area)));
+}
+
 bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,
                RobustSolver* const solver, std::vector<Pose2>* const poses,
                std::vector<double>* const weights) {

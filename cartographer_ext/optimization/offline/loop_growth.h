@@ -68,6 +68,10 @@ double LogArea(const std::vector<Pose2>& poses);
 // with.
 double LogVolume(const WhitenedEdge& edge, double log_area);
 
+// Probability that a loop which leads anywhere in the area has a chi2 below the
+// gate.
+double ChanceToFit(const WhitenedEdge& edge, double log_area, double gate);
+
 // Replaces `poses` by a solution with the loops that grew in; `weights`, one
 // per edge, tells which. `solver` is that of `edges`. Odometry must reach all
 // poses.

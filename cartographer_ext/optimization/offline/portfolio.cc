@@ -229,8 +229,6 @@ bool Portfolio::IsSettled(const size_t first) {
 }
 
 double Portfolio::FitsByChance() const {
-  const double log_gate =
-      std::log(4. / 3. * kPi) + 1.5 * std::log(kChi2Gate / (2. * kPi));
   const double log_area = LogArea(best().poses);
   double result = 0.;
   for (const WhitenedEdge& edge : edges_) {
@@ -238,7 +236,7 @@ double Portfolio::FitsByChance() const {
                               best().poses[edge.to]) < kChi2Gate) {
       continue;
     }
-    result += std::exp(std::min(0., log_gate - LogVolume(edge, log_area)));
+    result += ChanceToFit(edge, log_area, kChi2Gate);
   }
   return result;
 }
