@@ -263,10 +263,21 @@ bool Portfolio::AddForced(const std::string& start_name,
   return true;
 }
 
-bool Portfolio::ReplayIsLower() {
-  if (continued_ || replayed_ || CountRejected() <= kMostlyWrong * num_loops_) {
-    return false;
+bool Portfolio::RejectsAGroup() {
+  const std::vector<double> decisions =
+      DecideLoops(edges_, best().poses, kChi2Gate);
+  for (const std::vector<int>& group : support().groups) {
+    size_t rejected = 0;
+    for (const int i : group) rejected += decisions[i] == 0.;
+    if (rejected > 2 * kSupported && 2 * rejected >= group.size()) return true;
   }
+  return false;
+}
+
+bool Portfolio::ReplayIsLower() {
+  if (continued_ || replayed_) return false;
+  const bool asked = CountRejected() > kMostlyWrong * num_loops_;
+  if (!asked && !RejectsAGroup()) return false;
   const double before = best().cost;
   ReplayResult replay;
   if (!AddReplay(&replay)) return false;

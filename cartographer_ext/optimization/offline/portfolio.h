@@ -116,8 +116,11 @@ class Portfolio {
   // Whether one of the largest groups of rejected loops that agree with each
   // other, forced in, leads to a map that costs less.
   bool FindsLostGroup();
-  // Whether, where most loops are rejected, a replay ends lower and nothing is
-  // settled by it.
+  // Whether more loops that agree with each other are rejected than wrong ones
+  // agree by chance.
+  bool RejectsAGroup();
+  // Whether, where most loops or a group of them are rejected, a replay ends
+  // lower and nothing is settled by it.
   bool ReplayIsLower();
   // Whether the rejected loops lie beyond the uncertainty of the best map.
   bool RejectedContradict();
