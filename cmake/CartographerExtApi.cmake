@@ -3,9 +3,9 @@
 #
 # Which swaps a Cartographer tree can take, read off what its headers declare, before anything is compiled.
 #
-# Cartographer 2.0 and master declare everything. Version 1.0 and forks made from it, as the ROS 2 fork, have a PointCloud that
-# is a vector, no RangefinderPoint and no TrajectoryState. The residual of a constraint is the same there, but of no use without
-# the optimization problem.
+# Cartographer 2.0, master and the ROS 2 fork since its release 2.0.9000 declare everything. Version 1.0 and forks made from it,
+# as the ROS 2 fork up to release 1.0.9001, have a PointCloud that is a vector, no RangefinderPoint and no TrajectoryState. The
+# residual of a constraint is the same there, but of no use without the optimization problem.
 
 # What a swap needs, as "file below the tree|regular expression|its name". CMake lists are split at semicolons, so that the
 # expressions have none.
@@ -42,6 +42,35 @@ function(cartographer_ext_missing_api swap root result)
   set(${result} "${missing}" PARENT_SCOPE)
 endfunction()
 
+# What the tree below `root` is, by its package.xml and by what it declares. The releases of the ROS 2 fork have versions of
+# their own, such as 2.0.9004 for the fourth one that follows upstream 2.0.0.
+function(cartographer_ext_name_tree root result)
+  set(version "")
+  if(EXISTS "${root}/package.xml")
+    file(STRINGS "${root}/package.xml" version REGEX "<version>" LIMIT_COUNT 1)
+    string(REGEX REPLACE ".*<version>([0-9.]*)</version>.*" "\\1" version "${version}")
+  endif()
+  if(version MATCHES "^[0-9]+\\.[0-9]+\\.9[0-9][0-9][0-9]$")
+    set(name "the ROS 2 fork, release ${version}")
+  elseif(version)
+    set(name "Cartographer, package version ${version}")
+  else()
+    set(name "a Cartographer without package.xml")
+  endif()
+  set(${result} "${name}" PARENT_SCOPE)
+endfunction()
+
+# Ends configuring: what the tree is, the reason for each swap that it cannot take, and which swaps remain.
+function(cartographer_ext_refuse root why reasons possible)
+  if(possible)
+    set(advice "Possible here: ${possible}. Select them with -DCARTOGRAPHER_EXT_SWAPS=\"${possible}\" or SWAPS.")
+  else()
+    set(advice "None of the swaps asked for is possible here.")
+  endif()
+  cartographer_ext_name_tree("${root}" name)
+  message(FATAL_ERROR "cartographer_ext: ${root} is ${name}, which ${why}:${reasons}\n${advice}")
+endfunction()
+
 # An error that says for each of `swaps` whether the tree can take it, unless it can take all of them.
 function(cartographer_ext_check_api root swaps)
   set(possible)
@@ -54,13 +83,7 @@ function(cartographer_ext_check_api root swaps)
       list(APPEND possible ${swap})
     endif()
   endforeach()
-  if(NOT reasons)
-    return()
+  if(reasons)
+    cartographer_ext_refuse("${root}" "declares an older API than Cartographer 2.0 and cannot take" "${reasons}" "${possible}")
   endif()
-  if(possible)
-    set(advice "Possible here: ${possible}. Select them with -DCARTOGRAPHER_EXT_SWAPS=\"${possible}\" or SWAPS.")
-  else()
-    set(advice "None of the swaps asked for is possible here.")
-  endif()
-  message(FATAL_ERROR "cartographer_ext: ${root} declares an older API than Cartographer 2.0 and cannot take:${reasons}\n${advice}")
 endfunction()

@@ -29,6 +29,7 @@ cmake_policy(VERSION 3.16)
 
 get_filename_component(CARTOGRAPHER_EXT_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 include("${CMAKE_CURRENT_LIST_DIR}/CartographerExtApi.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/CartographerExtTry.cmake")
 set(CARTOGRAPHER_EXT_ALL_SWAPS constraint_builder ceres_scan_matcher optimization_problem local_trajectory_builder
     full_information)
 
@@ -262,11 +263,16 @@ function(cartographer_ext_apply_swap target swap)
   set_target_properties(${target} PROPERTIES SOURCES "${sources}")
 endfunction()
 
+function(cartographer_ext_version result)
+  file(STRINGS "${CARTOGRAPHER_EXT_ROOT}/CMakeLists.txt" project_line REGEX "^project\\(cartographer_ext VERSION ")
+  string(REGEX REPLACE ".* VERSION ([0-9.]+).*" "\\1" version "${project_line}")
+  set(${result} "${version}" PARENT_SCOPE)
+endfunction()
+
 # Tells sources which swaps are selected, in a header: as definitions on the command line they would compile all of the
 # target, and all that links it, again whenever the selection changes.
 function(cartographer_ext_write_swaps_header target swaps)
-  file(STRINGS "${CARTOGRAPHER_EXT_ROOT}/CMakeLists.txt" project_line REGEX "^project\\(cartographer_ext VERSION ")
-  string(REGEX REPLACE ".* VERSION ([0-9.]+).*" "\\1" CARTOGRAPHER_EXT_SWAPPED_VERSION "${project_line}")
+  cartographer_ext_version(CARTOGRAPHER_EXT_SWAPPED_VERSION)
   set(SWAP_DEFINES)
   foreach(swap IN LISTS swaps)
     string(TOUPPER "${swap}" upper)
@@ -286,6 +292,27 @@ function(cartographer_ext_install_lua_files)
     list(APPEND files ${found})
   endforeach()
   install(FILES ${files} DESTINATION share/cartographer/configuration_files)
+endfunction()
+
+# Headers of the cores that need no Cartographer, and find_package(cartographer_ext) for programs that use them. Not in our own
+# build, which installs the same as a component of its own.
+function(cartographer_ext_install_cores_of_swap)
+  if(CMAKE_PROJECT_NAME STREQUAL "cartographer_ext")
+    return()
+  endif()
+  foreach(module IN LISTS CARTOGRAPHER_EXT_CORE_MODULES)
+    install(DIRECTORY "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/${module}" DESTINATION include/cartographer_ext
+            FILES_MATCHING PATTERN "*.h" PATTERN dropin EXCLUDE PATTERN offline EXCLUDE)
+  endforeach()
+  install(DIRECTORY "${CMAKE_BINARY_DIR}/cartographer_ext_proto/cartographer_ext" DESTINATION include FILES_MATCHING PATTERN "*.h")
+  set(generated "${CMAKE_BINARY_DIR}/cartographer_ext_stock")
+  configure_file("${CARTOGRAPHER_EXT_ROOT}/cmake/cartographer_extInCartographerConfig.cmake.in"
+                 "${generated}/cartographer_extConfig.cmake" COPYONLY)
+  include(CMakePackageConfigHelpers)
+  cartographer_ext_version(version)
+  write_basic_package_version_file("${generated}/cartographer_extConfigVersion.cmake" VERSION ${version} COMPATIBILITY SameMinorVersion)
+  install(FILES "${generated}/cartographer_extConfig.cmake" "${generated}/cartographer_extConfigVersion.cmake"
+          DESTINATION lib/cmake/cartographer_ext)
 endfunction()
 
 # Takes the tests of the project that calls this out of the target `all` and marks them as disabled in CTest: three of
@@ -359,5 +386,11 @@ function(cartographer_ext_swap_into target)
     $<BUILD_INTERFACE:${CARTOGRAPHER_EXT_ROOT}>
     $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/cartographer_ext_proto>)
   cartographer_ext_install_lua_files()
+  cartographer_ext_install_cores_of_swap()
+  cartographer_ext_try_swaps(${target} "${tree}" "${ARG_SWAPS}")
+  if(NOT tree STREQUAL "${CARTOGRAPHER_EXT_ROOT}/cartographer_ext/host")
+    cartographer_ext_name_tree("${tree}" tree_name)
+    message(STATUS "cartographer_ext: ${tree} is ${tree_name}")
+  endif()
   message(STATUS "cartographer_ext: swapped into ${target}: ${ARG_SWAPS}")
 endfunction()

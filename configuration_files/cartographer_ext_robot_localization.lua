@@ -6,8 +6,12 @@
 -- submaps are kept.
 include "cartographer_ext_robot.lua"
 
-TRAJECTORY_BUILDER.pure_localization_trimmer = { max_submaps_to_keep = 3 }
+-- A loop that waits for others to confirm it goes with its node: with the three
+-- submaps of stock some drives lose all of theirs, and drift.
+TRAJECTORY_BUILDER.pure_localization_trimmer = { max_submaps_to_keep = 8 }
 POSE_GRAPH.optimize_every_n_nodes = 20
 -- Which pairs are searched is decided by our loop closure.
 POSE_GRAPH.global_sampling_ratio = 1.
+-- The search structures of the whole map are needed again and again.
+POSE_GRAPH.constraint_builder.cartographer_ext.search.max_cache_mb = 512
 return options

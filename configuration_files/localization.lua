@@ -17,6 +17,8 @@ POSE_GRAPH.optimize_every_n_nodes = 20
 -- Every pair of a node and a submap of the map is offered while the place in it
 -- is not known; which of them are searched is decided by our loop closure.
 POSE_GRAPH.global_sampling_ratio = 1.
+-- The search structures of the whole map are needed again and again.
+POSE_GRAPH.constraint_builder.cartographer_ext.search.max_cache_mb = 512
 
 return {
   map_builder = MAP_BUILDER,

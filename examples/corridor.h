@@ -11,7 +11,6 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/io/occupancy_map.h"
 
 namespace examples {
 
@@ -25,16 +24,24 @@ inline bool IsWall(const double x, const double y) {
   return x > 13.2 && x < 14. && y < 0.4;
 }
 
-inline cartographer_ext::io::OccupancyMap Corridor() {
-  constexpr double kResolution = 0.05;
-  auto map = cartographer_ext::io::OccupancyMap::Make(
-      404, 104, kResolution, cartographer_ext::Pose2(-0.1, -0.1, 0.));
+// An occupancy grid: 1 occupied, 0 free, row by row from the smallest y up.
+struct Map {
+  int width = 404;                                 // cells along x
+  int height = 104;                                // cells along y
+  double resolution = 0.05;                        // metres a cell
+  cartographer_ext::Pose2 origin{-0.1, -0.1, 0.};  // corner of cell (0, 0)
+  std::vector<float> occupancy;
+
+  float at(const int x, const int y) const { return occupancy[y * width + x]; }
+};
+
+inline Map Corridor() {
+  Map map;
   for (int j = 0; j < map.height; ++j) {
     for (int i = 0; i < map.width; ++i) {
-      map.at(i, j) = IsWall(map.origin.x + (i + 0.5) * kResolution,
-                            map.origin.y + (j + 0.5) * kResolution)
-                         ? 1.f
-                         : 0.f;
+      const bool wall = IsWall(map.origin.x + (i + 0.5) * map.resolution,
+                               map.origin.y + (j + 0.5) * map.resolution);
+      map.occupancy.push_back(wall ? 1.f : 0.f);
     }
   }
   return map;

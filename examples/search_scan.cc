@@ -11,12 +11,11 @@
 #include "corridor.h"
 
 using cartographer_ext::Pose2;
-using cartographer_ext::io::OccupancyMap;
 namespace scan_matching = cartographer_ext::scan_matching;
 
 // The search takes cells of 8 bits, counted from the upper left end of the map
 // as Cartographer counts them.
-scan_matching::SearchGrid2D ToSearchGrid(const OccupancyMap& map) {
+scan_matching::SearchGrid2D ToSearchGrid(const examples::Map& map) {
   scan_matching::SearchGrid2D grid;
   grid.num_x = map.height;
   grid.num_y = map.width;
@@ -28,9 +27,8 @@ scan_matching::SearchGrid2D ToSearchGrid(const OccupancyMap& map) {
   grid.values.resize(static_cast<size_t>(grid.num_x) * grid.num_y);
   for (int j = 0; j < map.height; ++j) {
     for (int i = 0; i < map.width; ++i) {
-      const float occupancy = map.at(i, j);
       grid.values[grid.num_x * (map.width - 1 - i) + (map.height - 1 - j)] =
-          std::isnan(occupancy) ? 0 : static_cast<uint8_t>(255.f * occupancy);
+          static_cast<uint8_t>(255.f * map.at(i, j));
     }
   }
   return grid;
@@ -51,13 +49,14 @@ int main() {
     std::printf("found nowhere\n");
     return 1;
   }
-  std::printf("taken at %.2f %.2f %.1f deg, found at %.2f %.2f %.1f deg, "
-              "score %.3f\n",
-              truth.x, truth.y, cartographer_ext::RadToDeg(truth.theta),
-              result.pose.x, result.pose.y,
-              cartographer_ext::RadToDeg(
-                  cartographer_ext::NormalizeAngle(result.pose.theta)),
-              result.score);
+  std::printf(
+      "taken at %.2f %.2f %.1f deg, found at %.2f %.2f %.1f deg, "
+      "score %.3f\n",
+      truth.x, truth.y, cartographer_ext::RadToDeg(truth.theta), result.pose.x,
+      result.pose.y,
+      cartographer_ext::RadToDeg(
+          cartographer_ext::NormalizeAngle(result.pose.theta)),
+      result.score);
   const Pose2 error = cartographer_ext::Between(truth, result.pose);
   return std::hypot(error.x, error.y) < 0.15 ? 0 : 1;
 }

@@ -13,11 +13,10 @@ using cartographer_ext::Pose2;
 namespace loop_closure = cartographer_ext::loop_closure;
 
 loop_closure::OccupancyView ToView(
-    const cartographer_ext::io::OccupancyMap& map,
+    const examples::Map& map,
     const loop_closure::TemporalVerificationOptions& options) {
-  loop_closure::OccupancyView view(
-      Eigen::Vector2d(map.origin.x, map.origin.y), map.resolution, map.width,
-      map.height);
+  loop_closure::OccupancyView view(Eigen::Vector2d(map.origin.x, map.origin.y),
+                                   map.resolution, map.width, map.height);
   for (int j = 0; j < map.height; ++j) {
     for (int i = 0; i < map.width; ++i) {
       view.Set(i, j,
@@ -34,8 +33,7 @@ int main() {
   const loop_closure::TemporalVerificationOptions options;
   const loop_closure::OccupancyView view =
       ToView(examples::Corridor(), options);
-  const std::vector<loop_closure::ReferenceMap> maps = {
-      {&view, Pose2()}};
+  const std::vector<loop_closure::ReferenceMap> maps = {{&view, Pose2()}};
 
   // Ten nodes along the corridor, in a local frame that knows nothing of the
   // map.

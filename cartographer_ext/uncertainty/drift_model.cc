@@ -2,8 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/uncertainty/drift_model.h"
 
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+
 namespace cartographer_ext {
 namespace uncertainty {
+
+std::string ToText(const std::map<int, DriftEstimate>& drifts) {
+  for (auto drift = drifts.rbegin(); drift != drifts.rend(); ++drift) {
+    const DriftEstimate& estimate = drift->second;
+    if (estimate.num_cycles == 0) continue;
+    constexpr double kMetres = 10.;
+    constexpr double kDegrees = 180. / M_PI;
+    return absl::StrFormat(
+        "local SLAM of trajectory %d drifts by %.3f m and %.2f deg (standard "
+        "deviations) in %.0f m, estimated from %d cycles",
+        drift->first, estimate.mean.translation_per_metre * std::sqrt(kMetres),
+        estimate.mean.rotation_per_metre * std::sqrt(kMetres) * kDegrees,
+        kMetres, estimate.num_cycles);
+  }
+  return "";
+}
 
 void DriftModel::SetPrior(const PathNoiseOptions& prior) {
   absl::MutexLock lock(&mutex_);

@@ -19,6 +19,7 @@
 #define CARTOGRAPHER_EXT_UNCERTAINTY_DRIFT_MODEL_H_
 
 #include <map>
+#include <string>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
@@ -34,6 +35,11 @@ struct DriftEstimate {
   // Independent pieces of evidence; 0: nothing is known but the prior.
   int num_cycles = 0;
 };
+
+// "local SLAM of trajectory 0 drifts by 0.063 m and 0.29 deg (standard
+// deviations) in 10 m, estimated from 12 cycles", the newest trajectory of
+// which something is known; empty where there is none.
+std::string ToText(const std::map<int, DriftEstimate>& drifts);
 
 class DriftModel {
  public:

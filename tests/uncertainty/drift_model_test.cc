@@ -34,6 +34,21 @@ TEST(DriftModelTest, ScalesTranslationAndRotation) {
   EXPECT_DOUBLE_EQ(scaled.jump_threshold_radians, 0.4);
 }
 
+TEST(DriftModelTest, AsALineOfTheLog) {
+  EXPECT_EQ(ToText({}), "");
+  DriftEstimate prior;
+  EXPECT_EQ(ToText({{0, prior}}), "");
+  DriftEstimate known;
+  known.mean.translation_per_metre = 0.02;
+  known.mean.rotation_per_metre = 0.005;
+  known.num_cycles = 12;
+  // The newest of which something is known. 0.02 m and 0.286 deg times
+  // the square root of 10.
+  EXPECT_EQ(ToText({{0, prior}, {1, known}, {2, prior}}),
+            "local SLAM of trajectory 1 drifts by 0.063 m and 0.91 deg "
+            "(standard deviations) in 10 m, estimated from 12 cycles");
+}
+
 TEST(DriftModelTest, PriorUntilEstimated) {
   PoseGraphContext context;
   DriftModel* const model = context.Get<DriftModel>();

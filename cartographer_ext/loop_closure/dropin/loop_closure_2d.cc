@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/memory/memory.h"
+#include "absl/strings/str_cat.h"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/loop_information.h"
@@ -337,6 +338,12 @@ DecisionCounts LoopClosure2D::counts() const {
   DecisionCounts counts = counts_;
   counts.undecided = pipeline_.num_undecided();
   return counts;
+}
+
+std::string LoopClosure2D::Summary() const {
+  const std::string drift =
+      ToText(context_->Get<uncertainty::DriftModel>()->All());
+  return absl::StrCat(ToText(counts()), drift.empty() ? "" : "; ", drift);
 }
 
 std::vector<LoopDecision> LoopClosure2D::Undecided() const {

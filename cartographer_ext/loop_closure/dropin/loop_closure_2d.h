@@ -35,6 +35,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "absl/types/optional.h"
@@ -108,6 +109,8 @@ class LoopClosure2D {
   std::vector<proto::LoopDecision> Undecided() const;
   // Of all decisions so far, and what is undecided.
   DecisionCounts counts() const;
+  // Counts, and how much local SLAM drifts, for the host's log.
+  std::string Summary() const;
 
  private:
   LoopCandidate Propose(const Proposal& proposal);

@@ -36,7 +36,7 @@ VerifiedConstraintBuilder2D::~VerifiedConstraintBuilder2D() {
   CHECK(!loop_closure_.has_candidates()) << "WhenDone was not called";
   CHECK_EQ(num_started_nodes_, num_finished_nodes_);
   loop_closure_.Flush();
-  LOG(INFO) << "cartographer_ext: in the end " << ToText(loop_closure_.counts());
+  LOG(INFO) << "cartographer_ext: in the end " << loop_closure_.Summary();
 }
 
 void VerifiedConstraintBuilder2D::Propose(const Proposal& proposal) {
@@ -85,7 +85,7 @@ void VerifiedConstraintBuilder2D::CallBack() {
   {
     absl::MutexLock work_lock(&work_mutex_);
     result = loop_closure_.Verify();
-    LOG(INFO) << "cartographer_ext: " << ToText(loop_closure_.counts());
+    LOG(INFO) << "cartographer_ext: " << loop_closure_.Summary();
   }
   std::function<void(const Result&)> callback;
   {

@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every shell command of docs/ros.md and docs/swap.md is marked with the script that runs it, and that script has it.
+
+A block of commands follows a line `<!-- executed by SCRIPT: NAME -->`. SCRIPT has NAME in it: it takes the block out of the
+document by that name, or runs what the block says.
+
+  python3 tests/documented_commands_test.py <root of the project>
+"""
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(sys.argv[1])
+marker = re.compile(r'<!-- executed by (\S+): (\S+) -->')
+errors = []
+blocks = 0
+for document in ('docs/ros.md', 'docs/swap.md'):
+    lines = (root / document).read_text(encoding='utf-8').splitlines()
+    for number, line in enumerate(lines):
+        if line.strip() != '```sh':
+            continue
+        blocks += 1
+        where = '%s:%d' % (document, number + 1)
+        match = marker.fullmatch(lines[number - 1])
+        if not match:
+            errors.append('%s: commands without a marker of the script that runs them' % where)
+            continue
+        script, name = root / match.group(1), match.group(2)
+        if not script.is_file():
+            errors.append('%s: %s is missing' % (where, match.group(1)))
+        elif not re.search(r'(?<![\w])%s(?![\w])' % re.escape(name), script.read_text(encoding='utf-8')):
+            errors.append('%s: %s does not know %s' % (where, match.group(1), name))
+print('\n'.join(errors) or '%d blocks of commands' % blocks)
+sys.exit(1 if errors or blocks < 10 else 0)
