@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 # SPDX-License-Identifier: Apache-2.0
-"""Buildings out of seeds, for scripts/reproduce: how often, and where, mapping fails on buildings nobody has looked at.
+"""Generated buildings, for scripts/reproduce: how often, and where, mapping fails on buildings not used during development.
 
 A run is a kind of building, a laser, a grade of odometry, a seed and a method. Runs are taken from the cases in an order whose
 every beginning is balanced, so that a sample is one of all of them. Each finished run is a line of journal.jsonl and is not
@@ -40,7 +40,7 @@ def names(text, known, what):
 
 
 def cases(kinds, lasers, grades, count):
-    """`count` runs (kind, laser, grade, seed); every beginning has all kinds, lasers and grades about equally often."""
+    """`count` runs (kind, laser, grade, seed); every prefix has all kinds, lasers and grades about equally often."""
     result = []
     for i in range(count):
         kind, block = i % len(kinds), i // len(kinds)
@@ -82,7 +82,7 @@ def figures(evaluation, slam):
 
 
 def map_case(commands, case, method):
-    """Simulates, maps and measures one run in a folder of its own."""
+    """Simulates, maps and evaluates one run in its own folder."""
     kind, laser, grade, seed = case
     run = {"kind": kind, "laser": laser, "odometry": grade, "seed": seed, "method": method}
     folder = commands.out / ("work.%s.%s.%s.%d.%s" % (kind, laser, grade, seed, method))
@@ -109,7 +109,7 @@ def map_case(commands, case, method):
 
 
 class Journal:
-    """Finished runs, one a line; a last line cut short by a crash is dropped."""
+    """Finished runs, one per line; an incomplete last line is dropped."""
 
     def __init__(self, path):
         self.path, self.lock, self.runs = path, threading.Lock(), {}
@@ -273,7 +273,7 @@ def any_building(commands, options):
     text += "Runs that are not right: %s.\n\n%s" % (share(len(bad), len(runs)), failures(runs))
     return ("Any building",
             "Right: at most a tenth of the true revisits lie more than half a metre apart. Folded: not right, and more than a twentieth "
-            "of the accepted loops are wrong; open: not right for want of loops. Precision is that of all loops of a group together. "
+            "of the accepted loops are wrong; open: not right because loops are missing. Precision is that of all loops of a group together. "
             "Sequential: mean error of relations about 1 m apart, which is local SLAM's. Every run with its figures is in "
             "runs.html, runs.csv and runs.json in %s." % commands.out, text)
 

@@ -26,7 +26,7 @@ START_SIGMA = (0.25, math.radians(3.))  # metres, radians
 
 
 def routes(world):
-    """The straight ways that the world's own drive uses, cut where others meet them: pairs of points."""
+    """The straight segments of the world's own drive, split at their intersections: pairs of points."""
     points = []
     for line in world.splitlines():
         words = line.split("#")[0].split()
@@ -47,7 +47,7 @@ def routes(world):
 
 
 def random_drive(ways, generator, metres):
-    """Statements of a world file: a start somewhere on the ways, and on from way to way."""
+    """Statements of a world file: a start on a random segment, then a drive from segment to segment."""
     lengths = [math.hypot(b[0] - a[0], b[1] - a[1]) for a, b in ways]
     a, b = generator.choices(ways, lengths)[0]
     if generator.random() < 0.5:
@@ -120,7 +120,7 @@ def replace_poses(line, change):
 
 
 def append_log(first, second, out):
-    """Logs one after the other: the odometry of the second goes on where that of the first was."""
+    """Logs one after the other: the odometry of the second continues that of the first."""
     lines = open(str(first)).read().splitlines()
     last = next(line.split(" ") for line in reversed(lines) if line.startswith("ODOM "))
     end = tuple(map(float, last[1:4]))
@@ -198,7 +198,7 @@ class Runs:
         return "%s.clf" % stem, str(truth)
 
     def localize(self, configuration, case, seed):
-        """One run, judged: the stretches of the evaluation."""
+        """One run, evaluated: its segments."""
         log, truth = self.recording(case, seed)
         stem = self.commands.out / ("%s.%s.%d.%s" % (self.world, case, seed, configuration[:-4]))
         online = stem.with_name(stem.name + ".online.tum")
@@ -232,14 +232,14 @@ METHODS = {"stock": "stock_localization.lua", "ours": "localization.lua"}
 SECONDS = 60.  # to find the place in
 
 
-def summary(stretches):
-    """Figures of the same stretch of several runs."""
-    times = [s["seconds_until_localized"] if s["localized"] else math.inf for s in stretches]
-    errors = [s["translation_error"]["rmse"] for s in stretches if s["localized"]]
-    return {"runs": len(stretches), "in_time": sum(1 for t in times if t <= SECONDS),
-            "median": statistics.median(times), "longest": max(times), "jumps": sum(s["jumps"] for s in stretches),
-            "runs_with_jumps": sum(1 for s in stretches if s["jumps"]),
-            "wrong": sum(s["wrong_jumps"] for s in stretches),
+def summary(segments):
+    """Figures of the same segment of several runs."""
+    times = [s["seconds_until_localized"] if s["localized"] else math.inf for s in segments]
+    errors = [s["translation_error"]["rmse"] for s in segments if s["localized"]]
+    return {"runs": len(segments), "in_time": sum(1 for t in times if t <= SECONDS),
+            "median": statistics.median(times), "longest": max(times), "jumps": sum(s["jumps"] for s in segments),
+            "runs_with_jumps": sum(1 for s in segments if s["jumps"]),
+            "wrong": sum(s["wrong_jumps"] for s in segments),
             "error": statistics.median(errors) if errors else None}
 
 
@@ -262,7 +262,7 @@ def pure_localization(commands, options):
         for method, configuration in METHODS.items():
             for case, recording, part in (("start told", "known", 0), ("start unknown", "unknown", 0),
                                           ("kidnapped", "known", 1)):
-                figures = summary([json.loads(results[configuration, recording, seed].read_text())["stretches"][part]
+                figures = summary([json.loads(results[configuration, recording, seed].read_text())["segments"][part]
                                    for seed in seeds])
                 lines.append([world, case, method, "%d of %d" % (figures["in_time"], figures["runs"]),
                               seconds(figures["median"]), seconds(figures["longest"]),
@@ -276,9 +276,9 @@ def pure_localization(commands, options):
                   "jumps > 0.5 m after that", "wrong places", "error m"], lines)
     text += "\nCPU seconds for each second of driving:\n\n" + table(["world", "method", "all", "loop search"], cpu)
     return ("Localisation in a finished map",
-            "One map of each world, made by default.lua from one drive; %d other drives, with other ways, noise and people "
-            "(seeds %d to %d; 1 to 3 were used in development). A robot knows its place from when the reported pose is within "
-            "0.3 m and 5 degrees of the truth for 10 s on. Poses are those reported at the time of the scan." %
+            "One map of each world, made by default.lua from one drive; %d other drives, with other paths, noise and people "
+            "(seeds %d to %d; 1 to 3 were used in development). A robot counts as localised from when the published pose is within "
+            "0.3 m and 5 degrees of the truth for 10 s on. Poses are those published at the time of the scan." %
             (len(seeds), seeds[0], seeds[-1]), text)
 
 

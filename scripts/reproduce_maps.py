@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 # SPDX-License-Identifier: Apache-2.0
-"""Stored maps judged and run again, for scripts/reproduce, which puts itself in as `common`."""
+"""Stored maps judged and re-run, for scripts/reproduce, which puts itself in as `common`."""
 import pathlib
 
 common = None
@@ -14,7 +14,7 @@ def percent(value, digits=1):
 
 
 def judged(run):
-    """Columns that tell how good a map is."""
+    """Columns of the quality of a map."""
     own = run["evaluation"]
     loops, consistency = own["loops"], own["consistency"]
     truth = "relations" in own
@@ -30,7 +30,7 @@ def judged(run):
 
 
 def stored_maps(commands, options):
-    """Finished maps: verdict, and loop closing run again, stock and ours."""
+    """Finished maps: verdict, and loop closure re-run, stock and ours."""
     folder = pathlib.Path(options.data) / "pbstream"
     configurations = pathlib.Path(options.data).parent / "golden" / "configs"
     maps = sorted(folder.glob("*.pbstream"))
@@ -56,19 +56,19 @@ def stored_maps(commands, options):
             line = [path.stem if run is result["runs"][0] else "", run["name"], run["loops"]]
             if "run" in run:
                 same = run["against_stored"]
-                line += ["%s (%s)" % (percent(same["fraction_of_stored"]), options_known) if run["name"] == "stock again" else
+                line += ["%s (%s)" % (percent(same["fraction_of_stored"]), options_known) if run["name"] == "stock re-run" else
                          percent(same["fraction_of_stored"])]
                 resources = [common.number(run["run"]["loop_search_cpu_seconds"], 1), "%.0f" % (run["run"]["peak_memory_bytes"] / 2.**20)]
             else:
                 line += [""]
                 resources = ["", ""]
             lines.append(line + judged(run) + resources)
-    return ("Stored maps: stock and ours behind the same local SLAM",
-            "Only loop closing is run again, from the .pbstream alone. No truth but for aces and csail. Stock's options are those of "
+    return ("Stored maps: stock and ours with the same local SLAM",
+            "Only loop closure is re-run, from the .pbstream alone. Ground truth exists for aces and csail only. Stock's options are those of "
             "the file beside the map, or Cartographer's defaults (assumed); ours is the same with the blocks of default.lua. The "
             "runs are deterministic, so there are no seeds.",
-            common.table(["map", "run", "loops", "stored pairs again", "precision, revisits closed", "relations m", "open cycles",
-                          "severe", "walls cm, one visit / all", "verdict", "loop closing CPU s", "MiB"], lines))
+            common.table(["map", "run", "loops", "stored pairs reproduced", "precision, revisits closed", "relations m", "open cycles",
+                          "severe", "walls cm, one visit / all", "verdict", "loop closure CPU s", "MiB"], lines))
 
 
 EXPERIMENTS = [stored_maps]

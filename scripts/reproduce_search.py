@@ -60,7 +60,7 @@ def c_gamma(commands, options):
                  "was begun, and no place is seen again sooner.")
     return ("C, section 1.2: grid search for gamma", note,
             common.table(["gamma", "paper", "share of right loops", "revisits closed", "loops", "relations m",
-                          "CPU s of loop closing"], lines))
+                          "CPU s of loop closure"], lines))
 
 
 def c_alpha_beta(commands, options):
@@ -76,7 +76,7 @@ def c_alpha_beta(commands, options):
         lines.append(["%.1f" % v for v in values] + [", ".join(remark)] +
                      [spread([m.get(key) for m in metrics], 4) for key in ("relations", "relations_median", "ate")])
     return ("C, section 1.4: calibration of alpha and beta",
-            "The paper fixes alpha and varies beta for the least error of the map and usually takes 1.2 and 1.5; it prints no "
+            "The paper fixes alpha and varies beta for the least error of the map and usually uses 1.2 and 1.5; it prints no "
             "errors. Corridor world, errors of the true relations, in brackets the least and the largest.",
             common.table(["alpha", "beta", "", "mean m", "median m", "ATE m"], lines))
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 # SPDX-License-Identifier: Apache-2.0
-"""Maps with known truth, for scripts/reproduce: how often the verdict that knows no truth is wrong.
+"""Maps with known truth, for scripts/reproduce: how often the verdict without ground truth is wrong.
 
 A case is a generated building, a laser, a grade of odometry, a seed and what is done to the map: nothing, stock behaviour, loops that
 are believed too easily, local SLAM that follows bad odometry, no loops, things moved between two visits, or two floors one over the
@@ -152,7 +152,7 @@ def extent(words):
 
 
 def without_some(world, generator):
-    """The world without a third of its small things: furniture, goods, closed doors."""
+    """The world without a third of its small objects: furniture, goods, closed doors."""
     lines = []
     for line in world.read_text().splitlines():
         words = line.split()
@@ -243,7 +243,7 @@ class Bench:
                 stream.write(json.dumps(result) + "\n")
 
     def verdict(self, name):
-        """What cartographer_ext_evaluate says of the map alone."""
+        """The verdict of cartographer_ext_evaluate on the map alone."""
         path = self.maps / (name + ".json")
         command = self.commands.path("evaluate")
         if path.exists() and path.stat().st_mtime < os.stat(command).st_mtime:
@@ -253,7 +253,7 @@ class Bench:
 
 
 def truth(case):
-    """sound, broken or, where nothing was visited twice, unknown. Floors over each other are broken whatever each of them is."""
+    """sound, broken or, where nothing was visited twice, unknown. Superimposed floors are always broken."""
     if case["treatment"] == "floors":
         return "broken"
     if not case["loops"]:
@@ -273,7 +273,7 @@ def confusion(label, cases_):
 
 
 def verdicts(commands, options):
-    """Maps with known truth, sound and broken in many ways: the verdict without truth against it."""
+    """Maps with known truth, sound and broken in many ways: the verdict without ground truth, compared with it."""
     bench = Bench(commands)
     log = list(commands.log)
 
@@ -304,8 +304,8 @@ def verdicts(commands, options):
     if failed:
         text += "Not mapped: %s.\n\n" % "; ".join("%s (%s)" % (c["name"], c["failure"]) for c in failed)
     return ("Verdicts against truth",
-            "Sound: relations of revisits are off by at most %.1f m in the mean, and no relation by more than half a metre. Two floors "
-            "over each other are broken. Halves by the parity of the seed." % SOUND_LOOP_ERROR, text)
+            "Sound: relations of revisits are off by at most %.1f m in the mean, and no relation by more than half a metre. Two "
+            "superimposed floors are broken. Halves by the parity of the seed." % SOUND_LOOP_ERROR, text)
 
 
 EXPERIMENTS = [verdicts]

@@ -98,7 +98,7 @@ absl::StatusOr<std::vector<MapRecord>> SurveyMaps(
   const auto journal = io::LineJournal::Open(
       options.journal_filename,
       {"cartographer_ext_evaluate", "journal of maps", "survey",
-       "maps are judged otherwise"},
+       "maps are judged with other options"},
       "1", [&known](const nlohmann::json& line) -> absl::Status {
         if (!line.is_object() || !line.contains("state") ||
             !line["state"].is_string() || !line.contains("record")) {

@@ -173,7 +173,7 @@ void AddFilters(const std::map<std::string, int>& counts, Markup* const page) {
   page->Open("div", {{"class", "filters"}});
   page->Empty("input", {{"type", "search"},
                         {"placeholder", "name or reason"},
-                        {"aria-label", "Show maps with this in their row"}});
+                        {"aria-label", "Show maps whose row contains this"}});
   for (const char* const verdict : kVerdicts) {
     const auto count = counts.find(verdict);
     if (count == counts.end()) continue;
@@ -214,7 +214,7 @@ void AddChanges(const std::vector<MapChange>& changes, Markup* const page) {
   if (table.empty()) {
     page->Element("p", {}, "No verdict has changed.");
   } else {
-    page->Raw(table.ToHtml("Maps whose verdict is another one now"));
+    page->Raw(table.ToHtml("Maps whose verdict has changed"));
   }
 }
 

@@ -117,8 +117,9 @@ absl::Status TryInChildProcess(const std::function<void()>& body,
     return absl::InvalidArgumentError("it ended the program (os.exit)");
   }
   if (WIFSIGNALED(state) && WTERMSIG(state) == SIGXCPU) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "it does not end: more than ", max_cpu_seconds, " s of CPU time"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("it does not terminate: more than ", max_cpu_seconds,
+                     " s of CPU time"));
   }
   if (WIFEXITED(state) && WEXITSTATUS(state) == kFatalExitCode) {
     return absl::InvalidArgumentError(Readable(message));

@@ -75,7 +75,7 @@ void CountInstructions(lua_State* const lua, lua_Debug* /*where*/) {
     environment->is_exhausted = true;
     // So that code which catches the error does not go on.
     lua_sethook(lua, CountInstructions, LUA_MASKCOUNT, 1);
-    luaL_error(lua, "the code does not end");
+    luaL_error(lua, "the code does not terminate");
   }
 }
 
@@ -261,9 +261,9 @@ absl::StatusOr<std::string> ReadFromDirectories(
     if (stream.bad()) continue;
     content.resize(static_cast<size_t>(stream.gcount()));
     if (content.size() <= kMaxFileSize) return content;
-    return absl::InvalidArgumentError(
-        absl::StrCat(directory, "/", basename, " has more than ",
-                     kMaxFileSize >> 20, " MB, which is no configuration"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        directory, "/", basename, " has more than ", kMaxFileSize >> 20,
+        " MB, which cannot be a configuration"));
   }
   return absl::NotFoundError(absl::StrCat("cannot find or read '", basename,
                                           "' in ",

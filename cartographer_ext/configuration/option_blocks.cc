@@ -53,31 +53,33 @@ std::vector<options::OptionBlock> OptionBlocks(
 #ifdef CARTOGRAPHER_EXT_SWAP_LOCAL_TRAJECTORY_BUILDER
   blocks.push_back(Block<proto::FrontEndOptions>(
       "TRAJECTORY_BUILDER_2D", "trajectory_builder_2d",
-      "Local SLAM with adaptive features and better motion prediction.",
+      "Local SLAM with motion prediction from odometry and IMU, fault "
+      "detection and online calibration.",
       local));
 #endif
 #ifdef CARTOGRAPHER_EXT_SWAP_CERES_SCAN_MATCHER
   blocks.push_back(Block<proto::ScanMatcherOptions>(
       "TRAJECTORY_BUILDER_2D.ceres_scan_matcher", "ceres_scan_matcher",
-      "Scan matching that knows which directions the scan determines.",
+      "Scan matching that follows the prediction along degenerate directions.",
       local.ceres_scan_matcher_options()));
 #endif
 #ifdef CARTOGRAPHER_EXT_SWAP_CONSTRAINT_BUILDER
   blocks.push_back(Block<proto::LoopClosureOptions>(
       "POSE_GRAPH.constraint_builder", "constraint_builder",
-      "Loop closures that are verified over time and weighted by confidence.",
+      "Loop closure with temporal verification, consensus and confidence "
+      "weights.",
       pose_graph.constraint_builder_options()));
 #endif
 #ifdef CARTOGRAPHER_EXT_SWAP_CERES_SCAN_MATCHER
   blocks.push_back(Block<proto::ScanMatcherOptions>(
       "POSE_GRAPH.constraint_builder.ceres_scan_matcher", "ceres_scan_matcher",
-      "Scan matching that knows which directions the scan determines.",
+      "Scan matching that follows the prediction along degenerate directions.",
       pose_graph.constraint_builder_options().ceres_scan_matcher_options()));
 #endif
 #ifdef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
   blocks.push_back(Block<proto::RobustOptimizationOptions>(
       "POSE_GRAPH.optimization_problem", "optimization_problem",
-      "Optimisation that finds and leaves out false loop closures.",
+      "Robust optimisation that disables wrong loops.",
       pose_graph.optimization_problem_options()));
 #endif
   return blocks;

@@ -39,7 +39,8 @@ void FlattenTo(const Message& message, const std::string& prefix,
     (*values)[name] = text;
   }
   if (options::HasExtension(message)) {
-    (*values)[absl::StrCat(prefix, "cartographer_ext")] = "(block of ours)";
+    (*values)[absl::StrCat(prefix, "cartographer_ext")] =
+        "(cartographer_ext block)";
   }
 }
 

@@ -38,24 +38,24 @@ struct Rule {
 };
 
 constexpr char kWeight[] = "weights are inverse standard deviations";
-constexpr char kMatcherWeight[] = "the scan matcher wants every cost";
+constexpr char kMatcherWeight[] = "the scan matcher needs every cost";
 constexpr char kNoScore[] = "scores are between 0 and 1";
 constexpr char kNoLoop[] = "no loop would be searched";
 constexpr char kNoRange[] = "no range would be used";
-constexpr char kRatio[] = "it is the fraction that is used";
-constexpr char kVoxel[] = "it is the edge of a voxel in metres";
+constexpr char kRatio[] = "it is the fraction of candidates that is searched";
+constexpr char kVoxel[] = "it is the voxel size in metres";
 constexpr char kSearchMemory[] =
     "the candidates of one search would not fit into memory";
 
 const Rule kRules[] = {
     {"MapBuilderOptions.num_background_threads", Bound::kAtLeast, 1,
      kMaxBackgroundThreads, Otherwise::kRefuse,
-     "each is a thread of the system"},
+     "each is an operating system thread"},
     {"LocalTrajectoryBuilderOptions2D.max_range", Bound::kAbove, 0., kInfinity,
      Otherwise::kRefuse, kNoRange},
     {"LocalTrajectoryBuilderOptions2D.missing_data_ray_length", Bound::kAtLeast,
      0., kInfinity, Otherwise::kWarn,
-     "free space would be entered behind the sensor"},
+     "free space would be inserted behind the sensor"},
     {"LocalTrajectoryBuilderOptions2D.num_accumulated_range_data",
      Bound::kAtLeast, 1, kInfinity, Otherwise::kWarn, "it counts as 1"},
     {"LocalTrajectoryBuilderOptions2D.voxel_filter_size", Bound::kAtLeast, 1e-6,
@@ -71,9 +71,9 @@ const Rule kRules[] = {
     {"CeresScanMatcherOptions2D.rotation_weight", Bound::kAbove, 0., kMaxWeight,
      Otherwise::kRefuse, kMatcherWeight},
     {"CeresSolverOptions.max_num_iterations", Bound::kAtLeast, 1, kInfinity,
-     Otherwise::kRefuse, "the solver could do nothing"},
+     Otherwise::kRefuse, "the solver would do nothing"},
     {"CeresSolverOptions.num_threads", Bound::kAtLeast, 1, kInfinity,
-     Otherwise::kRefuse, "the solver could do nothing"},
+     Otherwise::kRefuse, "the solver would do nothing"},
     {"RealTimeCorrelativeScanMatcherOptions.linear_search_window",
      Bound::kAtLeast, 0., 100., Otherwise::kRefuse, kSearchMemory},
     {"RealTimeCorrelativeScanMatcherOptions.angular_search_window",
@@ -82,12 +82,11 @@ const Rule kRules[] = {
      Otherwise::kRefuse, "a submap is made of scans"},
     {"GridOptions2D.resolution", Bound::kAtLeast, 1e-4, kInfinity,
      Otherwise::kRefuse,
-     "it is the edge of a cell in metres, and ten metres of smaller cells do "
-     "not fit into memory"},
+     "it is the cell size in metres, and ten metres of smaller cells do not "
+     "fit into memory"},
     {"GridOptions2D.resolution", Bound::kAtLeast, 0.005, 1., Otherwise::kWarn,
-     "it is the edge of a cell in metres: smaller ones need much memory, "
-     "larger "
-     "ones show no walls"},
+     "it is the cell size in metres: smaller cells need much memory, larger "
+     "ones do not resolve walls"},
     {"ProbabilityGridRangeDataInserterOptions2D.hit_probability", Bound::kAbove,
      0.5, 1., Otherwise::kRefuse,
      "a hit makes a cell more likely to be occupied", true},
@@ -101,7 +100,7 @@ const Rule kRules[] = {
     {"PoseGraphOptions.matcher_rotation_weight", Bound::kAtLeast, 0.,
      kMaxWeight, Otherwise::kRefuse, kWeight},
     {"PoseGraphOptions.max_num_final_iterations", Bound::kAtLeast, 1, kInfinity,
-     Otherwise::kRefuse, "the last optimization could do nothing"},
+     Otherwise::kRefuse, "the last optimization would do nothing"},
     {"PoseGraphOptions.global_sampling_ratio", Bound::kAtLeast, 0., 1.,
      Otherwise::kRefuse, kRatio},
     {"ConstraintBuilderOptions.sampling_ratio", Bound::kAtLeast, 0., 1.,
@@ -125,7 +124,7 @@ const Rule kRules[] = {
      Bound::kAtLeast, 0., 100., Otherwise::kRefuse, kSearchMemory},
     {"FastCorrelativeScanMatcherOptions2D.angular_search_window",
      Bound::kAtLeast, 0., 3.15, Otherwise::kWarn,
-     "it is the half width in radians, and what is beyond pi is searched "
+     "it is the half width in radians; beyond pi, rotations are searched "
      "twice"},
     {"OptimizationProblemOptions.huber_scale", Bound::kAbove, 0., kInfinity,
      Otherwise::kWarn, "loops would have no effect"},
@@ -178,9 +177,9 @@ absl::Status CheckNumber(const FieldDescriptor& field, const std::string& key,
                          const double number,
                          std::vector<std::string>* const warnings) {
   if (std::isnan(number) || std::fpclassify(number) == FP_SUBNORMAL) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(key, " is ", Text(number),
-                     std::isnan(number) ? "" : ", too small to compute with"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        key, " is ", Text(number),
+        std::isnan(number) ? "" : ", which is numerically too small"));
   }
   const std::string name =
       absl::StrCat(field.containing_type()->name(), ".", field.name());

@@ -36,20 +36,20 @@ from the option messages in `proto/cartographer_ext` and from measurements; a te
 )";
 
 constexpr char kEffects[] = R"(
-## What they change
+## Measured effects
 
-Error of the map over that with the default, in percent, when one option is set to a third or to three times its default, a
-switch to its other state; the last column counts recordings whose error changes by more than three times the scatter, which
-is the spread over runs with one or two scans more or less in a submap. Measured by `scripts/option_effects`; a dash is not
-measured. Options of `optimization_problem` are compared with the default and their block.
+Change of the map error in percent when one option is set to a third or to three times its default, or a switch to its other
+state; the last column counts recordings whose error changes by more than three times the scatter, which is the spread over runs
+with one or two scans more or less per submap. Measured by `scripts/option_effects`; a dash means not measured. Options of
+`optimization_problem` are compared with the default plus their block.
 
 )";
 
 constexpr char kRemoved[] = R"(
 ## Former keys
 
-A configuration that has one of these is rejected with a message. All but the renamed ones are constants now, beside the
-reason for their value in the options of the module that uses them.
+A configuration with one of these keys is rejected with a message. All except the renamed ones are now constants, documented in
+the options of the module that uses them.
 
 )";
 
@@ -97,7 +97,7 @@ void AppendTables(const std::vector<const OptionBlock*>& blocks,
   }
   absl::StrAppend(
       result, num_options, " options, ", num_basic,
-      " of them basic. The block `ceres_scan_matcher` may stand in two "
+      " of them basic. The block `ceres_scan_matcher` may be used in two "
       "tables, that of local SLAM and that of\nloop closure.\n\n## Basic\n\n",
       kHead, basic, "\n## Advanced\n", advanced);
 }

@@ -36,7 +36,7 @@ std::string DescribeBlock(const std::string& path, const std::string& bytes) {
   const std::unique_ptr<Message> block = BlockAt(path);
   if (block == nullptr || !block->ParseFromString(bytes)) {
     return absl::StrCat(path, ": ", bytes.size(),
-                        " bytes that do not decode here");
+                        " bytes that cannot be decoded");
   }
   return absl::StrCat(path, ": ", block->ShortDebugString());
 }

@@ -163,7 +163,7 @@ class CostJournal {
     auto lines = io::LineJournal::Open(
         options.journal_filename,
         {"cartographer_ext_compare_cost", "journal of costs", "comparison",
-         "graphs are made or solved with other options"},
+         "graphs were generated or solved with other options"},
         fingerprint, [this](const nlohmann::json& line) -> absl::Status {
           CostComparison comparison;
           if (!line.is_object() || !line.contains("source") ||

@@ -75,7 +75,7 @@ absl::Status G2oParser::ParseVertex(Tokens* tokens) {
   int64_t id;
   Pose2 pose;
   if (!ParseInt(tokens->Next(), &id)) {
-    return Malformed("the id of the vertex is no integer");
+    return Malformed("the id of the vertex is not an integer");
   }
   if (!ParsePose(tokens, &pose)) {
     return Malformed(
@@ -92,7 +92,7 @@ absl::Status G2oParser::ParseEdge(Tokens* tokens, int64_t line_number) {
   edge.line = line_number;
   if (!ParseInt(tokens->Next(), &edge.from) ||
       !ParseInt(tokens->Next(), &edge.to)) {
-    return Malformed("the ids of the edge are no integers");
+    return Malformed("the ids of the edge are not integers");
   }
   if (!ParsePose(tokens, &edge.measurement)) {
     return Malformed(

@@ -178,7 +178,7 @@ absl::StatusOr<bool> LineReader::Next(absl::string_view* line) {
       if (skipped > kMaxSkippedLength) {
         return absl::InvalidArgumentError(absl::StrCat(
             filename_, ":", line_number_ + 1, ": a line of more than ",
-            kMaxSkippedLength >> 20, " MB; this is no text file"));
+            kMaxSkippedLength >> 20, " MB; this is not a text file"));
       }
       end_ = begin_ + kMaxLineLength;
       searched = kMaxLineLength;

@@ -145,7 +145,7 @@ absl::Status CheckGrid(const Grid2D& grid) {
       !std::isfinite(grid.limits().max().x()) ||
       !std::isfinite(grid.limits().max().y())) {
     return absl::InvalidArgumentError(
-        "the grid's resolution or corner is not a sensible number");
+        "the grid's resolution or corner is out of range");
   }
   const double lower = grid.min_correspondence_cost();
   const double upper = grid.max_correspondence_cost();
@@ -182,14 +182,13 @@ absl::StatusOr<io::OccupancyMap> PaintMap(const std::vector<PlacedGrid>& grids,
   if (!(width * height <= kMaxCells)) {
     return absl::InvalidArgumentError(
         absl::StrFormat("the map would have %.0f x %.0f cells of %g m, more "
-                        "than %g in all: use a coarser resolution",
+                        "than %g in total: use a coarser resolution",
                         width, height, resolution, kMaxCells));
   }
   if (width * height > kFreeCells + kMaxCellsPerKnown * known) {
     return absl::InvalidArgumentError(absl::StrFormat(
-        "the map would have %.0f x %.0f cells of %g m, of which "
-        "only %.0f are known: submaps lie too far apart, or use "
-        "a coarser resolution",
+        "the map would have %.0f x %.0f cells of %g m, of which only %.0f are "
+        "known: the submaps are too far apart; use a coarser resolution",
         width, height, resolution, known));
   }
   io::OccupancyMap map =

@@ -69,7 +69,7 @@ void DrawMarks(const MapGraph& graph, io::Picture* const picture) {
     }
   }
   if (has_weak) {
-    picture->AddLegend("not determined by the scan", io::palette::kOrange);
+    picture->AddLegend("degenerate scan", io::palette::kOrange);
   }
   if (has_fault) picture->AddLegend("odometry fault", io::palette::kVermilion);
 }
@@ -122,8 +122,8 @@ absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
   DrawMarks(graph, &picture);
   const std::map<LoopKind, const char*> legends = {
       {LoopKind::kAgrees, "loop"},
-      {LoopKind::kAgainstTheMap, "loop against the map"},
-      {LoopKind::kSwitchedOff, "loop switched off"}};
+      {LoopKind::kAgainstTheMap, "loop that contradicts the map"},
+      {LoopKind::kSwitchedOff, "disabled loop"}};
   for (const auto& legend : legends) {
     if (present[legend.first]) {
       picture.AddLegend(legend.second, ColorOf(legend.first));

@@ -160,9 +160,9 @@ class Comparison {
     if (agreement.max_translation > kRounding ||
         agreement.max_rotation > kRounding) {
       Differ(absl::StrFormat(
-          "local SLAM: %d stamps in common; from node to node %.2f %% of %d "
-          "motions are alike to 2 cm and 0.2 degrees (%.2f %% to 2 cm), the "
-          "worst is off by %.4f m and %.4f degrees",
+          "local SLAM: %d common stamps; from node to node %.2f %% of %d "
+          "motions agree within 2 cm and 0.2 degrees (%.2f %% within 2 cm), "
+          "the worst differs by %.4f m and %.4f degrees",
           agreement.common_stamps, 100. * agreement.fraction_alike,
           agreement.pairs, 100. * agreement.fraction_alike_translation,
           agreement.max_translation, RadToDeg(agreement.max_rotation)));

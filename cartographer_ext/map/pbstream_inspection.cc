@@ -148,8 +148,8 @@ std::string SummaryToText(const ordered_json& summary) {
       summary["constraints"]["intra"].get<int64_t>());
   if (summary["nodes_in_no_submap"].get<int64_t>() > 0) {
     absl::StrAppendFormat(&text,
-                          "%d nodes lie in no stored submap (unfinished ones "
-                          "may not have been saved)\n",
+                          "%d nodes are in no stored submap (unfinished "
+                          "submaps may not have been saved)\n",
                           summary["nodes_in_no_submap"].get<int64_t>());
   }
   if (summary["constraints"]["between_trajectories"].get<int64_t>() > 0) {
@@ -224,7 +224,7 @@ std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
         insertions.count({constraint.submap_id, constraint.node_id}) > 0) {
       add(absl::StrCat("loop from submap ", ToString(constraint.submap_id),
                        " to node ", ToString(constraint.node_id),
-                       ", which was inserted in it"));
+                       ", which was inserted into it"));
     }
   }
   for (const auto& entry : graph.submaps) {

@@ -105,7 +105,7 @@ absl::StatusOr<std::vector<Pose2>> ReadTruth(const PoseGraph& graph,
   if (result.size() == graph.ids.size()) return result;
   if (truth->size() < 2) {
     return absl::InvalidArgumentError(
-        absl::StrCat(filename, ": too few poses to compare with"));
+        absl::StrCat(filename, ": too few poses for a comparison"));
   }
   std::vector<Pose2> path;
   for (const auto& id_pose : *truth) path.push_back(id_pose.second);
@@ -173,7 +173,7 @@ absl::Status WriteComparisonPicture(const PoseGraph& graph,
   picture.SetTitle(absl::StrCat(title, "  (left: before, right: after)"));
   picture.AddLegend("odometry", io::palette::kBlue);
   picture.AddLegend("loop in force", io::palette::kGreen);
-  picture.AddLegend("loop switched off", io::palette::kVermilion);
+  picture.AddLegend("disabled loop", io::palette::kVermilion);
   return picture.Write(filename);
 }
 

@@ -30,13 +30,13 @@ double Distance(const PosePair& from, const PosePair& to) {
   return (to.reference.translation() - from.reference.translation()).norm();
 }
 
-// The scans [first, last) of `pairs` as one stretch.
-LocalizationStretch ComputeStretch(const std::vector<PosePair>& pairs,
+// The scans [first, last) of `pairs` as one segment.
+LocalizationSegment ComputeSegment(const std::vector<PosePair>& pairs,
                                    const size_t first, const size_t last,
                                    const LocalizationOptions& options) {
-  LocalizationStretch stretch;
-  stretch.begin = pairs[first].time;
-  stretch.end = pairs[last - 1].time;
+  LocalizationSegment segment;
+  segment.begin = pairs[first].time;
+  segment.end = pairs[last - 1].time;
   std::vector<PoseError> errors;
   for (size_t i = first; i < last; ++i) errors.push_back(ErrorOf(pairs[i]));
   const auto within = [&](const size_t i) {
@@ -57,11 +57,11 @@ LocalizationStretch ComputeStretch(const std::vector<PosePair>& pairs,
       break;
     }
   }
-  stretch.localized = localized < last;
-  if (stretch.localized) {
-    stretch.seconds = io::ToSeconds(pairs[localized].time - stretch.begin);
+  segment.localized = localized < last;
+  if (segment.localized) {
+    segment.seconds = io::ToSeconds(pairs[localized].time - segment.begin);
     for (size_t i = first; i < localized; ++i) {
-      stretch.metres += Distance(pairs[i], pairs[i + 1]);
+      segment.metres += Distance(pairs[i], pairs[i + 1]);
     }
   }
   for (size_t i = first + 1; i < last; ++i) {
@@ -69,13 +69,13 @@ LocalizationStretch ComputeStretch(const std::vector<PosePair>& pairs,
     const double jump =
         (error.translation - errors[i - first - 1].translation).norm();
     if (jump <= options.jump_distance ||
-        io::ToSeconds(pairs[i].time - stretch.begin) < options.settle_seconds) {
+        io::ToSeconds(pairs[i].time - segment.begin) < options.settle_seconds) {
       continue;
     }
-    if (i > localized) ++stretch.jumps;
+    if (i > localized) ++segment.jumps;
     if (error.translation.norm() > options.jump_distance ||
         error.rotation > options.wrong_rotation) {
-      ++stretch.wrong_jumps;
+      ++segment.wrong_jumps;
     }
   }
   std::vector<double> translations, degrees;
@@ -85,35 +85,35 @@ LocalizationStretch ComputeStretch(const std::vector<PosePair>& pairs,
     degrees.push_back(RadToDeg(errors[i - first].rotation));
     num_within += within(i) ? 1 : 0;
   }
-  if (stretch.localized) {
-    stretch.fraction_within = static_cast<double>(num_within) /
+  if (segment.localized) {
+    segment.fraction_within = static_cast<double>(num_within) /
                               static_cast<double>(translations.size());
   }
-  stretch.translation_error = ComputeStatistics(translations);
-  stretch.rotation_error_degrees = ComputeStatistics(degrees);
-  return stretch;
+  segment.translation_error = ComputeStatistics(translations);
+  segment.rotation_error_degrees = ComputeStatistics(degrees);
+  return segment;
 }
 
 }  // namespace
 
 int LocalizationMetrics::num_localized() const {
   int count = 0;
-  for (const LocalizationStretch& stretch : stretches) {
-    count += stretch.localized ? 1 : 0;
+  for (const LocalizationSegment& segment : segments) {
+    count += segment.localized ? 1 : 0;
   }
   return count;
 }
 
 int LocalizationMetrics::num_jumps() const {
   int count = 0;
-  for (const LocalizationStretch& stretch : stretches) count += stretch.jumps;
+  for (const LocalizationSegment& segment : segments) count += segment.jumps;
   return count;
 }
 
 int LocalizationMetrics::num_wrong_jumps() const {
   int count = 0;
-  for (const LocalizationStretch& stretch : stretches) {
-    count += stretch.wrong_jumps;
+  for (const LocalizationSegment& segment : segments) {
+    count += segment.wrong_jumps;
   }
   return count;
 }
@@ -132,7 +132,7 @@ absl::StatusOr<LocalizationMetrics> ComputeLocalizationMetrics(
         Distance(pairs[i - 1], pairs[i]) <= options.carried_distance) {
       continue;
     }
-    metrics.stretches.push_back(ComputeStretch(pairs, first, i, options));
+    metrics.segments.push_back(ComputeSegment(pairs, first, i, options));
     first = i;
   }
   return metrics;

@@ -328,9 +328,9 @@ absl::StatusOr<io::Pbstream> RerunLocalSlam(
     std::vector<int> inserted;
     const Pose2 pose = mapper.Add(data, chain.at(id), &inserted);
     if (inserted.empty()) {
-      return absl::FailedPreconditionError(absl::StrCat(
-          "the first node ", evaluation::ToString(id),
-          " has no cloud, so that local SLAM cannot be run again"));
+      return absl::FailedPreconditionError(
+          absl::StrCat("the first node ", evaluation::ToString(id),
+                       " has no cloud, so local SLAM cannot be re-run"));
     }
     const Rigid3d local = evaluation::ToHostPose(pose) * Gravity(record);
     local_poses[id] = local;

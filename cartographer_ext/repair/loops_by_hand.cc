@@ -75,11 +75,10 @@ absl::Status CheckIsNew(const LoopByHand& loop,
   for (const auto& constraint : graph.constraints) {
     if (constraint.submap_id == loop.submap_id &&
         constraint.node_id == loop.node_id) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(ToString(loop), constraint.is_loop
-                                           ? ": the map has this loop"
-                                           : ": this node was inserted in this "
-                                             "submap"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          ToString(loop), constraint.is_loop
+                              ? ": the map already has this loop"
+                              : ": this node was inserted into this submap"));
     }
   }
   return absl::OkStatus();
@@ -280,7 +279,7 @@ absl::StatusOr<HandMatch> MatchByHand(const LoopByHand& loop,
       *submap, node->filtered_gravity_aligned_point_cloud, initial, options);
   if (!found.found) {
     return absl::NotFoundError(absl::StrCat(
-        ToString(loop), ": the scan fits nowhere ",
+        ToString(loop), ": the scan matches nowhere ",
         initial.has_value()
             ? absl::StrFormat("within %.1f m", options.linear_window)
             : "in the submap"));
@@ -299,11 +298,11 @@ absl::StatusOr<HandMatch> MatchByHand(const LoopByHand& loop,
     match.num_verified = result.num_query;
   }
   if (match.temporal < options.min_temporal_score) {
-    return absl::NotFoundError(absl::StrFormat(
-        "%s: the scan scores %.2f, but it and those around it do not agree "
-        "with the submap (%.2f, %.2f is needed)",
-        ToString(loop), match.score, match.temporal,
-        options.min_temporal_score));
+    return absl::NotFoundError(
+        absl::StrFormat("%s: the scan scores %.2f, but it and its neighbours "
+                        "do not agree with the submap (%.2f, required %.2f)",
+                        ToString(loop), match.score, match.temporal,
+                        options.min_temporal_score));
   }
   return match;
 }

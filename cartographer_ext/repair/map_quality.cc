@@ -44,8 +44,8 @@ std::string WhyNotBetter(const MapQuality& current,
                          const MapQuality& candidate) {
   if (candidate.agreeing_nodes < kKeptAgreement * current.agreeing_nodes) {
     return absl::StrFormat(
-        "it tears the map apart: %.0f nodes agree with what was seen at "
-        "another time, before %.0f",
+        "it tears the map apart: only %.0f nodes agree with scans of another "
+        "time, before %.0f",
         candidate.agreeing_nodes, current.agreeing_nodes);
   }
   const int rank = Rank(candidate.verdict), before = Rank(current.verdict);
@@ -65,20 +65,20 @@ std::string WhyNotBetter(const MapQuality& current,
                 candidate.contradicted_rays, kSameRays},
         Measure{"share of open cycles", current.open_cycles,
                 candidate.open_cycles, kSameCycles},
-        Measure{"entropy of the walls", current.entropy, candidate.entropy,
+        Measure{"map entropy", current.entropy, candidate.entropy,
                 kSameEntropy}}) {
     if (std::abs(measure.after - measure.before) <= measure.same) continue;
     if (measure.after < measure.before) return "";
     return absl::StrFormat("the %s would be %.3f, it is %.3f", measure.name,
                            measure.after, measure.before);
   }
-  return "the map would be no better and no worse";
+  return "the map would not change in quality";
 }
 
 std::string ToText(const MapQuality& quality) {
   return absl::StrFormat(
-      "%s, %.1f %% severe, %.1f %% of rays against it, %.1f %% of cycles open, "
-      "entropy %.3f, %.0f nodes agree",
+      "%s, %.1f %% severe, %.1f %% of rays contradicted, %.1f %% of cycles "
+      "open, entropy %.3f, %.0f nodes agree",
       quality.verdict, 100. * quality.severe_share,
       100. * quality.contradicted_rays, 100. * quality.open_cycles,
       quality.entropy, quality.agreeing_nodes);

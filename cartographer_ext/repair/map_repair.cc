@@ -84,15 +84,15 @@ std::string WhyBroken(const MapRepair& repair) {
         RadToDeg(step.odometry_rotation), evaluation::ToString(step.node_id));
   }
   if (!after.severe.empty()) {
-    const evaluation::ConflictStretch& stretch = after.severe.front();
+    const evaluation::ConflictPiece& piece = after.severe.front();
     return absl::StrFormat(
-        "nothing that was tried brings nodes %s to %s (near x = %.1f m, y = "
-        "%.1f m) into agreement with what was mapped there at another time",
-        evaluation::ToString(stretch.first_node),
-        evaluation::ToString(stretch.last_node), stretch.center.x(),
-        stretch.center.y());
+        "no step makes nodes %s to %s (near x = %.1f m, y = %.1f m) consistent "
+        "with what was mapped there at another time",
+        evaluation::ToString(piece.first_node),
+        evaluation::ToString(piece.last_node), piece.center.x(),
+        piece.center.y());
   }
-  return "nothing that was tried made it better";
+  return "no step improved it";
 }
 
 // The sentence on top, and what to do.
@@ -114,11 +114,11 @@ void Conclude(MapRepair* const repair) {
     repair->conclusion = absl::StrCat("repaired: the map was ", before,
                                       " and is ", after, " (", better, ")");
     repair->advice.push_back(
-        "Look at both pictures: a map that nothing contradicts can still be "
-        "wrong where a place was seen once only.");
+        "Compare both pictures: a self-consistent map can still be wrong where "
+        "a place was seen only once.");
     repair->advice.push_back(
-        "Poses that were noted in the old map (docks, waypoints) move: run "
-        "with -keep_frame and look them up in the table of poses.");
+        "Poses defined in the old map (docks, waypoints) have moved: run with "
+        "-keep_frame and look them up in the table of poses.");
     return;
   }
   repair->conclusion =
@@ -128,9 +128,9 @@ void Conclude(MapRepair* const repair) {
                          WhyBroken(*repair))
           : absl::StrCat("cannot be repaired, because ", WhyBroken(*repair));
   repair->advice.push_back(
-      "Do not navigate with this map. If the recording is still there, run "
-      "cartographer_ext_slam on it: all scans say more than the thinned clouds "
-      "of the nodes.");
+      "Do not navigate with this map. If the recording still exists, run "
+      "cartographer_ext_slam on it: it uses all scans instead of the filtered "
+      "clouds of the nodes.");
   repair->advice.push_back(
       "If you record again: drive slowly through the places named above, close "
       "loops early and more than once, and record the odometry.");
@@ -190,7 +190,7 @@ class Repairer {
   MapVersion Consider(PbstreamPointer pbstream) {
     const auto problems = io::FindPbstreamProblems(*pbstream, 1);
     if (!problems.empty()) {
-      Skip(absl::StrCat("its map would not be valid: ", problems.front()));
+      Skip(absl::StrCat("its map is not valid: ", problems.front()));
       return result_.after;
     }
     MapVersion version = Assess(std::move(pbstream));
@@ -212,7 +212,7 @@ class Repairer {
   }
 
   void DropLoops() {
-    Begin("loops left out by hand");
+    Begin("loops removed by hand");
     auto pbstream = std::make_shared<io::Pbstream>(*original_);
     evaluation::DropConstraints(options_.dropped_loops, pbstream.get());
     std::string reason;
@@ -262,7 +262,7 @@ class Repairer {
     }
     Consider(solved);
     if (refused.empty()) return;
-    absl::StrAppend(&result_.steps.back().reason, "; not taken: ", refused);
+    absl::StrAppend(&result_.steps.back().reason, "; not accepted: ", refused);
   }
 
   void KeepFrame() {
@@ -279,7 +279,7 @@ class Repairer {
 
   void JudgeLoopsAgain() {
     if (!options_.loops) return;
-    Begin("loops judged again");
+    Begin("loops re-evaluated");
     std::string reason;
     const PbstreamPointer judged = JudgeLoops(result_.after, &reason);
     if (judged == nullptr) {
@@ -294,8 +294,8 @@ class Repairer {
   absl::optional<MapVersion> CloseLoops(const std::string& prefix,
                                         const PbstreamPointer& base,
                                         const bool ours) {
-    Begin(absl::StrCat(prefix, "loop closure run again",
-                       ours ? "" : " as stock does"));
+    Begin(
+        absl::StrCat(prefix, "loop closure re-run", ours ? "" : " with stock"));
     evaluation::RerunOptions rerun_options;
     rerun_options.num_background_threads = options_.num_background_threads;
     rerun_options.on_progress = options_.on_progress;
@@ -311,7 +311,7 @@ class Repairer {
     StoreGraph(rerun->graph, pbstream.get());
     MapVersion version = Consider(pbstream);
     if (is_sound() && step_kept()) return version;
-    Begin(absl::StrCat(result_.steps.back().name, ", its loops judged"));
+    Begin(absl::StrCat(result_.steps.back().name, ", its loops re-evaluated"));
     std::string reason;
     const PbstreamPointer judged = JudgeLoops(version, &reason);
     if (judged == nullptr) {
@@ -364,9 +364,9 @@ class Repairer {
     const MotionChain stored = LocalChain(*original_);
     const MotionChain mixed = MixedChain(*original_);
     const MotionChain wheels = OdometryChain(*original_);
-    const std::string name = "local SLAM run again";
-    RerunAlong(absl::StrCat(name, ", odometry where the two differ"), mixed,
-               NodeMatching::kFrontEnd);
+    const std::string name = "local SLAM re-run";
+    RerunAlong(absl::StrCat(name, ", with odometry where the two differ"),
+               mixed, NodeMatching::kFrontEnd);
     RerunAlong(name, stored, NodeMatching::kFrontEnd);
     RerunAlong(absl::StrCat(name, " along the odometry"), wheels,
                NodeMatching::kFrontEnd);
@@ -381,7 +381,7 @@ class Repairer {
     for (int i = 0; i < options_.max_rounds && !done(); ++i) {
       const PbstreamPointer before = result_.after.pbstream;
       const MotionChain best = GlobalChain(*original_, result_.after.graph);
-      RerunAlong("submaps built anew along the best map so far", best,
+      RerunAlong("submaps rebuilt along the best map so far", best,
                  NodeMatching::kNone);
       if (before == result_.after.pbstream) break;
     }

@@ -80,9 +80,9 @@ void AddSteps(const MapRepair& repair, Markup* const page) {
   if (table.empty()) {
     page->Element("p", {}, "None was needed.");
   } else {
-    page->Raw(table.ToHtml(
-        "Each step is kept only if the verdict finds its map better than the "
-        "best one before it"));
+    page->Raw(
+        table.ToHtml("Each step is kept only if its map is better than the "
+                     "best one so far"));
   }
 }
 
@@ -159,7 +159,7 @@ absl::StatusOr<std::string> MakeRepairReport(const MapRepair& repair,
     page.Element("li", {}, advice);
   }
   for (const LocalFault& fault : repair.faults) {
-    page.Element("li", {}, absl::StrCat("Look there: ", ToText(fault)));
+    page.Element("li", {}, absl::StrCat("Look at: ", ToText(fault)));
   }
   page.Close();
   AddSteps(repair, &page);

@@ -13,7 +13,7 @@ namespace {
 
 using evaluation::LoneWalls;
 using evaluation::MapComparison;
-using evaluation::MovedStretch;
+using evaluation::MovedPiece;
 using evaluation::ToString;
 
 std::vector<Eigen::Vector2d> SecondPath(const evaluation::MapGraph& graph,
@@ -27,18 +27,17 @@ std::vector<Eigen::Vector2d> SecondPath(const evaluation::MapGraph& graph,
 
 void AddMoved(const MapComparison& comparison, Markup* const page) {
   Table table({"nodes", "x", "y", "moved by", "at most", "turned"});
-  for (const MovedStretch& stretch : comparison.moved) {
-    table.AddRow({absl::StrCat(ToString(stretch.first_node), " to ",
-                               ToString(stretch.last_node)),
-                  absl::StrFormat("%.1f m", stretch.center.x()),
-                  absl::StrFormat("%.1f m", stretch.center.y()),
-                  absl::StrFormat("%.2f m", stretch.mean),
-                  absl::StrFormat("%.2f m", stretch.max),
-                  absl::StrFormat("%.1f deg", RadToDeg(stretch.max_rotation))});
+  for (const MovedPiece& piece : comparison.moved) {
+    table.AddRow({absl::StrCat(ToString(piece.first_node), " to ",
+                               ToString(piece.last_node)),
+                  absl::StrFormat("%.1f m", piece.center.x()),
+                  absl::StrFormat("%.1f m", piece.center.y()),
+                  absl::StrFormat("%.2f m", piece.mean),
+                  absl::StrFormat("%.2f m", piece.max),
+                  absl::StrFormat("%.1f deg", RadToDeg(piece.max_rotation))});
   }
   if (!table.empty())
-    page->Raw(table.ToHtml(
-        "Stretches of the path that lie elsewhere in the second map"));
+    page->Raw(table.ToHtml("Path pieces that moved in the second map"));
   Table walls({"walls only in", "x", "y", "extent"});
   for (const LoneWalls& group : comparison.lone_walls) {
     walls.AddRow({group.in_first ? "the first map" : "the second map",
@@ -46,7 +45,7 @@ void AddMoved(const MapComparison& comparison, Markup* const page) {
                   absl::StrFormat("%.1f m", group.center.y()),
                   absl::StrFormat("%.1f m", group.extent)});
   }
-  if (!walls.empty()) page->Raw(walls.ToHtml("Walls that only one map has"));
+  if (!walls.empty()) page->Raw(walls.ToHtml("Walls in only one map"));
 }
 
 }  // namespace
@@ -89,11 +88,11 @@ void AddComparisonFigures(const ComparedMap& first, const ComparedMap& second,
        {&comparison.common, &comparison.only_first, &comparison.only_second}) {
     for (const Eigen::Vector2d& wall : *walls) bounds.Add(wall);
   }
-  MapFigure figure("Walls of the two maps laid over each other", bounds);
+  MapFigure figure("Walls of the two aligned maps", bounds);
   figure.Dots(comparison.common, "s7");
   figure.Dots(comparison.only_first, "s2");
   figure.Dots(comparison.only_second, "s1");
-  figure.Legend("walls of both", "s7");
+  figure.Legend("walls in both", "s7");
   figure.Legend(absl::StrCat("only ", first.name), "s2");
   figure.Legend(absl::StrCat("only ", second.name), "s1");
   if (first.graph != nullptr) {
@@ -107,15 +106,13 @@ void AddComparisonFigures(const ComparedMap& first, const ComparedMap& second,
   }
   page->Open("figure");
   page->Raw(figure.ToHtml());
-  page->Element(
-      "figcaption", {},
-      absl::StrFormat(
-          "%s moved by %.2f m, %.2f m and turned by %.1f degrees, so that it "
-          "lies over %s (aligned by %s).",
-          second.name, comparison.first_from_second.x,
-          comparison.first_from_second.y,
-          RadToDeg(comparison.first_from_second.theta), first.name,
-          comparison.method));
+  page->Element("figcaption", {},
+                absl::StrFormat("%s translated by %.2f m, %.2f m and rotated "
+                                "by %.1f degrees to align it with %s (by %s).",
+                                second.name, comparison.first_from_second.x,
+                                comparison.first_from_second.y,
+                                RadToDeg(comparison.first_from_second.theta),
+                                first.name, comparison.method));
   page->Close();
   AddMoved(comparison, page);
 }

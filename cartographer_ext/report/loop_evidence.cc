@@ -132,11 +132,11 @@ std::string Describe(const LoopEvidence& evidence) {
     absl::StrAppendFormat(&text, "\nscore on the grid %.3f", evidence.score);
   }
   if (evidence.in_graph) {
-    absl::StrAppendFormat(&text, "\nagainst the map %.2f m, %.1f deg",
+    absl::StrAppendFormat(&text, "\nresidual in the map %.2f m, %.1f deg",
                           evidence.residual_translation,
                           RadToDeg(evidence.residual_rotation));
     if (evidence.partners > 0) {
-      absl::StrAppendFormat(&text, "\n%.0f %% of %d cycles stay open",
+      absl::StrAppendFormat(&text, "\n%.0f %% of %d cycles are open",
                             100. * evidence.open_share, evidence.partners);
     }
   }
@@ -163,7 +163,7 @@ std::string Describe(const LoopEvidence& evidence) {
                           decision.innovation().bound());
   }
   if (decision.has_subset()) {
-    absl::StrAppendFormat(&text, "\n%d revisits confirm, %d contradict",
+    absl::StrAppendFormat(&text, "\n%d revisits support, %d contradict",
                           decision.subset().support(),
                           decision.subset().contradictions());
   }

@@ -45,7 +45,7 @@ absl::StatusOr<ReportRun> RunOnce(
   comparison.max_constraint_distance =
       options.constraint_builder_options().max_constraint_distance();
   // Ours decides by other rules.
-  if (is_stock) comparison.fates = &run.rerun->fates;
+  if (is_stock) comparison.outcomes = &run.rerun->outcomes;
   run.against_stored =
       evaluation::CompareLoops(*inputs.graph, run.graph, comparison);
   return run;
@@ -72,16 +72,16 @@ absl::Status AddReruns(const RunInputs& inputs,
       configuration.stock.constraint_builder_options().min_score();
   const bool follow =
       inputs.rerun.follow_recording && configuration.stock_is_known;
-  auto stock = RunOnce(inputs, configuration.stock, "stock again", "s2",
+  auto stock = RunOnce(inputs, configuration.stock, "stock re-run", "s2",
                        true /* stock */, follow);
   if (!stock.ok()) return stock.status();
   if (follow) {
     data->assumptions.push_back(absl::StrFormat(
-        "stock's run follows the record: its optimisation is given the stored "
-        "loops that it has found again, and only these, with the stored poses "
-        "where these are within 5 cm and 3 degrees (%d in the end), so that "
-        "rounding of the stored clouds does not add up; "
-        "-norerun_follow_recording leaves it to itself",
+        "stock's run follows the record: its optimisation uses only the stored "
+        "loops that the run has reproduced, with the stored poses where these "
+        "are within 5 cm and 3 degrees (%d at the end), so that the rounding "
+        "of the stored clouds does not accumulate; -norerun_follow_recording "
+        "disables this",
         stock->rerun->followed_loops));
   }
   if (stock->rerun->placeholders > 0) {
@@ -91,17 +91,17 @@ absl::Status AddReruns(const RunInputs& inputs,
         "searched represent them"));
   }
   if (stock->rerun->guessed_insertions > 0) {
-    data->assumptions.push_back(absl::StrCat(
-        "submaps have been trimmed from the map; ",
-        stock->rerun->guessed_insertions,
-        " nodes beside the gaps are tied to one submap more or less than they "
-        "were"));
+    data->assumptions.push_back(
+        absl::StrCat("submaps have been trimmed from the map; ",
+                     stock->rerun->guessed_insertions,
+                     " nodes beside the gaps are constrained to one submap "
+                     "more or less than before"));
   }
   data->runs.push_back(*std::move(stock));
   if (!configuration.ours.has_value()) {
     data->notes.push_back(
-        "Only stock was run again: no configuration with blocks of ours was "
-        "given (-rerun_configuration_basename).");
+        "Only stock was re-run: no configuration with our blocks was given "
+        "(-rerun_configuration_basename).");
     return absl::OkStatus();
   }
   auto ours = RunOnce(inputs, *configuration.ours, "ours", "s3",

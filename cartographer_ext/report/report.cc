@@ -182,8 +182,8 @@ std::string RunsToText(const ReportData& data) {
     const evaluation::LoopComparison& comparison = *run.against_stored;
     absl::StrAppendFormat(
         &text,
-        "Run \"%s\"   %d loops, %d of the %d stored ones again (%.1f %%; with "
-        "other nodes of the visit %.1f %%)\n",
+        "Run \"%s\"   %d loops, %d of the %d stored ones reproduced (%.1f %%; "
+        "including other nodes of the visit %.1f %%)\n",
         run.name, comparison.second, comparison.common, comparison.first,
         100. * comparison.fraction_of_first,
         comparison.first == 0

@@ -54,15 +54,15 @@ Attributes LoopAttributes(const LoopEvidence& loop,
           {"data-map", PoseText(node.global_pose)}};
 }
 
-// Stretches that contradict the map, and nodes with a degenerate scan.
+// Pieces that contradict the map, and nodes with a degenerate scan.
 void AddTrouble(const ReportData& data, const ReportRun& run,
                 MapFigure* const figure) {
   if (run.evaluation.consistency.has_value() &&
       !run.evaluation.consistency->severe.empty()) {
-    for (const auto& stretch : run.evaluation.consistency->severe) {
+    for (const auto& piece : run.evaluation.consistency->severe) {
       std::vector<Eigen::Vector2d> path;
-      for (auto node = run.graph.nodes.find(stretch.first_node);
-           node != run.graph.nodes.end() && !(stretch.last_node < node->first);
+      for (auto node = run.graph.nodes.find(piece.first_node);
+           node != run.graph.nodes.end() && !(piece.last_node < node->first);
            ++node) {
         path.push_back(node->second.global_pose.translation());
       }
@@ -80,7 +80,7 @@ void AddTrouble(const ReportData& data, const ReportRun& run,
   }
   if (degenerate.empty()) return;
   figure->Dots(degenerate, "s6");
-  figure->Legend("scans that do not determine the place", "s6");
+  figure->Legend("degenerate scans", "s6");
 }
 
 void AddLoopFigure(const ReportData& data, const ReportRun& run,
@@ -118,13 +118,14 @@ void AddLoopFigure(const ReportData& data, const ReportRun& run,
     }
   }
   figure.Legend("path", "s7");
-  if (styles.count("s3") > 0) figure.Legend("loop, right by truth", "s3");
+  if (styles.count("s3") > 0)
+    figure.Legend("loop, right by ground truth", "s3");
   if (styles.count("s5") > 0) {
-    figure.Legend("loop that the map agrees with", "s5");
+    figure.Legend("loop consistent with the map", "s5");
   }
   if (styles.count("s2 bad") > 0) {
     figure.Legend(
-        "loop wrong by truth, or off the map by more than half a metre",
+        "loop wrong by ground truth, or more than half a metre off the map",
         "s2 bad");
   }
   if (styles.count("s6 bad") > 0) {
@@ -132,15 +133,15 @@ void AddLoopFigure(const ReportData& data, const ReportRun& run,
   }
   page->Open("figure");
   page->Raw(figure.ToHtml());
-  page->Element("figcaption", {},
-                absl::StrCat("Loops, ", run.name,
-                             ": from the submap's origin to the node. Point at "
-                             "a line for its evidence, click it to see its "
-                             "scan where the loop puts it (blue) and where "
-                             "the map has it (orange).",
-                             step > 1 ? absl::StrCat(" Of the good ones every ",
-                                                     step, "th is drawn.")
-                                      : ""));
+  page->Element(
+      "figcaption", {},
+      absl::StrCat("Loops, ", run.name,
+                   ": from the submap's origin to the node. Hover over a line "
+                   "for its evidence; click it to see its scan at the pose of "
+                   "the loop (blue) and at the pose in the map (orange).",
+                   step > 1 ? absl::StrCat(" Of the good ones every ", step,
+                                           "th is drawn.")
+                            : ""));
   page->Close();
 }
 
@@ -156,8 +157,8 @@ std::set<std::pair<GraphId, GraphId>> LoopPairs(
 }
 
 // What became, in `other`, of the loops of `run` that it does not have.
-void AddFates(const ReportRun& run, const ReportRun& other,
-              Markup* const page) {
+void AddOutcomes(const ReportRun& run, const ReportRun& other,
+                 Markup* const page) {
   std::map<std::pair<GraphId, GraphId>, const proto::LoopDecision*> decisions;
   for (const auto& decision : other.decisions()) {
     decisions[{{decision.submap_trajectory_id(), decision.submap_index()},
@@ -166,26 +167,26 @@ void AddFates(const ReportRun& run, const ReportRun& other,
   }
   if (decisions.empty()) return;
   const auto others = LoopPairs(other.graph);
-  std::map<std::string, int> fates;
+  std::map<std::string, int> outcomes;
   for (const auto& pair : LoopPairs(run.graph)) {
     if (others.count(pair) > 0) {
-      ++fates["accepted by both"];
+      ++outcomes["accepted by both"];
       continue;
     }
     const auto decision = decisions.find(pair);
-    ++fates[decision == decisions.end() ? "not a candidate there"
-                                        : VerdictInWords(*decision->second)];
+    ++outcomes[decision == decisions.end() ? "not a candidate there"
+                                           : VerdictInWords(*decision->second)];
   }
   int only_other = 0;
   const auto own = LoopPairs(run.graph);
   for (const auto& pair : others) only_other += own.count(pair) == 0 ? 1 : 0;
   Table table({absl::StrCat("loops, ", run.name), "count"});
-  for (const auto& fate : fates) {
-    table.AddRow({fate.first, absl::StrCat(fate.second)});
+  for (const auto& outcome : outcomes) {
+    table.AddRow({outcome.first, absl::StrCat(outcome.second)});
   }
   table.AddRow({absl::StrCat("accepted by ", other.name, " only"),
                 absl::StrCat(only_other)});
-  page->Raw(table.ToHtml(absl::StrCat("What became of the loops \"", run.name,
+  page->Raw(table.ToHtml(absl::StrCat("Outcome of the loops \"", run.name,
                                       "\" in the run \"", other.name, "\"")));
 }
 
@@ -238,7 +239,7 @@ void AddScans(const ReportData& data, const Prepared& prepared,
 void AddComparison(const ReportData& data, Markup* const page) {
   if (data.runs.size() < 2) return;
   AddHeading("comparison", "Which loops the runs share", page);
-  Table table({"run", "loops", "stored loops found again", "same place",
+  Table table({"run", "loops", "stored loops reproduced", "same pose",
                "only in the run", "why others are missing"});
   for (const ReportRun& run : data.runs) {
     if (!run.against_stored.has_value()) continue;
@@ -247,11 +248,11 @@ void AddComparison(const ReportData& data, Markup* const page) {
         {run.name, absl::StrCat(comparison.second),
          absl::StrFormat("%d of %d (%.1f %%)", comparison.common,
                          comparison.first, 100. * comparison.fraction_of_first),
-         absl::StrFormat("%d to 5 cm", comparison.common_same_pose),
+         absl::StrFormat("%d within 5 cm", comparison.common_same_pose),
          absl::StrCat(comparison.second - comparison.common),
          evaluation::ExplainMissing(comparison)});
   }
-  page->Raw(table.ToHtml("Pairs of submap and node tied by a loop"));
+  page->Raw(table.ToHtml("Pairs of submap and node with a loop"));
   for (const ReportRun& run : data.runs) {
     if (run.decisions().empty()) continue;
     std::map<std::string, int> reasons;
@@ -264,7 +265,7 @@ void AddComparison(const ReportData& data, Markup* const page) {
     }
     page->Raw(verdicts.ToHtml("Verdicts and their reasons"));
     for (const ReportRun& other : data.runs) {
-      if (&other != &run) AddFates(other, run, page);
+      if (&other != &run) AddOutcomes(other, run, page);
     }
   }
 }

@@ -11,7 +11,7 @@ namespace cartographer_ext {
 namespace report {
 namespace {
 
-using evaluation::ConflictStretch;
+using evaluation::ConflictPiece;
 using evaluation::GraphId;
 using evaluation::ToString;
 
@@ -34,42 +34,41 @@ void AddPlaces(const ReportData& data, const Prepared& prepared,
   if (!prepared.image_ids[0].empty()) figure.Image(prepared.image_ids[0]);
   figure.Path(NodePath(stored.graph), "s1");
   figure.Legend("path of the robot", "s1");
-  Table table({"place", "x", "y", "nodes", "after the start", "rays against",
-               "contradicts"});
+  Table table({"place", "x", "y", "nodes", "after the start",
+               "rays contradicted", "contradicts"});
   if (stored.evaluation.consistency.has_value()) {
     const auto& consistency = *stored.evaluation.consistency;
     if (!consistency.severe.empty()) {
       figure.Legend("nodes whose scans contradict the map", "s2");
     }
-    for (const auto& stretch : consistency.severe) {
-      figure.Path(
-          PathOfNodes(stored.graph, stretch.first_node, stretch.last_node),
-          "s2");
+    for (const auto& piece : consistency.severe) {
+      figure.Path(PathOfNodes(stored.graph, piece.first_node, piece.last_node),
+                  "s2");
     }
     int number = 0;
-    for (const ConflictStretch& stretch : consistency.severe) {
+    for (const ConflictPiece& piece : consistency.severe) {
       ++number;
       std::string submaps;
-      for (const GraphId& id : stretch.submaps) {
+      for (const GraphId& id : piece.submaps) {
         absl::StrAppend(&submaps, submaps.empty() ? "" : " ", ToString(id));
       }
       const std::string seconds = absl::StrFormat(
-          "%.1f to %.1f s", io::ToSeconds(stretch.begin - prepared.start),
-          io::ToSeconds(stretch.end - prepared.start));
+          "%.1f to %.1f s", io::ToSeconds(piece.begin - prepared.start),
+          io::ToSeconds(piece.end - prepared.start));
       figure.Ring(
-          stretch.center, 0.5 * stretch.metres + 1., absl::StrCat(number),
+          piece.center, 0.5 * piece.metres + 1., absl::StrCat(number),
           absl::StrFormat("place %d: nodes %s to %s\n%s\n%.0f %% of the rays "
                           "contradict submaps %s",
-                          number, ToString(stretch.first_node),
-                          ToString(stretch.last_node), seconds,
-                          100. * stretch.fraction, submaps));
-      table.AddRow(
-          {absl::StrCat(number), absl::StrFormat("%.1f m", stretch.center.x()),
-           absl::StrFormat("%.1f m", stretch.center.y()),
-           absl::StrCat(ToString(stretch.first_node), " to ",
-                        ToString(stretch.last_node)),
-           seconds, absl::StrFormat("%.0f %%", 100. * stretch.fraction),
-           absl::StrCat("submaps ", submaps)});
+                          number, ToString(piece.first_node),
+                          ToString(piece.last_node), seconds,
+                          100. * piece.fraction, submaps));
+      table.AddRow({absl::StrCat(number),
+                    absl::StrFormat("%.1f m", piece.center.x()),
+                    absl::StrFormat("%.1f m", piece.center.y()),
+                    absl::StrCat(ToString(piece.first_node), " to ",
+                                 ToString(piece.last_node)),
+                    seconds, absl::StrFormat("%.0f %%", 100. * piece.fraction),
+                    absl::StrCat("submaps ", submaps)});
     }
     char letter = 'A';
     for (const auto& step : consistency.wrong_turns) {
@@ -98,12 +97,11 @@ void AddPlaces(const ReportData& data, const Prepared& prepared,
   page->Raw(figure.ToHtml());
   page->Element(
       "figcaption", {},
-      "The map as stored. Numbers: stretches of the path whose scans lie in "
-      "free space or behind walls of what another visit mapped there. Letters: "
-      "places where local SLAM turned otherwise than the wheels.");
+      "The map as stored. Numbers: path pieces whose scans are in free space "
+      "or behind walls mapped by another visit. Letters: places where the "
+      "rotation of local SLAM differs from that of the wheels.");
   page->Close();
-  if (!table.empty())
-    page->Raw(table.ToHtml("Places that speak against the map"));
+  if (!table.empty()) page->Raw(table.ToHtml("Places that contradict the map"));
 }
 
 std::string PlainMap(const ReportData& data, const Prepared& prepared,
@@ -187,8 +185,8 @@ void AddMaps(const ReportData& data, const Prepared& prepared,
   page->Open("figure");
   page->Raw(paths.ToHtml());
   page->Element("figcaption", {},
-                "Trajectories of the nodes, over the map as stored. All begin "
-                "at the same first pose.");
+                "Trajectories of the nodes, over the map as stored. All start "
+                "at the same pose.");
   page->Close();
   for (size_t i = 1; i < data.runs.size(); ++i) {
     AddBeforeAndAfter(data, prepared, i, page);

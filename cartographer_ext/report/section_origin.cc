@@ -25,7 +25,7 @@ void AddTiming(const ReportData& data, Markup* const page) {
   AddHeading("timing", "Time and memory", page);
   Table table({"run", "wall", "CPU", "search", "preparing submaps",
                "verification", "optimisation and the rest", "searches",
-               "matches", "ms a search", "memory"});
+               "matches", "ms per search", "memory"});
   for (const ReportRun& run : data.runs) {
     if (!run.rerun.has_value()) continue;
     const evaluation::Rerun& rerun = *run.rerun;
@@ -43,17 +43,17 @@ void AddTiming(const ReportData& data, Markup* const page) {
              "%.0f MiB",
              static_cast<double>(rerun.peak_memory_bytes) / (1 << 20))});
   }
-  page->Raw(table.ToHtml(
-      "CPU seconds of all threads. Search: with the refinement of what it "
-      "finds. Verification: which searches to make and which matches to "
-      "believe, ours only. Memory: the peak of the run above what the "
-      "program held before it."));
+  page->Raw(
+      table.ToHtml("CPU seconds of all threads. Search: including the "
+                   "refinement of its matches. Verification: planning of "
+                   "searches and verification of matches, ours only. Memory: "
+                   "peak of the run in addition to the memory used before."));
 }
 
 void AddOrigin(const ReportData& data, Markup* const page) {
-  AddHeading("origin", "Where this comes from", page);
+  AddHeading("origin", "Provenance", page);
   if (!data.assumptions.empty()) {
-    page->Element("h3", {}, "Assumed for the runs");
+    page->Element("h3", {}, "Assumptions of the runs");
     page->Open("ul");
     for (const std::string& assumption : data.assumptions) {
       page->Element("li", {}, assumption);
@@ -63,9 +63,9 @@ void AddOrigin(const ReportData& data, Markup* const page) {
   if (data.runs.size() > 1) {
     page->Element(
         "p", {{"class", "soft"}},
-        "The runs feed the pose graph with the stored nodes and submaps in "
-        "their recorded order; first poses come from the chain of local poses. "
-        "A node is never searched in a submap that it was inserted in, so no "
+        "The runs add the stored nodes and submaps to the pose graph in their "
+        "recorded order; initial poses come from the chain of local poses. A "
+        "node is never searched in a submap that it was inserted into, so no "
         "scan is compared with itself. Local SLAM is not repeated.");
   }
   if (!data.option_differences.empty()) {

@@ -50,13 +50,13 @@ void AddFigure(const Chart& chart, const std::string& caption,
 void AddContradiction(const ReportData& data, const Prepared& prepared,
                       const Axis& time, Markup* const page) {
   Chart chart("Contradiction along the path", time,
-              {"share of rays against the worst submap", 0., 1.}, kWidth,
+              {"share of rays contradicted the worst submap", 0., 1.}, kWidth,
               kHeight);
-  for (const auto& stretch : data.runs[0].evaluation.consistency->severe) {
-    chart.Band(io::ToSeconds(stretch.begin - prepared.start),
-               io::ToSeconds(stretch.end - prepared.start), "s2",
-               absl::StrCat("nodes ", evaluation::ToString(stretch.first_node),
-                            " to ", evaluation::ToString(stretch.last_node)));
+  for (const auto& piece : data.runs[0].evaluation.consistency->severe) {
+    chart.Band(io::ToSeconds(piece.begin - prepared.start),
+               io::ToSeconds(piece.end - prepared.start), "s2",
+               absl::StrCat("nodes ", evaluation::ToString(piece.first_node),
+                            " to ", evaluation::ToString(piece.last_node)));
   }
   for (const ReportRun& run : data.runs) {
     if (!run.evaluation.consistency.has_value()) continue;
@@ -70,8 +70,8 @@ void AddContradiction(const ReportData& data, const Prepared& prepared,
   }
   chart.HorizontalMark(0.6, "severe");
   AddFigure(chart,
-            "Of each scan the share of rays that end in free space or pass "
-            "through walls of the submap of another time that it fits worst. "
+            "Share of the rays of each scan that end in free space or pass "
+            "through walls of the worst-fitting submap of another time. "
             "Shaded: the places that decide the verdict.",
             page);
 }
@@ -94,9 +94,8 @@ void AddMotion(const ReportData& data, const Prepared& prepared,
   chart.Line(ThinOut(points), "s4");
   chart.HorizontalMark(30., "wrong turn");
   AddFigure(chart,
-            "How much the turn from node to node by local SLAM differs from "
-            "that of the wheels. A spike is a scan matched wrongly or wheels "
-            "that slipped.",
+            "Difference of the rotation from node to node between local SLAM "
+            "and the wheels. A spike is a wrongly matched scan, or slip.",
             page);
 }
 
@@ -126,9 +125,9 @@ void AddDegeneracy(const ReportData& data, const Prepared& prepared,
   for (Eigen::Vector2d& point : turned) point.y() = -point.y();
   chart.Line(turned, "s1");
   AddFigure(chart,
-            "How well the scan determines the robot's place in its weakest "
-            "direction, against the strongest. Shaded: scans that could not "
-            "tell, such as in a corridor without doors.",
+            "Information of the scan about the robot's position in its weakest "
+            "direction, relative to the strongest. Shaded: degenerate scans, "
+            "such as in a corridor without doors.",
             page);
 }
 

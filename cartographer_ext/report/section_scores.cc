@@ -85,9 +85,9 @@ void AddHistograms(const ReportData& data, const size_t index,
       {data.stock_min_score,
        absl::StrFormat("min_score %.2f", data.stock_min_score)}));
   page->Element("figcaption", {},
-                "How well the scan fits the submap's grid at the loop's pose. "
-                "Where good and suspicious loops overlap, no threshold on this "
-                "score separates them.");
+                "How well the scan matches the submap's grid at the loop's "
+                "pose. Where good and suspicious loops overlap, no threshold "
+                "on this score separates them.");
   page->Close();
   page->Open("figure");
   page->Raw(
@@ -96,8 +96,8 @@ void AddHistograms(const ReportData& data, const size_t index,
                        {good_residuals, bad_residuals, "fine", bad_name},
                        {std::log10(0.5), "0.5 m"}));
   page->Element("figcaption", {},
-                "How far each loop is from where the optimised map has it. "
-                "The optimisation disagrees with loops right of the mark.");
+                "Distance of each loop from the optimised map. The "
+                "optimisation disagrees with loops right of the mark.");
   page->Close();
   page->Close();
 }
@@ -158,13 +158,13 @@ void AddScatter(const ReportRun& run, Markup* const page) {
   chart.Legend("rejected", "s2");
   page->Open("figure");
   page->Raw(chart.ToSvg());
-  page->Element("figcaption", {},
-                absl::StrCat("Candidates of ", run.name,
-                             mixture != nullptr
-                                 ? ". The ellipses are the mixture of true and "
-                                   "false loops that was in force at the end, "
-                                   "at one and two standard deviations."
-                                 : "."));
+  page->Element(
+      "figcaption", {},
+      absl::StrCat("Candidates of ", run.name,
+                   mixture != nullptr
+                       ? ". The ellipses show the final mixture of true and "
+                         "false loops, at one and two standard deviations."
+                       : "."));
   page->Close();
 }
 

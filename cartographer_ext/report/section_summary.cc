@@ -97,12 +97,12 @@ void AddConsistencyRows(std::vector<Row>* const rows) {
         };
       };
   rows->push_back(
-      {"nodes in severe contradiction",
+      {"severely contradicted nodes",
        consistency([](const auto& c) { return Percent(c.severe_share); })});
   rows->push_back({"rays contradicted", consistency([](const auto& c) {
                      return Percent(c.contradictions.ray_fraction());
                    })});
-  rows->push_back({"loop cycles that stay open", consistency([](const auto& c) {
+  rows->push_back({"open loop cycles", consistency([](const auto& c) {
                      return Percent(c.cycles.fraction());
                    })});
   rows->push_back({"mean map entropy", consistency([](const auto& c) {
@@ -176,7 +176,7 @@ void AddSummary(const ReportData& data, Markup* const page) {
   }
   if (stored.evaluation.consistency.has_value()) {
     AddTile(Percent(stored.evaluation.consistency->severe_share),
-            "of nodes in severe contradiction", page);
+            "of severely contradicted nodes", page);
   }
   page->Close();
   for (const std::string& note : data.notes) page->Element("p", {}, note);
@@ -193,7 +193,7 @@ void AddSummary(const ReportData& data, Markup* const page) {
     }
     if (any) table.AddRow(cells);
   }
-  page->Raw(table.ToHtml("The map as stored and as the runs left it"));
+  page->Raw(table.ToHtml("The map as stored and after each run"));
 }
 
 }  // namespace report

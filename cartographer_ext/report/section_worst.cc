@@ -162,9 +162,9 @@ void AddWorstLoops(const ReportData& data, const Prepared& prepared,
   if (worst.empty()) return;
   AddHeading("worst", "The worst loops", page);
   page->Element("p", {},
-                "Each scan on the submap that the loop ties it to: blue where "
-                "the loop puts it, orange where the optimised map has it. Of "
-                "each pair of submap and visit one loop is shown.");
+                "Each scan on the submap of its loop: blue at the pose of the "
+                "loop, orange at the pose in the optimised map. One loop is "
+                "shown per pair of submap and visit.");
   SubmapPictures pictures(*data.pbstream);
   Markup figures;
   std::set<std::pair<GraphId, int>> shown;

@@ -68,7 +68,7 @@ e.preventDefault();});
 var tools=make('div',frame);tools.className='tools';
 [['+','Closer',function(){zoom(.7,middle());}],
 ['\u2212','Farther',function(){zoom(1/.7,middle());}],
-['\u2922','All of it',reset]].forEach(function(t){
+['\u2922','Show all',reset]].forEach(function(t){
 var b=make('button',tools,t[0]);b.type='button';
 b.setAttribute('aria-label',t[1]);b.title=t[1];b.addEventListener('click',t[2]);});
 layers(svg,frame);
@@ -133,14 +133,14 @@ var loop=numbers(line.dataset.loop),map=numbers(line.dataset.map);
 make('div',panel,line.querySelector('title').textContent);
 if(scans[node]){dots(svg,scans[node],loop,'loop-scan');
 dots(svg,scans[node],map,'map-scan');
-make('div',panel,'Scan: blue where the loop puts it, orange where the map '+
-'has it.');}
-else make('div',panel,'Its scan is not in this page.');
+make('div',panel,'Scan: blue at the pose of the loop, orange at the pose in '+
+'the map.');}
+else make('div',panel,'The scan is not included in this page.');
 var refused=line.classList.contains('s6');
-make('div',panel,refused?'Add it: ':'Leave it out: ').appendChild(
+make('div',panel,refused?'Add: ':'Remove: ').appendChild(
 document.createElement('code')).textContent=
 refused?'-add_loops '+id+':'+line.dataset.pose:'-drop_loops '+id;
-var u=+svg.dataset.units,near=make('button',panel,'Go there');
+var u=+svg.dataset.units,near=make('button',panel,'Show');
 near.type='button';near.addEventListener('click',function(){
 go((map[0]-(+svg.dataset.x))*u,(+svg.dataset.y-map[1])*u,30*u);});
 var close=make('button',panel,'Close');close.type='button';

@@ -48,15 +48,15 @@ LoopAbsence AbsenceOf(const Key& key, const MapGraph& second,
                       const std::map<Key, const GraphConstraint*>& second_loops,
                       const LoopComparisonOptions& options) {
   if (second_loops.count(key) > 0) return LoopAbsence::kPresent;
-  if (options.fates != nullptr) {
-    const auto fate = options.fates->find(key);
-    if (fate != options.fates->end()) {
-      switch (fate->second.kind) {
-        case LoopFate::Kind::kTooFar:
+  if (options.outcomes != nullptr) {
+    const auto outcome = options.outcomes->find(key);
+    if (outcome != options.outcomes->end()) {
+      switch (outcome->second.kind) {
+        case LoopOutcome::Kind::kTooFar:
           return LoopAbsence::kTooFar;
-        case LoopFate::Kind::kNotSampled:
+        case LoopOutcome::Kind::kNotSampled:
           return LoopAbsence::kNotSampled;
-        case LoopFate::Kind::kSearched:
+        case LoopOutcome::Kind::kSearched:
           return LoopAbsence::kNoMatch;
       }
     }
@@ -134,15 +134,15 @@ std::string ExplainMissing(const LoopComparison& comparison) {
     if (count > 0) parts.push_back(absl::StrCat(count, text));
   };
   add(comparison.not_sampled,
-      " within reach, but the sampler, which counts the candidates of a "
-      "submap, took others");
-  add(comparison.too_far, " too far apart in the other map to be searched");
-  add(comparison.no_match, " searched without a match good enough");
+      " within the distance limit, but skipped by the sampler, which counts "
+      "the candidates of a submap");
+  add(comparison.too_far, " beyond the distance limit in the other map");
+  add(comparison.no_match, " searched without a match");
   add(comparison.other_visit,
-      " not tried, or no match good enough, though near enough");
+      " skipped or without a match, within the distance limit");
   add(comparison.neighbour_instead,
-      " of the missing ones have a node of the same visit tied to the same "
-      "submap instead");
+      " of the missing ones have a node of the same visit constrained to the "
+      "same submap instead");
   return absl::StrJoin(parts, "; ");
 }
 

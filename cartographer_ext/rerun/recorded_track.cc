@@ -128,17 +128,17 @@ void RecordedTrack::OnCandidate(const Problem& problem,
       problem.node_data()
           .at(NodeId(node_id.trajectory_id, node_id.index))
           .global_pose_2d;
-  LoopFate fate;
-  fate.distance = submap_from_node.translation().norm();
-  if (fate.distance > builder.max_constraint_distance()) {
-    fate.kind = LoopFate::Kind::kTooFar;
+  LoopOutcome outcome;
+  outcome.distance = submap_from_node.translation().norm();
+  if (outcome.distance > builder.max_constraint_distance()) {
+    outcome.kind = LoopOutcome::Kind::kTooFar;
   } else if (sampler.Pulse()) {
-    fate.kind = LoopFate::Kind::kSearched;
+    outcome.kind = LoopOutcome::Kind::kSearched;
   } else {
-    fate.kind = LoopFate::Kind::kNotSampled;
+    outcome.kind = LoopOutcome::Kind::kNotSampled;
   }
   const LoopPair stored{ids_.StoredSubmap(submap_id), ids_.StoredNode(node_id)};
-  if (recorded_.count(stored) > 0) fates_[stored] = fate;
+  if (recorded_.count(stored) > 0) outcomes_[stored] = outcome;
 }
 
 std::vector<RecordedTrack::Constraint> RecordedTrack::Follow(

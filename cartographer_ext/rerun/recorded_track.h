@@ -1,21 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Keeps a run over a stored map beside the run that made the map, and tells
-// where the two part.
+// Lets a re-run of a stored map follow the run that made the map, and records
+// where the two differ.
 //
-// A run of the pose graph is chaotic: the clouds of a map are rounded to the
-// millimetre, so a loop that is found again lies half a millimetre elsewhere,
-// the graph moves with it, some later candidate comes to lie beyond the
-// distance limit, and from there on the sampler, which counts candidates, picks
-// other nodes. To see whether options find the loops of a map, and not how
-// rounding adds up, a run can follow the record: the optimisation is given the
-// stored loops that the run has found again and no others, with the stored
-// poses where they lie at the stored place. So every search begins where the
-// recorded one began, as long as the ones before found what the recorded ones
-// found. Loops that the run does not find are not given to it, and loops that
-// only the run finds are its result as any others; they just do not move the
-// graph.
+// A run of the pose graph is sensitive to rounding: the clouds of a map are
+// rounded to the millimetre, so a reproduced loop differs by half a millimetre,
+// the graph changes with it, some later candidate is beyond the distance limit,
+// and from then on the sampler, which counts candidates, selects other nodes.
+// To test whether options reproduce the loops of a map, without accumulated
+// rounding, a run can follow the record: the optimisation uses only the stored
+// loops that the run has reproduced, with the stored poses if they agree. So
+// every search starts from the same pose as the recorded one, as long as the
+// previous ones had the same results. Loops that the run does not reproduce are
+// not used, and loops found only by the run are part of its result but do not
+// affect the graph.
 #ifndef CARTOGRAPHER_EXT_RERUN_RECORDED_TRACK_H_
 #define CARTOGRAPHER_EXT_RERUN_RECORDED_TRACK_H_
 
@@ -32,7 +31,7 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
-#include "cartographer_ext/rerun/loop_fate.h"
+#include "cartographer_ext/rerun/loop_outcome.h"
 #include "cartographer_ext/rerun/replay_ids.h"
 #include "cartographer_ext/rerun/replay_plan.h"
 
@@ -41,31 +40,31 @@ namespace evaluation {
 
 struct RecordedTrackOptions {
   bool follow = false;
-  // A loop is at the stored place when it is this close to it.
+  // Tolerances for a loop to agree with the stored one.
   double translation_tolerance = 0.05;  // metres
   double rotation_tolerance = 0.05;     // radians
 };
 
-// Must outlive the pose graph. Used from one thread at a time, as the pose
-// graph uses its optimisation problem.
+// Must outlive the pose graph. Used by one thread at a time, like the
+// optimisation problem of the pose graph.
 class RecordedTrack {
  public:
-  // `plan` must outlive it.
+  // `plan` must outlive this object.
   RecordedTrack(
       const io::Pbstream& pbstream, const ReplayPlan& plan,
       const cartographer::mapping::proto::PoseGraphOptions& pose_graph_options,
       const RecordedTrackOptions& options);
 
-  // For the pose graph of the run.
+  // The optimisation problem for the pose graph of the run.
   std::unique_ptr<cartographer::mapping::optimization::OptimizationProblem2D>
   MakeOptimizationProblem();
 
-  // Of the stored loops within a trajectory whose turn came, as stock's search
-  // decides, by ids of the stored map. Whether loops between trajectories are
-  // searched depends on more than distances, so they are not in it.
-  const LoopFates& fates() const { return fates_; }
+  // Outcomes of the stored loops within a trajectory that were due, by the
+  // rules of stock's search, by ids of the stored map. Inter-trajectory loops
+  // are not included, because their search depends on more than distances.
+  const LoopOutcomes& outcomes() const { return outcomes_; }
 
-  // Loops that the last optimisation was given with their stored poses.
+  // Number of loops that the last optimisation used with their stored poses.
   int64_t num_followed() const { return num_followed_; }
 
  private:
@@ -73,7 +72,8 @@ class RecordedTrack {
   using Constraint = cartographer::mapping::PoseGraphInterface::Constraint;
   class FollowingProblem;
 
-  // The pose graph has placed the next node; its candidates' turn comes.
+  // Called when the pose graph has added the next node and its candidates are
+  // due.
   void OnNode(const Problem& problem);
   void OnCandidate(const Problem& problem, const GraphId& submap_id,
                    const GraphId& node_id);
@@ -89,9 +89,9 @@ class RecordedTrack {
 
   size_t num_steps_ = 0;
   std::set<GraphId> finished_submaps_;  // ids of the run
-  // Of each submap, as stock's search counts its candidates.
+  // Sampler of each submap, counting candidates as stock's search does.
   std::map<GraphId, cartographer::common::FixedRatioSampler> samplers_;
-  LoopFates fates_;
+  LoopOutcomes outcomes_;
   int64_t num_followed_ = 0;
 };
 

@@ -66,15 +66,15 @@ class SubmapChain {
   absl::Status Add(const GraphId& node_id, const std::vector<int>& stored) {
     if (stored.size() > 2) {
       return absl::InvalidArgumentError(
-          absl::StrCat("node ", ToString(node_id), " was inserted in ",
+          absl::StrCat("node ", ToString(node_id), " was inserted into ",
                        stored.size(), " submaps"));
     }
     std::vector<int> next = Choose(node_id, stored);
     if (next.empty()) {
-      return absl::FailedPreconditionError(absl::StrCat(
-          "node ", ToString(node_id),
-          " was inserted in a submap older than that of the node before: the "
-          "order of insertion cannot be had again"));
+      return absl::FailedPreconditionError(
+          absl::StrCat("node ", ToString(node_id),
+                       " was inserted into an older submap than the previous "
+                       "node: the order of insertion cannot be reconstructed"));
     }
     const size_t step = plan_->steps.size();
     for (const int submap : next) plan_->submaps[submap].last_step = step;
@@ -204,7 +204,7 @@ absl::StatusOr<ReplayPlan> MakeReplayPlan(const MapGraph& graph) {
     for (const GraphId& node : inserted.second) {
       if (node.trajectory_id != inserted.first.trajectory_id) {
         return absl::InvalidArgumentError(
-            absl::StrCat("node ", ToString(node), " was inserted in submap ",
+            absl::StrCat("node ", ToString(node), " was inserted into submap ",
                          ToString(inserted.first), " of another trajectory"));
       }
       submaps_of_node[node].push_back(inserted.first.index);

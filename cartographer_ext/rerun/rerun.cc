@@ -278,7 +278,7 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   Drive(pbstream, *plan, *metrics, options, &submaps, &pose_graph);
   const ReplayIds ids(*plan);
   result.graph = Translate(MakeMapGraph(pose_graph), ids);
-  result.fates = track.fates();
+  result.outcomes = track.outcomes();
   result.followed_loops = track.num_followed();
 
   result.nodes = static_cast<int64_t>(plan->steps.size());

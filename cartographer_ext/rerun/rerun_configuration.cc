@@ -78,8 +78,8 @@ absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
       result.stock_name = basename;
       result.stock_is_known = !result.ours.has_value();
       if (result.ours.has_value()) {
-        result.assumptions.push_back(absl::StrCat(
-            "stock is ", basename, " with the blocks of ours taken out"));
+        result.assumptions.push_back(
+            absl::StrCat("stock is ", basename, " without our blocks"));
       }
     }
   }
@@ -96,21 +96,22 @@ absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
       PoseGraphOptions ours = result.stock;
       CopyExtensions(*result.ours, &ours);
       result.ours = std::move(ours);
-      result.ours_name = absl::StrCat(stock_name, " with blocks of ", basename);
+      result.ours_name =
+          absl::StrCat(stock_name, " with the blocks of ", basename);
       result.assumptions.push_back(absl::StrCat("ours is ", result.ours_name));
     }
     if (assumed) {
       result.assumptions.push_back(absl::StrCat(
-          "no configuration was given, so stock's defaults (", stock_name,
-          ") are assumed; a map does not keep the options of its pose graph"));
+          "no configuration was given, so the defaults (", stock_name,
+          ") are assumed; a map does not store the options of its pose graph"));
     }
   }
   const Weights loops = CommonWeights(graph, true);
   const Weights insertions = CommonWeights(graph, false);
   if (loops.found && loops.unique) {
-    result.assumptions.push_back(
-        absl::StrFormat("the weights of loops are those of the map, %g and %g",
-                        loops.translation, loops.rotation));
+    result.assumptions.push_back(absl::StrFormat(
+        "the weights of loops are taken from the map, %g and %g",
+        loops.translation, loops.rotation));
   } else if (loops.found) {
     result.assumptions.push_back(
         "the loops of the map have various weights; those of the "
@@ -118,7 +119,7 @@ absl::StatusOr<RerunConfiguration> LoadRerunConfiguration(
   }
   if (insertions.found && insertions.unique) {
     result.assumptions.push_back(absl::StrFormat(
-        "the weights of insertions are those of the map, %g and %g",
+        "the weights of insertions are taken from the map, %g and %g",
         insertions.translation, insertions.rotation));
   }
   return result;

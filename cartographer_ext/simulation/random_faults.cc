@@ -108,7 +108,7 @@ absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
       if (fault.start < 0.) {
         return absl::InvalidArgumentError(
             absl::StrCat("odometry fault '", item, "': a drive of ",
-                         drive.duration(), " s has no room for so many"));
+                         drive.duration(), " s is too short for so many"));
       }
       taken.push_back(fault.start);
       Randomise(&fault, &random);

@@ -53,12 +53,12 @@ nlohmann::ordered_json LocalizedToJson(const SlamRun& run) {
 
 std::string LocalizedToText(const SlamRun& run) {
   if (!run.localized_at.has_value()) {
-    return "Localised  never: no loop ties the recording to the map\n";
+    return "Localised  never: no loop constrains the recording to the map\n";
   }
   const Pose2 pose = ToPose2(run.localized_at->pose);
   return absl::StrFormat(
-      "Localised  after %.1f s, at x = %.1f m, y = %.1f m, %.0f degrees of the "
-      "map\n",
+      "Localised  after %.1f s, at x = %.1f m, y = %.1f m, %.0f degrees in the "
+      "map frame\n",
       SecondsUntilLocalized(run), pose.x, pose.y, RadToDeg(pose.theta));
 }
 
@@ -105,10 +105,10 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
                           {"odometry_faults", counts.odometry_faults},
                           {"slip_suspected", counts.slip_suspected},
                           {"time_offset", counts.time_offset},
-                          {"way_scale", counts.way_scale},
-                          {"way_scale_sigma", counts.way_scale_sigma},
-                          {"turn_scale", counts.turn_scale},
-                          {"turn_per_metre", counts.turn_per_metre}};
+                          {"odometry_scale", counts.odometry_scale},
+                          {"odometry_scale_sigma", counts.odometry_scale_sigma},
+                          {"rotation_scale", counts.rotation_scale},
+                          {"rotation_per_metre", counts.rotation_per_metre}};
   }
   if (!run.decisions.empty()) {
     const DecisionCounts counts = CountDecisions(run.decisions);
@@ -140,17 +140,17 @@ std::string ToText(const SlamRun& run) {
       &text, "Map        %d nodes, %d submaps, %d loops from %d searches\n",
       run.nodes, run.submaps, run.inter_constraints, run.loop_searches);
   if (run.loaded_nodes > 0) absl::StrAppend(&text, LocalizedToText(run));
-  absl::StrAppendFormat(
-      &text,
-      "Took       %.1f s for %.1f s of sensor data; CPU %.1f s, of it %.1f s "
-      "local SLAM; %.0f MB\n",
-      run.wall_seconds, run.sensor_seconds, run.cpu_seconds,
-      run.front_end_cpu_seconds, 1e-6 * run.peak_memory_bytes);
+  absl::StrAppendFormat(&text,
+                        "Time       %.1f s for %.1f s of sensor data; CPU %.1f "
+                        "s, including %.1f s of local SLAM; %.0f MB\n",
+                        run.wall_seconds, run.sensor_seconds, run.cpu_seconds,
+                        run.front_end_cpu_seconds,
+                        1e-6 * run.peak_memory_bytes);
   if (run.latency.scans > 0) {
     absl::StrAppendFormat(
         &text,
-        "Latency    local SLAM %.1f ms a scan (99 %% within %.1f, at most "
-        "%.1f); back end at most %.1f s behind\n",
+        "Latency    local SLAM %.1f ms per scan (99 %% within %.1f, at most "
+        "%.1f); back end at most %.1f s\n",
         run.latency.local_slam_p50, run.latency.local_slam_p99,
         run.latency.local_slam_max, run.latency.max_backlog);
   }
@@ -158,8 +158,8 @@ std::string ToText(const SlamRun& run) {
     const uncertainty::CommonDrift& drift = run.drift.common;
     absl::StrAppendFormat(
         &text,
-        "Drift      of local SLAM, learnt from %d cycles of loops: heading "
-        "%.2f +- %.2f deg/m, turns %.1f +- %.1f %%, scale %.1f +- %.1f %%\n",
+        "Drift      of local SLAM, estimated from %d cycles of loops: heading "
+        "%.2f +- %.2f deg/m, rotation %.1f +- %.1f %%, scale %.1f +- %.1f %%\n",
         run.drift.num_cycles, RadToDeg(drift.mean(0)),
         RadToDeg(Sigma(drift, 0)), 100. * drift.mean(1), 100. * Sigma(drift, 1),
         100. * drift.mean(2), 100. * Sigma(drift, 2));

@@ -40,27 +40,24 @@ std::vector<std::string> WarningsOf(const FedReadings& fed,
   std::vector<std::string> warnings;
   if (wants_odometry && fed.odometry_readings == 0) {
     warnings.push_back(
-        "no odometry: corridors may come out too short or too long, and "
-        "loops are searched farther around");
+        "no odometry: corridors may come out too short or too long, and loop "
+        "searches are wider");
   }
   if (fed.skipped_scans > 0) {
     warnings.push_back(absl::StrCat(
         fed.skipped_scans,
-        " scans left out: without a valid range or not later than the one "
-        "before"));
+        " scans skipped: no valid range, or not later than the previous one"));
   }
   if (fed.skipped_readings > 0) {
     warnings.push_back(absl::StrCat(
         fed.skipped_readings,
-        " odometry and IMU readings left out: not later than the one "
-        "before"));
+        " odometry and IMU readings skipped: not later than the previous one"));
   }
   const io::OdometryJumps& jumps = fed.odometry_jumps;
   if (jumps.count() > 0) {
     warnings.push_back(
         absl::StrFormat("the odometry jumps %d times, first by %.1f m at %.3f "
-                        "s; no robot does, "
-                        "so it is taken to stand",
+                        "s; this is implausible, so these steps are ignored",
                         jumps.count(), jumps.first_distance(),
                         io::ToSeconds(jumps.first_time())));
   }

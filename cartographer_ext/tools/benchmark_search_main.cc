@@ -19,15 +19,16 @@
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
 
-DEFINE_string(pbstream_filename, "", "the state the golden vectors are about");
+DEFINE_string(pbstream_filename, "",
+              "the state that the golden vectors were made from");
 DEFINE_string(golden_filename, "",
               "CSV of search and refinement results of the real Cartographer");
-DEFINE_string(
-    matcher, "both",
-    "who searches: stock (the host's matcher), ours, or both in turn");
-DEFINE_int32(repeat, 1, "tries per pair; the smallest CPU time counts");
+DEFINE_string(matcher, "both",
+              "matcher to run: stock (the host's), ours, or both in turn");
+DEFINE_int32(repeat, 1, "repetitions per pair; the smallest CPU time counts");
 DEFINE_bool(all, false, "print every pair, not only those that differ");
-DEFINE_string(json, "", "write figures to this file; - is standard output");
+DEFINE_string(json, "",
+              "write the results to this file as JSON; - is standard output");
 
 namespace cartographer_ext {
 namespace tools {
@@ -241,16 +242,15 @@ int main(int argc, char** argv) {
   using namespace cartographer_ext;
   tools::CommandLine command_line(
       "Checks the scan matchers, the host's and ours, against golden "
-      "vectors.\n\n"
-      "For pairs of a submap and a node the CSV holds what the real "
-      "Cartographer's\nbranch-and-bound search and Ceres matcher found. The "
-      "search must find the same\npose and score (another pose with the same "
-      "score is a tie); refinement, started\nfrom the golden pose, must end "
-      "within 1 mm, 1 mrad and 1 % of cost. CPU times\nare printed beside the "
-      "golden ones, which were taken on another machine.\n\n"
-      "  cartographer_ext_benchmark_search -pbstream_filename map.pbstream \\\n"
-      "      -golden_filename map.search.csv -matcher both -repeat 3\n\n"
-      "Exit codes: 0 all the same, 1 mismatches or bad input, 2 wrong usage.");
+      "vectors.\n\nThe CSV has, for pairs of a submap and a node, the results "
+      "of the real\nCartographer's branch-and-bound search and Ceres matcher. "
+      "The search must find\nthe same pose and score (another pose with the "
+      "same score is a tie); refinement,\nstarted from the golden pose, must "
+      "end within 1 mm, 1 mrad and 1 % of cost. CPU\ntimes are printed beside "
+      "the golden ones, which are from another machine.\n\n  "
+      "cartographer_ext_benchmark_search -pbstream_filename map.pbstream \\\n  "
+      "    -golden_filename map.search.csv -matcher both -repeat 3\n\nExit "
+      "codes: 0 no mismatch, 1 mismatches or bad input, 2 wrong usage.");
   command_line.Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty()) {
     return tools::UsageError("-pbstream_filename is missing");
@@ -260,9 +260,9 @@ int main(int argc, char** argv) {
   }
   std::vector<evaluation::GoldenMatcher> matchers;
   if (!tools::MatchersOfFlag(FLAGS_matcher, &matchers)) {
-    return tools::UsageError("-matcher is stock, ours or both");
+    return tools::UsageError("-matcher must be stock, ours or both");
   }
-  if (FLAGS_repeat < 1) return tools::UsageError("-repeat is at least 1");
+  if (FLAGS_repeat < 1) return tools::UsageError("-repeat must be at least 1");
   int num_mismatches = 0;
   const int exit_code = tools::ExitCode(tools::Run(&num_mismatches));
   if (exit_code != tools::kExitSuccess) return exit_code;

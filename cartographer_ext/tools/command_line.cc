@@ -28,10 +28,11 @@
 #include "glog/logging.h"
 
 DEFINE_int32(max_expansion, 50,
-             "How many times its size a compressed input may expand to.");
+             "Limit of the expanded size of a compressed input, as a multiple "
+             "of its size.");
 DEFINE_bool(sandbox, false,
-            "Run the configuration without os, io and what else could touch "
-            "this computer: for files of unknown origin.");
+            "Run the configuration without os, io and other access to this "
+            "computer: for files of unknown origin.");
 
 namespace cartographer_ext {
 namespace tools {
@@ -149,7 +150,7 @@ bool HasVerdict() {
     PrintWrapped(flag.description, "      ");
   }
   std::cout << "\nExit codes: 0 success, 1 bad input, 2 wrong usage"
-            << (HasVerdict() ? ", 3 by the verdict" : "") << ".\n";
+            << (HasVerdict() ? ", 3 bad verdict" : "") << ".\n";
   std::exit(ExitCode(absl::OkStatus()));
 }
 
@@ -252,16 +253,17 @@ absl::Status CheckDistinct(const std::vector<std::string>& outputs,
                  0;
         });
     if (is_input) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(output, ": the output is the input, which would be ",
-                       "overwritten; name another output"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          output, ": the output is also the input, which would be ",
+          "overwritten; name another output"));
     }
     const bool is_twice = std::any_of(
         outputs.begin() + i + 1, outputs.end(),
         [&](const std::string& other) { return IsSameFile(output, other); });
     if (is_twice || flags.size() > 1) {
       return absl::InvalidArgumentError(absl::StrCat(
-          output, ": an output and another file of the command have this name",
+          output,
+          ": two files of the command have this name, one of them an output",
           flags.empty() ? "" : " (-", absl::StrJoin(flags, ", -"),
           flags.empty() ? "" : ")"));
     }
@@ -283,8 +285,8 @@ CommandLine::CommandLine(const std::string& description,
 void CommandLine::TakePositional(const std::string& argument) {
   if (input_flag_.empty() || argument == "-") {
     ExitWithUsageError(
-        absl::StrCat("what is \"", argument, "\"? All arguments are flags",
-                     input_flag_.empty() ? "" : " but the input"));
+        absl::StrCat("what is \"", argument, "\"? All arguments must be flags",
+                     input_flag_.empty() ? "" : " except the input"));
   }
   const auto is_set = [](const std::string& flag) {
     gflags::CommandLineFlagInfo info;

@@ -29,10 +29,10 @@ DEFINE_string(pbstream_filename, "",
 DEFINE_string(other_pbstream_filename, "",
               "Second map (.pbstream), or the YAML file of a PGM.");
 DEFINE_double(wall_tolerance, 0.15,
-              "Metres within which walls of the two maps are the same.");
+              "Metres within which walls of the two maps count as the same.");
 DEFINE_double(moved, 0.2,
-              "Nodes that lie further apart than this (metres) are listed.");
-DEFINE_double(resolution, 0.05, "Metres a cell in which maps are drawn.");
+              "Nodes that moved by more than this (metres) are listed.");
+DEFINE_double(resolution, 0.05, "Resolution of the pictures, metres per cell.");
 DEFINE_string(report_filename, "", "Output: report as one HTML file.");
 DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
 
@@ -40,14 +40,14 @@ namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Lays one map over another and says what differs: walls, path, verdict.
+    R"(Aligns two maps and reports their differences: walls, path, verdict.
 
   cartographer_ext_compare before.pbstream after.pbstream
       -report_filename=comparison.html
   cartographer_ext_compare map.pbstream map.yaml -json=-
 
-Maps of the same run are aligned by their common nodes, so that what the two
-agree in stays in place; maps of two runs by their walls.)";
+Maps of the same run are aligned by their common nodes, so that unchanged parts
+coincide; maps of two runs by their walls.)";
 
 struct Input {
   std::string name;

@@ -19,11 +19,11 @@
 
 DEFINE_string(pbstream_filename, "", "Map to inspect.");
 DEFINE_string(other_pbstream_filename, "",
-              "Second map, to be compared with the first.");
-DEFINE_int32(max_problems, 100, "At most so many problems are listed.");
+              "Second map, to compare with the first.");
+DEFINE_int32(max_problems, 100, "Maximum number of problems to list.");
 DEFINE_bool(options, false,
             "Also print the trajectory builder options as text.");
-DEFINE_string(json, "", "Output: all of it as JSON; - is standard output.");
+DEFINE_string(json, "", "Output: everything as JSON; - is standard output.");
 
 namespace cartographer_ext {
 namespace {
@@ -35,8 +35,8 @@ constexpr char kDescription[] =
   cartographer_ext_dump -pbstream_filename=a.pbstream
       -other_pbstream_filename=b.pbstream
 
-Ends with exit code 1 when a file cannot be read or has problems. Two files that
-differ are no error.)";
+The exit code is 1 if a file cannot be read or has problems. Differences between
+two files are not an error.)";
 
 struct Inspected {
   absl::StatusOr<io::Pbstream> pbstream = absl::UnknownError("not read");

@@ -22,36 +22,39 @@
 #include "nlohmann/json.hpp"
 
 DEFINE_string(trajectory_filename, "",
-              "Poses as reported at the time (TUM), "
+              "Poses as published online (TUM), from "
               "-online_trajectory_filename of cartographer_ext_slam.");
-DEFINE_string(reference_trajectory_filename, "", "True trajectory (TUM).");
-DEFINE_string(map_trajectory_filename, "",
-              "Trajectory of the run that made the map (TUM), to align the map "
-              "with the ground truth. Without it both are in one frame.");
+DEFINE_string(reference_trajectory_filename, "",
+              "Ground truth trajectory (TUM).");
+DEFINE_string(
+    map_trajectory_filename, "",
+    "Trajectory of the run that made the map (TUM), to align the map with the "
+    "ground truth. Without it both must be in the same frame.");
 DEFINE_string(map_reference_trajectory_filename, "",
-              "The true trajectory of that run (TUM).");
+              "Ground truth trajectory of that run (TUM).");
 DEFINE_double(translation_tolerance, 0.3,
               "Metres within which a pose counts as right.");
-DEFINE_double(rotation_tolerance, 5., "Degrees, likewise.");
+DEFINE_double(rotation_tolerance, 5.,
+              "Degrees within which a pose counts as right.");
 DEFINE_double(
     hold_seconds, 10.,
     "Seconds of right poses after which the robot counts as localised.");
-DEFINE_double(
-    jump_distance, 0.5,
-    "Metres by which the reported pose moves against ground truth from "
-    "one scan to the next to count as a jump.");
+DEFINE_double(jump_distance, 0.5,
+              "Change of the error of the published pose from one scan to the "
+              "next, in metres, that counts as a jump.");
 DEFINE_double(carried_distance, 1.,
-              "Metres between two scans beyond which the robot was kidnapped.");
+              "Motion between two scans, in metres, beyond which the robot "
+              "counts as kidnapped.");
 DEFINE_double(stamp_tolerance, 0.001,
-              "Seconds within which stamps are the same scan.");
+              "Seconds within which two stamps belong to the same scan.");
 DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
 
 namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Evaluates localisation in a finished map: time until localised, jumps of the
-reported pose, wrong places.
+    R"(Evaluates localisation in a finished map: time to localise, jumps of the
+published pose, wrong places.
 
   cartographer_ext_slam -input_filename=later.clf -load_state_filename=map.pbstream
       -configuration_basename=localization.lua -online_trajectory_filename=later.tum
@@ -78,47 +81,46 @@ absl::StatusOr<std::vector<evaluation::PosePair>> ReadPairs(
                                io::FromSeconds(FLAGS_stamp_tolerance));
 }
 
-nlohmann::ordered_json ToJson(const evaluation::LocalizationStretch& stretch) {
+nlohmann::ordered_json ToJson(const evaluation::LocalizationSegment& segment) {
   nlohmann::ordered_json json;
-  json["begin"] = io::ToSeconds(stretch.begin);
-  json["end"] = io::ToSeconds(stretch.end);
-  json["localized"] = stretch.localized;
-  if (stretch.localized) {
-    json["seconds_until_localized"] = stretch.seconds;
-    json["metres_until_localized"] = stretch.metres;
+  json["begin"] = io::ToSeconds(segment.begin);
+  json["end"] = io::ToSeconds(segment.end);
+  json["localized"] = segment.localized;
+  if (segment.localized) {
+    json["seconds_until_localized"] = segment.seconds;
+    json["metres_until_localized"] = segment.metres;
   }
-  json["jumps"] = stretch.jumps;
-  json["wrong_jumps"] = stretch.wrong_jumps;
-  json["translation_error"] = evaluation::ToJson(stretch.translation_error);
+  json["jumps"] = segment.jumps;
+  json["wrong_jumps"] = segment.wrong_jumps;
+  json["translation_error"] = evaluation::ToJson(segment.translation_error);
   json["rotation_error_degrees"] =
-      evaluation::ToJson(stretch.rotation_error_degrees);
-  json["fraction_within"] = stretch.fraction_within;
+      evaluation::ToJson(segment.rotation_error_degrees);
+  json["fraction_within"] = segment.fraction_within;
   return json;
 }
 
 std::string ToText(const evaluation::LocalizationMetrics& metrics) {
   std::string text = absl::StrFormat(
-      "Localised  in %d of %d stretches; %d jumps after that, %d wrong "
-      "places\n",
-      metrics.num_localized(), metrics.stretches.size(), metrics.num_jumps(),
+      "Localised  in %d of %d segments; %d jumps after that, %d wrong places\n",
+      metrics.num_localized(), metrics.segments.size(), metrics.num_jumps(),
       metrics.num_wrong_jumps());
-  for (const evaluation::LocalizationStretch& stretch : metrics.stretches) {
+  for (const evaluation::LocalizationSegment& segment : metrics.segments) {
     absl::StrAppendFormat(&text,
-                          "  %.1f s to %.1f s: ", io::ToSeconds(stretch.begin),
-                          io::ToSeconds(stretch.end));
-    if (!stretch.localized) {
+                          "  %.1f s to %.1f s: ", io::ToSeconds(segment.begin),
+                          io::ToSeconds(segment.end));
+    if (!segment.localized) {
       absl::StrAppend(&text, "never localised");
     } else {
       absl::StrAppendFormat(
           &text,
           "after %.1f s and %.1f m; then %.3f m off (largest %.3f m), %.1f %% "
           "of the scans within %g m and %g deg",
-          stretch.seconds, stretch.metres, stretch.translation_error.rmse,
-          stretch.translation_error.max, 100. * stretch.fraction_within,
+          segment.seconds, segment.metres, segment.translation_error.rmse,
+          segment.translation_error.max, 100. * segment.fraction_within,
           FLAGS_translation_tolerance, FLAGS_rotation_tolerance);
     }
-    absl::StrAppendFormat(&text, "; %d jumps, %d wrong places\n", stretch.jumps,
-                          stretch.wrong_jumps);
+    absl::StrAppendFormat(&text, "; %d jumps, %d wrong places\n", segment.jumps,
+                          segment.wrong_jumps);
   }
   return text;
 }
@@ -136,7 +138,7 @@ absl::Status Run() {
     if (map_pairs->size() < 2) {
       return absl::InvalidArgumentError(
           absl::StrCat(FLAGS_map_trajectory_filename, ": only ",
-                       map_pairs->size(), " poses have a true one"));
+                       map_pairs->size(), " poses have a ground truth pose"));
     }
     // The truth in the frame of the map.
     const Pose2 map_from_truth = evaluation::AlignInPlane(*map_pairs).Inverse();
@@ -163,9 +165,9 @@ absl::Status Run() {
   json["localized"] = metrics->num_localized();
   json["jumps"] = metrics->num_jumps();
   json["wrong_jumps"] = metrics->num_wrong_jumps();
-  json["stretches"] = nlohmann::ordered_json::array();
-  for (const evaluation::LocalizationStretch& stretch : metrics->stretches) {
-    json["stretches"].push_back(ToJson(stretch));
+  json["segments"] = nlohmann::ordered_json::array();
+  for (const evaluation::LocalizationSegment& segment : metrics->segments) {
+    json["segments"].push_back(ToJson(segment));
   }
   return tools::WriteJson(json, FLAGS_json);
 }

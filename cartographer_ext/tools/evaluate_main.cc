@@ -41,72 +41,74 @@
 #include "nlohmann/json.hpp"
 
 DEFINE_string(pbstream_filename, "",
-              "Map to judge. Its poses are those of the nodes, interpolated in "
-              "time between them, as Cartographer's own tool does. A folder, a "
-              "pattern, or several maps without the flag: all are judged.");
-DEFINE_string(trajectory_filename, "",
-              "Estimated trajectory (TUM) with a pose at every scan, as "
-              "cartographer_ext_slam writes. Stamps are matched to the nearest "
-              "within -stamp_tolerance, else interpolated. With both, this one "
-              "is judged, and the map tells about the loops.");
+              "Map to judge. Poses between nodes are interpolated in time, as "
+              "in Cartographer's own tool. A folder, a pattern, or several "
+              "maps without the flag: all are judged.");
+DEFINE_string(
+    trajectory_filename, "",
+    "Estimated trajectory (TUM) with a pose at every scan, as "
+    "cartographer_ext_slam writes. Stamps are matched to the nearest within "
+    "-stamp_tolerance, otherwise interpolated. If a map is given as well, this "
+    "trajectory is judged and the map is used for its loops.");
 DEFINE_string(relations_filename, "",
-              "Reference relations: t1 t2 x y z roll pitch yaw a line.");
+              "Reference relations, one per line: t1 t2 x y z roll pitch yaw.");
 DEFINE_string(reference_trajectory_filename, "", "Reference trajectory (TUM).");
 DEFINE_int32(trajectory_id, -1,
-             "Which trajectory of the map is compared with ground truth; -1 is "
-             "the first that has nodes.");
+             "Trajectory of the map to compare with ground truth; -1: the "
+             "first that has nodes.");
 DEFINE_double(stamp_tolerance, 0.001,
-              "Seconds within which stamps are the same scan.");
-DEFINE_double(rpe_distance, 1.,
-              "Length in metres of the stretches of the relative error.");
+              "Seconds within which two stamps belong to the same scan.");
+DEFINE_double(
+    rpe_distance, 1.,
+    "Path length in metres over which the relative error is computed.");
 DEFINE_double(loop_tolerance, 0.5,
               "Largest error in metres of a loop that counts as right.");
 DEFINE_bool(self_consistency, true,
-            "Hold the scans, loops and odometry of the map against each other; "
-            "takes some seconds.");
-DEFINE_string(rerun_configuration_directory, "",
-              "Folders with Lua files, comma separated. Given, the pose graph "
-              "of the map is run again, with stock's options and with ours.");
+            "Check the consistency of the scans, loops and odometry of the "
+            "map; takes some seconds.");
+DEFINE_string(
+    rerun_configuration_directory, "",
+    "Folders with Lua files, comma separated. If given, the pose graph of the "
+    "map is re-run, with stock's options and with ours.");
 DEFINE_string(rerun_configuration_basename, "",
-              "Lua file whose pose graph options are used; default.lua when "
-              "none is named. Stock is the same file without blocks of ours.");
+              "Lua file with the pose graph options; default.lua if empty. "
+              "Stock is the same file without our blocks.");
 DEFINE_string(rerun_stock_configuration_basename, "",
-              "Lua file for stock, where that is another one.");
-DEFINE_bool(rerun_follow_recording, true,
-            "Where the Lua file of the map is named, stock's optimisation is "
-            "given the stored loops that the run has found again. Clouds are "
-            "stored rounded to the millimetre and runs are chaotic; left to "
-            "itself, a run soon finds loops of other nodes of the same "
-            "visits.");
-DEFINE_int32(num_background_threads, 2, "Threads of the run.");
+              "Lua file for stock, if it is a different one.");
+DEFINE_bool(
+    rerun_follow_recording, true,
+    "If the Lua file of the map is named, stock's optimisation uses the stored "
+    "loops that the run has reproduced. Clouds are stored rounded to the "
+    "millimetre, and runs are sensitive to that: otherwise a run soon finds "
+    "loops of other nodes of the same visits.");
+DEFINE_int32(num_background_threads, 2, "Threads of the re-run.");
 DEFINE_string(match_records_filename, "",
-              "Records of local SLAM, for the degeneracy along the path; "
-              "without it those beside the map (MAP.nodes.pb), if any.");
+              "Records of local SLAM, for the degeneracy along the path. "
+              "Empty: those beside the map (MAP.nodes.pb), if any.");
 DEFINE_string(report_filename, "",
               "Output: report as one HTML file; beside it the numbers (.json) "
               "and the loops with their evidence (.loop_evidence.csv).");
 DEFINE_bool(times, true,
-            "Tell times and memory. Without them the same input gives the same "
-            "bytes.");
+            "Report times and memory, which differ from run to run.");
 DEFINE_string(constraints_filename, "",
-              "Output: CSV of all constraints with residuals and, where there "
-              "is truth, verdicts.");
+              "Output: CSV of all constraints with residuals and, with ground "
+              "truth, verdicts.");
 DEFINE_string(relation_errors_filename, "",
               "Output: CSV of the error of every relation.");
-DEFINE_string(write_relations, "",
-              "Output: relations along the path and over the loops of a sound "
-              "map, to tune by where there is no truth; as good as the map.");
+DEFINE_string(
+    write_relations, "",
+    "Output: relations along the path and over the loops of a sound map, for "
+    "tuning without ground truth; only as accurate as the map.");
 DEFINE_string(fail_on, "",
-              "Exit code 3 where a map is broken, or with doubtful also where "
-              "one is doubtful, or with worse where one has become worse since "
-              "-baseline.");
+              "Exit with code 3 if a map is broken; with doubtful, also if one "
+              "is doubtful; with worse, if one is worse than in -baseline.");
 DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
 
 namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Judges a map: relations metric, trajectory error, loops right and wrong.
+    R"(Judges a map: relations metric, trajectory error, right and wrong loops.
 
   cartographer_ext_evaluate -pbstream_filename=map.pbstream
   cartographer_ext_evaluate -pbstream_filename=map.pbstream
@@ -118,11 +120,11 @@ constexpr char kDescription[] =
       -report_filename=map.html
   cartographer_ext_evaluate maps/ -report_filename=overview.html -fail_on=broken
 
-Without ground truth the map is checked for consistency: scans against what
-other visits mapped, loops against each other, local SLAM against odometry. The
-relations metric is that of Cartographer's compute_relations_metrics; relations
-more than a minute apart close loops and are listed on their own, because a
-folded map looks fine on the others.)";
+Without ground truth the map is checked for self-consistency: scans against the
+submaps of other visits, loops against each other, local SLAM against odometry.
+The relations metric is that of Cartographer's compute_relations_metrics;
+relations more than a minute apart close loops and are listed separately,
+because a folded map looks fine in the others.)";
 
 struct Inputs {
   absl::optional<io::Pbstream> pbstream;
@@ -261,7 +263,7 @@ absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data,
       directories, basename, FLAGS_rerun_stock_configuration_basename,
       inputs.graph);
   if (!configuration.ok()) return configuration.status();
-  Progress progress("running again", 0);
+  Progress progress("re-running", 0);
   runs.rerun.on_progress = [&progress](const int64_t nodes,
                                        const int64_t total) {
     progress.Update(nodes, absl::StrCat("of ", total, " nodes"));
@@ -269,10 +271,9 @@ absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data,
   const absl::Status status = report::AddReruns(runs, *configuration, data);
   progress.Finish();
   if (!status.ok()) {
-    *run_again =
-        absl::Status(status.code(),
-                     absl::StrCat(FLAGS_pbstream_filename,
-                                  ": cannot be run again: ", status.message()));
+    *run_again = absl::Status(
+        status.code(), absl::StrCat(FLAGS_pbstream_filename,
+                                    ": cannot be re-run: ", status.message()));
     data->notes.push_back(std::string(run_again->message()));
   }
   return absl::OkStatus();
@@ -293,10 +294,9 @@ absl::Status ReadDecisionsBeside(evaluation::LoopStatistics* const loops,
 }
 
 absl::Status CheckOutputs() {
-  std::vector<std::string> outputs = {FLAGS_constraints_filename,
-                                      FLAGS_relation_errors_filename,
-                                      FLAGS_json, FLAGS_report_filename,
-                                      FLAGS_write_relations};
+  std::vector<std::string> outputs = {
+      FLAGS_constraints_filename, FLAGS_relation_errors_filename, FLAGS_json,
+      FLAGS_report_filename, FLAGS_write_relations};
   if (!FLAGS_report_filename.empty()) {
     outputs.push_back(BesideReport(".json"));
   }
@@ -393,8 +393,8 @@ std::string WrongUsage(const bool many) {
   }
   if (FLAGS_pbstream_filename.empty() && FLAGS_relations_filename.empty() &&
       FLAGS_reference_trajectory_filename.empty()) {
-    return "a trajectory alone cannot be judged: -relations_filename or "
-           "-reference_trajectory_filename is needed";
+    return "a trajectory alone cannot be judged: give -relations_filename or "
+           "-reference_trajectory_filename";
   }
   if (FLAGS_pbstream_filename.empty() &&
       !(FLAGS_constraints_filename + FLAGS_write_relations).empty()) {

@@ -24,22 +24,23 @@ DECLARE_string(fail_on);
 DECLARE_string(json);
 
 DEFINE_int32(workers, 0,
-             "Many maps: processes that judge them; 0: a thread of the machine "
-             "each. Under mpirun the other ranks are the workers.");
+             "Many maps: number of worker processes; 0: one per hardware "
+             "thread. Under mpirun the other ranks are the workers.");
 DEFINE_double(max_map_cpu_seconds, 3600.,
-              "Many maps: CPU time after which one has failed; 0: no limit.");
+              "Many maps: limit of the CPU seconds per map, beyond which it "
+              "counts as failed; 0: no limit.");
 DEFINE_string(journal_filename, "",
-              "Many maps: where finished ones are kept. A killed call that is "
-              "started again with the same journal goes on where it was.");
+              "Many maps: journal of finished maps. An interrupted command "
+              "resumes when it is started again with the same journal.");
 DEFINE_string(baseline, "",
-              "Many maps: -json_lines_filename of another day; what has become "
-              "worse or better since is told.");
+              "Many maps: -json_lines_filename of an earlier run; what has "
+              "become worse or better since is reported.");
 DEFINE_string(reports_directory, "",
-              "Output, many maps: folder for a report of each map, which the "
-              "overview (-report_filename) then leads to.");
-DEFINE_string(csv_filename, "", "Output, many maps: a row for each.");
+              "Output, many maps: folder for a report of each map, linked from "
+              "the overview (-report_filename).");
+DEFINE_string(csv_filename, "", "Output, many maps: CSV with one row per map.");
 DEFINE_string(json_lines_filename, "",
-              "Output, many maps: a line of JSON for each.");
+              "Output, many maps: one line of JSON per map.");
 namespace cartographer_ext {
 namespace tools {
 namespace {
@@ -77,7 +78,7 @@ absl::Status RunMany(const std::vector<std::string>& maps,
 
 std::string WrongUsageOfMany(const bool many) {
   if (!collection::IsFailOn(FLAGS_fail_on)) {
-    return "-fail_on is broken, doubtful or worse";
+    return "-fail_on must be broken, doubtful or worse";
   }
   if (!many) {
     return FLAGS_fail_on == "worse" || !FLAGS_baseline.empty() ||
@@ -96,9 +97,8 @@ std::string WrongUsageOfMany(const bool many) {
       !FLAGS_constraints_filename.empty() ||
       !FLAGS_match_records_filename.empty() || !FLAGS_write_relations.empty() ||
       !FLAGS_self_consistency) {
-    return "ground truth, runs, constraints, relations and -noself_consistency "
-           "are for "
-           "one map";
+    return "ground truth, re-runs, constraints, relations and "
+           "-noself_consistency are for one map";
   }
   if (FLAGS_workers < 0 || !(FLAGS_max_map_cpu_seconds >= 0.)) {
     return "-workers and -max_map_cpu_seconds must not be negative";
@@ -112,8 +112,7 @@ std::string WrongUsageOfMany(const bool many) {
 int EvaluateMany(const std::vector<std::string>& inputs, int* const argc,
                  char*** const argv) {
   if (tuning::IsMpiJob() && !tuning::HasMpi()) {
-    return UsageError(
-        "built without MPI, so mpirun would do the same work several times");
+    return UsageError("built without MPI: mpirun would repeat the same work");
   }
   tuning::MpiSession session(argc, argv);
   if (session.rank() > 0) {

@@ -33,7 +33,7 @@ DEFINE_string(trajectory_filename, "",
               "Output: optimised poses of the nodes (TUM: timestamp x y z qx "
               "qy qz qw; stamps in Unix seconds).");
 DEFINE_int32(trajectory_id, -1,
-             "Trajectory to write; -1 writes all of them in order of time.");
+             "Trajectory to write; -1: all of them, ordered by time.");
 DEFINE_string(g2o_filename, "",
               "Output: pose graph as VERTEX_SE2 and EDGE_SE2. Of trajectory t, "
               "submap i is vertex 2000000 t + i and node j is vertex "
@@ -41,18 +41,18 @@ DEFINE_string(g2o_filename, "",
 DEFINE_string(constraints_filename, "",
               "Output: CSV of all constraints with weights and residuals.");
 DEFINE_string(switched_loops_filename, "",
-              "Marks these loops in constraints and picture: the CSV of this "
-              "name that cartographer_ext_slam has written.");
+              "Loops to mark in constraints and picture: the CSV written by "
+              "-switched_loops_filename of cartographer_ext_slam.");
 DEFINE_string(output_pbstream_filename, "",
-              "Output: the map without those loops.");
+              "Output: the map without these loops.");
 DEFINE_string(map_filestem, "",
-              "Output: occupancy map <stem>.pgm and <stem>.yaml, as map_server "
-              "and nav2 read it.");
-DEFINE_double(resolution, 0.05, "Metres a cell of that map.");
+              "Output: occupancy map <stem>.pgm and <stem>.yaml, for "
+              "map_server and nav2.");
+DEFINE_double(resolution, 0.05, "Resolution of that map, metres per cell.");
 DEFINE_string(nodes_filename, "",
-              "Marks degenerate nodes and odometry faults in the picture: the "
-              ".nodes.pb that cartographer_ext_slam has written. Empty: the "
-              "one beside the map, if there is one.");
+              "Degenerate nodes and odometry faults to mark in the picture: "
+              "the .nodes.pb written by cartographer_ext_slam. Empty: the one "
+              "beside the map, if any.");
 DEFINE_string(picture_filename, "",
               "Output: PNG of the map with path and loops.");
 
@@ -189,7 +189,7 @@ int main(int argc, char** argv) {
       FLAGS_constraints_filename.empty() && FLAGS_map_filestem.empty() &&
       FLAGS_picture_filename.empty() &&
       FLAGS_output_pbstream_filename.empty()) {
-    return tools::UsageError("nothing to write: no output was named");
+    return tools::UsageError("nothing to write: no output is named");
   }
   if (!FLAGS_output_pbstream_filename.empty() &&
       FLAGS_switched_loops_filename.empty()) {

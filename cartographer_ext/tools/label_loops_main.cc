@@ -33,27 +33,28 @@
 DEFINE_string(input_filename, "",
               "Recording: CARMEN log, ROS 1 bag or world file.");
 DEFINE_string(pbstream_filename, "",
-              "Instead of a recording: a finished map with the decision "
-              "records of its making beside it (<stem>.loops.pb).");
+              "Instead of a recording: a finished map with its decision "
+              "records beside it (<stem>.loops.pb).");
 DEFINE_string(configuration_directory, "",
-              "Where Lua files are searched, comma separated. Empty: the files "
-              "that came with this command.");
+              "Folders that are searched for Lua files, comma separated. "
+              "Empty: the files installed with this command.");
 DEFINE_string(configuration_basename, "default.lua",
               "Configuration with our loop closure.");
 DEFINE_string(stock_configuration_basename, "stock.lua",
-              "Configuration to compare with; empty: none.");
+              "Configuration for comparison; empty: none.");
 DEFINE_string(relations_filename, "",
-              "Truth: reference relations, t1 t2 x y z roll pitch yaw a line.");
+              "Ground truth: reference relations, one per line: t1 t2 x y z "
+              "roll pitch yaw.");
 DEFINE_string(
     reference_trajectory_filename, "",
-    "Truth: trajectory (TUM), for example a carefully optimised one.");
+    "Ground truth: trajectory (TUM), for example a carefully optimised one.");
 DEFINE_double(loop_tolerance, 0.5,
               "Largest error in metres of a loop that counts as true.");
 DEFINE_double(stamp_tolerance, 0.001,
-              "Seconds within which stamps are the same scan.");
+              "Seconds within which two stamps belong to the same scan.");
 DEFINE_int32(num_background_threads, 0,
-             "Threads of the back end; 0: as the configuration says.");
-DEFINE_uint64(seed, 0, "Worlds: chooses noise and faults.");
+             "Threads of the back end; 0: as in the configuration.");
+DEFINE_uint64(seed, 0, "Worlds: seed of noise and faults.");
 DEFINE_string(csv_filename, "", "Output: every candidate with its label.");
 DEFINE_string(picture_filename, "",
               "Output: ROC and precision-recall curves (.svg).");
@@ -72,9 +73,9 @@ constexpr char kDescription[] =
       -relations_filename=aces.relations -csv_filename=loops.csv
       -picture_filename=loops.svg -json=-
 
-Runs the recording with our loop closure and, beside it, with Cartographer's.
-Precision is the share of true ones among the accepted loops that truth can
-judge, recall the share of the revisits that a true loop closes.)";
+Runs the recording with our loop closure and, for comparison, with
+Cartographer's. Precision is the share of true loops among the accepted ones
+that ground truth covers, recall the share of revisits closed by a true loop.)";
 
 struct Truth {
   absl::optional<std::vector<evaluation::Relation>> relations;
@@ -259,17 +260,16 @@ int main(int argc, char** argv) {
   tools::CommandLine(kDescription, "input_filename").Parse(argc, argv);
   if (FLAGS_input_filename.empty() == FLAGS_pbstream_filename.empty()) {
     return tools::UsageError(
-        "one of -input_filename and -pbstream_filename is needed");
+        "give one of -input_filename and -pbstream_filename");
   }
   if (FLAGS_relations_filename.empty() ==
       FLAGS_reference_trajectory_filename.empty()) {
     return tools::UsageError(
-        "one of -relations_filename and -reference_trajectory_filename is "
-        "needed");
+        "give one of -relations_filename and -reference_trajectory_filename");
   }
   if (!FLAGS_picture_filename.empty() &&
       !absl::EndsWith(FLAGS_picture_filename, ".svg")) {
-    return tools::UsageError("-picture_filename has to end in .svg");
+    return tools::UsageError("-picture_filename must end in .svg");
   }
   if (FLAGS_num_background_threads < 0 || !(FLAGS_loop_tolerance > 0.) ||
       !(FLAGS_stamp_tolerance >= 0.)) {

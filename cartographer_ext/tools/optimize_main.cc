@@ -27,49 +27,51 @@
 #include "gflags/gflags.h"
 
 DEFINE_string(input_filename, "", "Graph: .g2o (also .gz, .xz) or .pbstream.");
-DEFINE_string(kernel, "auto",
-              "none huber sc gm dcs acs acs_paper gnc_tls auto r_isam.");
+DEFINE_string(
+    kernel, "auto",
+    "none, huber, sc, gm, dcs, acs, acs_paper, gnc_tls, auto or r_isam.");
 DEFINE_double(kernel_parameter, 0.,
-              "w, P, b or c of the kernel; 0 takes the customary value.");
-DEFINE_string(norm, "spectral",
-              "|Lambda| of acs_paper: spectral determinant root information.");
-DEFINE_int32(max_iterations, 200, "Of one solution.");
-DEFINE_bool(prune, true, "Leave dead loops out of the linear systems.");
+              "Parameter of the kernel (w, P, b or c); 0: the usual value.");
+DEFINE_string(
+    norm, "spectral",
+    "Norm |Lambda| of acs_paper: spectral, determinant, root or information.");
+DEFINE_int32(max_iterations, 200, "Limit of the iterations of one solution.");
+DEFINE_bool(prune, true, "Leave disabled loops out of the linear systems.");
 DEFINE_bool(adaptive_gate, true,
-            "auto, r_isam: decide in the end by a gate narrowed to the scale "
-            "of the loops that agree. Never for a pbstream, whose weights are "
-            "relative.");
+            "auto, r_isam: make the final decision with a gate narrowed to the "
+            "noise scale of the loops that agree. Never for a pbstream, whose "
+            "weights are relative.");
 DEFINE_bool(lowest_cost, true,
-            "auto: end with the lowest truncated cost of all, as near to what "
-            "the adapted gate says as that permits.");
-DEFINE_bool(estimate_noise, true,
-            "Estimate the scale of the noise of odometry and of loops; where "
-            "the information matrices claim too much, decide and report chi2 "
-            "with it (key noise_scale: factors of the standard deviations). "
-            "Never for a pbstream.");
+            "auto: return the solution with the lowest truncated cost that is "
+            "closest to the decision of the adapted gate.");
+DEFINE_bool(
+    estimate_noise, true,
+    "Estimate the noise scale of odometry and of loops; if the information "
+    "matrices are overconfident, decide and report chi2 with it (key "
+    "noise_scale: factors of the standard deviations). Never for a pbstream.");
 DEFINE_bool(dead_reckoning, false,
             "Start from chained odometry instead of the file's poses.");
 DEFINE_string(output_filename, "",
               "Optimised graph: .g2o, .tum (index as stamp, or the nodes of a "
               "pbstream) or, for a pbstream, .pbstream.");
-DEFINE_bool(keep_rejected, true,
-            "Keep loops which were switched off in an output pbstream.");
+DEFINE_bool(keep_rejected, true, "Keep rejected loops in an output pbstream.");
 DEFINE_string(drop_loops, "",
-              "Undo loops of a pbstream before optimising: comma separated "
-              "submap_trajectory:submap:node_trajectory:node.");
+              "Loops of a pbstream to remove before optimising, comma "
+              "separated: submap_trajectory:submap:node_trajectory:node.");
 DEFINE_int32(wrong_loops, 0,
-             "pbstream: add this many wrong loops before optimising, to see "
-             "what becomes of them; they are the last lines of the verdicts.");
-DEFINE_uint64(wrong_loops_seed, 1, "Chooses them.");
+             "pbstream: add this many wrong loops before optimising, as a "
+             "test; they are the last lines of the verdicts.");
+DEFINE_uint64(wrong_loops_seed, 1, "Seed of the wrong loops.");
 DEFINE_double(loop_sigma, 0.1,
-              "pbstream: standard deviation in metres that the loops' weights "
-              "represent.");
+              "pbstream: standard deviation in metres that the weights of the "
+              "loops represent.");
 DEFINE_string(truth_filename, "",
-              "True poses: g2o, or lines x y theta; compared by id, or along "
-              "the path where ids do not agree.");
+              "Ground truth poses: g2o, or lines x y theta; matched by id, or "
+              "along the path if ids do not agree.");
 DEFINE_string(verdicts_filename, "", "Output: CSV, one line per loop.");
-DEFINE_string(picture_filename, "", "Output: PNG, before beside after.");
-DEFINE_string(json, "", "Writes the result as JSON; - is standard output.");
+DEFINE_string(picture_filename, "",
+              "Output: PNG, before and after side by side.");
+DEFINE_string(json, "", "Output: the result as JSON; - is standard output.");
 
 namespace cartographer_ext {
 namespace {
@@ -80,10 +82,10 @@ constexpr char kDescription[] =
   cartographer_ext_optimize -input_filename=graph.g2o -kernel=auto
       -output_filename=optimised.g2o -verdicts_filename=loops.csv
       -picture_filename=before_after.png -json=-
-A finished map; the rejected loops are removed from the new one:
+A finished map; rejected loops are removed from the new one:
   cartographer_ext_optimize -input_filename=map.pbstream -nokeep_rejected
       -output_filename=better.pbstream
-Undo one loop (ids as in the CSV of cartographer_ext_export) and solve again:
+Remove one loop (ids as in the CSV of cartographer_ext_export) and solve again:
   cartographer_ext_optimize -input_filename=map.pbstream -kernel=huber
       -drop_loops=0:12:0:1034 -output_filename=without.pbstream)";
 
@@ -160,7 +162,7 @@ absl::Status WriteOutput(const Input& input,
   }
   if (!input.pbstream.has_value()) {
     return absl::InvalidArgumentError(
-        "a pbstream can only be written when one was read");
+        "a pbstream can only be written if one was read");
   }
   io::Pbstream output = *input.pbstream;
   evaluation::StorePoses(input.map, result.poses, &output);
@@ -307,7 +309,8 @@ absl::Status Run() {
   if (FLAGS_json != "-") {
     if (!result->undecidable.empty()) {
       std::cout << absl::StrFormat(
-          "undecidable: %d other sets of loops explain the graph as well\n",
+          "undecidable: %d other sets of loops explain the graph equally "
+          "well\n",
           result->undecidable.size());
     }
     std::cout << absl::StrFormat(

@@ -19,17 +19,16 @@
 #include "gflags/gflags.h"
 
 DEFINE_string(configuration_directory, "",
-              "Folders of the configuration file and of what it includes, "
-              "separated by commas. Empty: the files that came with this "
-              "command.");
+              "Folders that are searched for Lua files, comma separated. "
+              "Empty: the files installed with this command.");
 DEFINE_string(configuration_basename, "",
-              "Configuration file; none: every option with its default.");
+              "Configuration file; empty: every option with its default.");
 DEFINE_string(format, "text",
-              "text, markdown, lua or, without a configuration, reference.");
-DEFINE_string(
-    effects_filename, "",
-    "Measured effects for -format=reference, as scripts/option_effects "
-    "writes them.");
+              "Output format: text, markdown, lua or, without a configuration, "
+              "reference.");
+DEFINE_string(effects_filename, "",
+              "Measured effects for -format=reference, written by "
+              "scripts/option_effects.");
 
 namespace cartographer_ext {
 namespace {
@@ -46,7 +45,7 @@ constexpr char kDescription[] =
       -effects_filename=docs/option_effects.csv
       writes docs/options.md to standard output
   cartographer_ext_print_options -configuration_basename=mine.lua -format=lua
-      writes the blocks of mine.lua in full, with everything it leaves out)";
+      writes the blocks of mine.lua in full, including the defaults)";
 
 int PrintReference(const std::vector<options::OptionBlock>& blocks) {
   std::vector<evaluation::OptionEffect> effects;

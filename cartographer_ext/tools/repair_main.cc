@@ -32,50 +32,51 @@ DEFINE_string(output_filename, "",
               "Output: the repaired map. Written only if it is better than the "
               "input.");
 DEFINE_string(report_filename, "", "Output: report as one HTML file.");
-DEFINE_string(poses_filename, "",
-              "Output: CSV with the pose of every node in the old and in the "
-              "new map. With -keep_frame beside the repaired map "
-              "(MAP.poses.csv) where none is named.");
+DEFINE_string(
+    poses_filename, "",
+    "Output: CSV with the pose of every node in the old and in the new map. "
+    "Default with -keep_frame: MAP.poses.csv beside the repaired map.");
 DEFINE_string(only, "loops,local",
-              "Steps, comma separated: loops (judged again, searched again), "
-              "local (local SLAM run again from the node clouds).");
-DEFINE_bool(keep_frame, false,
-            "The repaired map keeps the frame of the map by a robust fit of "
-            "its nodes, so that what was right stays where it was. Without it "
-            "the first node stays.");
-DEFINE_bool(dry_run, false, "Try all steps and report, but write no map.");
-DEFINE_string(drop_loops, "",
-              "Loops to leave out, named "
-              "submap_trajectory:submap:node_trajectory:node, comma "
-              "separated.");
+              "Steps, comma separated: loops (re-evaluated, searched again), "
+              "local (local SLAM re-run from the node clouds).");
+DEFINE_bool(
+    keep_frame, false,
+    "Keep the frame of the map by a robust fit of its nodes, so that unchanged "
+    "parts keep their coordinates. Otherwise the first node is fixed.");
+DEFINE_bool(dry_run, false, "Try all steps and report, without writing a map.");
+DEFINE_string(
+    drop_loops, "",
+    "Loops to remove, comma separated: "
+    "submap_trajectory:submap:node_trajectory:node.");
 DEFINE_string(add_loops, "",
-              "Loops to add, named in the same way, with or without "
-              ":x:y:theta behind (node in the submap, metres and radians; "
-              "without, the whole submap is searched). Taken only where the "
-              "scan and those around it match and the map is better.");
+              "Loops to add, with the same ids, optionally followed by "
+              ":x:y:theta (node in the submap, metres and radians; otherwise "
+              "the whole submap is searched). Accepted only if the scan and "
+              "its neighbours match and the map is better.");
 DEFINE_string(configuration_directory, "",
-              "Folders with Lua files, comma separated; ours when empty.");
+              "Folders with Lua files, comma separated. Empty: the files "
+              "installed with this command.");
 DEFINE_string(configuration_basename, "default.lua",
               "Lua file for loop closure and local SLAM. Stock is the same "
-              "file without blocks of ours.");
+              "file without our blocks.");
 DEFINE_int32(num_background_threads, 2,
-             "Threads. The result is the same for any number.");
+             "Number of threads. The result does not depend on it.");
 DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
 
 namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Repairs a finished map from the map alone; no recording is needed.
+    R"(Repairs a finished map without its recording.
 
   cartographer_ext_repair map.pbstream -output_filename=repaired.pbstream
       -report_filename=repair.html
   cartographer_ext_repair map.pbstream -dry_run
 
-Loops are judged again, loop closure is run again, and local SLAM is run again
-from the clouds of the nodes. A step is kept only if the verdict finds its map
-better; a sound map is left alone. Nothing is written unless it is better than
-the input. Exit code 3 where the map is doubtful or broken still.)";
+Loops are re-evaluated, loop closure is re-run, and local SLAM is re-run from the
+clouds of the nodes. A step is kept only if it improves the verdict; a sound map
+is not changed. Nothing is written unless it is better than the input. The exit
+code is 3 if the final map is doubtful or broken.)";
 
 std::string PosesFilename() {
   if (!FLAGS_poses_filename.empty() || !FLAGS_keep_frame ||

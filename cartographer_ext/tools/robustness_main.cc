@@ -18,41 +18,41 @@
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 
-DEFINE_string(preset, "",
-              "Sets the flags below that are not given: a_table_2 (ACS paper), "
-              "r_table_2 (R-iSAM paper), survival_random, survival_local, "
-              "quality.");
+DEFINE_string(
+    preset, "",
+    "Default values of the flags below: a_table_2 (ACS paper), r_table_2 "
+    "(R-iSAM paper), survival_random, survival_local, quality.");
 DEFINE_string(data_directory, "../shared/data/g2o",
-              "Where data sets given by name are, as <name>.g2o[.xz|.gz].");
-DEFINE_string(datasets, "intel",
-              "Names or g2o files, comma separated; none of them where -family "
-              "is given and this is not.");
+              "Folder of the data sets given by name, as <name>.g2o[.xz|.gz].");
+DEFINE_string(
+    datasets, "intel",
+    "Names or g2o files, comma separated; none if only -family is given.");
 DEFINE_string(
     family, "",
-    "Comma separated families of generated graphs with known truth, "
-    "another graph for each seed: ring road grid star floors robots "
-    "few overconfident underconfident, or all. Success is then an ATE to the "
-    "optimum without outliers of at most -ate_limit plus half of that "
-    "optimum's own error.");
-DEFINE_string(
-    kernels, "auto",
-    "Comma separated: none huber sc gm dcs acs acs_paper gnc_tls auto "
-    "r_isam.");
+    "Families of generated graphs with known truth, comma separated, one graph "
+    "per seed: ring, road, grid, star, floors, robots, few, overconfident, "
+    "underconfident, or all. Success is then an ATE to the optimum without "
+    "outliers of at most -ate_limit plus half of that optimum's own error.");
+DEFINE_string(kernels, "auto",
+              "Comma separated: none, huber, sc, gm, dcs, acs, acs_paper, "
+              "gnc_tls, auto or r_isam.");
 DEFINE_string(
     outlier_types, "R",
     "Comma separated: R (random), L (local), RG, LG (grouped), none.");
-DEFINE_string(outlier_counts, "1000",
-              "Comma separated: edges, or with % the share of all loops.");
+DEFINE_string(
+    outlier_counts, "1000",
+    "Comma separated: number of edges, or with % the share of all loops.");
 DEFINE_int32(seeds, 1, "Number of seeds.");
-DEFINE_int32(first_seed, 1, "The first of them.");
-DEFINE_int32(group_size, 10, "Edges of a group (RG, LG).");
-DEFINE_string(norm, "spectral",
-              "|Lambda| of acs_paper: spectral determinant root information.");
+DEFINE_int32(first_seed, 1, "The first seed.");
+DEFINE_int32(group_size, 10, "Edges per group (RG, LG).");
+DEFINE_string(
+    norm, "spectral",
+    "Norm |Lambda| of acs_paper: spectral, determinant, root or information.");
 DEFINE_double(
     ate_limit, 0.05,
     "Success is an ATE to the optimum without outliers of at most this "
     "(metres).");
-DEFINE_double(ate_limit_local, 0.4, "The same for the types L and LG.");
+DEFINE_double(ate_limit_local, 0.4, "The same limit for the types L and LG.");
 DEFINE_string(ate_limits, "intel=0.01",
               "Limits of single data sets: name=metres, comma separated.");
 DEFINE_string(truths, "",
@@ -60,30 +60,31 @@ DEFINE_string(truths, "",
               "name=file, comma separated. Their reference is the optimum that "
               "`auto` finds.");
 DEFINE_bool(adaptive_gate, true,
-            "auto, r_isam: decide in the end by a gate narrowed to the scale "
-            "of the loops that agree. Off: auto keeps what has the lowest "
+            "auto, r_isam: make the final decision with a gate narrowed to the "
+            "noise scale of the loops that agree. Off: auto returns the lowest "
             "truncated cost.");
 DEFINE_bool(lowest_cost, true,
-            "auto: end with the lowest truncated cost of all, as near to what "
-            "the adapted gate says as that permits.");
+            "auto: return the solution with the lowest truncated cost that is "
+            "closest to the decision of the adapted gate.");
 DEFINE_double(max_seconds, 1e9,
-              "Limit of the processor time of one solution by sc or gnc_tls.");
+              "Limit of the CPU seconds of one solution by sc or gnc_tls.");
 DEFINE_bool(compare_cost, false,
             "Instead of a sweep: compares the truncated cost of auto with that "
             "of every other kernel from the given poses, a spanning tree and a "
             "chordal relaxation, and lists the graphs in which it is above. "
-            "Does not use -kernels; its journal is another than a sweep's.");
+            "Does not use -kernels; needs a different journal than a sweep.");
 DEFINE_string(journal_filename, "",
-              "Every finished run is added here at once; a sweep started again "
-              "with the same journal skips what it holds.");
-DEFINE_string(picture_filename, "", "PNG: ATE over the number of outliers.");
-DEFINE_string(json, "", "Writes all runs as JSON; - is standard output.");
+              "Journal to which every finished run is added; a sweep started "
+              "again with the same journal skips these runs.");
+DEFINE_string(picture_filename, "",
+              "Output: PNG, ATE over the number of outliers.");
+DEFINE_string(json, "", "Output: all runs as JSON; - is standard output.");
 
 namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Adds wrong loops to pose graphs and counts what survives; medians over seeds.
+    R"(Adds wrong loops to pose graphs and evaluates the robust back ends; medians over seeds.
 
   cartographer_ext_robustness -datasets=intel,manhattan_g2o -kernels=auto,dcs,sc
       -outlier_types=R,LG -outlier_counts=1000,4000,90% -seeds=5
@@ -257,8 +258,8 @@ int main(int argc, char** argv) {
       Words(FLAGS_outlier_types).empty() ||
       Words(FLAGS_outlier_counts).empty()) {
     return tools::UsageError(
-        "-datasets, -kernels, -outlier_types and -outlier_counts must name "
-        "something");
+        "-datasets, -kernels, -outlier_types and -outlier_counts must not be "
+        "empty");
   }
   return tools::ExitCode(Run());
 }

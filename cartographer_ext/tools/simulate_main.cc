@@ -27,14 +27,15 @@
 #include "gflags/gflags.h"
 #include "nlohmann/json.hpp"
 
-DEFINE_string(world_filename, "",
-              "World file: floor plan, robot, sensors, drive. Its format is "
-              "described in docs/world_format.md; examples are in "
-              "configuration_files/worlds.");
-DEFINE_string(generate, "",
-              "Makes a world instead of reading one: office, hotel, warehouse, "
-              "hall, street or campus. The seed chooses the plan.");
-DEFINE_int32(laps, 1, "-generate: rounds driven, 1 to 20.");
+DEFINE_string(
+    world_filename, "",
+    "World file: floor plan, robot, sensors, drive. The format is described in "
+    "docs/world_format.md; examples are in configuration_files/worlds.");
+DEFINE_string(
+    generate, "",
+    "Generate a world instead of reading one: office, hotel, warehouse, hall, "
+    "street or campus. The plan depends on the seed.");
+DEFINE_int32(laps, 1, "-generate: number of laps, 1 to 20.");
 DEFINE_string(laser, "",
               "Laser: depth_camera, rplidar_a1, ld06, urg_04lx, utm_30lx or "
               "sick_lms. Empty: the world's own; -generate: ld06.");
@@ -46,30 +47,34 @@ DEFINE_string(odometry, "",
               "Errors of the wheels: good, fair, poor (with slips) or none (no "
               "odometry). Empty: the world's own; -generate: fair.");
 DEFINE_string(world_output_filename, "",
-              "Writes the world, presets included, as a world file.");
+              "Output: the world, including the presets, as a world file.");
 DEFINE_uint64(seed, 0,
-              "Chooses noise, biases, obstacle phases and random faults. The "
+              "Seed of noise, biases, obstacle phases and random faults. The "
               "same world and seed always give the same files.");
 DEFINE_string(output_filestem, "",
-              "Writes <stem>.clf (log), .tum (ground truth at every scan), "
+              "Output: <stem>.clf (log), .tum (ground truth at every scan), "
               ".relations (true relative poses), .loops.csv, .places.csv, "
               ".distances.csv, .faults.csv and .truth.pgm/.yaml.");
 DEFINE_bool(carmen, true, "Write the CARMEN log <stem>.clf.");
 DEFINE_bool(bag, false,
             "Also write the ROS 1 bag <stem>.bag, which has the IMU.");
-DEFINE_bool(mcap, false, "Also write the ROS 2 recording <stem>.mcap (zstd), which has the IMU.");
-DEFINE_bool(db3, false, "Also write the ROS 2 recording <stem>.db3, which has the IMU.");
-DEFINE_bool(truth_map, true, "Write the map a perfect mapper would draw.");
-DEFINE_double(resolution, 0.05, "Metres a cell of that map.");
-DEFINE_string(picture_filename, "",
-              "PNG of the plan, the path, the obstacles and the marks.");
-DEFINE_int32(picture_pixels, 1600, "Longer side of the picture.");
+DEFINE_bool(
+    mcap, false,
+    "Also write the ROS 2 recording <stem>.mcap (zstd), which has the IMU.");
+DEFINE_bool(db3, false,
+            "Also write the ROS 2 recording <stem>.db3, which has the IMU.");
+DEFINE_bool(truth_map, true, "Write the ideal map.");
+DEFINE_double(resolution, 0.05, "Resolution of that map, metres per cell.");
+DEFINE_string(
+    picture_filename, "",
+    "Output: PNG of the plan, the path, the obstacles and the marks.");
+DEFINE_int32(picture_pixels, 1600, "Longer side of the picture, pixels.");
 DEFINE_string(odometry_faults, "",
-              "Faults at random times on top of the world's own, comma "
+              "Faults at random times in addition to those of the world, comma "
               "separated: stale:N, jump:N, slip:N, reverse, offset:SECONDS.");
 DEFINE_bool(perfect, false,
-            "Sensors without any noise, bias, dropout or fault.");
-DEFINE_string(json, "", "Writes what was done as JSON; - is standard output.");
+            "Simulate sensors without noise, bias, dropouts or faults.");
+DEFINE_string(json, "", "Output: summary as JSON; - is standard output.");
 
 namespace cartographer_ext {
 namespace {
@@ -92,14 +97,14 @@ Make a log with ground truth, then map and evaluate it:
 Add odometry faults:
   ... -odometry_faults=stale:3,jump:2,slip:2,offset:0.12
 
-A building out of a seed, with sensors of your choice:
+A building generated from a seed, with sensors of your choice:
   cartographer_ext_simulate -generate=hotel -seed=17 -laser=rplidar_a1
       -odometry=poor -laps=2 -output_filestem=/tmp/hotel -mcap
       -world_output_filename=/tmp/hotel.world -picture_filename=/tmp/hotel.png
 The same sensors in a world of your own:
   cartographer_ext_simulate -world_filename=my.world -laser=depth_camera ...
 
-The format of worlds and of the files written, and the values of the presets:
+Format of worlds and output files, and values of the presets:
 docs/world_format.md.)";
 
 nlohmann::ordered_json Report(const simulation::Simulation& simulation,
@@ -144,8 +149,7 @@ bool FlagsAreKnown() {
   return IsKnown("generate", FLAGS_generate, simulation::BuildingNames()) &&
          IsKnown("laser", FLAGS_laser, simulation::LaserPresetNames()) &&
          IsKnown("robot", FLAGS_robot, simulation::RobotPresetNames()) &&
-         IsKnown("odometry", FLAGS_odometry,
-                 simulation::OdometryPresetNames());
+         IsKnown("odometry", FLAGS_odometry, simulation::OdometryPresetNames());
 }
 
 // The small MEMS unit of the shipped worlds.
@@ -253,9 +257,9 @@ absl::Status Run() {
   if (!created.ok()) {
     return absl::Status(
         created.status().code(),
-        absl::StrCat(FLAGS_generate.empty() ? FLAGS_world_filename
-                                            : FLAGS_generate,
-                     ": ", created.status().message()));
+        absl::StrCat(
+            FLAGS_generate.empty() ? FLAGS_world_filename : FLAGS_generate,
+            ": ", created.status().message()));
   }
   const std::shared_ptr<const simulation::Simulation> simulation =
       *std::move(created);
@@ -322,14 +326,14 @@ int main(int argc, char** argv) {
   if (FLAGS_world_filename.empty() == FLAGS_generate.empty()) {
     return tools::UsageError(
         FLAGS_generate.empty()
-            ? "-world_filename is missing, or -generate"
+            ? "give -world_filename or -generate"
             : "-world_filename and -generate exclude each other");
   }
   if (!cartographer_ext::FlagsAreKnown()) return tools::kExitUsage;
   if (FLAGS_laps < 1 || FLAGS_laps > cartographer_ext::simulation::kMaxLaps) {
-    return tools::UsageError(absl::StrCat(
-        "-laps=", FLAGS_laps, " is outside [1, ",
-        cartographer_ext::simulation::kMaxLaps, "]"));
+    return tools::UsageError(
+        absl::StrCat("-laps=", FLAGS_laps, " is outside [1, ",
+                     cartographer_ext::simulation::kMaxLaps, "]"));
   }
   if (FLAGS_output_filestem.empty() && FLAGS_picture_filename.empty() &&
       FLAGS_json.empty() && FLAGS_world_output_filename.empty()) {

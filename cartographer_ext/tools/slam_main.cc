@@ -39,49 +39,48 @@ DEFINE_string(input_filename, "",
               "(.bag), ROS 2 recording (.mcap, .db3 or the folder of rosbag2) "
               "or world file (.world).");
 DEFINE_string(output_filestem, "",
-              "Output: <stem>.pbstream, .pgm and .yaml, .png and .html, each "
-              "unless a flag of its own names it. By default the name of an "
-              "input given without -input_filename, in the working folder.");
+              "Output: <stem>.pbstream, .pgm and .yaml, .png and .html, unless "
+              "another flag names the file. Default if the input is given "
+              "without -input_filename: its name, in the working folder.");
 DEFINE_string(configuration_directory, "",
-              "Where Lua files are searched, comma separated; the first that "
-              "has a file wins. Empty: the files that came with this command.");
+              "Folders that are searched for Lua files in this order, comma "
+              "separated. Empty: the files installed with this command.");
 DEFINE_string(configuration_basename, "default.lua",
               "Lua file that returns map_builder and trajectory_builder.");
 DEFINE_string(load_state_filename, "",
-              "Map (.pbstream) to start from: to localise in it, or to go on "
-              "mapping.");
-DEFINE_bool(load_frozen_state, true, "Nothing of that map moves any more.");
-DEFINE_string(
-    initial_pose, "",
-    "Where the robot is in that map at the first scan, as X,Y,DEGREES "
-    "(metres). Without it the place is searched in the whole map.");
+              "Map (.pbstream) to start from: to localise in it, or to "
+              "continue mapping.");
+DEFINE_bool(load_frozen_state, true, "Freeze that map.");
+DEFINE_string(initial_pose, "",
+              "Pose of the robot in that map at the first scan, as X,Y,DEGREES "
+              "(metres). Without it the whole map is searched.");
 DEFINE_double(realtime_factor, 0.,
-              "Replay the recording at this multiple of the time it took, to "
-              "see latencies as on a robot; 0: as fast as possible.");
+              "Replay the recording at this multiple of real time, to measure "
+              "latencies as on a robot; 0: as fast as possible.");
 DEFINE_int32(num_background_threads, 0,
-             "Threads of the back end; 0 takes the number from the "
-             "configuration. The result is the same for any number.");
+             "Threads of the back end; 0: as in the configuration. The result "
+             "does not depend on it.");
 DEFINE_string(scan_topic, "", "Bags: topic of the laser scans.");
 DEFINE_string(odometry_topic, "", "Bags: topic of the odometry.");
 DEFINE_string(imu_topic, "", "Bags: topic of the IMU.");
 DEFINE_string(odometry_source, "",
-              "CARMEN logs: take odometry from the ODOM lines (odom), from "
-              "inside the scan lines (scan), from both, or from ODOM lines "
-              "where there are any (auto). Empty: as the configuration says.");
+              "CARMEN logs: take odometry from the ODOM lines (odom), from the "
+              "scan lines (scan), from both, or from ODOM lines if there are "
+              "any (auto). Empty: as in the configuration.");
 DEFINE_double(min_range, 0.,
-              "Drop readings closer than this (metres) before local SLAM sees "
-              "them; 0: as the configuration says.");
+              "Drop readings closer than this (metres) before local SLAM; 0: "
+              "as in the configuration.");
 DEFINE_double(max_range, 0.,
-              "Drop readings farther than this (metres) before local SLAM sees "
-              "them; 0: as the configuration says.");
-DEFINE_uint64(seed, 0, "Worlds: chooses noise and faults.");
+              "Drop readings farther than this (metres) before local SLAM; 0: "
+              "as in the configuration.");
+DEFINE_uint64(seed, 0, "Worlds: seed of noise and faults.");
 DEFINE_int32(wrong_loops, 0,
-             "Test of the back end: inject this many wrong loop closures, "
-             "spread evenly over the run.");
-DEFINE_uint64(wrong_loops_seed, 1, "Chooses them.");
-DEFINE_string(json, "",
-              "Output: what was done and what it took, as JSON; - is standard "
-              "output.");
+             "Test of the back end: inject this many wrong loops, spread "
+             "evenly over the run.");
+DEFINE_uint64(wrong_loops_seed, 1, "Seed of the wrong loops.");
+DEFINE_string(
+    json, "",
+    "Output: summary and resource use as JSON; - is standard output.");
 
 DECLARE_string(pbstream_filename);
 DECLARE_string(report_filename);
@@ -90,7 +89,7 @@ namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Makes a 2D map from a recording: local SLAM, loop closure, optimisation.
+    R"(Builds a 2D map from a recording: local SLAM, loop closure, optimisation.
 
   cartographer_ext_slam run.bag
       writes run.pbstream, run.pgm and run.yaml (the map for navigation), run.png
@@ -99,12 +98,12 @@ constexpr char kDescription[] =
       -map_filestem=run -picture_filename=run.png -trajectory_filename=run.tum
 
 The configuration is Cartographer's Lua (-configuration_directory,
--configuration_basename): default.lua by default, stock.lua has Cartographer's
-own values and no block of ours. cartographer_ext_evaluate judges the result
-by ground truth.
+-configuration_basename): default.lua by default; stock.lua has Cartographer's
+own values and none of our blocks. cartographer_ext_evaluate compares the result
+with ground truth.
 
-Localise in a map that is finished (the pose of every scan as it was known then,
-judged by cartographer_ext_evaluate_localization):
+Localise in a finished map (the pose of every scan as published online; evaluate
+it with cartographer_ext_evaluate_localization):
   cartographer_ext_slam -input_filename=later.clf -load_state_filename=run.pbstream
       -configuration_basename=localization.lua
       -online_trajectory_filename=later.tum [-initial_pose=12.5,3,90])";
@@ -131,7 +130,7 @@ absl::Status ApplyFlags(evaluation::SensorSettings* const sensors) {
   if (FLAGS_max_range > 0.) sensors->max_range = FLAGS_max_range;
   if (sensors->max_range <= sensors->min_range) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("the ranges kept, %g m to %g m, leave nothing",
+        absl::StrFormat("no range is between the limits, %g m and %g m",
                         sensors->min_range, sensors->max_range));
   }
   return absl::OkStatus();
@@ -293,7 +292,7 @@ int main(int argc, char** argv) {
   }
   tools::NameSlamOutputs(FLAGS_output_filestem);
   if (FLAGS_input_filename.empty()) {
-    return tools::UsageError("a recording is missing");
+    return tools::UsageError("no recording is given");
   }
   if (!(FLAGS_realtime_factor >= 0.) || std::isinf(FLAGS_realtime_factor)) {
     return tools::UsageError("-realtime_factor must be a number >= 0");

@@ -28,10 +28,12 @@ DECLARE_string(input_filename);
 DECLARE_string(load_state_filename);
 DECLARE_string(json);
 
-DEFINE_string(pbstream_filename, "", "Output: the map with everything in it.");
+DEFINE_string(pbstream_filename, "",
+              "Output: the map as a Cartographer state (.pbstream).");
 DEFINE_string(map_filestem, "",
               "Output: occupancy map <stem>.pgm and <stem>.yaml.");
-DEFINE_double(resolution, 0.05, "Metres a cell of the occupancy map.");
+DEFINE_double(resolution, 0.05,
+              "Resolution of the occupancy map, metres per cell.");
 DEFINE_string(picture_filename, "",
               "Output: PNG of the map with path and loops.");
 DEFINE_string(report_filename, "",
@@ -39,20 +41,19 @@ DEFINE_string(report_filename, "",
 DEFINE_string(trajectory_filename, "",
               "Output: optimised pose at every scan (TUM: timestamp x y z qx "
               "qy qz qw).");
-DEFINE_string(local_trajectory_filename, "",
-              "Output: pose at every scan as local SLAM found it, without loop "
-              "closure (TUM).");
+DEFINE_string(
+    local_trajectory_filename, "",
+    "Output: pose at every scan by local SLAM, without loop closure (TUM).");
 DEFINE_string(online_trajectory_filename, "",
-              "Output: pose at every scan as it was known when the scan came "
-              "(TUM), with the jumps that the optimisation made.");
+              "Output: pose at every scan as published online (TUM), including "
+              "the jumps caused by optimisations.");
 DEFINE_string(decisions_filename, "",
-              "Output: CSV of the loop closures that were accepted, and which "
-              "of them the optimisation has switched off.");
+              "Output: CSV of the accepted loops, with those that the "
+              "optimisation has disabled.");
 DEFINE_string(switched_loops_filename, "",
-              "Output: CSV of the loop closures that the robust optimisation "
-              "problem left out of the last optimisation.");
-DEFINE_bool(keep_switched_loops, true,
-            "Keep those loop closures in the pbstream.");
+              "Output: CSV of the loops that the robust back end disabled in "
+              "the last optimisation.");
+DEFINE_bool(keep_switched_loops, true, "Keep these loops in the pbstream.");
 
 namespace cartographer_ext {
 namespace tools {

@@ -30,60 +30,58 @@
 #include "gflags/gflags.h"
 
 DEFINE_string(search_filename, "",
-              "Lua file that says which keys to search and where; see "
-              "docs/tuning.md.");
+              "Lua file with the keys and their ranges; see docs/tuning.md.");
 DEFINE_string(configuration_directory, "",
-              "Where Lua files are searched, comma separated; the first that "
-              "has a file wins. Empty: the files that came with this command.");
+              "Folders that are searched for Lua files in this order, comma "
+              "separated. Empty: the files installed with this command.");
 DEFINE_string(configuration_basename, "",
-              "Configuration to start from. Empty: as the search file says, "
-              "else stock.lua.");
-DEFINE_string(inputs, "",
-              "Recordings or finished maps (.pbstream: loop closure only), "
-              "comma separated: FILE, FILE=TRUTH or WORLD.world#SEED. TRUTH is "
-              "a reference trajectory (.tum) or relations. Without it FILE's "
-              "name with .relations or .tum is looked for. Empty: as the "
-              "search file says.");
+              "Configuration to start from. Empty: that of the search file, or "
+              "stock.lua.");
+DEFINE_string(
+    inputs, "",
+    "Recordings or finished maps (.pbstream: loop closure only), comma "
+    "separated: FILE, FILE=TRUTH or WORLD.world#SEED. TRUTH is a reference "
+    "trajectory (.tum) or relations; without it, the name of FILE with "
+    ".relations or .tum is used. Empty: those of the search file.");
 DEFINE_string(holdout, "",
-              "The same for what the search does not see: the result is tried "
-              "on it at the end.");
+              "Held-out inputs, in the same form: the result is evaluated on "
+              "them at the end.");
 DEFINE_string(objective, "",
-              "What is made small: a name or name:weight,name:weight. Empty: "
-              "as the search file says, else relations.");
+              "Objective to minimise: a name or name:weight,name:weight. "
+              "Empty: that of the search file, or relations.");
 DEFINE_string(method, "halving",
               "grid, random, halving (random with successive halving), "
-              "nlopt_global, nlopt_local, or an algorithm of NLopt.");
-DEFINE_int32(max_trials, 0, "At most so many trials; 0: no limit.");
+              "nlopt_global, nlopt_local, or an NLopt algorithm.");
+DEFINE_int32(max_trials, 0, "Limit of the number of trials; 0: no limit.");
 DEFINE_double(budget_minutes, 0.,
-              "About so long in all, baseline and pruning included; 0: no "
-              "limit.");
-DEFINE_uint64(seed, 1, "Chooses the trials of random methods.");
+              "Limit of the total time in minutes, including baseline and "
+              "pruning; 0: no limit.");
+DEFINE_uint64(seed, 1, "Seed of the random methods.");
 DEFINE_double(min_fidelity, 0.3,
-              "halving: the smallest part of the recordings that is tried "
-              "first; the parts are 1, 1/3, 1/9 ...");
+              "halving: smallest part of the recordings, which is tried first; "
+              "the parts are 1, 1/3, 1/9 ...");
 DEFINE_int32(folds, 0,
-             "Search this often with a part of the inputs held out and try the "
-             "result on it; 0: not.");
+             "Number of folds: repeat the search with each part of the inputs "
+             "held out and evaluate the result on it; 0: none.");
 DEFINE_bool(prune, true,
-            "At the end set back each changed key in turn, keep those that "
-            "gain something, and report how much.");
+            "At the end reset each changed key in turn, keep those that "
+            "improve the result, and report their gain.");
 DEFINE_int32(workers, 0,
-             "Runs at the same time; 0: as many as there are processors. Under "
-             "mpirun the other ranks are the workers.");
+             "Number of parallel runs; 0: one per processor. Under mpirun the "
+             "other ranks are the workers.");
 DEFINE_int32(threads, 1, "Background threads of each run.");
 DEFINE_double(max_run_cpu_seconds, 3600.,
-              "A run that takes more CPU time is ended and fails; 0: no "
-              "limit.");
-DEFINE_string(odometry_source, "",
-              "CARMEN logs: odom, scan, both or auto. Empty: as the "
-              "configuration says.");
-DEFINE_string(journal_filename, "",
-              "Every finished run is added here at once; a search started "
-              "again with the same journal goes on where it stopped.");
+              "Limit of the CPU time of a run, beyond which it is killed and "
+              "fails; 0: no limit.");
 DEFINE_string(
-    output_filename, "",
-    "Output: Lua file, a configuration that includes the one to start "
-    "from and changes keys of it.");
+    odometry_source, "",
+    "CARMEN logs: odom, scan, both or auto. Empty: as in the configuration.");
+DEFINE_string(journal_filename, "",
+              "Journal to which every finished run is added; a search started "
+              "again with the same journal resumes.");
+DEFINE_string(output_filename, "",
+              "Output: Lua file, a configuration that includes the initial one "
+              "and changes some of its keys.");
 DEFINE_string(picture_filename, "",
               "Output: objective over each key (.png or .svg).");
 DEFINE_string(json, "", "Output: the result as JSON; - is standard output.");
@@ -92,15 +90,15 @@ namespace cartographer_ext {
 namespace {
 
 constexpr char kDescription[] =
-    R"(Searches Lua keys for the configuration that suits the recordings best.
+    R"(Searches Lua keys for the best configuration for the recordings.
 
   cartographer_ext_tune -search_filename=configuration_files/tuning/stock.lua
       -inputs=aces.clf,csail.clf -holdout=intel.clf -budget_minutes=30
       -journal_filename=tune.jsonl -output_filename=tuned.lua
   mpirun -n 9 cartographer_ext_tune ...        (the same on eight workers)
 
-A killed search started again with the same journal loses no finished run. The
-list of trials depends on -seed and -max_trials, not on the number of workers.)";
+An interrupted search resumes with the same journal. The list of trials depends
+on -seed and -max_trials, not on the number of workers.)";
 
 struct Setup {
   tuning::SearchSpec spec;
@@ -141,7 +139,7 @@ absl::StatusOr<Setup> ReadSetup() {
   setup.holdout = *holdout;
   if (setup.inputs.empty()) {
     return absl::InvalidArgumentError(
-        "there is nothing to search on: -inputs, or inputs in the search file");
+        "no inputs: give -inputs, or inputs in the search file");
   }
   for (const auto* const some : {&setup.inputs, &setup.holdout}) {
     const absl::Status known = tuning::CheckTruth(*some, setup.spec.objective);
@@ -151,7 +149,7 @@ absl::StatusOr<Setup> ReadSetup() {
     for (const tuning::TuneInput& input : setup.inputs) {
       if (held_out.name == input.name) {
         return absl::InvalidArgumentError(
-            absl::StrCat(input.recording, " is both searched on and held out"));
+            absl::StrCat(input.recording, " is both an input and held out"));
       }
     }
   }
@@ -245,7 +243,7 @@ absl::Status Run(const tuning::MpiSession& session) {
   if (!journal.ok()) return journal.status();
   if ((*journal)->was_torn()) {
     std::cerr << tools::ProgramName() << ": " << FLAGS_journal_filename
-              << ": the last line was half written and is dropped\n";
+              << ": the last line is incomplete and is dropped\n";
   }
 
   const std::unique_ptr<tuning::WorkerPool> pool = tuning::CreateWorkerPool(
@@ -296,7 +294,8 @@ int CheckUsage() {
   if (FLAGS_max_trials == 0 && FLAGS_budget_minutes == 0. &&
       FLAGS_method != "grid") {
     return tools::UsageError(
-        "only a grid ends by itself: -max_trials or -budget_minutes is needed");
+        "only a grid terminates by itself: give -max_trials or "
+        "-budget_minutes");
   }
   return tools::kExitSuccess;
 }
@@ -311,7 +310,7 @@ int main(int argc, char** argv) {
   if (usage != tools::kExitSuccess) return usage;
   if (tuning::IsMpiJob() && !tuning::HasMpi()) {
     return tools::UsageError(
-        "built without MPI, so mpirun would do the same search several times");
+        "built without MPI: mpirun would repeat the same search");
   }
   tuning::MpiSession session(&argc, &argv);
   if (session.rank() > 0) {

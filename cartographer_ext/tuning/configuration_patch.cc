@@ -182,7 +182,7 @@ absl::StatusOr<Point> BaseConfiguration::Values(
     if (i == path.size()) {
       if (!place->is_primitive()) {
         return absl::InvalidArgumentError(
-            absl::StrCat(parameter.key, " is a table; give the keys in it"));
+            absl::StrCat(parameter.key, " is a table; name the keys in it"));
       }
       point.push_back(*place);
       continue;
@@ -197,7 +197,7 @@ absl::StatusOr<Point> BaseConfiguration::Values(
       return absl::InvalidArgumentError(absl::StrCat(
           name_, " does not have the block ",
           absl::StrJoin(path.begin(), path.begin() + i + 1, "."), ", so ",
-          parameter.key, " has no effect; switch the block on first"));
+          parameter.key, " has no effect; enable the block first"));
     }
     return NoSuchKey(
         parameter.key, path[i],
@@ -212,7 +212,7 @@ absl::StatusOr<Value> BaseConfiguration::BlockValue(
   const size_t end = parameter.key.find(separator);
   if (end == std::string::npos) {
     return absl::InvalidArgumentError(
-        absl::StrCat(parameter.key, " is a table; give the keys in it"));
+        absl::StrCat(parameter.key, " is a table; name the keys in it"));
   }
   const std::string stock_path = parameter.key.substr(0, end);
   const std::string option = parameter.key.substr(end + separator.size());

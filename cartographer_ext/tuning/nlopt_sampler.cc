@@ -125,7 +125,8 @@ absl::optional<TrialRequest> NloptSampler::Ask() {
 
 void NloptSampler::Tell(const size_t index,
                         const absl::optional<double> objective) {
-  CHECK_EQ(index, told_.size()) << "trials are told in the order asked";
+  CHECK_EQ(index, told_.size())
+      << "results must be reported in the order of the requests";
   if (objective.has_value()) {
     told_.push_back(*objective);
     return;

@@ -69,7 +69,7 @@ absl::StatusOr<std::map<std::string, double>> ParseWeights(
     for (const auto& item : value.items()) {
       if (!item.value().is_number()) {
         return absl::InvalidArgumentError(absl::StrCat(
-            "the weight of objective '", item.key(), "' is no number"));
+            "the weight of objective '", item.key(), "' is not a number"));
       }
       weights[item.key()] = item.value().get<double>();
     }
@@ -107,7 +107,7 @@ absl::StatusOr<Objective::Aggregation> ParseAggregation(
   if (name == "max") return Objective::Aggregation::kMax;
   if (name == "geometric_mean") return Objective::Aggregation::kGeometricMean;
   return absl::InvalidArgumentError(absl::StrCat(
-      "aggregation '", name, "' is none of mean, max, geometric_mean"));
+      "aggregation '", name, "' is not one of mean, max, geometric_mean"));
 }
 
 absl::StatusOr<double> EvaluateRun(
@@ -129,7 +129,7 @@ absl::StatusOr<double> EvaluateRun(
     }
     if (!value.has_value()) {
       return absl::InvalidArgumentError(absl::StrCat(
-          "the run gave no '", entry.first, "'; is there truth for it?"));
+          "the run gave no '", entry.first, "'; does it have ground truth?"));
     }
     sum += entry.second * *value;
   }
@@ -189,7 +189,7 @@ std::string WhyNotBetter(const std::vector<double>& before,
   if (count < 3) {
     if (*std::min_element(gains.begin(), gains.end()) > 0.) return "";
     return absl::StrFormat(
-        "held-out recordings change by %s, but not each of them gains", gain);
+        "held-out recordings change by %s, but not all of them improve", gain);
   }
   double squares = 0.;
   for (const double one : gains) squares += (one - mean) * (one - mean);
@@ -197,8 +197,8 @@ std::string WhyNotBetter(const std::vector<double>& before,
       std::sqrt(squares / static_cast<double>(count * (count - 1)));
   if (mean > Quantile(count - 1) * error) return "";
   return absl::StrFormat(
-      "held-out recordings change by %s +- %.1f %%, which may be chance", gain,
-      100. * error);
+      "held-out recordings change by %s +- %.1f %%, which is not significant",
+      gain, 100. * error);
 }
 
 }  // namespace tuning

@@ -64,7 +64,8 @@ class EntryParser {
     parameter_.key = absl::StrCat(Has("include") ? kIncludePrefix : "",
                                   entry_[name].get<std::string>());
     name_ = absl::StrCat(name_, " (", parameter_.key, ")");
-    if (!IsKey(parameter_.key)) return Error("has a key that is no Lua name");
+    if (!IsKey(parameter_.key))
+      return Error("has a key that is not a Lua name");
     if (Has("range") == Has("choices")) {
       return Error("needs either range = { low, high } or choices = { ... }");
     }
@@ -97,7 +98,7 @@ class EntryParser {
     }
     for (const nlohmann::json& choice : choices) {
       if (!choice.is_primitive() || choice.is_null()) {
-        return Error("has a choice that is no number, text or boolean");
+        return Error("has a choice that is not a number, string or boolean");
       }
       if (std::find(parameter_.choices.begin(), parameter_.choices.end(),
                     choice) != parameter_.choices.end()) {
@@ -223,7 +224,7 @@ absl::StatusOr<std::vector<Parameter>> ParseParameters(
     if (!parameter.ok()) return parameter.status();
     if (!keys.insert(parameter->key).second) {
       return absl::InvalidArgumentError(absl::StrCat(
-          "parameters[", i + 1, "]: ", parameter->key, " is there already"));
+          "parameters[", i + 1, "]: ", parameter->key, " is listed twice"));
     }
     parameters.push_back(*std::move(parameter));
   }

@@ -69,10 +69,10 @@ std::string Gain(const KeyResult& key, const Trial& best,
 
 std::string NothingText(const TuneResult& result) {
   return result.not_confirmed.empty()
-             ? "Nothing was better than the configuration as it is."
+             ? "Nothing was better than the initial configuration."
              : absl::StrCat(
-                   "Nothing is changed: what was better on the "
-                   "recordings searched on is not confirmed, ",
+                   "Nothing is changed: the gain on the inputs is not "
+                   "confirmed, ",
                    result.not_confirmed, ".");
 }
 
@@ -110,7 +110,7 @@ std::string Confidence(const KeyResult& key, const size_t num_inputs) {
 std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
   std::string text = absl::StrCat(
       "-- Found by cartographer_ext_tune for ", context.configuration,
-      ". To be used as it is, with ", context.configuration,
+      ". A complete configuration; use it with ", context.configuration,
       "\n-- and what it includes in the folders searched:\n"
       "--   -configuration_directory=.,",
       absl::StrJoin(context.directories, ","),
@@ -132,7 +132,7 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
     absl::StrAppendFormat(&text, "-- Held out: %.6g -> %.6g\n", *before,
                           *after);
   } else if (result.best_holdout.has_value()) {
-    absl::StrAppend(&text, "-- Held out: not known, a run failed\n");
+    absl::StrAppend(&text, "-- Held out: unknown, a run failed\n");
   }
   for (const FoldResult& fold : result.folds) {
     absl::StrAppendFormat(&text,
@@ -227,7 +227,7 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
   const ComparableTrials trials = SelectComparable(result.trials);
   if (trials.points.size() < kLeastTrialsForSensitivity) {
     absl::StrAppendFormat(
-        &text, "\nSensitivity: not known from %s, it takes %d of a kind\n",
+        &text, "\nSensitivity: unknown from %s, at least %d are needed\n",
         ToText(trials), kLeastTrialsForSensitivity);
     return text;
   }

@@ -31,12 +31,12 @@ absl::StatusOr<std::vector<std::string>> ParseTexts(const nlohmann::json& value,
   const bool is_empty = value.is_object() && value.empty();  // Lua's {}
   for (const nlohmann::json& entry : value) {
     if (!value.is_array() || !entry.is_string()) {
-      return absl::InvalidArgumentError(key + " is not a list of texts");
+      return absl::InvalidArgumentError(key + " is not a list of strings");
     }
     texts.push_back(entry.get<std::string>());
   }
   if (!value.is_array() && !is_empty) {
-    return absl::InvalidArgumentError(key + " is not a list of texts");
+    return absl::InvalidArgumentError(key + " is not a list of strings");
   }
   return texts;
 }
@@ -62,7 +62,7 @@ absl::Status ParseInto(const nlohmann::json& table, SearchSpec* const spec) {
   spec->parameters = *std::move(parameters);
   if (table.contains("configuration")) {
     if (!table["configuration"].is_string()) {
-      return absl::InvalidArgumentError("configuration is no file name");
+      return absl::InvalidArgumentError("configuration is not a file name");
     }
     spec->configuration = table["configuration"].get<std::string>();
   }
@@ -73,7 +73,7 @@ absl::Status ParseInto(const nlohmann::json& table, SearchSpec* const spec) {
   }
   if (table.contains("aggregation")) {
     if (!table["aggregation"].is_string()) {
-      return absl::InvalidArgumentError("aggregation is no text");
+      return absl::InvalidArgumentError("aggregation is not a string");
     }
     const auto aggregation =
         ParseAggregation(table["aggregation"].get<std::string>());
@@ -166,7 +166,7 @@ absl::StatusOr<TuneInput> ParseInput(const std::string& text) {
     seed_text = input.recording.substr(hash + strlen(".world#"));
     if (!absl::SimpleAtoi(seed_text, &input.seed)) {
       return absl::InvalidArgumentError(
-          absl::StrCat(text, ": '", seed_text, "' is no seed"));
+          absl::StrCat(text, ": '", seed_text, "' is not a seed"));
     }
     input.recording.resize(hash + strlen(".world"));
   }

@@ -399,7 +399,7 @@ absl::StatusOr<TuneResult> Tuner::Run() {
   if (!baseline.ok()) return baseline.status();
   if (!baseline->ok) {
     return absl::InvalidArgumentError(
-        absl::StrCat("the configuration fails as it is: ", baseline->message));
+        absl::StrCat("the initial configuration fails: ", baseline->message));
   }
   result_.baseline = *baseline;
   double reserve = 0.;

@@ -75,11 +75,11 @@ std::string TellingLine(const std::string& messages) {
 
 std::string HowItEnded(const int state, const bool was_killed,
                        const std::string& messages) {
-  std::string text = "it ended without an answer";
+  std::string text = "it ended without a result";
   if (WIFSIGNALED(state)) {
-    text = was_killed ? "it was ended from outside (out of memory?)"
+    text = was_killed ? "it was killed from outside (out of memory?)"
            : WTERMSIG(state) == SIGXCPU || WTERMSIG(state) == SIGKILL
-               ? "it was ended (limit of CPU time)"
+               ? "it was killed (limit of CPU time)"
                : absl::StrCat("it crashed: ", strsignal(WTERMSIG(state)));
   } else if (WEXITSTATUS(state) != 0) {
     text = absl::StrCat("it ended with code ", WEXITSTATUS(state));

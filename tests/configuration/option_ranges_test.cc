@@ -79,7 +79,7 @@ TEST(OptionRangesTest, ValuesCartographerCannotWorkWith) {
        "branch_and_bound_depth"},
       {"MAP_BUILDER.num_background_threads = 100000",
        "M.num_background_threads is 100000, must be at least 1 and at most "
-       "4096: each is a thread of the system"},
+       "4096: each is an operating system thread"},
       // As the host, reads numbers that are written as strings.
       {"MAP_BUILDER.num_background_threads = '0'",
        "num_background_threads is 0"},

@@ -38,7 +38,7 @@ TEST(StoredOptionsTest, NamesBlocksAndWhatIsNoBlock) {
       options::kExtensionFieldNumber, "\xff\xff");
   EXPECT_THAT(DescribeBlocks(options),
               testing::Contains(HasSubstr(
-                  "motion_filter_options: 2 bytes that do not decode here")));
+                  "motion_filter_options: 2 bytes that cannot be decoded")));
 }
 
 TEST(StoredOptionsTest, NamesKeysThatDiffer) {

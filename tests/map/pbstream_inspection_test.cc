@@ -64,7 +64,7 @@ TEST(PbstreamInspectionTest, FindsLoopsToTheOwnSubmap) {
   *loop = state.pose_graph.constraint(2);
   loop->set_tag(PoseGraph::Constraint::INTER_SUBMAP);
   EXPECT_THAT(FindProblems(state),
-              ElementsAre(HasSubstr("which was inserted in it")));
+              ElementsAre(HasSubstr("which was inserted into it")));
 }
 
 TEST(PbstreamInspectionTest, FindsOrphans) {

@@ -42,34 +42,34 @@ TEST(LocalizationMetricsTest, APerfectRun) {
   Shift(0, 300, Pose2(0.1, 0., DegToRad(2.)), &pairs);
   const LocalizationMetrics metrics = Judge(pairs);
   EXPECT_EQ(metrics.num_scans, 300);
-  ASSERT_EQ(metrics.stretches.size(), 1u);
+  ASSERT_EQ(metrics.segments.size(), 1u);
   EXPECT_EQ(metrics.num_localized(), 1);
   EXPECT_EQ(metrics.num_jumps(), 0);
   EXPECT_EQ(metrics.num_wrong_jumps(), 0);
-  const LocalizationStretch& stretch = metrics.stretches[0];
-  EXPECT_EQ(stretch.begin, io::FromSeconds(1000.));
-  EXPECT_EQ(stretch.end, pairs.back().time);
-  EXPECT_EQ(stretch.seconds, 0.);
-  EXPECT_EQ(stretch.metres, 0.);
-  EXPECT_EQ(stretch.translation_error.count, 300);
-  EXPECT_NEAR(stretch.translation_error.rmse, 0.1, 1e-9);
-  EXPECT_NEAR(stretch.rotation_error_degrees.max, 2., 1e-9);
-  EXPECT_NEAR(stretch.fraction_within, 1., 1e-12);
+  const LocalizationSegment& segment = metrics.segments[0];
+  EXPECT_EQ(segment.begin, io::FromSeconds(1000.));
+  EXPECT_EQ(segment.end, pairs.back().time);
+  EXPECT_EQ(segment.seconds, 0.);
+  EXPECT_EQ(segment.metres, 0.);
+  EXPECT_EQ(segment.translation_error.count, 300);
+  EXPECT_NEAR(segment.translation_error.rmse, 0.1, 1e-9);
+  EXPECT_NEAR(segment.rotation_error_degrees.max, 2., 1e-9);
+  EXPECT_NEAR(segment.fraction_within, 1., 1e-12);
 }
 
 TEST(LocalizationMetricsTest, FindsItsPlaceOnce) {
   auto pairs = Drive(300);
   Shift(0, 120, Pose2(20., -5., 1.), &pairs);
   const LocalizationMetrics metrics = Judge(pairs);
-  const LocalizationStretch& stretch = metrics.stretches[0];
-  EXPECT_TRUE(stretch.localized);
-  EXPECT_NEAR(stretch.seconds, 12., 1e-6);
-  EXPECT_NEAR(stretch.metres, 12., 1e-9);
+  const LocalizationSegment& segment = metrics.segments[0];
+  EXPECT_TRUE(segment.localized);
+  EXPECT_NEAR(segment.seconds, 12., 1e-6);
+  EXPECT_NEAR(segment.metres, 12., 1e-9);
   // The one jump went to the right place.
-  EXPECT_EQ(stretch.jumps, 0);
-  EXPECT_EQ(stretch.wrong_jumps, 0);
-  EXPECT_EQ(stretch.translation_error.count, 180);
-  EXPECT_NEAR(stretch.translation_error.max, 0., 1e-9);
+  EXPECT_EQ(segment.jumps, 0);
+  EXPECT_EQ(segment.wrong_jumps, 0);
+  EXPECT_EQ(segment.translation_error.count, 180);
+  EXPECT_NEAR(segment.translation_error.max, 0., 1e-9);
 }
 
 TEST(LocalizationMetricsTest, AnExcursionIsTwoJumpsAndOneWrongPlace) {
@@ -79,7 +79,7 @@ TEST(LocalizationMetricsTest, AnExcursionIsTwoJumpsAndOneWrongPlace) {
   EXPECT_EQ(metrics.num_localized(), 1);
   EXPECT_EQ(metrics.num_jumps(), 2);
   EXPECT_EQ(metrics.num_wrong_jumps(), 1);
-  EXPECT_NEAR(metrics.stretches[0].fraction_within, 370. / 400., 1e-12);
+  EXPECT_NEAR(metrics.segments[0].fraction_within, 370. / 400., 1e-12);
 }
 
 TEST(LocalizationMetricsTest, AShortVisitDoesNotCount) {
@@ -88,12 +88,12 @@ TEST(LocalizationMetricsTest, AShortVisitDoesNotCount) {
   Shift(0, 50, Pose2(3., 0., 0.), &pairs);
   Shift(100, 200, Pose2(3., 0., 0.), &pairs);
   const LocalizationMetrics metrics = Judge(pairs);
-  EXPECT_TRUE(metrics.stretches[0].localized);
-  EXPECT_NEAR(metrics.stretches[0].seconds, 20., 1e-6);
+  EXPECT_TRUE(metrics.segments[0].localized);
+  EXPECT_NEAR(metrics.segments[0].seconds, 20., 1e-6);
   EXPECT_EQ(metrics.num_jumps(), 0);
   EXPECT_EQ(metrics.num_wrong_jumps(), 1);
 
-  // To the end of the stretch is enough.
+  // To the end of the segment is enough.
   auto late = Drive(100);
   Shift(0, 95, Pose2(3., 0., 0.), &late);
   EXPECT_EQ(Judge(late).num_localized(), 1);
@@ -106,7 +106,7 @@ TEST(LocalizationMetricsTest, DriftIsNoJump) {
   EXPECT_EQ(metrics.num_localized(), 0);
   EXPECT_EQ(metrics.num_jumps(), 0);
   EXPECT_EQ(metrics.num_wrong_jumps(), 0);
-  EXPECT_EQ(metrics.stretches[0].translation_error.count, 0);
+  EXPECT_EQ(metrics.segments[0].translation_error.count, 0);
 }
 
 TEST(LocalizationMetricsTest, AWrongHeadingIsAWrongPlace) {
@@ -125,11 +125,11 @@ TEST(LocalizationMetricsTest, CarriedRobotsBeginAnew) {
     pairs[i].estimate.y += i < 260 ? 0. : 30.;
   }
   const LocalizationMetrics metrics = Judge(pairs);
-  ASSERT_EQ(metrics.stretches.size(), 2u);
-  EXPECT_EQ(metrics.stretches[0].end, pairs[199].time);
-  EXPECT_EQ(metrics.stretches[1].begin, pairs[200].time);
-  EXPECT_EQ(metrics.stretches[0].seconds, 0.);
-  EXPECT_NEAR(metrics.stretches[1].seconds, 6., 1e-6);
+  ASSERT_EQ(metrics.segments.size(), 2u);
+  EXPECT_EQ(metrics.segments[0].end, pairs[199].time);
+  EXPECT_EQ(metrics.segments[1].begin, pairs[200].time);
+  EXPECT_EQ(metrics.segments[0].seconds, 0.);
+  EXPECT_NEAR(metrics.segments[1].seconds, 6., 1e-6);
   EXPECT_EQ(metrics.num_localized(), 2);
   // Being carried is no jump of the estimate.
   EXPECT_EQ(metrics.num_jumps(), 0);

@@ -97,17 +97,17 @@ inline evaluation::SelfConsistency ExampleConsistency() {
   consistency.word = "broken";
   consistency.reasons = {"nodes contradict the map"};
   consistency.severe_share = 0.4;
-  evaluation::ConflictStretch stretch;
-  stretch.first_node = {0, 1};
-  stretch.last_node = {0, 2};
-  stretch.begin = 101 * kSecond;
-  stretch.end = 102 * kSecond;
-  stretch.num_nodes = 2;
-  stretch.center = {1.5, 0.};
-  stretch.metres = 1.;
-  stretch.submaps = {{0, 1}};
-  stretch.fraction = 0.75;
-  consistency.severe = {stretch};
+  evaluation::ConflictPiece piece;
+  piece.first_node = {0, 1};
+  piece.last_node = {0, 2};
+  piece.begin = 101 * kSecond;
+  piece.end = 102 * kSecond;
+  piece.num_nodes = 2;
+  piece.center = {1.5, 0.};
+  piece.metres = 1.;
+  piece.submaps = {{0, 1}};
+  piece.fraction = 0.75;
+  consistency.severe = {piece};
   for (int i = 0; i < 5; ++i) {
     evaluation::NodeContradiction node;
     node.node_id = {0, i};

@@ -45,7 +45,7 @@ TEST(SectionPathTest, NoOdometryNoChartOfIt) {
   EXPECT_EQ(test::Count(page.str(), "<figure"), 1u);
 }
 
-TEST(SectionPathTest, DegenerateStretchesAreShaded) {
+TEST(SectionPathTest, DegeneratePiecesAreShaded) {
   ReportData data = test::ExampleData(false);
   data.runs[0].evaluation.consistency = test::ExampleConsistency();
   data.runs[0].evaluation.consistency->motion = {};

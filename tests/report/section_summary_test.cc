@@ -64,7 +64,7 @@ TEST(SectionSummaryTest, TruthAndVerdict) {
   EXPECT_THAT(html, HasSubstr("<b>0.500 m</b>"));
   EXPECT_THAT(html, HasSubstr("2 / 3"));
   EXPECT_THAT(html, HasSubstr("<b>40.0 %</b>"));
-  EXPECT_THAT(html, HasSubstr("loop cycles that stay open"));
+  EXPECT_THAT(html, HasSubstr("open loop cycles"));
 }
 
 // Headline, reasons and JSON say one verdict whatever truth and the map itself
@@ -72,7 +72,7 @@ TEST(SectionSummaryTest, TruthAndVerdict) {
 TEST(SectionSummaryTest, OneVerdictOneVoice) {
   const std::vector<std::string> words = {"unknown", "sound", "doubtful",
                                           "broken"};
-  const std::string otherwise = "without ground truth it would be called ";
+  const std::string otherwise = "without ground truth the verdict would be ";
   for (const std::string& by_map : words) {
     for (const double fraction : {-1., 0., 0.01, 0.5}) {
       ReportData data = test::ExampleData(false);

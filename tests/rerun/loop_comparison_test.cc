@@ -59,21 +59,21 @@ TEST(LoopComparisonTest, FatesSayMoreThanPlaces) {
   const MapGraph first = Line({Loop(0, 2, 2.), Loop(0, 3, 3.), Loop(0, 10, 10.),
                                Loop(0, 20, 20.), Loop(0, 30, 30.)});
   const MapGraph second = Line({Loop(0, 2, 2.)});
-  LoopFates fates;
+  LoopOutcomes outcomes;
   const GraphId submap{0, 0};
-  // Not what the run found, so its fate does not matter.
-  fates[{submap, {0, 2}}].kind = LoopFate::Kind::kNotSampled;
-  fates[{submap, {0, 3}}].kind = LoopFate::Kind::kNotSampled;
-  fates[{submap, {0, 10}}].kind = LoopFate::Kind::kTooFar;
-  fates[{submap, {0, 20}}].kind = LoopFate::Kind::kSearched;
+  // Not what the run found, so its outcome does not matter.
+  outcomes[{submap, {0, 2}}].kind = LoopOutcome::Kind::kNotSampled;
+  outcomes[{submap, {0, 3}}].kind = LoopOutcome::Kind::kNotSampled;
+  outcomes[{submap, {0, 10}}].kind = LoopOutcome::Kind::kTooFar;
+  outcomes[{submap, {0, 20}}].kind = LoopOutcome::Kind::kSearched;
   LoopComparisonOptions options;
-  options.fates = &fates;
+  options.outcomes = &outcomes;
   const LoopComparison comparison = CompareLoops(first, second, options);
   EXPECT_EQ(comparison.common, 1);
   EXPECT_EQ(comparison.not_sampled, 1);
   EXPECT_EQ(comparison.neighbour_instead, 1);  // node 3, too
   EXPECT_EQ(comparison.no_match, 1);
-  EXPECT_EQ(comparison.too_far, 2);  // node 30 has no fate but is 30 m away
+  EXPECT_EQ(comparison.too_far, 2);  // node 30 has no outcome but is 30 m away
   EXPECT_THAT(
       comparison.absences,
       testing::ElementsAre(LoopAbsence::kPresent, LoopAbsence::kNotSampled,

@@ -79,7 +79,7 @@ class RecordedTrackTest : public testing::Test {
 io::Pbstream* RecordedTrackTest::pbstream_ = nullptr;
 
 TEST_F(RecordedTrackTest, KnowsWhichCandidatesAreSearched) {
-  // Every pair is a stored loop, so there is a fate for each.
+  // Every pair is a stored loop, so there is a outcome for each.
   Rerun every;
   const MapGraph graph = MakeMapGraph(*pbstream_);
   for (const auto& submap : graph.submaps) {
@@ -93,12 +93,12 @@ TEST_F(RecordedTrackTest, KnowsWhichCandidatesAreSearched) {
   }
   const Rerun run = Run(WithLoopsOf(every), false);
   int64_t searched = 0, too_far = 0, not_sampled = 0;
-  for (const auto& entry : run.fates) {
-    searched += entry.second.kind == LoopFate::Kind::kSearched;
-    too_far += entry.second.kind == LoopFate::Kind::kTooFar;
-    not_sampled += entry.second.kind == LoopFate::Kind::kNotSampled;
+  for (const auto& entry : run.outcomes) {
+    searched += entry.second.kind == LoopOutcome::Kind::kSearched;
+    too_far += entry.second.kind == LoopOutcome::Kind::kTooFar;
+    not_sampled += entry.second.kind == LoopOutcome::Kind::kNotSampled;
     EXPECT_EQ(entry.second.distance > 2.5,
-              entry.second.kind == LoopFate::Kind::kTooFar);
+              entry.second.kind == LoopOutcome::Kind::kTooFar);
   }
   // As many as the pose graph itself searched, and the right ones.
   EXPECT_EQ(searched, run.searches);
@@ -108,8 +108,8 @@ TEST_F(RecordedTrackTest, KnowsWhichCandidatesAreSearched) {
   for (const GraphConstraint& loop : run.graph.constraints) {
     if (!loop.is_loop) continue;
     ++loops;
-    EXPECT_EQ(run.fates.at({loop.submap_id, loop.node_id}).kind,
-              LoopFate::Kind::kSearched);
+    EXPECT_EQ(run.outcomes.at({loop.submap_id, loop.node_id}).kind,
+              LoopOutcome::Kind::kSearched);
   }
   EXPECT_GT(loops, 10);
 }
@@ -163,7 +163,7 @@ TEST_F(RecordedTrackTest, MissingLoopsAreExplained) {
   const MapGraph stored = MakeMapGraph(map);
   const auto compare = [&stored](const Rerun& run) {
     LoopComparisonOptions options;
-    options.fates = &run.fates;
+    options.outcomes = &run.outcomes;
     return CompareLoops(stored, run.graph, options);
   };
   PoseGraphOptions options = Options();

@@ -184,7 +184,7 @@ TEST(ReplayPlanTest, OlderSubmapsAreRefused) {
   const auto plan = MakeReplayPlan(graph);
   ASSERT_FALSE(plan.ok());
   EXPECT_THAT(std::string(plan.status().message()),
-              HasSubstr("node (0, 11) was inserted in a submap older"));
+              HasSubstr("node (0, 11) was inserted into a submap older"));
 }
 
 TEST(ReplayPlanTest, WithoutConstraintsEverythingIsInOnePlaceholder) {
@@ -205,7 +205,7 @@ TEST(ReplayPlanTest, ThreeSubmapsForANodeAreRefused) {
   const auto plan = MakeReplayPlan(graph);
   ASSERT_FALSE(plan.ok());
   EXPECT_THAT(std::string(plan.status().message()),
-              HasSubstr("node (0, 2) was inserted in 3 submaps"));
+              HasSubstr("node (0, 2) was inserted into 3 submaps"));
 }
 
 TEST(ReplayPlanTest, NothingIsFine) {

@@ -81,7 +81,8 @@ TEST(RerunConfigurationTest, BlocksGoIntoTheFileOfStock) {
   ASSERT_TRUE(configuration.ok()) << configuration.status();
   EXPECT_EQ(configuration->stock_name, "stock.lua");
   EXPECT_TRUE(configuration->stock_is_known);
-  EXPECT_EQ(configuration->ours_name, "stock.lua with blocks of default.lua");
+  EXPECT_EQ(configuration->ours_name,
+            "stock.lua with the blocks of default.lua");
   ASSERT_TRUE(configuration->ours.has_value());
   for (const std::string& line :
        DescribeDifferences(configuration->stock, *configuration->ours)) {

@@ -28,7 +28,7 @@ TEST(CompareMainTest, AMapAgreesWithItself) {
   EXPECT_EQ(json["walls"]["only_first"], 0);
   EXPECT_EQ(json["walls"]["only_second"], 0);
   EXPECT_TRUE(json["first"]["verdict"].is_string());
-  EXPECT_THAT(ReadFile(folder / "report.html"), HasSubstr("walls of both"));
+  EXPECT_THAT(ReadFile(folder / "report.html"), HasSubstr("walls in both"));
 }
 
 TEST(CompareMainTest, TakesAPgmForAMap) {

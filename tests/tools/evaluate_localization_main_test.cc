@@ -31,7 +31,7 @@ TEST(EvaluateLocalizationMainTest, CountsTimeAndJumps) {
                   "-reference_trajectory_filename", folder / "truth.tum",
                   "-json", folder / "result.json"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
-  EXPECT_THAT(result.out, HasSubstr("in 1 of 1 stretches; 0 jumps"));
+  EXPECT_THAT(result.out, HasSubstr("in 1 of 1 segments; 0 jumps"));
   EXPECT_THAT(result.out, HasSubstr("after 10.0 s and 10.0 m"));
   const auto json = ParseJson(ReadFile(folder / "result.json"));
   ASSERT_TRUE(json.is_object());
@@ -39,8 +39,8 @@ TEST(EvaluateLocalizationMainTest, CountsTimeAndJumps) {
   EXPECT_EQ(json["localized"], 1);
   EXPECT_EQ(json["jumps"], 0);
   EXPECT_EQ(json["wrong_jumps"], 0);
-  EXPECT_NEAR(json["stretches"][0]["seconds_until_localized"].get<double>(),
-              10., 1e-6);
+  EXPECT_NEAR(json["segments"][0]["seconds_until_localized"].get<double>(), 10.,
+              1e-6);
 }
 
 TEST(EvaluateLocalizationMainTest, LaysTheMapOverTheTruth) {
@@ -58,8 +58,8 @@ TEST(EvaluateLocalizationMainTest, LaysTheMapOverTheTruth) {
   ASSERT_EQ(result.exit_code, 0) << result.error;
   const auto json = ParseJson(result.out);
   ASSERT_TRUE(json.is_object()) << result.out;
-  EXPECT_NEAR(json["stretches"][0]["translation_error"]["max"].get<double>(),
-              0., 1e-5);
+  EXPECT_NEAR(json["segments"][0]["translation_error"]["max"].get<double>(), 0.,
+              1e-5);
 }
 
 TEST(EvaluateLocalizationMainTest, TellsWhatIsWrong) {
@@ -89,7 +89,7 @@ TEST(EvaluateLocalizationMainTest, TellsWhatIsWrong) {
                  {"-trajectory_filename", folder / "one.tum",
                   "-reference_trajectory_filename", folder / "truth.tum"});
   EXPECT_EQ(one.exit_code, 1);
-  EXPECT_THAT(one.error, HasSubstr("only 1 poses have a true one"));
+  EXPECT_THAT(one.error, HasSubstr("only 1 poses have a ground truth pose"));
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ TemporaryFolder* EvaluateMainTest::folder_ = nullptr;
 
 TEST_F(EvaluateMainTest, WritesRelationsOfASoundMap) {
   const std::string own = File("own.relations");
-  const CommandResult result = RunCommand(
-      "evaluate", {File("room.pbstream"), "-write_relations", own});
+  const CommandResult result =
+      RunCommand("evaluate", {File("room.pbstream"), "-write_relations", own});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(ReadFile(own), testing::StartsWith("# From room.pbstream, which "
                                                  "was judged sound."));
@@ -60,9 +60,9 @@ TEST_F(EvaluateMainTest, WritesRelationsOfASoundMap) {
   ASSERT_TRUE(relations.ok()) << relations.status();
   EXPECT_GT(relations->size(), 5u);
   // The map agrees with itself.
-  const CommandResult same =
-      RunCommand("evaluate", {File("room.pbstream"), "-relations_filename", own,
-                              "-json", "-"});
+  const CommandResult same = RunCommand(
+      "evaluate",
+      {File("room.pbstream"), "-relations_filename", own, "-json", "-"});
   ASSERT_EQ(same.exit_code, 0) << same.error;
   const auto json = ParseJson(same.out);
   EXPECT_LT(json["relations"]["translation"]["max"], 1e-6) << same.out;
@@ -130,7 +130,7 @@ TEST_F(EvaluateMainTest, RunsAgainAndReports) {
   ASSERT_TRUE(json.is_object()) << result.out;
   EXPECT_TRUE(json.contains("consistency"));
   ASSERT_EQ(json["runs"].size(), 3u);
-  EXPECT_EQ(json["runs"][1]["name"], "stock again");
+  EXPECT_EQ(json["runs"][1]["name"], "stock re-run");
   EXPECT_EQ(json["runs"][2]["name"], "ours");
   EXPECT_GE(json["runs"][1]["against_stored"]["fraction_of_stored"], 0.9);
   EXPECT_GT(json["assumptions"].size(), 0u);

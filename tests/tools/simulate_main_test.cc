@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 TEST(SimulateMainTest, WrongUsageIsExitCodeTwo) {
   EXPECT_THAT(RunCommand("simulate", {}).error,
-              HasSubstr("-world_filename is missing, or -generate"));
+              HasSubstr("give -world_filename or -generate"));
   const auto check = [](const std::string& flag, const std::string& value,
                         const std::string& message) {
     const CommandResult result = RunCommand(
@@ -49,18 +49,18 @@ TEST(SimulateMainTest, BadInputIsExitCodeOne) {
 TEST(SimulateMainTest, GeneratedWorldReadsBack) {
   const TemporaryFolder folder;
   const CommandResult first = RunCommand(
-      "simulate",
-      {"-generate", "office", "-seed", "4", "-laser", "depth_camera",
-       "-odometry", "poor", "-robot", "mecanum", "-output_filestem",
-       folder / "first", "-truth_map=false", "-world_output_filename",
-       folder / "office.world"});
+      "simulate", {"-generate", "office", "-seed", "4", "-laser",
+                   "depth_camera", "-odometry", "poor", "-robot", "mecanum",
+                   "-output_filestem", folder / "first", "-truth_map=false",
+                   "-world_output_filename", folder / "office.world"});
   ASSERT_EQ(first.exit_code, 0) << first.error;
   const CommandResult second = RunCommand(
       "simulate", {folder / "office.world", "-seed", "4", "-output_filestem",
                    folder / "second", "-truth_map=false"});
   ASSERT_EQ(second.exit_code, 0) << second.error;
   for (const char* suffix : {".clf", ".tum", ".relations", ".faults.csv"}) {
-    const std::string content = ReadFile(folder / ("first" + std::string(suffix)));
+    const std::string content =
+        ReadFile(folder / ("first" + std::string(suffix)));
     EXPECT_FALSE(content.empty()) << suffix;
     EXPECT_EQ(content, ReadFile(folder / ("second" + std::string(suffix))))
         << suffix;
@@ -68,10 +68,10 @@ TEST(SimulateMainTest, GeneratedWorldReadsBack) {
 }
 
 TEST(SimulateMainTest, PresetsReplaceThoseOfAWorld) {
-  const CommandResult result = RunCommand(
-      "simulate",
-      {"configuration_files/worlds/office.world", "-laser", "urg_04lx",
-       "-robot", "differential", "-odometry", "none", "-json", "-"});
+  const CommandResult result =
+      RunCommand("simulate", {"configuration_files/worlds/office.world",
+                              "-laser", "urg_04lx", "-robot", "differential",
+                              "-odometry", "none", "-json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.out, HasSubstr("\"laser_beams_per_second\": 6830"));
 }

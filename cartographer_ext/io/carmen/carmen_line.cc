@@ -86,7 +86,7 @@ bool ParseRanges(Tokens* tokens, CarmenLine* line) {
   for (float& range : line->ranges) {
     double value;
     if (!ParseDouble(tokens->Next(), &value)) {
-      Fail("fewer readings than announced, or a reading that is no number",
+      Fail("fewer readings than declared, or a reading that is not a number",
            line);
       return false;
     }

@@ -264,7 +264,7 @@ void Survey::WarnOfIgnored(CarmenPlan* const plan) const {
   if (is_cut_) {
     info.warnings.push_back(absl::StrCat(
         filename_, ":", lines_.back().number,
-        ": the last line is cut off in or behind its stamp; dropped"));
+        ": the last line is truncated in or after its stamp; dropped"));
   }
   if (num_implausible_ > 0) {
     const LineKey& first = lines_[first_implausible_];

@@ -213,7 +213,7 @@ absl::Status RosRecording::Survey() {
   for (const auto& topic : damaged_) {
     info_.warnings.push_back(absl::StrCat(
         filename_, ": ", topic.second, " messages on ", topic.first,
-        " are damaged or have values that are no numbers; skipped"));
+        " are damaged or have values that are not numbers; skipped"));
   }
   if (topics_.odometry_from_transforms) {
     if (frames_.HasMovingChild(seen_frames_[kOdometryRank])) {
@@ -301,7 +301,7 @@ void RosRecording::CheckFrames() {
     if (!pose.has_value()) {
       info_.warnings.push_back(absl::StrCat(filename_, ": no transform from \"",
                                             frame, "\" to \"", tracking_frame_,
-                                            "\"; taken to coincide"));
+                                            "\"; assumed to coincide"));
     } else if (!moving.empty()) {
       info_.warnings.push_back(
           absl::StrCat(filename_, ": \"", absl::StrJoin(moving, "\", \""),
@@ -309,9 +309,9 @@ void RosRecording::CheckFrames() {
     }
     if (pose.has_value() && seen_frames_[kScanRank].count(frame) > 0 &&
         std::abs(pose->linear()(2, 2)) < std::cos(kMaxTilt)) {
-      info_.warnings.push_back(absl::StrCat(
-          filename_, ": laser frame \"", frame,
-          "\" is tilted; its scans are taken as if it were level"));
+      info_.warnings.push_back(
+          absl::StrCat(filename_, ": laser frame \"", frame,
+                       "\" is tilted; its scans are treated as level"));
     }
   }
 }

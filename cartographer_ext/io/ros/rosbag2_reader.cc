@@ -219,7 +219,7 @@ absl::StatusOr<std::unique_ptr<RosContainer>> OpenRosbag2Folder(
   if (names.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
         folder,
-        ": a folder without .db3 and .mcap files, so no recording of rosbag2"));
+        ": a folder without .db3 and .mcap files, so not a rosbag2 recording"));
   }
   std::sort(names.begin(), names.end(), BeforeByNumber);
   std::vector<std::unique_ptr<RosContainer>> parts;

@@ -79,7 +79,7 @@ std::vector<std::string> ScanTiming::Warnings() const {
       warnings.push_back(absl::StrCat(
           "the times of beams on ", entry.first.first, " make a scan take ",
           Seconds(sensor.sweep), ", but one comes every ",
-          Seconds(sensor.period), "; every scan is taken as measured at once"));
+          Seconds(sensor.period), "; scans are treated as instantaneous"));
     } else if (sensor.sweep == 0. && sensor.period >= kSlowPeriod &&
                sensor.field_of_view >= kTurningFieldOfView) {
       warnings.push_back(absl::StrCat(

@@ -82,15 +82,15 @@ void AddLoneWalls(const std::vector<Eigen::Vector2d>& walls,
 void FindMoved(const std::vector<CommonNode>& nodes,
                const ComparisonOptions& options, MapComparison* const result) {
   TrajectoryDifference difference;
-  MovedStretch stretch;
+  MovedPiece piece;
   int quiet = 0;
   const auto close = [&]() {
-    if (stretch.nodes > 0) {
-      stretch.mean /= stretch.nodes;
-      stretch.center /= static_cast<double>(stretch.nodes);
-      result->moved.push_back(stretch);
+    if (piece.nodes > 0) {
+      piece.mean /= piece.nodes;
+      piece.center /= static_cast<double>(piece.nodes);
+      result->moved.push_back(piece);
     }
-    stretch = MovedStretch();
+    piece = MovedPiece();
     quiet = 0;
   };
   for (const CommonNode& node : nodes) {
@@ -101,37 +101,34 @@ void FindMoved(const std::vector<CommonNode>& nodes,
     ++difference.nodes;
     difference.mean += metres;
     difference.max = std::max(difference.max, metres);
-    if (stretch.nodes > 0 &&
-        (stretch.last_node.trajectory_id != id.trajectory_id ||
-         quiet > options.stretch_break)) {
+    if (piece.nodes > 0 && (piece.last_node.trajectory_id != id.trajectory_id ||
+                            quiet > options.piece_break)) {
       close();
     }
     if (metres <= options.moved) {
       ++quiet;
       continue;
     }
-    if (stretch.nodes == 0) {
-      stretch.first_node = id;
-      stretch.begin = node.time;
+    if (piece.nodes == 0) {
+      piece.first_node = id;
+      piece.begin = node.time;
     }
     quiet = 0;
-    ++stretch.nodes;
-    stretch.last_node = id;
-    stretch.end = node.time;
-    stretch.mean += metres;
-    stretch.max = std::max(stretch.max, metres);
-    stretch.max_rotation =
-        std::max(stretch.max_rotation,
-                 std::abs(NormalizeAngle(moved.theta - here.theta)));
-    stretch.center += here.translation();
+    ++piece.nodes;
+    piece.last_node = id;
+    piece.end = node.time;
+    piece.mean += metres;
+    piece.max = std::max(piece.max, metres);
+    piece.max_rotation = std::max(
+        piece.max_rotation, std::abs(NormalizeAngle(moved.theta - here.theta)));
+    piece.center += here.translation();
   }
   close();
   difference.mean /= static_cast<double>(difference.nodes);
   result->trajectory = difference;
-  std::stable_sort(result->moved.begin(), result->moved.end(),
-                   [](const MovedStretch& a, const MovedStretch& b) {
-                     return a.max > b.max;
-                   });
+  std::stable_sort(
+      result->moved.begin(), result->moved.end(),
+      [](const MovedPiece& a, const MovedPiece& b) { return a.max > b.max; });
   if (result->moved.size() > options.max_listed) {
     result->moved.resize(options.max_listed);
   }
@@ -158,8 +155,8 @@ absl::Status Align(const std::vector<CommonNode>& nodes,
   if (!by_walls.has_value()) {
     if (*nodes_agree >= kSameRun) return absl::OkStatus();
     return absl::NotFoundError(
-        "the maps cannot be laid over each other: no pose puts a fifth of the "
-        "walls of one onto walls of the other");
+        "the maps cannot be aligned: no pose puts a fifth of the walls of one "
+        "onto walls of the other");
   }
   if (*nodes_agree >= kSameRun) {
     const MapAlignment walls_of_nodes =
@@ -257,17 +254,17 @@ ordered_json ToJson(const MapComparison& comparison) {
                    {"only_second", comparison.only_second.size()},
                    {"resolution", comparison.resolution}};
   json["moved"] = ordered_json::array();
-  for (const MovedStretch& stretch : comparison.moved) {
+  for (const MovedPiece& piece : comparison.moved) {
     json["moved"].push_back(
-        {{"first_node", ToString(stretch.first_node)},
-         {"last_node", ToString(stretch.last_node)},
-         {"begin_seconds", io::ToSeconds(stretch.begin)},
-         {"end_seconds", io::ToSeconds(stretch.end)},
-         {"nodes", stretch.nodes},
-         {"mean", stretch.mean},
-         {"max", stretch.max},
-         {"max_rotation_degrees", RadToDeg(stretch.max_rotation)},
-         {"center", PointJson(stretch.center)}});
+        {{"first_node", ToString(piece.first_node)},
+         {"last_node", ToString(piece.last_node)},
+         {"begin_seconds", io::ToSeconds(piece.begin)},
+         {"end_seconds", io::ToSeconds(piece.end)},
+         {"nodes", piece.nodes},
+         {"mean", piece.mean},
+         {"max", piece.max},
+         {"max_rotation_degrees", RadToDeg(piece.max_rotation)},
+         {"center", PointJson(piece.center)}});
   }
   json["lone_walls"] = ordered_json::array();
   for (const LoneWalls& group : comparison.lone_walls) {
@@ -282,34 +279,33 @@ ordered_json ToJson(const MapComparison& comparison) {
 std::string ToText(const MapComparison& comparison) {
   const Pose2& pose = comparison.first_from_second;
   std::string text = absl::StrFormat(
-      "Alignment    second map moved by %.3f m, %.3f m and turned by %.2f deg "
-      "lies over the first (by %s, %.0f %% agree)\n",
+      "Alignment    second map to first: translation %.3f m, %.3f m, rotation "
+      "%.2f deg (by %s, %.0f %% agree)\n",
       pose.x, pose.y, RadToDeg(pose.theta), comparison.method,
       100. * comparison.agreement);
   if (comparison.trajectory.has_value()) {
     absl::StrAppendFormat(&text,
-                          "Trajectory   %d common nodes differ by %.3f m in "
-                          "the mean, %.3f m at most\n",
+                          "Trajectory   %d common nodes differ by %.3f m on "
+                          "average, %.3f m at most\n",
                           comparison.trajectory->nodes,
                           comparison.trajectory->mean,
                           comparison.trajectory->max);
   } else {
     text += "Trajectory   no common nodes: two runs, or a map without nodes\n";
   }
-  absl::StrAppendFormat(
-      &text,
-      "Walls        %d cells of both, %d of the first, %d of the "
-      "second map only\n",
-      comparison.common.size(), comparison.only_first.size(),
-      comparison.only_second.size());
-  for (const MovedStretch& stretch : comparison.moved) {
+  absl::StrAppendFormat(&text,
+                        "Walls        %d cells in both maps, %d in the first "
+                        "only, %d in the second only\n",
+                        comparison.common.size(), comparison.only_first.size(),
+                        comparison.only_second.size());
+  for (const MovedPiece& piece : comparison.moved) {
     absl::StrAppendFormat(
         &text,
         "  moved by %.2f m (at most %.2f m, %.1f deg): nodes %s to %s near "
         "x = %.1f m, y = %.1f m\n",
-        stretch.mean, stretch.max, RadToDeg(stretch.max_rotation),
-        ToString(stretch.first_node), ToString(stretch.last_node),
-        stretch.center.x(), stretch.center.y());
+        piece.mean, piece.max, RadToDeg(piece.max_rotation),
+        ToString(piece.first_node), ToString(piece.last_node), piece.center.x(),
+        piece.center.y());
   }
   for (const LoneWalls& group : comparison.lone_walls) {
     absl::StrAppendFormat(

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How two maps of one place differ: one is laid over the other, walls are
-// sorted into those of one, of the other and of both, and what lies elsewhere
-// is listed with how far it moved.
+// Differences between two maps of one place: the maps are aligned, walls are
+// classified as in one, in the other or in both, and displaced parts are listed
+// with their displacement.
 #ifndef CARTOGRAPHER_EXT_MAP_COMPARISON_MAP_COMPARISON_H_
 #define CARTOGRAPHER_EXT_MAP_COMPARISON_MAP_COMPARISON_H_
 
@@ -22,11 +22,11 @@ namespace cartographer_ext {
 namespace evaluation {
 
 struct ComparisonOptions {
-  double tolerance = 0.15;       // metres: walls this near are the same
-  double moved = 0.2;            // metres: nodes that moved more are listed
-  double occupied = 0.6;         // probability from which a cell is a wall
-  size_t max_listed = 20;        // stretches and walls
-  int stretch_break = 3;         // unmoved nodes that do not end a stretch
+  double tolerance = 0.15;  // metres: walls within this distance are the same
+  double moved = 0.2;       // metres: nodes that moved more are listed
+  double occupied = 0.6;    // probability from which a cell is a wall
+  size_t max_listed = 20;   // path pieces and walls
+  int piece_break = 3;      // unmoved nodes that do not end a piece
   double min_wall_metres = 0.5;  // extent of walls of one map worth listing
 };
 
@@ -36,8 +36,8 @@ struct MapToCompare {
   const io::OccupancyMap* map = nullptr;
 };
 
-// Successive nodes that lie elsewhere in the other map.
-struct MovedStretch {
+// Consecutive nodes that are displaced in the other map.
+struct MovedPiece {
   GraphId first_node, last_node;
   io::TimeNs begin = 0, end = 0;
   int nodes = 0;
@@ -46,7 +46,7 @@ struct MovedStretch {
   Eigen::Vector2d center{0., 0.};  // in the first map
 };
 
-// Walls that only one map has, connected.
+// Connected walls in only one map.
 struct LoneWalls {
   bool in_first = true;
   Eigen::Vector2d center{0., 0.};  // in the first map
@@ -65,10 +65,10 @@ struct MapComparison {
   double agreement = 0.;  // see MapAlignment
   // Absent without common nodes.
   absl::optional<TrajectoryDifference> trajectory;
-  std::vector<MovedStretch> moved;  // the furthest first
-  // Of the first map in cells of its own, in the first map's frame.
+  std::vector<MovedPiece> moved;  // the furthest first
+  // Walls of each class as cells, in the first map's frame.
   std::vector<Eigen::Vector2d> common, only_first, only_second;
-  double resolution = 0.;             // metres a cell
+  double resolution = 0.;             // metres per cell
   std::vector<LoneWalls> lone_walls;  // the largest first
 };
 
@@ -76,15 +76,15 @@ struct MapComparison {
 std::vector<Eigen::Vector2d> WallsOf(const io::OccupancyMap& map,
                                      double occupied);
 
-// NotFound where the maps cannot be laid over each other, InvalidArgument where
-// one has no walls. Both maps should have the same resolution.
+// NotFound if the maps cannot be aligned, InvalidArgument if one has no walls.
+// Both maps should have the same resolution.
 absl::StatusOr<MapComparison> CompareMaps(const MapToCompare& first,
                                           const MapToCompare& second,
                                           const ComparisonOptions& options);
 
 nlohmann::ordered_json ToJson(const MapComparison& comparison);
 
-// Several lines for people, the last one ended.
+// Several lines of text, with a final line break.
 std::string ToText(const MapComparison& comparison);
 
 }  // namespace evaluation

@@ -85,7 +85,7 @@ std::string Table(const std::string& title, const RelationsMetric& metric) {
                   Row("sequential", metric.sequential));
   if (metric.num_not_covered > 0) {
     absl::StrAppend(&text, "  ", metric.num_not_covered,
-                    " relations lie outside the trajectory\n");
+                    " relations are outside the trajectory\n");
   }
   return text;
 }
@@ -140,7 +140,7 @@ Verdict Judge(const Evaluation& evaluation) {
     if (consistency.word != kWords[severity] &&
         headline < verdict.reasons.size()) {
       verdict.reasons[headline] =
-          absl::StrCat("without ground truth it would be called ",
+          absl::StrCat("without ground truth the verdict would be ",
                        consistency.word, ": ", verdict.reasons[headline]);
     }
   }

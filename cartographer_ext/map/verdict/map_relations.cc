@@ -112,14 +112,14 @@ absl::StatusOr<std::vector<io::StampedRelation>> MakeRelationsIfSound(
     const MapRelationsOptions& options) {
   if (verdict != "sound") {
     return absl::FailedPreconditionError(absl::StrCat(
-        name, ": relations are written from sound maps only, and this one is ",
+        name, ": relations are written for sound maps only, and this one is ",
         verdict));
   }
   std::vector<io::StampedRelation> relations = MakeMapRelations(graph, options);
   if (relations.empty()) {
     return absl::FailedPreconditionError(
         absl::StrCat(name, ": the path is shorter than ", options.spacing,
-                     " m: no relations"));
+                     " m, so there are no relations"));
   }
   return relations;
 }

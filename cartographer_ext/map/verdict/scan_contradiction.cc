@@ -87,33 +87,33 @@ ScanConflict HoldAgainst(const std::vector<Eigen::Vector2d>& scan,
   return result;
 }
 
-// Joins the nodes in conflict to stretches.
-void FindStretches(const MapGraph& graph, const ContradictionOptions& options,
-                   Contradictions* const result) {
+// Joins the nodes in conflict to pieces.
+void FindPieces(const MapGraph& graph, const ContradictionOptions& options,
+                Contradictions* const result) {
   std::vector<const NodeContradiction*> open;
   const auto close = [&]() {
-    if (static_cast<int>(open.size()) >= options.min_stretch_nodes) {
-      ConflictStretch stretch;
-      stretch.first_node = open.front()->node_id;
-      stretch.last_node = open.back()->node_id;
-      stretch.begin = open.front()->time;
-      stretch.end = open.back()->time;
-      stretch.num_nodes = static_cast<int>(open.size());
+    if (static_cast<int>(open.size()) >= options.min_piece_nodes) {
+      ConflictPiece piece;
+      piece.first_node = open.front()->node_id;
+      piece.last_node = open.back()->node_id;
+      piece.begin = open.front()->time;
+      piece.end = open.back()->time;
+      piece.num_nodes = static_cast<int>(open.size());
       std::set<GraphId> submaps;
       Eigen::Vector2d last = Eigen::Vector2d::Zero();
       for (size_t i = 0; i < open.size(); ++i) {
         const Eigen::Vector2d place =
             graph.nodes.at(open[i]->node_id).global_pose.translation();
-        stretch.center += place / static_cast<double>(open.size());
-        if (i > 0) stretch.metres += (place - last).norm();
+        piece.center += place / static_cast<double>(open.size());
+        if (i > 0) piece.metres += (place - last).norm();
         last = place;
         submaps.insert(open[i]->worst_submap_id);
-        stretch.fraction +=
+        piece.fraction +=
             open[i]->worst_fraction / static_cast<double>(open.size());
       }
-      stretch.submaps.assign(submaps.begin(), submaps.end());
-      result->conflict_nodes += stretch.num_nodes;
-      result->stretches.push_back(stretch);
+      piece.submaps.assign(submaps.begin(), submaps.end());
+      result->conflict_nodes += piece.num_nodes;
+      result->pieces.push_back(piece);
     }
     open.clear();
   };
@@ -122,7 +122,7 @@ void FindStretches(const MapGraph& graph, const ContradictionOptions& options,
     if (!open.empty() &&
         (open.back()->node_id.trajectory_id != node.node_id.trajectory_id ||
          node.node_id.index - open.back()->node_id.index >
-             options.stretch_break)) {
+             options.piece_break)) {
       close();
     }
     open.push_back(&node);
@@ -198,7 +198,7 @@ Contradictions FindContradictions(const MapGraph& graph,
     result.contradicted_rays += node.contradicted;
     result.nodes.push_back(node);
   }
-  FindStretches(graph, options, &result);
+  FindPieces(graph, options, &result);
   return result;
 }
 

@@ -48,19 +48,17 @@ std::string Place(const Eigen::Vector2d& place) {
 std::string Headline(const MapGraph& graph, const SelfConsistency& result) {
   const io::TimeNs start = StartTime(graph);
   if (result.word == "unknown") {
-    return "no scan sees a place that was mapped at another time, so nothing "
-           "can contradict the map";
+    return "no place was mapped twice, so consistency cannot be checked";
   }
   if (result.word == "sound") {
-    return "nothing speaks against the map: what was seen again lies where it "
-           "lay before";
+    return "the map is self-consistent: places that were mapped twice coincide";
   }
   std::string sentence;
   if (!result.severe.empty()) {
     sentence =
         absl::StrCat(result.word == "broken"
-                         ? "parts of the map lie across each other, most at "
-                         : "parts of the map lie across each other at ",
+                         ? "parts of the map overlap inconsistently, worst at "
+                         : "parts of the map overlap inconsistently at ",
                      Place(result.severe.front().center));
   }
   if (!result.wrong_turns.empty()) {
@@ -82,21 +80,20 @@ void Explain(const MapGraph& graph, SelfConsistency* const result) {
   const Contradictions& contradictions = result->contradictions;
   if (contradictions.judged_nodes > 0) {
     result->reasons.push_back(absl::StrFormat(
-        "%.1f %% of the %d nodes that see a place again have most of their "
-        "scan in free space or behind walls of what was mapped there at "
-        "another time",
+        "%.1f %% of the %d nodes that revisit a place have most of their scan "
+        "in free space or behind walls mapped there at another time",
         100. * result->severe_share, contradictions.judged_nodes));
   }
   for (size_t i = 0; i < std::min(result->severe.size(), kMaxNamedPlaces);
        ++i) {
-    const ConflictStretch& stretch = result->severe[i];
+    const ConflictPiece& piece = result->severe[i];
     result->reasons.push_back(absl::StrFormat(
         "near x = %.1f m, y = %.1f m: nodes %s to %s (%.1f s to %.1f s after "
         "the start) contradict %s by %.0f %% of their rays",
-        stretch.center.x(), stretch.center.y(), ToString(stretch.first_node),
-        ToString(stretch.last_node), io::ToSeconds(stretch.begin - start),
-        io::ToSeconds(stretch.end - start), Submaps(stretch.submaps),
-        100. * stretch.fraction));
+        piece.center.x(), piece.center.y(), ToString(piece.first_node),
+        ToString(piece.last_node), io::ToSeconds(piece.begin - start),
+        io::ToSeconds(piece.end - start), Submaps(piece.submaps),
+        100. * piece.fraction));
   }
   for (size_t i = 0; i < std::min(result->wrong_turns.size(), kMaxNamedTurns);
        ++i) {
@@ -112,8 +109,8 @@ void Explain(const MapGraph& graph, SelfConsistency* const result) {
   }
   if (result->sharpness.single_visit_thickness.count > 0) {
     result->reasons.push_back(absl::StrFormat(
-        "walls seen again are %.0f %% thicker than in one visit (%.1f cm "
-        "against %.1f cm)",
+        "walls seen in several visits are %.0f %% thicker than those of one "
+        "visit (%.1f cm against %.1f cm)",
         100. *
             (result->sharpness.revisited_thickness.mean /
                  std::max(1e-6, result->sharpness.single_visit_thickness.mean) -
@@ -123,7 +120,7 @@ void Explain(const MapGraph& graph, SelfConsistency* const result) {
   }
   if (result->cycles.cycles > 0) {
     result->reasons.push_back(absl::StrFormat(
-        "%.1f %% of %d short cycles of two loops do not close",
+        "%.1f %% of %d short cycles of two loops are open",
         100. * result->cycles.fraction(), result->cycles.cycles));
   }
 }
@@ -160,16 +157,16 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
   result.motion = CompareMotions(graph, odometry);
   result.cycles = ComputeLoopCycles(graph, options.cycles);
   int64_t severe_nodes = 0;
-  for (const ConflictStretch& stretch : result.contradictions.stretches) {
-    if (stretch.fraction < options.severe_fraction ||
-        stretch.num_nodes < options.min_severe_nodes) {
+  for (const ConflictPiece& piece : result.contradictions.pieces) {
+    if (piece.fraction < options.severe_fraction ||
+        piece.num_nodes < options.min_severe_nodes) {
       continue;
     }
-    severe_nodes += stretch.num_nodes;
-    result.severe.push_back(stretch);
+    severe_nodes += piece.num_nodes;
+    result.severe.push_back(piece);
   }
   std::stable_sort(result.severe.begin(), result.severe.end(),
-                   [](const ConflictStretch& a, const ConflictStretch& b) {
+                   [](const ConflictPiece& a, const ConflictPiece& b) {
                      return a.num_nodes * a.fraction > b.num_nodes * b.fraction;
                    });
   for (const MotionStep& step : result.motion.steps) {
@@ -210,18 +207,18 @@ ordered_json ToJson(const SelfConsistency& consistency) {
   json["conflict_nodes"] = contradictions.conflict_nodes;
   json["contradicted_rays"] = contradictions.ray_fraction();
   json["places"] = ordered_json::array();
-  for (const ConflictStretch& stretch : consistency.severe) {
+  for (const ConflictPiece& piece : consistency.severe) {
     ordered_json submaps = ordered_json::array();
-    for (const GraphId& id : stretch.submaps) submaps.push_back(ToString(id));
-    json["places"].push_back({{"x", stretch.center.x()},
-                              {"y", stretch.center.y()},
-                              {"begin_seconds", io::ToSeconds(stretch.begin)},
-                              {"end_seconds", io::ToSeconds(stretch.end)},
-                              {"first_node", ToString(stretch.first_node)},
-                              {"last_node", ToString(stretch.last_node)},
-                              {"nodes", stretch.num_nodes},
-                              {"metres", stretch.metres},
-                              {"fraction", stretch.fraction},
+    for (const GraphId& id : piece.submaps) submaps.push_back(ToString(id));
+    json["places"].push_back({{"x", piece.center.x()},
+                              {"y", piece.center.y()},
+                              {"begin_seconds", io::ToSeconds(piece.begin)},
+                              {"end_seconds", io::ToSeconds(piece.end)},
+                              {"first_node", ToString(piece.first_node)},
+                              {"last_node", ToString(piece.last_node)},
+                              {"nodes", piece.num_nodes},
+                              {"metres", piece.metres},
+                              {"fraction", piece.fraction},
                               {"submaps", submaps}});
   }
   json["wrong_turns"] = ordered_json::array();
@@ -271,7 +268,7 @@ std::string ToText(const SelfConsistency& consistency) {
   if (motion.odometry_translation.count == 0) {
     absl::StrAppend(&text, "        no odometry\n");
   } else {
-    absl::StrAppendFormat(&text, "        odometry %.3f m %.3f deg a node\n",
+    absl::StrAppendFormat(&text, "        odometry %.3f m %.3f deg per node\n",
                           motion.odometry_translation.mean,
                           motion.odometry_rotation_degrees.mean);
   }

@@ -22,9 +22,9 @@ namespace {
 
 // Plans drawn until the robot passes everywhere.
 constexpr int kAttempts = 8;
-constexpr double kWait = 3.;         // seconds at the start and at the end
-constexpr double kLookStep = 0.05;   // seconds between collision checks
-constexpr double kSpare = 0.02;      // metres beyond the robot's radius
+constexpr double kWait = 3.;        // seconds at the start and at the end
+constexpr double kLookStep = 0.05;  // seconds between collision checks
+constexpr double kSpare = 0.02;     // metres beyond the robot's radius
 constexpr int kMaxMarkedPlaces = 6;
 
 Random MakePlanRandom(const BuildingOptions& options, const int attempt) {
@@ -52,8 +52,8 @@ void DrawPlan(const BuildingKind kind, Random* random, FloorPlan* plan) {
 
 void SetDrive(const std::vector<Eigen::Vector2d>& points, World* world) {
   const Eigen::Vector2d first = points[1] - points[0];
-  world->start = Pose2(points[0].x(), points[0].y(),
-                       std::atan2(first.y(), first.x()));
+  world->start =
+      Pose2(points[0].x(), points[0].y(), std::atan2(first.y(), first.x()));
   DriveCommand wait;
   wait.kind = DriveCommand::Kind::kWait;
   wait.seconds = kWait;
@@ -109,8 +109,7 @@ absl::Status Attempt(const BuildingOptions& options, const int attempt,
   FloorPlan& plan = building->plan;
   World& world = building->world;
   DrawPlan(options.kind, &random, &plan);
-  const std::string& kind =
-      BuildingNames()[static_cast<size_t>(options.kind)];
+  const std::string& kind = BuildingNames()[static_cast<size_t>(options.kind)];
   world.name = absl::StrCat(kind, "_", options.seed);
   world.robot = options.robot;
   world.robot.jitter = 0.;  // people keep out of the way of one drive
@@ -122,7 +121,7 @@ absl::Status Attempt(const BuildingOptions& options, const int attempt,
   building->route = RouteNodes(plan, route_options);
   if (building->route.size() < 2) {
     return absl::InvalidArgumentError(
-        "a robot that cannot turn in place finds no way through");
+        "a robot that cannot turn in place finds no path through");
   }
   // Laps and people must not move each other's random numbers.
   Random slack(random.NextBits());
@@ -135,7 +134,8 @@ absl::Status Attempt(const BuildingOptions& options, const int attempt,
   if (!status.ok()) return status;
   AddPeople(plan, walls, *drive, &random, &world);
   world.description = absl::StrFormat(
-      "A generated %s, seed %d, %d lap%s: %d rooms, %.0f m of drive, %d people.",
+      "A generated %s, seed %d, %d lap%s: %d rooms, %.0f m of drive, %d "
+      "people.",
       kind, options.seed, options.laps, options.laps == 1 ? "" : "s",
       plan.rooms.size(), drive->length(), world.obstacles.size());
   return absl::OkStatus();
@@ -155,9 +155,9 @@ absl::StatusOr<BuildingKind> BuildingKindByName(const std::string& name) {
   if (found != names.end()) {
     return static_cast<BuildingKind>(found - names.begin());
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("there is no kind of building '", name, "'; there are ",
-                   absl::StrJoin(names, ", ")));
+  return absl::InvalidArgumentError(absl::StrCat("unknown kind of building '",
+                                                 name, "', expected one of ",
+                                                 absl::StrJoin(names, ", ")));
 }
 
 absl::StatusOr<Building> GenerateBuilding(const BuildingOptions& options) {

@@ -42,9 +42,9 @@ constexpr double kSickMirrorRate = 75.;
 
 absl::Status Unknown(const std::string& what, const std::string& name,
                      const std::vector<std::string>& names) {
-  return absl::InvalidArgumentError(
-      absl::StrCat("there is no ", what, " '", name, "'; there are ",
-                   absl::StrJoin(names, ", ")));
+  return absl::InvalidArgumentError(absl::StrCat("there is no ", what, " '",
+                                                 name, "', expected one of ",
+                                                 absl::StrJoin(names, ", ")));
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ TEST(RosRecordingTest, WarningsOfTheContainerAndDamagedMessagesAreReported) {
   EXPECT_EQ((*source)->info().num_scans, 1);
   EXPECT_THAT((*source)->info().warnings,
               ElementsAre(HasSubstr("1 messages on scan are damaged or have "
-                                    "values that are no numbers; skipped"),
+                                    "values that are not numbers; skipped"),
                           "memory: rather short"));
 }
 

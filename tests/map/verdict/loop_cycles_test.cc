@@ -9,13 +9,13 @@ namespace evaluation {
 namespace {
 
 // Nodes half a metre apart; submaps 0 and 1 with known places in the local
-// frame, and loops that agree with a drifted revisit: the whole stretch lies at
+// frame, and loops that agree with a drifted revisit: the whole piece lies at
 // (7, 0, 0.1) in the frame of submap 0.
 MapGraph Revisit(const int num_loops) {
   MapGraph graph;
   graph.submaps[{0, 0}].local_pose = Pose2(1., 2., 0.);
   graph.submaps[{0, 1}].local_pose = Pose2(3., 2., 0.4);
-  const Pose2 stretch(7., 0., 0.1);
+  const Pose2 piece(7., 0., 0.1);
   for (int i = 0; i < num_loops; ++i) {
     GraphNode node;
     node.local_pose = Pose2(0.5 * i, 0., 0.05 * i);
@@ -24,7 +24,7 @@ MapGraph Revisit(const int num_loops) {
     loop.is_loop = true;
     loop.submap_id = {0, i % 2};
     loop.node_id = {0, 100 + i};
-    const Pose2 in_first = stretch * node.local_pose;
+    const Pose2 in_first = piece * node.local_pose;
     loop.relative_pose = i % 2 == 0
                              ? in_first
                              : Between(graph.submaps[{0, 1}].local_pose,
@@ -56,7 +56,7 @@ TEST(LoopCyclesTest, TheWrongLoopHasTheResidual) {
   EXPECT_NEAR(cycles.fraction(), 1. / 3., 1e-12);
 }
 
-TEST(LoopCyclesTest, LongStretchesAreNotUsed) {
+TEST(LoopCyclesTest, LongPiecesAreNotUsed) {
   LoopCycleOptions options;
   options.max_metres = 0.6;  // only neighbours
   EXPECT_EQ(ComputeLoopCycles(Revisit(6), options).cycles, 5);

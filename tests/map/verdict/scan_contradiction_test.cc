@@ -44,7 +44,7 @@ TEST(ScanContradictionTest, ARightMapHasNone) {
   EXPECT_GT(result.judged_nodes, 90);
   EXPECT_EQ(result.conflict_nodes, 0);
   EXPECT_LT(result.ray_fraction(), 0.01);
-  EXPECT_TRUE(result.stretches.empty());
+  EXPECT_TRUE(result.pieces.empty());
   EXPECT_EQ(result.nodes.size(), 100u);
 }
 
@@ -53,9 +53,9 @@ TEST(ScanContradictionTest, NodesMovedAwayContradictTheFirstSubmap) {
       test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
   const Contradictions result =
       FindContradictions(world.graph, world.contents, {});
-  ASSERT_GE(result.stretches.size(), 1u);
+  ASSERT_GE(result.pieces.size(), 1u);
   // Those are nodes 60 to 99, and nodes 0 to 49 against the second submap.
-  const ConflictStretch& last = result.stretches.back();
+  const ConflictPiece& last = result.pieces.back();
   EXPECT_EQ(last.first_node, (GraphId{0, 60}));
   EXPECT_EQ(last.last_node, (GraphId{0, 99}));
   EXPECT_EQ(last.num_nodes, 40);

@@ -123,10 +123,9 @@ TEST_P(BuildingTest, HoldsWhatItPromises) {
       const Vector2d position = drive->PoseAt(time).translation();
       for (int degrees = 0; degrees < 360; degrees += 7) {
         const double angle = DegToRad(degrees + 0.5);
-        ASSERT_LT(
-            walls.Cast(position, {std::cos(angle), std::sin(angle)}, 300.)
-                .range,
-            300.)
+        ASSERT_LT(walls.Cast(position, {std::cos(angle), std::sin(angle)}, 300.)
+                      .range,
+                  300.)
             << position.transpose();
       }
     }
@@ -135,8 +134,7 @@ TEST_P(BuildingTest, HoldsWhatItPromises) {
     EXPECT_EQ(reached.size(), building->plan.nodes.size());
     for (const Room& room : building->plan.rooms) {
       EXPECT_EQ(reached.count(room.stop), 1u);
-      EXPECT_TRUE(
-          room.box.contains(building->plan.nodes[room.stop].position));
+      EXPECT_TRUE(room.box.contains(building->plan.nodes[room.stop].position));
     }
     const ObstacleMotion people(world.obstacles, seed);
     for (double time = 0.; time < 60.; time += 1.) {
@@ -213,12 +211,11 @@ TEST_P(BuildingTest, ACarDrivesWhereItFindsAWay) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BuildingTest,
-                         testing::ValuesIn(BuildingNames()));
+INSTANTIATE_TEST_SUITE_P(All, BuildingTest, testing::ValuesIn(BuildingNames()));
 
 TEST(BuildingOptionsTest, SaysWhatIsWrong) {
   EXPECT_THAT(BuildingKindByName("castle").status().message(),
-              HasSubstr("'castle'; there are office, hotel"));
+              HasSubstr("'castle', expected one of office, hotel"));
   BuildingOptions options = Options(BuildingKind::kHotel, 1);
   options.laps = 0;
   EXPECT_THAT(GenerateBuilding(options).status().message(),

@@ -120,8 +120,9 @@ TEST(PresetsTest, ACarCannotTurnInPlace) {
 }
 
 TEST(PresetsTest, UnknownNamesListTheKnown) {
-  EXPECT_THAT(LaserPreset("lms").status().message(),
-              HasSubstr("no laser 'lms'; there are depth_camera, rplidar_a1"));
+  EXPECT_THAT(
+      LaserPreset("lms").status().message(),
+      HasSubstr("no laser 'lms', expected one of depth_camera, rplidar_a1"));
   EXPECT_THAT(RobotPreset("legs").status().message(),
               HasSubstr("differential, mecanum, car"));
   World world = Corridor();

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What became, in a run over a stored map, of the pairs that the map ties by
-// loops.
-#ifndef CARTOGRAPHER_EXT_RERUN_LOOP_FATE_H_
-#define CARTOGRAPHER_EXT_RERUN_LOOP_FATE_H_
+// Outcomes, in a re-run of a stored map, of the pairs that are loops in the
+// map.
+#ifndef CARTOGRAPHER_EXT_RERUN_LOOP_OUTCOME_H_
+#define CARTOGRAPHER_EXT_RERUN_LOOP_OUTCOME_H_
 
 #include <map>
 #include <utility>
@@ -17,19 +17,19 @@ namespace evaluation {
 // A submap and a node.
 using LoopPair = std::pair<GraphId, GraphId>;
 
-struct LoopFate {
+struct LoopOutcome {
   enum class Kind {
     kTooFar,      // beyond max_constraint_distance
-    kNotSampled,  // the sampler took others
+    kNotSampled,  // skipped by the sampler
     kSearched,
   };
   Kind kind = Kind::kTooFar;
-  double distance = 0.;  // metres between the two when it was their turn
+  double distance = 0.;  // metres between the two when they were due
 };
 
-using LoopFates = std::map<LoopPair, LoopFate>;
+using LoopOutcomes = std::map<LoopPair, LoopOutcome>;
 
 }  // namespace evaluation
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_RERUN_LOOP_FATE_H_
+#endif  // CARTOGRAPHER_EXT_RERUN_LOOP_OUTCOME_H_
