@@ -1,7 +1,7 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 -- SPDX-License-Identifier: Apache-2.0
 --
--- Switches cartographer_ext on for a 2D robot. Include it in the robot's own
+-- Enables cartographer_ext for a 2D robot. Include it in the robot's own
 -- Lua file, after the stock files and the robot's changes to them, as the last
 -- line before `return options`. It needs a Cartographer built with the swap.
 --
@@ -9,12 +9,12 @@
 --   local SLAM      TRAJECTORY_BUILDER_2D.cartographer_ext and
 --                   TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext
 --                   on; hit_probability 0.6 and miss_probability 0.48 (a grid
---                   that decides sooner)
+--                   that converges sooner)
 --   loop closure    POSE_GRAPH.constraint_builder.cartographer_ext on;
 --                   odometry_translation_weight and odometry_rotation_weight
 --                   of POSE_GRAPH.optimization_problem 1e1 (local SLAM has
 --                   used the odometry already)
--- Everything else stays as the robot's file has it. Values of ours can be
--- changed in lines that follow the include.
+-- Everything else stays as in the robot's file. Our values can be changed in
+-- lines after the include.
 include "front_end_default.lua"
 include "loop_closure_default.lua"

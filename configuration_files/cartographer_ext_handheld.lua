@@ -7,7 +7,7 @@
 include "cartographer_ext_robot.lua"
 
 options.use_odometry = false
--- Nobody else publishes odom.
+-- No other node publishes odom.
 options.provide_odom_frame = true
 options.published_frame = "base_link"
 

@@ -3,7 +3,7 @@
 --
 -- For cartographer_ros: a robot with one planar laser and wheel odometry, live
 -- and offline. Copy it, adapt the frames, and keep the include before the last
--- line. The robot publishes base_link in odom (as REP 105 has it) and the
+-- line. The robot publishes base_link in odom (as in REP 105) and the
 -- transforms of its sensors.
 include "map_builder.lua"
 include "trajectory_builder.lua"
@@ -13,7 +13,7 @@ options = {
   trajectory_builder = TRAJECTORY_BUILDER,
   map_frame = "map",
   tracking_frame = "base_link",
-  -- Cartographer publishes odom in map; odom itself belongs to the wheels.
+  -- Cartographer publishes odom in map; odom itself comes from the wheels.
   published_frame = "odom",
   odom_frame = "odom",
   provide_odom_frame = false,

@@ -1,8 +1,8 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 -- SPDX-License-Identifier: Apache-2.0
 --
--- Long corridors, where places repeat every few metres along the way: more of
--- the way has to look right, and a place that was predicted badly needs more
+-- Long corridors, where places repeat every few metres along the path: a longer
+-- piece of the path must match, and a loop with a weak prediction needs more
 -- confirmation.
 include "common_2d.lua"
 include "front_end_corridor.lua"

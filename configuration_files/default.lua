@@ -1,8 +1,8 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 -- SPDX-License-Identifier: Apache-2.0
 --
--- The default of cartographer_ext: everything of ours that pays, with one set
--- of values for all data sets.
+-- The default of cartographer_ext: all our modules that improve maps, with one
+-- set of values for all data sets.
 include "common_2d.lua"
 include "cartographer_ext_2d.lua"
 

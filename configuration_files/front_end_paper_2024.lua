@@ -2,9 +2,9 @@
 -- SPDX-License-Identifier: Apache-2.0
 --
 -- Local SLAM of the 2024 paper on improved graph optimisation, literally:
--- adaptive feature points (eq. 1 to 4), preintegration where there is an IMU
+-- adaptive feature points (eq. 1 to 4), preintegration if there is an IMU
 -- (eq. 5 to 13; set use_imu_data), eigenvalue ratio of the match covariance (eq.
--- 17 to 19), and nothing that the paper does not have. To be included behind the
+-- 17 to 19), and nothing that is not in the paper. To be included after the
 -- stock files.
 if CARTOGRAPHER_EXT == nil then
   include "cartographer_ext.lua"

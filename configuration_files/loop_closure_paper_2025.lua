@@ -2,8 +2,8 @@
 -- SPDX-License-Identifier: Apache-2.0
 --
 -- Loop closure as the 2025 paper on the optimised Cartographer prints it
--- (equations 1 to 11), with Cartographer's fixed search window and without what
--- is not in the paper. To be included behind the stock files.
+-- (equations 1 to 11), with Cartographer's fixed search window and nothing that
+-- is not in the paper. To be included after the stock files.
 include "loop_closure_stages_off.lua"
 
 local loops = POSE_GRAPH.constraint_builder.cartographer_ext

@@ -1,9 +1,9 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 -- SPDX-License-Identifier: Apache-2.0
 --
--- Our loop closure with every stage off: Cartographer's search, every candidate
--- that it finds accepted. What the ablations and literal presets start from. To
--- be included behind the stock files.
+-- Our loop closure with every stage off: Cartographer's search, with every
+-- match accepted. Basis of the ablations and literal presets. To be included
+-- after the stock files.
 if CARTOGRAPHER_EXT == nil then
   include "cartographer_ext.lua"
 end

@@ -1,9 +1,9 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 -- SPDX-License-Identifier: Apache-2.0
 --
--- Rows of equal shelves: the neighbouring aisle looks the same for the whole
--- length of a row, so that only the way there tells them apart. Loops have to be
--- predicted well, and one that nothing confirms is not believed.
+-- Rows of identical shelves: the neighbouring aisle looks the same for the whole
+-- length of a row, and only the path distinguishes them. Loops need a good
+-- prediction, and unconfirmed ones are rejected.
 include "common_2d.lua"
 include "front_end_default.lua"
 include "loop_closure_default.lua"

@@ -2,15 +2,15 @@
 -- SPDX-License-Identifier: Apache-2.0
 --
 -- From stock Cartographer, with our local SLAM and our loop closure as choices
--- among the keys. What carries over to another building is how loops and scans
--- are judged rather than any value of min_score, so this is the search to begin
--- with; stock.lua is for those who must stay with stock.
+-- among the keys. The evaluation of loops and scans generalises to other
+-- buildings, unlike any value of min_score, so start with this search; stock.lua
+-- is for users who have to keep stock Cartographer.
 --   cartographer_ext_tune -search_filename=configuration_files/tuning/blocks.lua
 --     -inputs=... -holdout=... -method=halving -budget_minutes=30
 return {
   configuration = "stock.lua",
   objective = "relations",
-  -- One folded map must not outweigh all that the others gain or lose.
+  -- One folded map must not dominate the other recordings.
   aggregation = "geometric_mean",
   no_input_worse = true,
   parameters = {

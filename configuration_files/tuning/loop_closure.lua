@@ -4,7 +4,7 @@
 -- Loop closure only, so finished maps (.pbstream) may be inputs:
 --   cartographer_ext_tune -search_filename=configuration_files/tuning/loop_closure.lua
 --     -inputs=a.pbstream=a.relations,b.pbstream=b.tum -budget_minutes=20
--- Without truth: -objective=self_consistency.
+-- Without ground truth: -objective=self_consistency.
 return {
   configuration = "stock.lua",
   objective = "relations",

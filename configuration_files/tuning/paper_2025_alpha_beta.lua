@@ -2,8 +2,8 @@
 -- SPDX-License-Identifier: Apache-2.0
 --
 -- The calibration of section 1.4 of the 2025 paper: exponents of the weights
--- (equation 9). The paper fixes alpha and varies beta, and takes 1.2 and 1.5;
--- here a few values of alpha are tried, too.
+-- (equation 9). The paper fixes alpha and varies beta, and uses 1.2 and 1.5;
+-- here a few values of alpha are tried as well.
 --   scripts/reproduce c_alpha_beta
 return {
   configuration = "paper_2025.lua",
