@@ -35,246 +35,254 @@
 
 CARTOGRAPHER_EXT = {}
 
--- Local SLAM with adaptive features and better motion prediction.
+-- Local SLAM with motion prediction from odometry and IMU, fault detection and online calibration.
 CARTOGRAPHER_EXT.trajectory_builder_2d = {
   odometry = {
-    -- Predict with odometry where there is any. Off: odometry is ignored by
-    -- local SLAM (loop closure still gets it). [basic]
+    -- Predict with odometry if available. Off: local SLAM ignores odometry
+    -- (loop closure still uses it). [basic]
     enabled = true,
-    -- Standard deviation of the motion between two scans of a stationary
-    -- robot. Larger trusts the scan more. [> 0 and <= 10, m]
+    -- Standard deviation of the odometry between two scans of a stationary
+    -- robot. Larger values trust the scan more. [> 0 and <= 10, m]
     translation_noise = 0.01,
-    -- Standard deviation of odometry that every metre driven adds, along and
-    -- across. Larger trusts the scan more, smaller keeps the length of a
-    -- blank corridor nearer to the odometry. [basic, >= 0 and <= 10]
+    -- Standard deviation that odometry accumulates per metre driven, along
+    -- and across. Larger values trust the scan more; with smaller ones the
+    -- length of a blank corridor follows the odometry more closely. [basic,
+    -- >= 0 and <= 10]
     translation_noise_per_metre = 0.1,
   },
   time_offset = {
-    -- Estimate by how much scans are stamped later than the odometry of the
-    -- same moment, from the rotations that both measure.
+    -- Estimate the clock offset between scans and odometry (positive: scans
+    -- are stamped later) from the rotations that both measure.
     estimate = true,
-    -- The offset before the estimate is certain, or for the whole run without
-    -- estimate. [>= -1 and <= 1, s]
+    -- The clock offset until the estimate has converged, or for the whole run
+    -- if it is not estimated. [>= -1 and <= 1, s]
     initial = 0,
   },
   fault_check = {
-    -- Detect when odometry is stale, jumps, has the wrong sign or slips,
-    -- predict without it then, and report it. [basic]
+    -- Detect when odometry is stale, jumps, has the wrong sign or slips;
+    -- predict without it in these cases, and report them. [basic]
     enabled = true,
-    -- Where the scan does not determine the translation (a blank corridor), a
-    -- change of the odometry's speed faster than this is reported as slip.
-    -- Set it above what the robot can do. [> 0 and <= 1000, m/s^2]
+    -- Where the translation is not observable (a blank corridor), an
+    -- acceleration of the odometry above this is reported as slip. Set it
+    -- above the acceleration that the robot can reach. [> 0 and <= 1000,
+    -- m/s^2]
     max_acceleration = 1.5,
   },
   imu = {
-    -- Preintegrate the IMU for the rotation of the prediction, and for the
-    -- translation where there is no odometry. Needs use_imu_data. [basic]
+    -- Preintegrate the IMU for the rotation of the prediction, and for its
+    -- translation if there is no odometry. Needs use_imu_data. [basic]
     enabled = true,
   },
   search = {
-    -- Search around the predictions when odometry is suspect, the gap is
-    -- long, or the scan fits worse than usual.
+    -- Search around the predictions when the odometry is suspect, after a
+    -- long gap, or when the scan matches worse than usual.
     enabled = true,
   },
   wall_filling = {
     -- Before a scan is inserted, fill the gaps between its points where four
-    -- in a row lie on one line. Walls of dots would hold the next scan back,
-    -- whose dots lie at the same angles. Only the grid gets these points, no
-    -- node and no match.
+    -- consecutive ones are collinear. Dotted walls would pull the next scan,
+    -- which has its points at the same angles, towards the previous one. Only
+    -- the grid gets these points, not the node and not the matcher.
     enabled = true,
   },
   calibration = {
-    -- Learn by what the translation of odometry must be multiplied, from
-    -- scans that determine the translation, for where they do not (a blank
-    -- corridor).
+    -- Estimate the translation scale of the odometry where translation is
+    -- observable, and apply it where it is not (a blank corridor).
     estimate_odometry_scale = true,
-    -- Learn the same of the rotation: its scale (wheel base), and what a
-    -- robot with unequal wheels turns on every metre, for where a laser of
-    -- short range or of few degrees sees little (halls, streets).
+    -- Estimate the rotation error of the odometry, its scale (wheel base) and
+    -- the rotation per metre caused by unequal wheels, and apply it where a
+    -- laser with short range or narrow field of view sees little (halls,
+    -- streets).
     estimate_rotation = true,
-    -- Factor on the translation of odometry before anything is learnt, or for
-    -- the whole run without estimate. Every run reports what it has learnt.
-    -- [basic, >= 0.5 and <= 2]
+    -- Factor on the translation of the odometry until the estimate has
+    -- converged, or for the whole run if it is not estimated. Every run
+    -- reports its estimate. [basic, >= 0.5 and <= 2]
     odometry_scale = 1,
   },
   paper_mode = {
-    -- Match only the points around which the surface varies (2024 paper,
-    -- equations 1 to 4). The cloud of the node stays whole.
+    -- Match only points where the surface normal varies (2024 paper,
+    -- equations 1 to 4). The node keeps the whole cloud.
     adaptive_features = false,
   },
   log = {
     -- Folder for the records of all matched scans, written while the program
     -- runs: nodes-1.csv and .pb, nodes-2.csv for the next trajectory. Empty:
-    -- none. It is made if its parent exists.
+    -- none. The folder is created if its parent exists.
     directory = "",
   },
 }
 
--- Scan matching that knows which directions the scan determines.
+-- Scan matching that follows the prediction along degenerate directions.
 CARTOGRAPHER_EXT.ceres_scan_matcher = {
   degeneracy = {
-    -- Take from the prediction what the scan does not determine. Off: the
-    -- analysis is reported and the match is returned as it is. [basic]
+    -- Follow the prediction along degenerate directions. Off: the analysis is
+    -- reported and the match is returned unchanged. [basic]
     enabled = true,
-    -- A direction of translation along which the cost of the scan curves less
-    -- than this share of the best axis is taken from the prediction. Blank
-    -- walls show 0.02 along themselves, and 0.08 in one scan of twenty.
-    -- Higher takes more from the prediction. [>= 0 and <= 1]
+    -- A direction of translation is degenerate when the curvature of the
+    -- scan's cost along it is below this share of that along the best axis.
+    -- Along a blank wall the share is 0.02, and 0.08 in one scan out of
+    -- twenty. Higher values follow the prediction more. [>= 0 and <= 1]
     translation_floor = 0.05,
   },
   paper_mode = {
     -- A direction is degenerate when the ratio of the eigenvalues of the 2 x
     -- 2 covariance exceeds 2, all or nothing, and the rotation always comes
-    -- from the match (2024 paper, equations 17 to 19). Off: its information
-    -- is compared with what a blank quantised wall shows along itself, with a
-    -- smooth transition.
+    -- from the match (2024 paper, equations 17 to 19). Off: the information
+    -- is compared with that along a blank quantised wall, with a smooth
+    -- transition.
     eigenvalue_ratio = false,
   },
 }
 
--- Loop closures that are verified over time and weighted by confidence.
+-- Loop closure with temporal verification, consensus and confidence weights.
 CARTOGRAPHER_EXT.constraint_builder = {
   search = {
-    -- Windows that follow the uncertainty and a cap on searches. Off: every
-    -- sampled candidate is searched in Cartographer's fixed window.
+    -- Search windows that follow the uncertainty, and a limit on searches.
+    -- Off: every sampled candidate is searched in Cartographer's fixed
+    -- window.
     enabled = true,
-    -- Hard cap on searches for one node. Fewer is faster and may miss loops.
+    -- Hard limit on searches per node. Lower is faster and may miss loops.
     -- [basic, >= 1 and <= 100000]
     max_searches_per_node = 8,
-    -- Beyond this the whole submap is searched instead, when global_search is
-    -- on. [> 0 and <= 1000, m]
+    -- Largest half width of the search window. If the uncertainty is larger,
+    -- the whole submap is searched instead when global_search is on. [> 0 and
+    -- <= 1000, m]
     max_linear_window = 15,
     -- Whether whole submaps of the same trajectory may be searched when the
     -- uncertainty exceeds the largest window. [basic]
     global_search = true,
-    -- Search structures of the submaps used last are kept up to this; others
-    -- are built again when they are needed, with the same result. [>= 0 and
-    -- <= 1000000, MB]
+    -- Memory limit for the search structures of the most recently used
+    -- submaps; others are rebuilt when they are needed, with the same result.
+    -- [>= 0 and <= 1000000, MB]
     max_cache_mb = 32,
   },
   temporal_verification = {
-    -- Compares the last nodes with what the submap predicts along the same
-    -- path.
+    -- Compare the most recent nodes with the scans that the submap predicts
+    -- along the same path.
     enabled = true,
-    -- Nodes compared for a new submap; the paper has 4. Longer tells
-    -- look-alike places apart better and needs more known map. [basic, >= 1
+    -- Nodes compared for a new submap; the paper has 4. Longer windows
+    -- separate look-alike places better but need more known map. [basic, >= 1
     -- and <= 200, nodes]
     window_base = 12,
-    -- How fast the window grows with the age of the submap, by up to 2 nodes
-    -- (gamma of equation 4 of the 2025 paper). [>= 0 and <= 1000, 1/s]
+    -- Rate at which the window grows with the age of the submap, by up to 2
+    -- nodes (gamma of equation 4 of the 2025 paper). [>= 0 and <= 1000, 1/s]
     window_gamma = 0.3,
   },
   dynamic_threshold = {
     -- Reject temporal scores below a threshold that follows their variance.
     -- Off: no threshold on the temporal score.
     enabled = true,
-    -- Lower end of the threshold. Higher rejects more, also true loops. [>= 0
-    -- and <= 1]
+    -- Lower end of the threshold. Higher values reject more, including true
+    -- loops. [>= 0 and <= 1]
     low = 0.45,
     -- Range of the threshold above its lower end. [>= 0 and <= 1]
     span = 0.1,
   },
   fusion = {
-    -- Off: the final score is the grid score.
+    -- Combine grid score and temporal score into a final score. Off: the
+    -- final score is the grid score.
     enabled = true,
     -- Candidates with a lower final score are rejected. [>= 0 and <= 1]
     min_final_score = 0.01,
   },
   information = {
-    -- Off: every loop has Cartographer's constant weights.
+    -- Weight loops by their final score. Off: every loop has Cartographer's
+    -- constant weights.
     enabled = true,
-    -- Exponent of the final score for the translation. [>= 0 and <= 20]
+    -- Exponent of the final score in the translation weight. [>= 0 and <= 20]
     alpha = 1.2,
-    -- Exponent of the final score for the rotation. [>= 0 and <= 20]
+    -- Exponent of the final score in the rotation weight. [>= 0 and <= 20]
     beta = 1.5,
-    -- The final score that leaves the weights as they are: that of an
-    -- ordinary loop. Higher scores pull more. With 1 (the paper) every loop
-    -- pulls less than without confidence weights, in poor maps so much less
+    -- The final score that leaves the weights unchanged: that of an ordinary
+    -- loop. Higher scores give larger weights. With 1 (the paper) every loop
+    -- weighs less than without confidence weights, in poor maps so much less
     -- that they bend. [> 0 and <= 1]
     reference_score = 0.6,
-    -- Whether loops pull less along directions that their match does not
-    -- determine, as along a corridor. Needs the swap full_information; stored
-    -- maps have the two weights.
+    -- Lower the weight of loops along degenerate directions of their match,
+    -- as along a corridor. Needs the swap full_information; stored maps have
+    -- only the two weights.
     full_matrix = false,
   },
   path_noise = {
-    -- Standard deviation of the path of local SLAM after one metre; it grows
-    -- with the square root of the distance. Larger searches wider and rejects
-    -- less. [basic, >= 0 and <= 10, m]
+    -- Standard deviation of the translation of local SLAM after one metre; it
+    -- grows with the square root of the path length. Larger values search
+    -- wider and reject less. [basic, >= 0 and <= 10, m]
     translation_per_metre = 0.05,
-    -- Standard deviation after one metre. [>= 0 and <= 10, rad]
+    -- Standard deviation of the heading of local SLAM after one metre; it
+    -- grows with the square root of the path length. [>= 0 and <= 10, rad]
     rotation_per_metre = 0.005,
-    -- Standard deviation of a turn that is the same all along a run, as of
+    -- Standard deviation of the constant heading drift of a run, such as from
     -- unequal wheels. [>= 0 and <= 10, rad/m]
     heading_drift = 0.0005,
-    -- Standard deviation of the scale of a whole run. [>= 0 and <= 1]
+    -- Standard deviation of the translation scale of a run. [>= 0 and <= 1]
     scale_error = 0.005,
   },
   compatible_subset = {
-    -- Candidates wait until others confirm them. Off: every candidate that
-    -- has come this far is accepted at once.
+    -- Buffer candidates until others confirm them. Off: every candidate that
+    -- passes the previous stages is accepted immediately.
     enabled = true,
-    -- Revisits that have to agree. More is safer and later. [basic, >= 1 and
-    -- <= 100]
+    -- Number of revisits that must agree. More is safer, but loops are
+    -- accepted later. [basic, >= 1 and <= 100]
     min_revisits = 2,
-    -- Whether a loop that nothing confirms may be accepted by stricter rules.
+    -- Accept a loop without confirmation if it passes stricter tests.
     single_strong = true,
-    -- A place predicted worse than this needs weak_prior_revisits. [>= 0 and
-    -- <= 1000, m]
+    -- If the sigma of the prediction exceeds this, weak_prior_revisits must
+    -- agree. [>= 0 and <= 1000, m]
     weak_prior_sigma = 1,
-    -- Revisits that have to agree on a place that was predicted badly. [>= 1
+    -- Number of revisits that must agree where the prediction is weak. [>= 1
     -- and <= 100]
     weak_prior_revisits = 3,
   },
   innovation_veto = {
-    -- Rejects loops that demand more than the uncertainty allows.
+    -- Reject loops whose innovation exceeds the uncertainty of the
+    -- prediction.
     enabled = true,
   },
   localization = {
-    -- Searches all submaps of another run at once, follows the places found
-    -- along the path, and accepts one only when it is ahead of all others.
-    -- Off: whole submaps are searched one by one as the host proposes them.
+    -- Search all submaps of another run at once, track the hypotheses along
+    -- the path, and accept one only when it clearly leads. Off: whole submaps
+    -- are searched one by one as the host proposes them.
     enabled = true,
   },
   log = {
-    -- Whether the records have the CPU time of each stage. Such logs differ
-    -- from run to run.
+    -- Add the CPU time of each stage to the records. Such logs differ from
+    -- run to run.
     times = false,
     -- Folder for the records of all decisions, written while the program
     -- runs: loops-1.csv and .pb, loops-2.csv for the next run. Empty: none.
-    -- It is made if its parent exists.
+    -- The folder is created if its parent exists.
     directory = "",
   },
   paper_mode = {
-    -- Every node is compared, by medians of sectors, with textbook warping
-    -- (2025 paper, section 1.2).
+    -- Compare every node by the medians of sectors, with textbook dynamic
+    -- time warping (2025 paper, section 1.2).
     temporal_verification = false,
-    -- The threshold falls when scores vary, as the formula has it (equation
-    -- 1). Off: it rises, as the text has it.
+    -- The threshold decreases when scores vary, as in the formula (equation
+    -- 1). Off: it increases, as in the text of the paper.
     dynamic_threshold = false,
-    -- Scores are blended by how typical they are (equations 5 to 7). Off: the
+    -- Blend the scores by how typical they are (equations 5 to 7). Off: the
     -- final score is the probability that the loop is true.
     fusion = false,
-    -- Cycles are compared with fixed bounds of 0.5 m and 0.1 rad, and the
-    -- subset is exactly the maximum clique (2024 paper, equations 20 and 21);
+    -- Test cycles with fixed bounds of 0.5 m and 0.1 rad; the subset is
+    -- exactly the maximum clique (2024 paper, equations 20 and 21);
     -- single_strong and weak_prior_revisits have no effect.
     compatible_subset = false,
   },
 }
 
--- Optimisation that finds and leaves out false loop closures.
+-- Robust optimisation that disables wrong loops.
 CARTOGRAPHER_EXT.optimization_problem = {
   -- Before each optimisation, decide which loop constraints agree with each
-  -- other and with the trajectory, and disable the others. Every decision is
-  -- made anew each time. [basic]
+  -- other and with the trajectory, and disable the others. All decisions are
+  -- made again each time. [basic]
   robust_loops = true,
-  -- Standard deviation of the translation of a loop constraint. All weights
-  -- of the problem, which are relative, are scaled by it for the decision;
-  -- smaller values are stricter. [> 0, m]
+  -- Standard deviation of the translation of a loop constraint. It fixes the
+  -- scale of the weights of the problem, which are relative, for the
+  -- decision; smaller values are stricter. [> 0, m]
   loop_sigma = 0.1,
   -- After the decision, compare the motion between neighbouring nodes with
-  -- local SLAM; where a loop bends it beyond a gate, disable the loop and
-  -- solve again from the poses before. The new result is kept only if it
-  -- passes.
+  -- local SLAM; where a loop distorts it beyond a gate, disable the loop and
+  -- solve again from the previous poses. The new result is kept only if it
+  -- passes the check.
   odometry_check = true,
 }
