@@ -23,7 +23,7 @@ LoopDecision::Temporal::Outcome ToProto(const TemporalOutcome outcome) {
     case TemporalOutcome::kPathUnknown:
       break;
   }
-  return LoopDecision::Temporal::PATH_UNKNOWN;
+  return LoopDecision::Temporal::UNKNOWN_WAY;
 }
 
 void ToProto(const MixtureDescription& from,

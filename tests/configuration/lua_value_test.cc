@@ -84,7 +84,7 @@ TEST(LuaValueTest, BombsAreErrorsOfTheirOwnKind) {
       {"t = {} for i = 1, 40 do t = { x = t, y = t } end return t",
        "too many values"},
       {"while true do pcall(function() while true do end end) end",
-       "does not end"},
+       "does not terminate"},
       {"local t = {} for i = 1, 1e9 do t[i] = { i } end", "not enough memory"},
       {"return string.rep('a', 1e9)", "not enough memory"},
   };

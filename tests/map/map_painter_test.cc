@@ -133,7 +133,7 @@ TEST(MapPainterTest, TheMapOfFarSubmapsIsRefused) {
   EXPECT_TRUE(paint(1000.).ok());
   // 2.5e7 cells for the sake of 12.
   EXPECT_THAT(std::string(paint(5000.).message()),
-              testing::HasSubstr("submaps lie too far apart"));
+              testing::HasSubstr("the submaps are too far apart"));
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST_F(LoopsByHandTest, RefusesWhereTheScanDoesNotFit) {
   EXPECT_THAT(
       std::string(
           MatchByHand(loop, *graph_, *room_, Options()).status().message()),
-      HasSubstr("the scan fits nowhere within 1.0 m"));
+      HasSubstr("the scan matches nowhere within 1.0 m"));
 }
 
 // A pose that looks the other way scores enough if little is asked for; what the
@@ -133,7 +133,7 @@ TEST_F(LoopsByHandTest, ReadsNames) {
   }
   EXPECT_THAT(
       std::string(ParseLoopsByHand(*graph_, "0:0:0:0").status().message()),
-      HasSubstr("was inserted in this submap"));
+      HasSubstr("was inserted into this submap"));
 }
 
 TEST_F(LoopsByHandTest, ALoopThatDoesNotFitLeavesTheMapAlone) {
@@ -149,7 +149,7 @@ TEST_F(LoopsByHandTest, ALoopThatDoesNotFitLeavesTheMapAlone) {
   ASSERT_TRUE(repair.ok()) << repair.status();
   EXPECT_FALSE(repair->changed());
   ASSERT_EQ(repair->steps.size(), 1u);
-  EXPECT_THAT(repair->steps[0].reason, HasSubstr("fits nowhere"));
+  EXPECT_THAT(repair->steps[0].reason, HasSubstr("matches nowhere"));
 }
 
 // A map without its loops, its end moved off: one loop by hand brings it back.

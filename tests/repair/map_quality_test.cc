@@ -24,7 +24,8 @@ MapQuality Broken() {
 
 TEST(MapQualityTest, TheFirstMeasureThatDiffersDecides) {
   MapQuality better = Broken();
-  EXPECT_THAT(WhyNotBetter(Broken(), better), HasSubstr("no better"));
+  EXPECT_THAT(WhyNotBetter(Broken(), better),
+              HasSubstr("would not change in quality"));
   better.severe_share = 0.2;
   better.contradicted_rays = 0.3;
   better.entropy = 0.;

@@ -63,7 +63,7 @@ TEST(LoopEvidenceTest, CyclesCount) {
   const auto evidence = CollectEvidence(data.runs[0], *data.contents);
   EXPECT_EQ(evidence[1].partners, 2);
   EXPECT_EQ(evidence[1].open_share, 0.5);
-  EXPECT_THAT(Describe(evidence[1]), HasSubstr("50 % of 2 cycles stay open"));
+  EXPECT_THAT(Describe(evidence[1]), HasSubstr("50 % of 2 cycles are open"));
 }
 
 TEST(LoopEvidenceTest, VerdictsInWords) {
@@ -87,17 +87,17 @@ TEST(LoopEvidenceTest, DescribesWhatIsKnown) {
   const auto evidence = CollectEvidence(data.runs[1], *data.contents);
   const std::string accepted = Describe(evidence[0]);
   EXPECT_THAT(accepted, HasSubstr("submap (0, 0) - node (0, 2)"));
-  EXPECT_THAT(accepted, HasSubstr("against the map 0.00 m, 0.0 deg"));
+  EXPECT_THAT(accepted, HasSubstr("residual in the map 0.00 m, 0.0 deg"));
   EXPECT_THAT(accepted, HasSubstr("temporal score 0.900, threshold 0.400"));
   EXPECT_THAT(accepted, HasSubstr("fused score 0.950"));
-  EXPECT_THAT(accepted, HasSubstr("3 revisits confirm, 0 contradict"));
+  EXPECT_THAT(accepted, HasSubstr("3 revisits support, 0 contradict"));
   EXPECT_THAT(accepted, Not(HasSubstr("score on the grid")));
   EXPECT_THAT(accepted, Not(HasSubstr("truth")));
   const std::string rejected = Describe(evidence[2]);
   EXPECT_THAT(rejected, HasSubstr("node (0, 4), rejected"));
   EXPECT_THAT(rejected, HasSubstr("score on the grid 0.600"));
   EXPECT_THAT(rejected, HasSubstr("rejected: low temporal score"));
-  EXPECT_THAT(rejected, Not(HasSubstr("against the map")));
+  EXPECT_THAT(rejected, Not(HasSubstr("residual in the map")));
 }
 
 }  // namespace

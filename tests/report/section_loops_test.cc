@@ -24,7 +24,7 @@ TEST(SectionLoopsTest, LinesByVerdict) {
   EXPECT_EQ(test::Count(html, "class=\"loop s2 bad\""), 2u);
   EXPECT_EQ(test::Count(html, "class=\"loop s6 bad\""), 1u);
   EXPECT_EQ(test::Count(html, "rejected candidate"), 1u);
-  EXPECT_THAT(html, Not(HasSubstr("right by truth")));
+  EXPECT_THAT(html, Not(HasSubstr("right by ground truth")));
   EXPECT_THAT(html, Not(HasSubstr("th is drawn")));
 }
 

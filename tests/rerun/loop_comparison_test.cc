@@ -80,7 +80,9 @@ TEST(LoopComparisonTest, FatesSayMoreThanPlaces) {
                            LoopAbsence::kTooFar, LoopAbsence::kNoMatch,
                            LoopAbsence::kTooFar));
   const std::string text = ExplainMissing(comparison);
-  EXPECT_THAT(text, testing::HasSubstr("1 within reach, but the sampler"));
+  EXPECT_THAT(text,
+              testing::HasSubstr(
+                  "1 within the distance limit, but skipped by the sampler"));
   EXPECT_THAT(text, testing::HasSubstr("1 searched without a match"));
 }
 

@@ -94,7 +94,7 @@ TEST(RandomFaultsTest, MistakesAreNamed) {
   EXPECT_THAT(message("slip:1.5"), HasSubstr("the count must be whole"));
   EXPECT_THAT(message("slip:-1"), HasSubstr("the count must be whole"));
   EXPECT_THAT(message("offset:11"), HasSubstr("seconds outside [-10, 10]"));
-  EXPECT_THAT(message("jump:200"), HasSubstr("has no room for so many"));
+  EXPECT_THAT(message("jump:200"), HasSubstr("is too short for so many"));
 }
 
 }  // namespace

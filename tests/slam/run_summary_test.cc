@@ -26,9 +26,10 @@ TEST(RunSummaryTest, TellsTheDriftThatWasLearnt) {
   EXPECT_EQ(drift.at("scale"), -0.03);
   EXPECT_NEAR(drift.at("scale_sigma"), 0.002, 1e-12);
   EXPECT_EQ(drift.at("cycles"), 7);
-  EXPECT_THAT(ToText(run),
-              HasSubstr("learnt from 7 cycles of loops: heading 0.50 +- 0.10 "
-                        "deg/m, turns 1.0 +- 1.0 %, scale -3.0 +- 0.2 %"));
+  EXPECT_THAT(
+      ToText(run),
+      HasSubstr("estimated from 7 cycles of loops: heading 0.50 +- 0.10 "
+                "deg/m, rotation 1.0 +- 1.0 %, scale -3.0 +- 0.2 %"));
 }
 
 TEST(RunSummaryTest, TellsWhenAndWhereItWasLocalized) {
@@ -45,7 +46,7 @@ TEST(RunSummaryTest, TellsWhenAndWhereItWasLocalized) {
   EXPECT_NEAR(ToJson(run)["localized"]["y"].get<double>(), -2., 1e-9);
   EXPECT_THAT(ToText(run),
               testing::HasSubstr("Localised  after 13.4 s, at x = 3.0 m, y = "
-                                 "-2.0 m, 90 degrees of the map"));
+                                 "-2.0 m, 90 degrees in the map frame"));
 }
 
 TEST(RunSummaryTest, HasTheWarningsOfAll) {
@@ -71,8 +72,9 @@ TEST(RunSummaryTest, TellsTheLatency) {
   EXPECT_EQ(latency.at("local_slam_milliseconds").at("p99"), 2.5);
   EXPECT_EQ(latency.at("local_slam_milliseconds").at("max"), 4.);
   EXPECT_EQ(latency.at("backlog_seconds").at("max"), 0.3);
-  EXPECT_THAT(ToText(run), HasSubstr("1.0 ms a scan (99 % within 2.5, at most "
-                                     "4.0); back end at most 0.3 s behind"));
+  EXPECT_THAT(ToText(run),
+              HasSubstr("1.0 ms per scan (99 % within 2.5, at most "
+                        "4.0); back end at most 0.3 s"));
 }
 
 }  // namespace

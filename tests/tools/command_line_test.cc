@@ -161,14 +161,14 @@ TEST(CommandLineTest, OutputsReplaceNoInputAndNoOtherOutput) {
   };
   // Not there yet, and written two ways.
   EXPECT_THAT(message(CheckWritable({folder / "a", folder / "./a"})),
-              testing::HasSubstr("/a: an output and another file"));
+              testing::HasSubstr("/a: two files of the command"));
   EXPECT_TRUE(CheckWritable({folder / "a", folder / "b"}).ok());
   test::WriteFile(folder / "in", "content");
   std::filesystem::create_symlink(folder / "in", folder / "link");
   EXPECT_TRUE(CheckWritable({folder / "b"}, {folder / "in"}).ok());
   for (const char* name : {"in", "./in", "link"}) {
     EXPECT_THAT(message(CheckWritable({folder / name}, {folder / "in"})),
-                testing::HasSubstr("the output is the input"))
+                testing::HasSubstr("the output is also the input"))
         << name;
   }
   EXPECT_TRUE(CheckWritable({"/dev/null", "/dev/null"}, {"/dev/null"}).ok());

@@ -38,8 +38,8 @@ TEST(RepairMainTest, WritesAllOrNothing) {
   const size_t before = folder.Names().size();
   const CommandResult result = RunCommand(
       "repair", {folder / "room.pbstream", "-dry_run", "-report_filename",
-                 folder / "report.html", "-poses_filename", folder / "poses.csv",
-                 "-json", "/dev/full"});
+                 folder / "report.html", "-poses_filename",
+                 folder / "poses.csv", "-json", "/dev/full"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(folder.Names().size(), before);
 }
@@ -58,7 +58,7 @@ TEST(RepairMainTest, RefusesBadInput) {
   const CommandResult same =
       RunCommand("repair", {map, "-output_filename", map});
   EXPECT_EQ(same.exit_code, 1);
-  EXPECT_THAT(same.error, HasSubstr("the output is the input"));
+  EXPECT_THAT(same.error, HasSubstr("the output is also the input"));
   EXPECT_EQ(ReadFile(map), whole);
 
   const CommandResult unwritable = RunCommand(

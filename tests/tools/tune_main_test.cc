@@ -238,9 +238,9 @@ TEST_F(TuneMainTest, BadInputIsExitCodeOne) {
               HasSubstr("no.clf"));
   EXPECT_THAT(
       error({"-search_filename", folder_ / "search.lua", "-max_trials", "1"}),
-      HasSubstr("nothing to search on"));
+      HasSubstr("no inputs: give -inputs"));
   EXPECT_THAT(error(Arguments({"-holdout", folder_ / "room.world#1"})),
-              HasSubstr("both searched on and held out"));
+              HasSubstr("both an input and held out"));
   WriteFile(folder_ / "journal", "something else\n");
   EXPECT_THAT(error(Arguments({"-journal_filename", folder_ / "journal"})),
               HasSubstr("not a tuning journal"));

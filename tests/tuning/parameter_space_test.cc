@@ -106,9 +106,9 @@ TEST(ParameterSpaceTest, ErrorsNameEntryAndKey) {
               HasSubstr("empty range"));
   EXPECT_THAT(ErrorOf("{ range = { 1, 2 } }"), HasSubstr("no key"));
   EXPECT_THAT(ErrorOf("{ key = 'a b', range = { 1, 2 } }"),
-              HasSubstr("no Lua name"));
+              HasSubstr("not a Lua name"));
   EXPECT_THAT(ErrorOf("{ key = 'a..b', range = { 1, 2 } }"),
-              HasSubstr("no Lua name"));
+              HasSubstr("not a Lua name"));
   EXPECT_THAT(ErrorOf("{ key = 'a' }"), HasSubstr("either range"));
   EXPECT_THAT(ErrorOf("{ key = 'a', range = { 1 } }"), HasSubstr("low, high"));
   EXPECT_THAT(ErrorOf("{ key = 'a', range = { 0, math.huge } }"),
@@ -128,7 +128,7 @@ TEST(ParameterSpaceTest, ErrorsNameEntryAndKey) {
               HasSubstr("unknown key 'rang'"));
   EXPECT_THAT(
       ErrorOf("{ key='a', range={ 0, 1 } }, { key='a', range={ 0, 1 } }"),
-      HasSubstr("there already"));
+      HasSubstr("listed twice"));
 }
 
 }  // namespace

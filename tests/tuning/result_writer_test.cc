@@ -104,9 +104,10 @@ TEST(ResultWriterTest, SaysWhenNothingWasBetter) {
   TuneResult result = Result();
   result.best = result.baseline;
   result.keys.clear();
-  EXPECT_THAT(ToLuaFile(result, Context()),
-              testing::AllOf(HasSubstr("Nothing was better"),
-                             testing::EndsWith("return include \"stock.lua\"\n")));
+  EXPECT_THAT(
+      ToLuaFile(result, Context()),
+      testing::AllOf(HasSubstr("Nothing was better"),
+                     testing::EndsWith("return include \"stock.lua\"\n")));
   EXPECT_THAT(ToText(result, Context()), HasSubstr("Nothing was better"));
   result.not_confirmed = "held-out recordings change by +3.0 %";
   for (const std::string& text :
@@ -137,7 +138,7 @@ TEST(ResultWriterTest, TheTableNamesEveryKey) {
   EXPECT_THAT(text, HasSubstr("1 failed"));
   EXPECT_THAT(text, HasSubstr("A.score\n  0.5 -> 0.625"));
   EXPECT_THAT(text, HasSubstr("Held out   8 -> 6  -25.0 %"));
-  EXPECT_THAT(text, HasSubstr("Sensitivity: not known from 2 trials on whole"));
+  EXPECT_THAT(text, HasSubstr("Sensitivity: unknown from 2 trials on whole"));
 }
 
 TEST(ResultWriterTest, JsonHasTheAgreedKeys) {

@@ -125,7 +125,7 @@ TEST(SearchSpecTest, BadInputsAreErrors) {
   folder.Write("a.world", "");
   EXPECT_THAT(
       std::string(ParseInput(folder.path() + "/a.world#x").status().message()),
-      HasSubstr("no seed"));
+      HasSubstr("not a seed"));
   EXPECT_THAT(std::string(ParseInputs({log, log}).status().message()),
               HasSubstr("twice"));
 }

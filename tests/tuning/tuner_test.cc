@@ -318,7 +318,7 @@ TEST(TunerTest, AConfigurationThatFailsAsItIsIsAnError) {
   Case c;
   c.fail_below_score = 0.6;
   EXPECT_THAT(std::string(Tune(c).status().message()),
-              HasSubstr("fails as it is: a: too low"));
+              HasSubstr("the initial configuration fails: a: too low"));
 }
 
 TEST(TunerTest, RunsThatWereKilledAreTriedAgain) {

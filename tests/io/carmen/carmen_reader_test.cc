@@ -253,7 +253,8 @@ TEST(CarmenReaderTest, ALastLineThatIsCutOffIsDropped) {
     EXPECT_EQ(log->info.num_scans, 199) << missing;
     EXPECT_EQ(log->Scans().size(), 199u);
     ASSERT_EQ(log->info.warnings.size(), 1u) << missing;
-    EXPECT_THAT(log->info.warnings[0], HasSubstr(":400: the last line is cut"));
+    EXPECT_THAT(log->info.warnings[0],
+                HasSubstr(":400: the last line is truncated"));
   }
 }
 

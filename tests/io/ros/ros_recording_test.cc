@@ -255,7 +255,7 @@ TEST(RosRecordingTest, PossibleTimesOfBeamsAreKept) {
   ASSERT_TRUE(source.ok()) << source.status();
   EXPECT_THAT((*source)->info().warnings,
               ::testing::Not(
-                  ::testing::Contains(HasSubstr("taken as measured at once"))));
+                  ::testing::Contains(HasSubstr("treated as instantaneous"))));
   const auto events = ReadAll(source->get());
   EXPECT_NEAR(absl::get<LaserScan>(events.at(0)).time_increment, 0.025, 1e-9);
 }

@@ -41,7 +41,7 @@ TEST(SelfConsistencyTest, RightMapIsSound) {
       AssessSelfConsistency(world.graph, world.contents, {}, {});
   EXPECT_EQ(result.word, "sound");
   EXPECT_TRUE(result.severe.empty());
-  EXPECT_THAT(result.reasons.front(), HasSubstr("nothing speaks against"));
+  EXPECT_THAT(result.reasons.front(), HasSubstr("the map is self-consistent"));
 }
 
 TEST(SelfConsistencyTest, FoldedMapIsBrokenAndNamesThePlace) {
@@ -52,7 +52,7 @@ TEST(SelfConsistencyTest, FoldedMapIsBrokenAndNamesThePlace) {
   EXPECT_EQ(result.word, "broken");
   EXPECT_GT(result.severe_share, 0.3);
   EXPECT_THAT(result.reasons.front(),
-              HasSubstr("parts of the map lie across each other, most at"));
+              HasSubstr("parts of the map overlap inconsistently, worst at"));
   EXPECT_THAT(result.reasons,
               Contains(HasSubstr("nodes (0, 60) to (0, 99) (60.0 s to 99.0 s "
                                  "after the start)")));
