@@ -173,27 +173,36 @@ std::vector<std::vector<int>> EdgesAtPoses(const PoseGraph& graph) {
   return result;
 }
 
-std::vector<Pose2> DeadReckoning(const PoseGraph& graph) {
-  std::vector<Pose2> poses = graph.poses;
-  if (poses.empty()) return poses;
-  const std::vector<std::vector<int>> edges_of_poses = EdgesAtPoses(graph);
-  std::vector<bool> reached(poses.size(), false);
-  std::vector<int> queue = {0};
-  reached[0] = true;
+Pose2 MeasuredNeighbour(const PoseGraphEdge& edge, const int pose,
+                        const std::vector<Pose2>& poses) {
+  return edge.from == pose ? poses[pose] * edge.measurement
+                           : poses[pose] * edge.measurement.Inverse();
+}
+
+void ChainFrom(const PoseGraph& graph,
+               const std::vector<std::vector<int>>& edges_at, const int start,
+               std::vector<bool>* const reached,
+               std::vector<Pose2>* const poses) {
+  std::vector<int> queue = {start};
+  (*reached)[start] = true;
   for (size_t next = 0; next != queue.size(); ++next) {
     const int pose = queue[next];
-    for (const int e : edges_of_poses[pose]) {
-      const PoseGraphEdge& edge = graph.edges[e];
-      if (edge.is_loop) continue;
+    for (const int i : edges_at[pose]) {
+      const PoseGraphEdge& edge = graph.edges[i];
       const int other = edge.from == pose ? edge.to : edge.from;
-      if (reached[other]) continue;
-      poses[other] = edge.from == pose
-                         ? poses[pose] * edge.measurement
-                         : poses[pose] * edge.measurement.Inverse();
-      reached[other] = true;
+      if (edge.is_loop || (*reached)[other]) continue;
+      (*poses)[other] = MeasuredNeighbour(edge, pose, *poses);
+      (*reached)[other] = true;
       queue.push_back(other);
     }
   }
+}
+
+std::vector<Pose2> DeadReckoning(const PoseGraph& graph) {
+  std::vector<Pose2> poses = graph.poses;
+  if (poses.empty()) return poses;
+  std::vector<bool> reached(poses.size(), false);
+  ChainFrom(graph, EdgesAtPoses(graph), 0, &reached, &poses);
   return poses;
 }
 

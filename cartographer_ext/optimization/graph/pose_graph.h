@@ -65,8 +65,19 @@ absl::Status ValidatePoseGraph(const PoseGraph& graph);
 // Indices of the edges at each pose.
 std::vector<std::vector<int>> EdgesAtPoses(const PoseGraph& graph);
 
-// Poses by chaining odometry edges from the first pose (breadth first, over
-// non-loop edges in both directions). Poses out of reach keep their estimate.
+// The pose at the other end of an edge of `pose`, as the edge measures it.
+Pose2 MeasuredNeighbour(const PoseGraphEdge& edge, int pose,
+                        const std::vector<Pose2>& poses);
+
+// Chains odometry edges from the pose `start` (breadth first, over non-loop
+// edges in both directions, given by EdgesAtPoses). What has been reached
+// already stays where it is; what this reaches is marked, `start` included.
+void ChainFrom(const PoseGraph& graph,
+               const std::vector<std::vector<int>>& edges_at, int start,
+               std::vector<bool>* reached, std::vector<Pose2>* poses);
+
+// Poses by chaining odometry edges from the first pose. Poses out of reach keep
+// their estimate.
 std::vector<Pose2> DeadReckoning(const PoseGraph& graph);
 
 // An edge prepared for repeated evaluation.

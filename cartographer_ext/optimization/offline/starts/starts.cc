@@ -13,6 +13,7 @@
 #include "Eigen/LU"
 #include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/optimization/solvers/block_ldlt.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/optimization/solvers/kernels.h"
 
 namespace cartographer_ext {
@@ -22,12 +23,6 @@ namespace {
 constexpr int kRobustRounds = 6;
 // Width of the kernel in the first round; it narrows to the gate in the last.
 constexpr double kFirstWidth = 1e4;
-
-Pose2 Neighbour(const PoseGraphEdge& edge, const int pose,
-                const std::vector<Pose2>& poses) {
-  return edge.from == pose ? poses[pose] * edge.measurement
-                           : poses[pose] * edge.measurement.Inverse();
-}
 
 double PositionVariance(const PoseGraphEdge& edge) {
   return 2. / (edge.information(0, 0) + edge.information(1, 1));
@@ -55,19 +50,6 @@ Unit OdometryUnit(const PoseGraph& graph) {
   unit.position = positions[middle];
   unit.angle = angles[middle];
   return unit;
-}
-
-// Pairs of free poses (from 0, the first is held) that share an edge in force.
-std::vector<std::pair<int, int>> PairsInForce(
-    const std::vector<WhitenedEdge>& edges,
-    const std::vector<double>& weights) {
-  std::vector<std::pair<int, int>> pairs;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    if (weights[i] > 0. && edges[i].from > 0 && edges[i].to > 0) {
-      pairs.push_back({edges[i].from - 1, edges[i].to - 1});
-    }
-  }
-  return pairs;
 }
 
 // Blocks of three hold two unknowns; the third is pinned.
@@ -199,33 +181,18 @@ bool SolvePositions(const std::vector<WhitenedEdge>& edges,
 
 std::vector<Pose2> ChainOdometry(const PoseGraph& graph) {
   std::vector<Pose2> poses = graph.poses;
+  if (poses.empty()) return poses;
   const std::vector<std::vector<int>> edges_at = EdgesAtPoses(graph);
   std::vector<bool> reached(poses.size(), false);
-  const auto chain = [&](const int start) {
-    std::vector<int> queue = {start};
-    reached[start] = true;
-    for (size_t next = 0; next != queue.size(); ++next) {
-      const int pose = queue[next];
-      for (const int i : edges_at[pose]) {
-        const PoseGraphEdge& edge = graph.edges[i];
-        const int other = edge.from == pose ? edge.to : edge.from;
-        if (edge.is_loop || reached[other]) continue;
-        poses[other] = Neighbour(edge, pose, poses);
-        reached[other] = true;
-        queue.push_back(other);
-      }
-    }
-  };
-  if (poses.empty()) return poses;
-  chain(0);
+  ChainFrom(graph, edges_at, 0, &reached, &poses);
   for (bool attached = true; attached;) {
     attached = false;
     for (const PoseGraphEdge& edge : graph.edges) {
       if (reached[edge.from] == reached[edge.to]) continue;
       const int known = reached[edge.from] ? edge.from : edge.to;
       const int other = edge.from == known ? edge.to : edge.from;
-      poses[other] = Neighbour(edge, known, poses);
-      chain(other);
+      poses[other] = MeasuredNeighbour(edge, known, poses);
+      ChainFrom(graph, edges_at, other, &reached, &poses);
       attached = true;
     }
   }
@@ -257,7 +224,7 @@ std::vector<Pose2> SpanningTree(const PoseGraph& graph,
                           1. / (edge.information(2, 2) * unit.angle);
       if (cost >= costs[other]) continue;
       costs[other] = cost;
-      poses[other] = Neighbour(edge, pose, poses);
+      poses[other] = MeasuredNeighbour(edge, pose, poses);
       queue.push({cost, other});
     }
   }
