@@ -86,6 +86,7 @@ std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs) {
       cell.ate_largest = std::max(cell.ate_largest, run->ate);
       cell.step_max = std::max(cell.step_max, run->step_max);
       successes += run->success;
+      cell.same_by_data += run->success && !run->success_by_ate;
       cell.unfinished += !run->converged;
       cell.undecidable += run->undecidable;
     }
@@ -114,6 +115,61 @@ std::vector<SweepLimit> FindLimits(const std::vector<SweepRun>& runs) {
   return limits;
 }
 
+std::vector<LimitScore> ScoreByLimits(const std::vector<SweepRun>& runs) {
+  std::map<std::pair<std::string, std::string>, double> limits;
+  for (const SweepLimit& limit : FindLimits(runs)) {
+    limits[{limit.dataset, limit.type}] = limit.undecidable_from;
+  }
+  std::vector<LimitScore> scores;
+  for (const SweepRun& run : runs) {
+    auto score = std::find_if(
+        scores.begin(), scores.end(),
+        [&](const LimitScore& other) { return other.kernel == run.kernel; });
+    if (score == scores.end()) {
+      scores.emplace_back();
+      score = scores.end() - 1;
+      score->kernel = run.kernel;
+      score->below_precision = 0.;
+    }
+    ++score->runs;
+    score->successes += run.success;
+    score->undecidable += run.undecidable;
+    score->missed += !run.success && !run.undecidable;
+    if (run.outlier_share >= kBelowLimit * limits[{run.dataset, run.type}]) {
+      continue;
+    }
+    ++score->below;
+    score->below_successes += run.success;
+    score->below_precision += run.precision;
+  }
+  for (LimitScore& score : scores) {
+    score.below_precision =
+        score.below == 0 ? 1. : score.below_precision / score.below;
+  }
+  return scores;
+}
+
+std::string LimitTable(const std::vector<SweepRun>& runs) {
+  std::string table;
+  for (const SweepLimit& limit : FindLimits(runs)) {
+    if (limit.undecidable_from > 1.) continue;
+    absl::StrAppendFormat(
+        &table, "limit: %s %s undecidable from %.1f%% outliers on\n",
+        limit.dataset, limit.type, 100. * limit.undecidable_from);
+  }
+  for (const LimitScore& score : ScoreByLimits(runs)) {
+    absl::StrAppendFormat(
+        &table,
+        "%s: %d of %d succeed, %d undecidable, %d missed; below %.0f%% of the "
+        "limit %d of %d (%.1f%%), mean precision %.4f\n",
+        score.kernel, score.successes, score.runs, score.undecidable,
+        score.missed, 100. * kBelowLimit, score.below_successes, score.below,
+        100. * score.below_successes / std::max(1, score.below),
+        score.below_precision);
+  }
+  return table;
+}
+
 std::string SweepTable(const std::vector<SweepCell>& cells) {
   std::string table = absl::StrFormat(
       "%-18s %-10s %-4s %6s %4s %9s %9s %9s %9s %7s %7s %8s\n", "data set",
@@ -129,6 +185,9 @@ std::string SweepTable(const std::vector<SweepCell>& cells) {
         cell.precision, 100. * cell.success_rate);
     if (cell.ate_truth >= 0.) {
       absl::StrAppendFormat(&table, "  truth %.3f m", cell.ate_truth);
+    }
+    if (cell.same_by_data > 0) {
+      absl::StrAppendFormat(&table, "  same by data %d", cell.same_by_data);
     }
     if (cell.undecidable > 0) {
       absl::StrAppendFormat(&table, "  undecidable %d", cell.undecidable);
@@ -194,6 +253,7 @@ nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs) {
     out["truncated"] = cell.truncated;
     out["success_rate"] = cell.success_rate;
     out["unfinished"] = cell.unfinished;
+    out["same_by_data"] = cell.same_by_data;
     out["undecidable"] = cell.undecidable;
     json["cells"].push_back(out);
   }
@@ -208,6 +268,19 @@ nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs) {
       out["undecidable_from"] = limit.undecidable_from;
     }
     json["limits"].push_back(out);
+  }
+  json["by_limits"] = nlohmann::ordered_json::array();
+  for (const LimitScore& score : ScoreByLimits(runs)) {
+    nlohmann::ordered_json out;
+    out["kernel"] = score.kernel;
+    out["runs"] = score.runs;
+    out["successes"] = score.successes;
+    out["undecidable"] = score.undecidable;
+    out["missed"] = score.missed;
+    out["below_limit"] = score.below;
+    out["below_limit_successes"] = score.below_successes;
+    out["below_limit_precision"] = score.below_precision;
+    json["by_limits"].push_back(out);
   }
   return json;
 }

@@ -25,8 +25,9 @@ struct SweepCell {
   double rpe = 0., precision = 0., recall = 0., truncated = 0.;
   double step_mean = 0., step_p99 = 0., step_max = 0.;  // ms; max: largest
   double success_rate = 0.;
-  int unfinished = 0;   // runs that a limit of time or iterations ended
-  int undecidable = 0;  // failed runs in which the data favour a wrong map
+  int same_by_data = 0;  // successes beyond the limit of the ATE
+  int unfinished = 0;    // runs that a limit of time or iterations ended
+  int undecidable = 0;   // failed runs in which the data favour a wrong map
 };
 
 // From how many outliers on no estimator can tell. A bound from above: a search
@@ -40,10 +41,30 @@ struct SweepLimit {
   double largest_share = 0.;  // that was tried
 };
 
+// The runs of one kernel against the limits of their sets and types.
+struct LimitScore {
+  std::string kernel;
+  int runs = 0, successes = 0;
+  int undecidable = 0;
+  int missed = 0;  // the right map would have cost less
+  // Runs with less than kBelowLimit of the outliers from which on no estimator
+  // can tell.
+  int below = 0, below_successes = 0;
+  double below_precision = 1.;  // mean
+};
+
+constexpr double kBelowLimit = 0.9;
+
 // In order of first appearance.
 std::vector<SweepCell> Summarize(const std::vector<SweepRun>& runs);
 
 std::vector<SweepLimit> FindLimits(const std::vector<SweepRun>& runs);
+
+// In order of first appearance of the kernels.
+std::vector<LimitScore> ScoreByLimits(const std::vector<SweepRun>& runs);
+
+// Each limit that was met, then a line for each kernel.
+std::string LimitTable(const std::vector<SweepRun>& runs);
 
 std::string SweepTable(const std::vector<SweepCell>& cells);
 
@@ -54,7 +75,8 @@ std::string PrintedComparison(const std::vector<SweepCell>& cells,
                               const std::vector<PrintedRow>& printed,
                               const std::string& method);
 
-// "runs" (every run), "cells" (Summarize) and "limits" (FindLimits).
+// "runs" (every run), "cells" (Summarize), "limits" (FindLimits) and
+// "by_limits" (ScoreByLimits).
 nlohmann::ordered_json SweepJson(const std::vector<SweepRun>& runs);
 
 // Median ATE over the number of outliers, one panel per data set and type, one

@@ -3,6 +3,7 @@
 #include "cartographer_ext/experiments/robustness_sweep.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <numeric>
 
@@ -99,7 +100,10 @@ absl::Status RunOne(const SweepOptions& options, const SweepGraph& dataset,
     run->ate_truth =
         optimization::AbsoluteTrajectoryError(result->poses, *poses);
   }
-  run->success = run->ate <= AteLimit(options, dataset, run->type);
+  run->success_by_ate = run->ate <= AteLimit(options, dataset, run->type);
+  const double deviation = DeviationFromOptimum(dataset, result->poses);
+  if (std::isfinite(deviation)) run->deviation = deviation;
+  run->success = run->success_by_ate || deviation <= kSameMap;
   run->inherent_ate = dataset.inherent_ate;
   // What the right map costs in the metric of the result.
   std::vector<optimization::WhitenedEdge> edges = optimization::WithNoiseScale(
@@ -145,7 +149,9 @@ nlohmann::ordered_json ToJson(const SweepRun& run) {
     json["step_milliseconds"] = {
         {"mean", run.step_mean}, {"p99", run.step_p99}, {"max", run.step_max}};
   }
+  json["deviation"] = run.deviation;
   json["success"] = run.success;
+  json["success_by_ate"] = run.success_by_ate;
   json["right_truncated"] = run.right_truncated;
   json["undecidable"] = run.undecidable;
   if (run.is_family) {
@@ -186,6 +192,8 @@ bool FromJson(const nlohmann::json& json, SweepRun* const run) {
   run->converged = json["converged"].get<bool>();
   run->success = json["success"].get<bool>();
   // Missing from journals of earlier versions.
+  run->deviation = json.value("deviation", -1.);
+  run->success_by_ate = json.value("success_by_ate", run->success);
   run->right_truncated = json.value("right_truncated", 0.);
   run->undecidable = json.value("undecidable", false);
   run->is_family = json.contains("family");

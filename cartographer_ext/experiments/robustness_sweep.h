@@ -17,6 +17,9 @@
 namespace cartographer_ext {
 namespace experiments {
 
+// Standard deviations (DeviationFromOptimum) up to which a map is the optimum.
+constexpr double kSameMap = 0.1;
+
 struct SweepRun {
   std::string dataset, kernel, type;
   bool is_family = false;       // `dataset` is the name of a family
@@ -35,7 +38,13 @@ struct SweepRun {
   bool converged = false;
   // r_isam, milliseconds.
   double step_mean = 0., step_p99 = 0., step_max = 0.;
+  // DeviationFromOptimum; -1 where it is not known.
+  double deviation = -1.;
+  // The map is the optimum without outliers: `ate` within its limit, or
+  // `deviation` at most kSameMap, as in a valley so flat that the data do not
+  // say where in it the map is.
   bool success = false;
+  bool success_by_ate = false;
   // Families: metres, ATE to the truth of the optimum without outliers; a
   // success may add half of it.
   double inherent_ate = -1.;

@@ -126,6 +126,7 @@ absl::StatusOr<SweepGraph> LoadSweepGraph(const SweepOptions& options,
     if (best.ok()) result.optimum = best->poses;
   } else {
     result.optimum = OptimumOfRightLoops(result.graph);
+    result.right_edges = optimization::Whiten(result.graph.edges);
   }
   for (const PoseGraphEdge& edge : result.graph.edges) {
     result.num_loops += edge.is_loop;
@@ -150,11 +151,35 @@ absl::StatusOr<SweepGraph> MakeFamilyGraph(const std::string& family,
   result.optimum = generated->truth;
   const auto fixed = optimization::FixedPoseEdges(honest);
   honest.edges.insert(honest.edges.end(), fixed.begin(), fixed.end());
-  SolveToTheEnd(optimization::Whiten(honest.edges), &result.optimum);
+  result.right_edges = optimization::Whiten(honest.edges);
+  SolveToTheEnd(result.right_edges, &result.optimum);
   result.inherent_ate =
       optimization::AbsoluteTrajectoryError(result.optimum, generated->truth);
   result.graph = std::move(generated->graph);
   return result;
+}
+
+double DeviationFromOptimum(const SweepGraph& dataset,
+                            const std::vector<Pose2>& poses) {
+  if (dataset.right_edges.empty()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const auto chi2 = [&](const std::vector<Pose2>& at) {
+    double sum = 0.;
+    for (const double value :
+         optimization::Chi2OfEdges(dataset.right_edges, at)) {
+      sum += value;
+    }
+    return sum;
+  };
+  const double least = chi2(dataset.optimum);
+  const double redundancy =
+      3. * dataset.right_edges.size() - 3. * (dataset.optimum.size() - 1.);
+  const double variance =
+      redundancy > 0. ? std::min(1., least / redundancy) : 1.;
+  // Where the reference is not the end of a flat valley, less is as far.
+  const double excess = std::abs(chi2(poses) - least);
+  return excess == 0. ? 0. : std::sqrt(excess / variance);
 }
 
 absl::StatusOr<int> OutlierCount(const std::string& text, const int num_loops) {

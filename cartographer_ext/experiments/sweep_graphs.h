@@ -42,6 +42,9 @@ struct SweepGraph {
   std::string name;
   optimization::PoseGraph graph;
   std::vector<Pose2> optimum;  // without outliers
+  // What the optimum solves: odometry, right loops and fixed poses, for a family
+  // with the noise as it is. None where right loops are not known.
+  std::vector<optimization::WhitenedEdge> right_edges;
   int num_loops = 0;
   bool is_family = false;
   double inherent_ate = -1.;  // metres, of the optimum; families only
@@ -56,6 +59,14 @@ std::string DatasetName(const std::string& dataset);
 absl::StatusOr<SweepGraph> LoadSweepGraph(const SweepOptions& options,
                                           const std::string& dataset);
 absl::StatusOr<SweepGraph> MakeFamilyGraph(const std::string& family, int seed);
+
+// By how much `poses` differ from the optimum, in standard deviations that odometry and
+// right loops leave: the root of the excess of chi2 over its variance factor
+// (chi2 of the optimum over its redundancy, at most one). To first order no
+// coordinate of any pose, nor any combination of them, is off by more of its own
+// standard deviation. Infinite where right loops are not known.
+double DeviationFromOptimum(const SweepGraph& dataset,
+                            const std::vector<Pose2>& poses);
 
 // Number of outliers that `text` ("1000", or "90%" of all loops) asks for.
 absl::StatusOr<int> OutlierCount(const std::string& text, int num_loops);

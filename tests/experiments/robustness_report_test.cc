@@ -27,6 +27,7 @@ SweepRun MakeRun(const std::string& kernel, const double cpu_seconds,
   run.precision = 1.;
   run.converged = true;
   run.success = ate < 0.01;
+  run.success_by_ate = run.success;
   return run;
 }
 
@@ -73,6 +74,46 @@ TEST(RobustnessReportTest, ComparesWithThePaper) {
   runs[1].converged = false;
   table = PrintedComparison(Summarize(runs), {row}, "acs");
   EXPECT_THAT(table, HasSubstr(">9"));
+}
+
+SweepRun MakeRunWithOutliers(const double share, const bool success,
+                             const bool undecidable) {
+  SweepRun run = MakeRun("auto", 1., success ? 0. : 1.);
+  run.outlier_share = share;
+  run.undecidable = undecidable;
+  run.precision = success ? 1. : 0.5;
+  return run;
+}
+
+// A failure where the data favour a wrong map is the limit, one below it is a
+// miss.
+TEST(RobustnessReportTest, CountsWhatIsWellBelowTheLimit) {
+  const std::vector<SweepRun> runs = {MakeRunWithOutliers(0.1, true, false),
+                                      MakeRunWithOutliers(0.5, false, false),
+                                      // At 91 % of the limit.
+                                      MakeRunWithOutliers(0.73, false, false),
+                                      MakeRunWithOutliers(0.8, false, true),
+                                      MakeRunWithOutliers(0.9, true, false)};
+  const auto scores = ScoreByLimits(runs);
+  ASSERT_EQ(scores.size(), 1u);
+  EXPECT_EQ(scores[0].runs, 5);
+  EXPECT_EQ(scores[0].successes, 2);
+  EXPECT_EQ(scores[0].undecidable, 1);
+  EXPECT_EQ(scores[0].missed, 2);
+  EXPECT_EQ(scores[0].below, 2);
+  EXPECT_EQ(scores[0].below_successes, 1);
+  EXPECT_EQ(scores[0].below_precision, 0.75);
+  const std::string table = LimitTable(runs);
+  EXPECT_THAT(table, HasSubstr("intel R undecidable from 80.0% outliers on"));
+  EXPECT_THAT(table, HasSubstr("below 90% of the limit 1 of 2 (50.0%)"));
+  EXPECT_EQ(SweepJson(runs)["by_limits"][0]["missed"], 2);
+}
+
+TEST(RobustnessReportTest, NamesSuccessesThatTheDataDoNotTell) {
+  SweepRun run = MakeRun("auto", 1., 0.5);
+  run.success = true;
+  run.success_by_ate = false;
+  EXPECT_THAT(SweepTable(Summarize({run})), HasSubstr("same by data 1"));
 }
 
 TEST(RobustnessReportTest, JsonHasRunsAndCells) {

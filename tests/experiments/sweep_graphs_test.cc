@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/experiments/sweep_graphs.h"
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
@@ -62,6 +63,53 @@ TEST(SweepGraphsTest, OptimumDoesNotDependOnTheStart) {
         0.3);
   }
   EXPECT_GT(stuck, 0);
+}
+
+optimization::PoseGraphEdge EdgeOfTenMetres(const double sigma) {
+  optimization::PoseGraphEdge edge;
+  edge.from = 0;
+  edge.to = 1;
+  edge.measurement = Pose2(10., 0., 0.);
+  edge.information =
+      Eigen::Vector3d(1. / (sigma * sigma), 1. / (sigma * sigma), 1e4)
+          .asDiagonal();
+  return edge;
+}
+
+// A place is off by as many standard deviations as its edges leave it, whatever
+// that is in metres.
+TEST(SweepGraphsTest, DeviationIsInStandardDeviations) {
+  for (const double sigma : {0.01, 10.}) {
+    SweepGraph dataset;
+    dataset.optimum = {Pose2(), Pose2(10., 0., 0.)};
+    dataset.right_edges = optimization::Whiten(
+        std::vector<optimization::PoseGraphEdge>{EdgeOfTenMetres(sigma)});
+    EXPECT_EQ(DeviationFromOptimum(dataset, dataset.optimum), 0.);
+    EXPECT_NEAR(DeviationFromOptimum(
+                    dataset, {Pose2(), Pose2(10. + 0.09 * sigma, 0., 0.)}),
+                0.09, 1e-9);
+    EXPECT_NEAR(
+        DeviationFromOptimum(dataset, {Pose2(), Pose2(10., 2. * sigma, 0.)}),
+        2., 1e-9);
+  }
+}
+
+// Edges that agree better than their matrices claim determine more.
+TEST(SweepGraphsTest, DeviationCountsInTheNoiseOfTheEdges) {
+  SweepGraph dataset;
+  const double sigma = 1.;
+  optimization::PoseGraphEdge low = EdgeOfTenMetres(sigma);
+  optimization::PoseGraphEdge high = low;
+  low.measurement.x -= 0.05;
+  high.measurement.x += 0.05;
+  dataset.optimum = {Pose2(), Pose2(10., 0., 0.)};
+  dataset.right_edges =
+      optimization::Whiten(std::vector<optimization::PoseGraphEdge>{low, high});
+  // chi2 is 0.005, its redundancy three, and the sigma of the mean 1 / sqrt(2).
+  EXPECT_NEAR(DeviationFromOptimum(dataset, {Pose2(), Pose2(10.1, 0., 0.)}),
+              0.1 / (std::sqrt(0.5) * std::sqrt(0.005 / 3.)), 1e-6);
+  dataset.right_edges.clear();
+  EXPECT_FALSE(std::isfinite(DeviationFromOptimum(dataset, dataset.optimum)));
 }
 
 }  // namespace
