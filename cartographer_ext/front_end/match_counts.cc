@@ -26,10 +26,10 @@ void MatchCounts::Add(const MatchRecord& record) {
   if (IsOdometryFault(record)) ++odometry_faults;
   if (record.odometry() == MatchRecord::SLIP_SUSPECTED) ++slip_suspected;
   time_offset = record.time_offset();
-  way_scale = record.way_scale();
-  way_scale_sigma = record.way_scale_sigma();
-  turn_scale = record.turn_scale();
-  turn_per_metre = record.turn_per_metre();
+  odometry_scale = record.odometry_scale();
+  odometry_scale_sigma = record.odometry_scale_sigma();
+  rotation_scale = record.rotation_scale();
+  rotation_per_metre = record.rotation_per_metre();
 }
 
 std::string ToText(const MatchCounts& counts) {
@@ -39,8 +39,8 @@ std::string ToText(const MatchCounts& counts) {
       counts.scans,
       100. * static_cast<double>(counts.degenerate) /
           static_cast<double>(std::max<int64_t>(1, counts.scans)),
-      counts.searched, counts.odometry_faults, counts.way_scale,
-      counts.way_scale_sigma, counts.time_offset);
+      counts.searched, counts.odometry_faults, counts.odometry_scale,
+      counts.odometry_scale_sigma, counts.time_offset);
 }
 
 }  // namespace front_end

@@ -24,10 +24,10 @@ struct MatchCounts {
   int64_t slip_suspected = 0;
   // Of the last scan: seconds, and the calibration of odometry.
   double time_offset = 0.;
-  double way_scale = 0.;
-  double way_scale_sigma = 0.;
-  double turn_scale = 0.;
-  double turn_per_metre = 0.;  // radians
+  double odometry_scale = 0.;
+  double odometry_scale_sigma = 0.;
+  double rotation_scale = 0.;
+  double rotation_per_metre = 0.;  // radians
 
   void Add(const proto::MatchRecord& record);
 };

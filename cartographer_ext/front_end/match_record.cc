@@ -24,8 +24,8 @@ constexpr char kHead[] =
     "long_axis_degrees,sigma_theta_degrees,degeneracy,weak_direction_degrees,"
     "information_ratio,disagreement_x,disagreement_y,"
     "disagreement_theta_degrees,chi_square,odometry,source,searched,score,"
-    "time_offset,interval,way_scale,way_scale_sigma,turn_scale,"
-    "turn_scale_sigma,turn_per_metre_degrees,turn_per_metre_sigma_degrees\n";
+    "time_offset,interval,odometry_scale,odometry_scale_sigma,rotation_scale,"
+    "rotation_scale_sigma,rotation_per_metre_degrees,rotation_per_metre_sigma_degrees\n";
 
 MatchRecord::Degeneracy ToProto(const DegeneracyState state) {
   switch (state) {
@@ -131,12 +131,12 @@ void SetPrediction(const PredictionSource source, const OdometryState state,
 
 void SetCalibration(const OdometryCalibration& calibration,
                     MatchRecord* const record) {
-  record->set_way_scale(calibration.translation_scale());
-  record->set_way_scale_sigma(calibration.translation_scale_sigma());
-  record->set_turn_scale(calibration.rotation_scale());
-  record->set_turn_scale_sigma(calibration.rotation_scale_sigma());
-  record->set_turn_per_metre(calibration.rotation_per_metre());
-  record->set_turn_per_metre_sigma(calibration.rotation_per_metre_sigma());
+  record->set_odometry_scale(calibration.translation_scale());
+  record->set_odometry_scale_sigma(calibration.translation_scale_sigma());
+  record->set_rotation_scale(calibration.rotation_scale());
+  record->set_rotation_scale_sigma(calibration.rotation_scale_sigma());
+  record->set_rotation_per_metre(calibration.rotation_per_metre());
+  record->set_rotation_per_metre_sigma(calibration.rotation_per_metre_sigma());
 }
 
 Eigen::Matrix3d Covariance(const MatchRecord& record) {
@@ -188,10 +188,10 @@ std::string RecordCsvRows(const std::vector<MatchRecord>& records) {
         record.searched() ? 1 : 0, record.score(), record.time_offset(),
         record.interval());
     absl::StrAppendFormat(&rows, "%.6f,%.6f,%.6f,%.6f,%.5f,%.5f\n",
-                          record.way_scale(), record.way_scale_sigma(),
-                          record.turn_scale(), record.turn_scale_sigma(),
-                          RadToDeg(record.turn_per_metre()),
-                          RadToDeg(record.turn_per_metre_sigma()));
+                          record.odometry_scale(), record.odometry_scale_sigma(),
+                          record.rotation_scale(), record.rotation_scale_sigma(),
+                          RadToDeg(record.rotation_per_metre()),
+                          RadToDeg(record.rotation_per_metre_sigma()));
   }
   return rows;
 }

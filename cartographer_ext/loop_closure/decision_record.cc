@@ -23,7 +23,7 @@ LoopDecision::Temporal::Outcome ToProto(const TemporalOutcome outcome) {
     case TemporalOutcome::kPathUnknown:
       break;
   }
-  return LoopDecision::Temporal::UNKNOWN_WAY;
+  return LoopDecision::Temporal::PATH_UNKNOWN;
 }
 
 void ToProto(const MixtureDescription& from,

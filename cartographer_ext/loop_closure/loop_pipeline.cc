@@ -187,7 +187,7 @@ void LoopPipeline::ForgetLoops(const int trajectory_id,
                candidate.node.node_index <= last_node_index &&
                !candidate.plan.full_submap;
       },
-      LoopDecision::OUT_OF_DATE);
+      LoopDecision::STALE);
   consensus_.ForgetAccepted(trajectory_id, submap_trajectory_id,
                             last_node_index);
 }

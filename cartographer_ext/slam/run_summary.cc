@@ -105,10 +105,10 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
                           {"odometry_faults", counts.odometry_faults},
                           {"slip_suspected", counts.slip_suspected},
                           {"time_offset", counts.time_offset},
-                          {"way_scale", counts.way_scale},
-                          {"way_scale_sigma", counts.way_scale_sigma},
-                          {"turn_scale", counts.turn_scale},
-                          {"turn_per_metre", counts.turn_per_metre}};
+                          {"odometry_scale", counts.odometry_scale},
+                          {"odometry_scale_sigma", counts.odometry_scale_sigma},
+                          {"rotation_scale", counts.rotation_scale},
+                          {"rotation_per_metre", counts.rotation_per_metre}};
   }
   if (!run.decisions.empty()) {
     const DecisionCounts counts = CountDecisions(run.decisions);

@@ -125,10 +125,10 @@ TEST(MatchRecordTest, Csv) {
   EXPECT_EQ(cell("odometry"), "slipping");
   EXPECT_EQ(cell("source"), "odometry");
   EXPECT_EQ(cell("score"), "0.6250");
-  EXPECT_EQ(cell("way_scale"), "1.020000");
-  EXPECT_EQ(cell("way_scale_sigma"), "0.020000");
-  EXPECT_EQ(cell("turn_scale"), "1.000000");
-  EXPECT_EQ(cell("turn_per_metre_degrees"), "1.00000");
+  EXPECT_EQ(cell("odometry_scale"), "1.020000");
+  EXPECT_EQ(cell("odometry_scale_sigma"), "0.020000");
+  EXPECT_EQ(cell("rotation_scale"), "1.000000");
+  EXPECT_EQ(cell("rotation_per_metre_degrees"), "1.00000");
 }
 
 TEST(MatchRecordTest, EveryStateHasItsName) {

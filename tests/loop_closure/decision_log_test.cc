@@ -138,9 +138,10 @@ TEST(DecisionLogTest, TableHasOneLineForEachCandidate) {
 
 TEST(DecisionLogTest, WithoutATemporalScoreTheCellIsEmpty) {
   LoopDecision decision = Example(1);
-  decision.mutable_temporal()->set_outcome(LoopDecision::Temporal::UNKNOWN_WAY);
+  decision.mutable_temporal()->set_outcome(
+      LoopDecision::Temporal::PATH_UNKNOWN);
   auto row = Row(DecisionCsv({decision}), 1);
-  EXPECT_EQ(row["temporal_outcome"], "unknown_way");
+  EXPECT_EQ(row["temporal_outcome"], "path_unknown");
   EXPECT_EQ(row["temporal_score"], "");
   decision.set_reason(static_cast<LoopDecision::Reason>(1000));
   EXPECT_EQ(Row(DecisionCsv({decision}), 1)["reason"], "1000");

@@ -251,7 +251,7 @@ TEST_F(LoopPipelineTest, WithoutHistoryTheOthersDecide) {
   ASSERT_EQ(outcomes.size(), 2u);
   EXPECT_TRUE(outcomes[0].is_accepted());
   EXPECT_EQ(Record(outcomes[0]).temporal().outcome(),
-            LoopDecision::Temporal::UNKNOWN_WAY);
+            LoopDecision::Temporal::PATH_UNKNOWN);
   EXPECT_EQ(Record(outcomes[0]).fusion().final_score(), 0.5);
   EXPECT_GT(Record(outcomes[0]).fusion().true_loops().mean_temporal(),
             Record(outcomes[0]).fusion().false_loops().mean_temporal());
@@ -424,7 +424,7 @@ TEST_F(LoopPipelineTest, UnpredictedLoopsOfAnotherRunNeedMorePlaces) {
   pipeline_->ForgetLoops(1, 0, 60);
   const std::vector<LoopCandidate> rejected = pipeline_->Decide();
   ASSERT_EQ(rejected.size(), 1u);
-  EXPECT_EQ(Record(rejected[0]).reason(), LoopDecision::OUT_OF_DATE);
+  EXPECT_EQ(Record(rejected[0]).reason(), LoopDecision::STALE);
   EXPECT_EQ(rejected[0].node.node_index, 55);
 }
 

@@ -94,8 +94,8 @@ TEST(MatchFilesTest, Counts) {
   records[3].set_odometry(MatchRecord::JUMPING);
   records[4].set_odometry(MatchRecord::SLIP_SUSPECTED);
   records[4].set_time_offset(0.08);
-  records[4].set_way_scale(0.98);
-  records[4].set_turn_per_metre(0.01);
+  records[4].set_odometry_scale(0.98);
+  records[4].set_rotation_per_metre(0.01);
   const MatchCounts counts = CountMatches(records);
   EXPECT_EQ(counts.scans, 5);
   EXPECT_EQ(counts.degenerate, 1);
@@ -104,8 +104,8 @@ TEST(MatchFilesTest, Counts) {
   EXPECT_EQ(counts.odometry_faults, 1);
   EXPECT_EQ(counts.slip_suspected, 1);
   EXPECT_EQ(counts.time_offset, 0.08);
-  EXPECT_EQ(counts.way_scale, 0.98);
-  EXPECT_EQ(counts.turn_per_metre, 0.01);
+  EXPECT_EQ(counts.odometry_scale, 0.98);
+  EXPECT_EQ(counts.rotation_per_metre, 0.01);
 }
 
 }  // namespace

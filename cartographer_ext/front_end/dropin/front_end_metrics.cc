@@ -92,7 +92,7 @@ void CountMatch(const MatchRecord& record) {
   }
   handles->scores->Observe(record.score());
   handles->time_offset->Set(record.time_offset());
-  handles->odometry_scale->Set(record.way_scale());
+  handles->odometry_scale->Set(record.odometry_scale());
 }
 
 }  // namespace front_end
