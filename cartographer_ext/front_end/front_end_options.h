@@ -41,6 +41,7 @@ struct LocalSearchOptions {
   double max_angular_window = 0.7;
 };
 
+// The options of local SLAM.
 struct FrontEndOptions {
   MotionPredictorOptions prediction;
   // After a gap in the scans over which odometry is missing, too, scans are

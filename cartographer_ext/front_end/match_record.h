@@ -22,12 +22,16 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Sets the pose (local <- tracking) after matching.
 void SetPose(const Pose2& pose, proto::MatchRecord* record);
+// Sets covariance, degeneracy and disagreement of a match.
 void SetReport(const scan_matching::MatchReport& report,
                proto::MatchRecord* record);
+// Sets the source of the prediction and the state of odometry.
 void SetPrediction(PredictionSource source, OdometryState state,
                    proto::MatchRecord* record);
 
+// Sets the calibration of the odometry.
 void SetCalibration(const OdometryCalibration& calibration,
                     proto::MatchRecord* record);
 

@@ -18,6 +18,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Records of matched scans, see above. Thread-safe.
 class MatchRecorder {
  public:
   // Drops all records and keeps up to `capacity` from now on; later ones are

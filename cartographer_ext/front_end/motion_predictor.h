@@ -41,6 +41,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Options of the sources of a prediction.
 struct MotionPredictorOptions {
   bool use_odometry = true;
   OdometryNoiseOptions odometry;
@@ -52,8 +53,10 @@ struct MotionPredictorOptions {
   ImuPredictorOptions imu;
 };
 
+// The main source of a prediction.
 enum class PredictionSource { kNothing, kConstantVelocity, kOdometry, kImu };
 
+// The predicted motion between two scans.
 struct MotionPrediction {
   PredictionSource source = PredictionSource::kNothing;
   Pose2 motion;  // (robot at the last scan <- robot now)
@@ -96,6 +99,7 @@ struct MatchInnovation {
   double prediction_variance = 0.;
 };
 
+// Predicts the motion between scans, see above. Not thread-safe.
 class MotionPredictor {
  public:
   explicit MotionPredictor(const MotionPredictorOptions& options);

@@ -26,6 +26,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Noise of the velocity.
 struct ConstantVelocityOptions {
   // Upper bounds of the change between two scans, whatever the time between
   // them: robots in buildings drive about 1 m/s.
@@ -40,6 +41,7 @@ struct ConstantVelocityOptions {
   double max_time = 0.6;  // seconds
 };
 
+// Filters the velocity, see above. Not thread-safe.
 class VelocityFilter {
  public:
   // Standard deviations of a pose, metres and radians, > 0.

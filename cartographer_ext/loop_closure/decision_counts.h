@@ -11,13 +11,13 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// What became of loop candidates.
+// Outcomes of loop candidates.
 struct DecisionCounts {
   int64_t accepted = 0;
   int64_t rejected = 0;   // matched, but rejected
-  int64_t not_found = 0;  // searched, nothing good enough there
+  int64_t not_found = 0;  // searched without a match
   int64_t undecided = 0;
-  int64_t skipped = 0;  // never searched
+  int64_t skipped = 0;  // not searched
 
   void Add(const proto::LoopDecision& decision);
 };

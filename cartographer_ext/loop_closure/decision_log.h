@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Decision records as bytes and as a table. The bytes are length-delimited
-// messages one after the other (a varint length, then the message), which any
-// protobuf library reads; the table is CSV with a head line, one candidate a
-// line, empty cells where a stage did not run. docs/side_files.md has the
-// columns; times are Unix seconds.
+// Decision records as bytes and as a table. The bytes are a sequence of
+// length-delimited messages (a varint length, then the message), which any
+// protobuf library can read; the table is CSV with a header line, one candidate
+// per line, and empty cells for stages that did not run. docs/side_files.md has
+// the columns; times are Unix seconds.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_LOG_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_LOG_H_
 
@@ -22,12 +22,12 @@ namespace loop_closure {
 // Appends one record.
 void AppendDecision(const proto::LoopDecision& decision, std::string* bytes);
 
-// All records; DataLoss with the byte offset where they end in the middle of a
-// record or do not decode.
+// Parses all records; DataLoss with the byte offset if they are truncated or
+// cannot be decoded.
 absl::StatusOr<std::vector<proto::LoopDecision>> ParseDecisions(
     absl::string_view bytes);
 
-// The first line of the table, and the others.
+// The header line of the table, and the others.
 absl::string_view DecisionCsvHead();
 std::string DecisionCsvRows(const std::vector<proto::LoopDecision>& decisions);
 std::string DecisionCsv(const std::vector<proto::LoopDecision>& decisions);

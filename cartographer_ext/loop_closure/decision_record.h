@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The record of a candidate for the decision log: what each stage found out,
+// The record of a candidate for the decision log: the results of each stage,
 // the verdict and its reason. Poses in the record are those of the tracking
 // frame.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORD_H_

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Collects the records of loop decisions: a part of PoseGraphContext, by which
-// a program reaches what the constraint builder deep inside the host decides.
-// It keeps nothing until it is started. Thread-safe.
+// Collects the records of loop decisions: a part of PoseGraphContext, through
+// which a program can access the decisions of the constraint builder inside the
+// host. Keeps nothing until it is started. Thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 
@@ -20,28 +20,29 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Records of decisions, see above. Thread-safe.
 class DecisionRecorder {
  public:
   using Decisions = std::vector<proto::LoopDecision>;
 
-  // Forgets everything and keeps up to `capacity` records from now on; later
-  // ones are only counted.
+  // Drops all records and keeps up to `capacity` from now on; further ones are
+  // only counted.
   void Start(size_t capacity) ABSL_LOCKS_EXCLUDED(mutex_);
   void Stop() ABSL_LOCKS_EXCLUDED(mutex_);
   bool started() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   void Record(const Decisions& decisions) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Registers a source of candidates that wait for a decision. `undecided` is
-  // called without any lock of the recorder held. Returns a number for
-  // `RemovePending`, after which it is not called any more.
+  // Registers a source of undecided candidates. `undecided` is called without
+  // holding any lock of the recorder. Returns a number for `RemovePending`,
+  // after which it is no longer called.
   int64_t AddPending(std::function<Decisions()> undecided)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void RemovePending(int64_t id) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // All records in the order of their verdicts, and behind them what is
-  // undecided now.
+  // All records in the order of their verdicts, followed by the currently
+  // undecided ones.
   Decisions All() const ABSL_LOCKS_EXCLUDED(mutex_);
-  // Records beyond the capacity.
+  // Number of records beyond the capacity.
   int64_t num_dropped() const ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:

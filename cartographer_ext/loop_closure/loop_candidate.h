@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A pair of a submap and a node that might be a loop, from the proposal to the
-// verdict. Each stage of loop closure adds its result; what a stage did not
-// reach stays empty. Nothing here needs the host.
+// verdict. Each stage of loop closure adds its result; results of stages that
+// were not reached are empty. Independent of the host.
 //
 // Poses are (submap <- node) of the host's node frame, which is aligned with
-// gravity and does not turn with the robot. `InTrackingFrame` converts them for
-// everything that concerns motion: paths, scans of several nodes, records.
+// gravity and does not rotate with the robot. `InTrackingFrame` converts them
+// for everything that concerns motion: paths, scans of several nodes, records.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_CANDIDATE_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_CANDIDATE_H_
 
@@ -31,13 +31,14 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Result of the consensus stage.
 struct ConsensusResult {
   SubsetDecision decision;
-  int num_tests = 0;   // decisions of the subset while the candidate waited
-  bool exact = false;  // the largest subset was proven
+  int num_tests = 0;   // tests by the subset while the candidate was buffered
+  bool exact = false;  // the subset is proven to be the largest
 };
 
-// CPU seconds of each stage, where the option log.times asks for them.
+// CPU seconds of each stage, with the option log.times only.
 struct StageTimes {
   double search = 0.;
   double refinement = 0.;  // with the information of the match
@@ -46,6 +47,7 @@ struct StageTimes {
   double consensus = 0.;
 };
 
+// A loop candidate, see above.
 struct LoopCandidate {
   using Reason = proto::LoopDecision::Reason;
   using Verdict = proto::LoopDecision::Verdict;
@@ -56,29 +58,29 @@ struct LoopCandidate {
   uncertainty::NodeId node;
   int64_t node_time = 0;    // host ticks
   Pose2 submap_local_pose;  // (local frame of its trajectory <- submap)
-  double submap_age = 0.;   // seconds or nodes, as the option age_unit says
+  double submap_age = 0.;   // seconds or nodes, by the option age_unit
   // A node of the submap, or the submap itself, from which paths lead to the
   // node.
   absl::optional<uncertainty::VertexId> anchor;
-  // The nodes that may have been inserted in the submap, of its trajectory;
-  // empty where they are not known.
+  // The nodes of its trajectory that may have been inserted into the submap;
+  // empty if unknown.
   int first_submap_node = 0;
   int last_submap_node = -1;
-  // (submap <- node); none where the whole submap is to be searched.
+  // (submap <- node); none if the whole submap is to be searched.
   absl::optional<Pose2> predicted;
   // (gravity-aligned <- tracking frame) of the node, a rotation.
   Pose2 aligned_from_tracking;
-  // Found by relocalisation, without a prediction, or not to be believed for
-  // its prediction.
+  // Found by relocalisation: without a prediction, or with one that is not
+  // trusted.
   bool relocalized = false;
-  // The path to older nodes of the trajectory is not to be believed.
+  // The path to nodes of the trajectory before this one is not trusted.
   int first_node_index = 0;
 
   // --- Candidate search. ---
   SearchPlan plan;
   SearchMatch match;
-  // The submap first, then its neighbours, with what keeps them alive; needed
-  // during verification only.
+  // The submap first, then its neighbours, with ownership; needed during
+  // verification only.
   std::vector<ReferenceMap> maps;
   std::vector<std::shared_ptr<const OccupancyView>> views;
 
@@ -88,8 +90,8 @@ struct LoopCandidate {
 
   // --- Information of the constraint, where verification was passed. ---
   absl::optional<ConstraintWeights> weights;
-  // The same as a full matrix, frame of the submap; zero unless it is asked for
-  // and known.
+  // The same as a full matrix, frame of the submap; zero unless requested and
+  // known.
   Eigen::Matrix3d full_information = Eigen::Matrix3d::Zero();
 
   // --- Consensus. ---
@@ -116,9 +118,9 @@ struct LoopCandidate {
     reason = why;
   }
 
-  // Where windows are centred, (submap <- node): at the prediction; without one
-  // (the host predicts the place of a node in some submaps of a map and not in
-  // others) at the origin of the submap.
+  // Centre of search windows, (submap <- node): the prediction; without one
+  // (the host predicts a node in some submaps of a map only) the origin of the
+  // submap.
   Pose2 SearchCenter() const {
     return predicted.has_value() ? *predicted : Pose2();
   }
@@ -135,7 +137,7 @@ struct LoopCandidate {
     return Between(anchor_local_pose, submap_local_pose) *
            RefinedInTrackingFrame();
   }
-  // S_final where scores were fused, otherwise S_g.
+  // S_final if scores were fused, otherwise S_g.
   double FinalScore() const {
     return fusion.has_value() ? fusion->final_score : match.score;
   }

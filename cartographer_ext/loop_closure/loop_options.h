@@ -27,27 +27,29 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// S_t: which nodes are compared, and how.
+// Temporal score S_t: which nodes are compared, and how.
 struct TemporalStageOptions {
   bool enabled = true;
   VariableWindowOptions window;
-  // Travelled from one node that is compared to the next, metres, >= 0. Where
-  // nodes lie closer, more of the path is seen with the same number.
+  // Path length between compared nodes, metres, >= 0. If nodes are closer, this
+  // covers a longer path with the same number of comparisons.
   double spacing = 0.5;
-  // Of each trajectory, about 1500 bytes each; the paths between nodes are kept
-  // as long: some 5 km of driving.
+  // Per trajectory, about 1500 bytes each; the paths between nodes are kept as
+  // long: about 5 km of driving.
   int max_history_nodes = 20000;
-  // Submaps on each side that continue the reference where the path leaves the
-  // submap: two overlap at any place.
+  // Submaps on each side that extend the reference where the path leaves the
+  // submap; two overlap at any place.
   int num_neighbours = 2;
   TemporalVerificationOptions comparison;
 };
 
+// How grid score and temporal score are fused.
 enum class FusionMode {
   kAsPrinted,        // C eq. 5 to 7
   kLikelihoodRatio,  // the probability that the loop is true
 };
 
+// Options of score fusion.
 struct FusionStageOptions {
   bool enabled = true;
   FusionMode mode = FusionMode::kLikelihoodRatio;
@@ -57,9 +59,10 @@ struct FusionStageOptions {
   LoopMixtureOptions mixture;  // kLikelihoodRatio
 };
 
+// The options of loop closure.
 struct LoopOptions {
   SearchPlannerOptions search;
-  TypicalFitOptions typical_fit;  // without effect where `search` is off
+  TypicalFitOptions typical_fit;  // without effect if `search` is off
   TemporalStageOptions temporal;
   DynamicThresholdOptions threshold;
   FusionStageOptions fusion;
@@ -68,16 +71,16 @@ struct LoopOptions {
   CompatibleSubsetOptions compatible_subset;
   RelocalizationOptions relocalization;
   uncertainty::PathNoiseOptions path_noise;
-  // Standard deviation of a loop itself: a cell of 5 cm, and what that is over
-  // a few metres. Metres and radians, > 0.
+  // Standard deviation of a loop itself: a cell of 5 cm, and the corresponding
+  // angle over a few metres. Metres and radians, > 0.
   double loop_translation = 0.05;
   double loop_rotation = 0.01;
-  // What is kept of the search structures of submaps, bytes; the others are
-  // built again when they are needed.
+  // Limit of the cached search structures of submaps, bytes; others are rebuilt
+  // when they are needed.
   size_t max_cache_bytes = size_t{32} << 20;
-  // Whether matches are tested for other poses along what the scan determines
-  // least (dropin/slide_test.h), and the least log-odds: about 3 to 1. Not in
-  // paper modes and where scores are not fused.
+  // Whether matches are tested against other poses along the least observable
+  // direction (dropin/slide_test.h), and the smallest log-odds: about 3 to 1.
+  // Not in paper modes and not without score fusion.
   bool slide_test = true;
   double min_slide_odds = 1.;
   // Records with the CPU time of each stage differ from run to run.
@@ -86,10 +89,10 @@ struct LoopOptions {
   std::string log_directory;
 };
 
-// Of the Lua block.
+// Converts the options of the Lua block.
 LoopOptions ToLoopOptions(const proto::LoopClosureOptions& message);
 
-// Of a loop itself; (metres, metres, radians) squared.
+// Covariance of a loop itself; (metres, metres, radians) squared.
 Eigen::Matrix3d LoopCovariance(const LoopOptions& options);
 
 }  // namespace loop_closure

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// From a pair of a submap and a node to a loop constraint, or to the reason why
-// it is none. A candidate passes these stages, each of which can be off and
-// adds its result to the candidate (loop_candidate.h):
+// From a pair of a submap and a node to a loop constraint, or to the reason for
+// its rejection. A candidate passes through these stages, each of which can be
+// disabled and adds its result to the candidate (loop_candidate.h):
 //
 //   stage              question                                      papers
 //   candidate_search/  Is the pair worth a search, and how wide?     -
@@ -21,9 +21,9 @@
 // optimisation (2024); third_party_notes/ lists where we deviate from them.
 // LoopPipeline::Process is the table as code.
 //
-// Planning and the stages after the search remember the candidates before, so
-// they see them one by one, in the order of the proposals; only the searches
-// run in parallel (dropin/loop_closure_2d.h).
+// Planning and the stages after the search depend on previous candidates, so
+// they process them one by one, in the order of the proposals; only the
+// searches run in parallel (dropin/loop_closure_2d.h).
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_PIPELINE_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_LOOP_PIPELINE_H_
 
@@ -45,7 +45,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// Not thread-safe.
+// The stages of loop closure. Not thread-safe.
 class LoopPipeline {
  public:
   // `stock_weights`: of a constraint with the reference score.
@@ -55,20 +55,21 @@ class LoopPipeline {
   LoopPipeline(const LoopPipeline&) = delete;
   LoopPipeline& operator=(const LoopPipeline&) = delete;
 
-  // For every node proposed, before any sampler. True when it was new.
+  // To be called for every proposed node, before any sampler. Returns whether
+  // it is new.
   bool AddNode(int trajectory_id, HistoryNode node);
   // For every submap proposed; the order of the calls does not matter.
   void AddSubmap(const uncertainty::SubmapId& submap, const Pose2& local_pose);
   bool HasNode(const uncertainty::NodeId& node) const;
-  // How `AddNode` wants scans described (DescribeScan).
+  // The options for describing the scans passed to `AddNode` (DescribeScan).
   const TemporalVerificationOptions& temporal_options() const {
     return scores_.temporal_options();
   }
   const uncertainty::PathUncertainty& paths() const { return paths_; }
 
-  // The next candidate after the search, also one that was skipped or not
-  // matched. It is numbered and ends, now or later, in exactly one result of
-  // `Decide` or `Flush`.
+  // Processes the next candidate after the search, including skipped and
+  // unmatched ones. It is numbered and will be in exactly one result of
+  // `Decide` or `Flush`, now or later.
   void Process(LoopCandidate candidate);
 
   // Candidates that were accepted or rejected since the last call, in the order
@@ -76,24 +77,24 @@ class LoopPipeline {
   std::vector<LoopCandidate> Decide();
   std::vector<LoopCandidate> Flush();
 
-  // What waits and why, in the order of the numbers: for other loops, or for
-  // evidence that local SLAM drifts more than is known.
+  // The undecided candidates with their reasons, in the order of their numbers:
+  // they wait for other loops, or for evidence of a larger drift of local SLAM.
   std::vector<LoopCandidate> Undecided() const;
   int num_undecided() const {
     return consensus_.num_undecided() + static_cast<int>(vetoed_.size());
   }
   const DriftLearner& drift() const { return drift_; }
 
-  // Loops of nodes of a trajectory up to an index with submaps of another one
-  // no longer count: the trajectory was lost in between. Undecided ones with a
-  // prediction are rejected.
+  // Drops the loops between nodes of a trajectory up to an index and submaps of
+  // another one, because the trajectory was lost in between. Undecided ones
+  // with a prediction are rejected.
   void ForgetLoops(int trajectory_id, int submap_trajectory_id,
                    int last_node_index);
   // Rejects what is undecided or not yet returned for a submap that the pose
   // graph deletes, or for nodes of a trajectory up to an index.
   void DeleteSubmap(const uncertainty::SubmapId& submap);
   void DeleteNodes(int trajectory_id, int last_node_index);
-  // Frees what is remembered of a trajectory that the pose graph has deleted.
+  // Frees the data of a trajectory that the pose graph has deleted.
   void DeleteTrajectory(int trajectory_id);
 
  private:
@@ -101,22 +102,23 @@ class LoopPipeline {
   void RejectIf(const LoopConsensus::Condition& condition,
                 LoopCandidate::Reason reason);
   void Settle(std::vector<LoopCandidate> candidates);
-  // The innovation of a candidate that was verified, and what follows.
+  // Tests the innovation of a verified candidate, with its consequences.
   void Veto(LoopCandidate candidate);
-  // What was learnt of the drift, with all that depends on it.
+  // Updates the drift estimate and everything that depends on it.
   void UpdateDrift();
   std::vector<LoopCandidate> TakeSettled();
 
   const LoopOptions options_;
   const ConstraintWeights stock_weights_;
   NodeHistory history_;
-  // Between nodes and between submaps.
+  // Paths between nodes and between submaps.
   uncertainty::PathUncertainty paths_;
   DriftLearner drift_;
   ScoreVerifier scores_;
   LoopConsensus consensus_;
   int64_t num_candidates_ = 0;
-  // Demand more drift than is known, in the order of their numbers.
+  // Candidates that require more drift than estimated, in the order of their
+  // numbers.
   std::deque<LoopCandidate> vetoed_;
   std::vector<LoopCandidate> settled_;
 };

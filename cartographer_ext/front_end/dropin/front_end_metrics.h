@@ -22,6 +22,7 @@ namespace front_end {
 void RegisterFrontEndMetrics(
     cartographer::metrics::FamilyFactory* family_factory);
 
+// Counts one matched scan.
 void CountMatch(const proto::MatchRecord& record);
 
 }  // namespace front_end

@@ -34,6 +34,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// The result of a match.
 struct LocalMatch {
   Pose2 pose;  // (local <- robot)
   scan_matching::MatchReport report;
@@ -44,6 +45,7 @@ struct LocalMatch {
   bool relocated = false;
 };
 
+// Matches scans with a grid, see above. Not thread-safe.
 class LocalMatcher {
  public:
   LocalMatcher(const LocalSearchOptions& options,

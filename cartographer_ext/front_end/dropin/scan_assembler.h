@@ -17,12 +17,14 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// The range data of one match in the gravity-aligned frame.
 struct AssembledScan {
   cartographer::sensor::RangeData range_data;
   // Additional returns that complete walls, for the grid only.
   cartographer::sensor::PointCloud filling;
 };
 
+// Assembles scans, see above. Not thread-safe.
 class ScanAssembler {
  public:
   ScanAssembler(

@@ -21,6 +21,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Noise of the readings and of the biases.
 struct ImuPredictorOptions {
   bool enabled = true;
   ImuNoiseOptions noise;
@@ -32,6 +33,7 @@ struct ImuPredictorOptions {
   double stationary_time = 1.;  // seconds
 };
 
+// A motion by the IMU.
 struct ImuMotion {
   Pose2 motion;  // (robot at `from` <- robot at `to`)
   // Of (x, y, theta) of the motion. Includes the biases, not the velocity at
@@ -40,6 +42,7 @@ struct ImuMotion {
   double speed_change = 0.;  // forwards, m/s
 };
 
+// Predicts from an IMU, see above. Not thread-safe.
 class ImuPredictor {
  public:
   explicit ImuPredictor(const ImuPredictorOptions& options);

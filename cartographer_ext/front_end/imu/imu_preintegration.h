@@ -41,6 +41,7 @@ struct ImuNoiseOptions {
   double yaw_rate_density = 0.001;     // rad/s / sqrt(Hz), >= 0
 };
 
+// Biases that are subtracted from the readings.
 struct ImuBias {
   Eigen::Vector2d acceleration = Eigen::Vector2d::Zero();  // m/s^2
   double yaw_rate = 0.;                                    // rad/s
@@ -48,6 +49,7 @@ struct ImuBias {
 
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
+// The integrals over an interval, in the frame of its start.
 struct PreintegratedImu {
   double duration = 0.;                             // seconds
   Eigen::Vector2d alpha = Eigen::Vector2d::Zero();  // metres, eq. 7
@@ -57,6 +59,7 @@ struct PreintegratedImu {
   Matrix5d covariance = Matrix5d::Zero();
 };
 
+// Integrates readings, see above. Not thread-safe.
 class ImuPreintegrator {
  public:
   ImuPreintegrator(const ImuNoiseOptions& noise, const ImuBias& bias);
@@ -80,6 +83,7 @@ PlanarImuReading InterpolateReading(const PlanarImuReading& first,
                                     const PlanarImuReading& second,
                                     double time);
 
+// Pose and velocity of the robot.
 struct PlanarState {
   Pose2 pose;                                          // (world <- robot)
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  // world frame, m/s

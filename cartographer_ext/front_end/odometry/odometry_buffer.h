@@ -19,6 +19,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// The pose at one time.
 struct OdometrySample {
   Pose2 pose;  // (odometry <- robot)
   // Seconds from `time` to the nearest reading if it is before the first or
@@ -28,6 +29,7 @@ struct OdometrySample {
   bool frozen = false;
 };
 
+// The buffer, see above. Not thread-safe.
 class OdometryBuffer {
  public:
   // Keeps the readings of the last `seconds`, and `max_readings` at most: of

@@ -121,6 +121,7 @@ struct CalibrationInterval {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
+// Calibrates odometry online, see above. Not thread-safe.
 class OdometryCalibration {
  public:
   explicit OdometryCalibration(const OdometryCalibrationOptions& options);

@@ -37,6 +37,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// State of odometry in an interval between two scans.
 enum class OdometryState {
   kOk,
   kAbsent,         // no readings, or none for this interval
@@ -51,6 +52,7 @@ enum class OdometryState {
 // for wrong, which it is in about one scan of a thousand.
 constexpr double kLogOddsOfOdometryFault = 7.;
 
+// Noise and thresholds of the comparison.
 struct OdometryCheckOptions {
   bool enabled = true;
   // Motions are also compared over this time. Longer detects weaker slip,
@@ -95,6 +97,7 @@ struct MotionComparison {
   std::function<double(const Pose2&)> evidence;
 };
 
+// Checks odometry against scan matching, see above. Not thread-safe.
 class OdometryMonitor {
  public:
   explicit OdometryMonitor(const OdometryCheckOptions& options);

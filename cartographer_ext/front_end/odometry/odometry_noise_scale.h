@@ -25,6 +25,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Prior and memory of the estimate.
 struct OdometryNoiseScaleOptions {
   double prior_samples = 50.;
   double memory = 500.;  // innovations after which one counts 1 / e
@@ -33,6 +34,7 @@ struct OdometryNoiseScaleOptions {
   double least = 0.5;
 };
 
+// Estimates the noise scale of odometry, see above. Not thread-safe.
 class OdometryNoiseScale {
  public:
   explicit OdometryNoiseScale(const OdometryNoiseScaleOptions& options)

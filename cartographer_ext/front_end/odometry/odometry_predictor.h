@@ -43,6 +43,7 @@ struct OdometryNoiseOptions {
   double max_extrapolation = 0.3;  // seconds
 };
 
+// A motion by odometry.
 struct OdometryMotion {
   Pose2 motion;  // (robot at `from` <- robot at `to`), corrected
   Pose2 raw;     // the same, not corrected
@@ -59,6 +60,7 @@ struct OdometryMotion {
 Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
                                    const Pose2& motion);
 
+// Predicts from odometry, see above. Not thread-safe.
 class OdometryPredictor {
  public:
   OdometryPredictor(const OdometryNoiseOptions& noise,

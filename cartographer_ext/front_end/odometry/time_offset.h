@@ -20,6 +20,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Candidates and evidence of the estimate.
 struct TimeOffsetOptions {
   bool estimate = true;
   double initial = 0.;  // seconds
@@ -35,6 +36,7 @@ struct TimeOffsetOptions {
   double evidence = 2.;       // logarithm of the likelihood ratio
 };
 
+// Estimates the clock offset, see above. Not thread-safe.
 class TimeOffsetEstimator {
  public:
   explicit TimeOffsetEstimator(const TimeOffsetOptions& options);

@@ -28,6 +28,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Neighbourhood and minimum number of features.
 struct AdaptiveFeatureOptions {
   int num_neighbors = 10;         // k, > 0; the point itself is not one of them
   bool distance_weighted = true;  // eq. 2 instead of eq. 1

@@ -14,6 +14,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Estimates the field of view from points. Not thread-safe.
 class FieldOfView {
  public:
   // A point relative to the laser, in a frame that moves with the robot. Points

@@ -20,6 +20,7 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Spacing of new points, and limits for a wall.
 struct WallFillingOptions {
   double spacing = 0.05;  // metres between the points of a filled wall, > 0
   // Wider gaps are left open, as doors are; metres.

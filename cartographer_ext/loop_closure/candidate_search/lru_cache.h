@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Keeps the values that were used last, up to a limit in bytes. What is dropped
-// lives on with whoever still holds it, and is made again when it is needed.
+// Least recently used cache with a limit in bytes. A dropped value remains
+// valid for its current users and is recreated when it is needed again.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_LRU_CACHE_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_LRU_CACHE_H_
 
@@ -15,13 +15,13 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// Not thread-safe.
+// The cache. Not thread-safe.
 template <typename Key, typename Value>
 class LruCache {
  public:
   explicit LruCache(const size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  // Null for a key that is not kept. Counts as a use.
+  // Null if the key is not cached. Counts as a use.
   std::shared_ptr<const Value> Find(const Key& key) {
     const auto it = places_.find(key);
     if (it == places_.end()) return nullptr;
@@ -29,8 +29,9 @@ class LruCache {
     return it->second->value;
   }
 
-  // Keeps the value as the last one used, and drops others, those used longest
-  // ago first, until the limit is met. A value above the limit is not kept.
+  // Adds the value as the most recently used one and drops the least recently
+  // used ones until the limit is met. A value larger than the limit is not
+  // kept.
   void Insert(const Key& key, std::shared_ptr<const Value> value,
               const size_t bytes) {
     Erase(key);

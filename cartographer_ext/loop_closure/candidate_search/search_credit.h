@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Bounds what wide searches cost, per node and over the whole run.
+// Bounds the cost of wide searches, per node and over the whole run.
 //
-// The cost of a search grows with its window: that of a whole submap takes a
-// hundred times as long as a window of a metre, and longest where nothing is
-// found. So wide searches are paid for with credit. Every node earns a little,
-// so that the cost per node stays flat however long the run; it is saved up to
-// a limit, for the place where it is needed; and where wide searches lead to
-// accepted loops, they earn more.
+// The cost of a search grows with its window: a whole submap takes a hundred
+// times as long as a window of a metre, and longest if there is no match. So
+// wide searches consume credit. Every node earns a little, so that the cost per
+// node does not grow with the length of the run; credit is accumulated up to a
+// limit, to be available where it is needed; and wide searches that lead to
+// accepted loops earn more.
 //
 // Depends on the sequence of calls only. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_CREDIT_H_
@@ -22,9 +22,10 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// What a search costs, in searches of a whole submap; 0 for a narrow one.
+// Cost of a search, in units of a search of a whole submap; 0 for a narrow one.
 double SearchWork(const SearchPlan& plan);
 
+// Credit for wide searches, see above.
 class SearchCredit {
  public:
   // In searches of whole submaps.
@@ -32,12 +33,12 @@ class SearchCredit {
   static constexpr double kMostCredit = 50.;
   static constexpr double kRewardFactor = 10.;
 
-  // A node that may be searched. Each earns once; nodes of a trajectory come in
-  // order.
+  // Adds a node that may be searched. Each earns once; nodes of a trajectory
+  // must be added in order.
   void AddNode(const uncertainty::NodeId& node);
-  // False without enough credit; nothing is paid then.
+  // Returns false, without paying, if there is not enough credit.
   bool Pay(const SearchPlan& plan);
-  // A search that was paid for led to an accepted loop.
+  // Called when a paid search has led to an accepted loop.
   void Reward(const SearchPlan& plan);
 
   double credit() const { return credit_; }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which candidates are searched for a loop, and how widely around the
+// Selects the candidates that are searched, and their windows around the
 // prediction.
 //
 //   window     `window_sigmas` standard deviations of the least uncertain path
@@ -18,8 +18,8 @@
 //              overlap; wide windows only while there is credit for them
 //              (search_credit.h).
 //
-// The plans depend on what was proposed and decided before, in this order, and
-// on nothing else. Not thread-safe.
+// The plans depend only on the sequence of previous proposals and decisions.
+// Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_PLANNER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_PLANNER_H_
 
@@ -40,43 +40,46 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Windows and limits of searches.
 struct SearchPlannerOptions {
   // Otherwise Cartographer's sampler and its fixed window.
   bool enabled = true;
   int max_searches_per_node = 8;  // > 0
   // Half width of the window in standard deviations of the prediction, > 0.
-  // The prediction errs by more once in a hundred times, and the next node
-  // tries again.
+  // About one prediction in a hundred has a larger error; then the next node is
+  // searched.
   double window_sigmas = 3.;
-  // The window never gets smaller, for errors that the model of the path does
-  // not have. Metres and radians (10 degrees), > 0.
+  // Smallest window, for errors that the model of the path does not include.
+  // Metres and radians (10 degrees), > 0.
   double min_linear_window = 1.;
   double min_angular_window = 0.17;
-  // Beyond this the whole submap is searched, if that is allowed. Metres, > 0.
+  // Largest window; beyond it the whole submap is searched, if enabled. Metres,
+  // > 0.
   double max_linear_window = 15.;
   bool global_search = true;
-  // The same submap is searched again after so many metres or seconds, after an
-  // accepted loop. 0 metres: at once. A second loop of the same revisit adds
-  // little. Time counts so that a place visited twice without going far is
-  // closed twice.
+  // After an accepted loop the same submap is searched again after this
+  // distance or time; 0 metres: immediately. A second loop of the same revisit
+  // adds little. The time limit ensures that a place revisited after a short
+  // path is closed again.
   double redundant_distance = 2.;
   double redundant_time = 10.;
-  // The same in metres after any search, in a window and in a whole submap,
+  // The same distance after any search, in a window and in a whole submap,
   // which costs a hundred times as much. Half a metre is the spacing of the
   // nodes that temporal verification compares.
   double search_spacing = 0.5;
   double full_search_spacing = 3.;
-  // Metres. Where the path to the submap is less uncertain, a loop, which is as
-  // uncertain itself, would add nothing.
+  // Metres. If the path to the submap is less uncertain than this, a loop would
+  // not add information.
   double informative_sigma = 0.05;
 };
 
+// Plans the searches of candidates, see above.
 class SearchPlanner {
  public:
-  // `loop_covariance`: of a loop itself. `reach`: how far a node may be from
-  // the origin of a submap that it sees, metres. `default_linear_window`,
-  // `default_angular_window`: where no uncertainty is known. `paths` has to
-  // outlive this and to know the nodes.
+  // `loop_covariance`: of a loop itself. `reach`: maximum distance of a node
+  // from the origin of a submap that it sees, metres. `default_linear_window`,
+  // `default_angular_window`: used if the uncertainty is unknown. `paths` must
+  // outlive this object and contain the nodes.
   SearchPlanner(const SearchPlannerOptions& options,
                 const Eigen::Matrix3d& loop_covariance, double reach,
                 double default_linear_window, double default_angular_window,
@@ -85,16 +88,16 @@ class SearchPlanner {
   SearchPlanner(const SearchPlanner&) = delete;
   SearchPlanner& operator=(const SearchPlanner&) = delete;
 
-  // One plan for each candidate, in their order. Candidates of one node have to
-  // come in one call for the cap to count them together.
+  // Returns one plan per candidate, in their order. Candidates of one node must
+  // be passed in one call, so that the limit per node applies to all of them.
   std::vector<SearchPlan> Plan(
       const std::vector<const LoopCandidate*>& candidates);
 
   // (anchor <- node) of a candidate that was accepted.
   void AddAcceptedLoop(const LoopCandidate& accepted,
                        const uncertainty::LoopEdge& loop);
-  // Accepted loops of nodes of a trajectory up to an index with submaps of
-  // another one no longer locate its nodes.
+  // Accepted loops between nodes of a trajectory up to an index and submaps of
+  // another one are no longer used to predict its nodes.
   void ForgetLoops(int trajectory_id, int submap_trajectory_id,
                    int last_node_index);
   void DeleteSubmap(const uncertainty::SubmapId& submap);
@@ -113,16 +116,16 @@ class SearchPlanner {
     }
   };
 
-  // Whether a node of `nodes` is nearer to that of the candidate than
-  // `distance` metres of travel and `duration` seconds.
+  // Whether a node of `nodes` is within `distance` metres of path and
+  // `duration` seconds of the candidate's node.
   bool HasNear(const Nodes& nodes, const LoopCandidate& candidate,
                double distance, double duration) const;
-  // Without regard to the other candidates of the node.
+  // Plans a candidate independently of the other candidates of its node.
   SearchPlan PlanAlone(const LoopCandidate& candidate);
   // The window for the uncertainty of the prediction, into the plan; returns
   // whether the uncertainty is known.
   bool PlanWindow(const LoopCandidate& candidate, SearchPlan* plan);
-  // Larger is better.
+  // Priority of a candidate; larger is better.
   double Promise(const LoopCandidate& candidate, const SearchPlan& plan) const;
   // Skips all but the most promising of the candidates of one node, `indices`.
   void ApplyCap(const std::vector<const LoopCandidate*>& candidates,

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the first stage of loop closure, candidate search, finds out about a
-// candidate: whether and how widely it is searched (search_planner.h), and
-// where the scan fits.
+// Results of the first stage of loop closure, candidate search: whether and in
+// which window a candidate is searched (search_planner.h), and the match.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_RESULT_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_RESULT_H_
 
@@ -17,24 +16,25 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Whether and in which window a candidate is searched.
 struct SearchPlan {
   // NONE: to be searched. Otherwise why not.
   proto::LoopDecision::Reason skipped = proto::LoopDecision::NONE;
-  // Farther away than any window reaches: not even a candidate.
+  // Beyond the largest window: not a candidate.
   bool out_of_reach = false;
   bool full_submap = false;
   double linear_window = 0.;   // metres, half width
   double angular_window = 0.;  // radians, half width
-  // Standard deviations of the prediction; 0 where it is not known.
+  // Standard deviations of the prediction; 0: unknown.
   double translation_sigma = 0.;  // metres, in the worst direction
   double rotation_sigma = 0.;     // radians
-  // Candidates of equal numbers >= 0 are matched together, to relocalise their
-  // node in a whole map. Those that are skipped are in it because places are
-  // followed into their submaps.
+  // Candidates with equal numbers >= 0 are matched together, to relocalise
+  // their node in a whole map. Skipped ones are included because hypotheses are
+  // tracked into their submaps.
   int64_t query = -1;
 };
 
-// Of the correlative search and of the refinement that starts from its result.
+// Result of the correlative search and of the refinement started from it.
 struct SearchMatch {
   bool found = false;
   double score = 0.;  // S_g, mean probability under the points, in [0, 1]
@@ -46,7 +46,7 @@ struct SearchMatch {
   // Of the refined pose from the scan alone, (submap <- node), metres and
   // radians; zero where it is not known.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  // Log-odds against another pose along what the scan determines least.
+  // Log-odds against another pose along the least observable direction.
   double slide_odds = std::numeric_limits<double>::infinity();
 };
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How well scans fit the submaps of their own run where nobody doubts their
-// place: right behind the end of a submap, at the pose that local SLAM gives.
+// Typical scores of scans in submaps of their own run at certain poses: right
+// after the end of a submap, at the pose of local SLAM.
 //
-// `min_score` was chosen in buildings, where such scans reach 0.7. Between
-// bushes they reach 0.5, and a floor of 0.55 shuts out every true loop. The
-// floor follows the mean of the last fits below a reference:
+// `min_score` was chosen in buildings, where such scans score 0.7. Among bushes
+// they score 0.5, and a minimum of 0.55 rejects every true loop. So the minimum
+// score is scaled by the mean of the last scores, if that is below a reference:
 //   scale = min(1, max(least_scale, mean / reference)),
-// 1 until there are enough of them.
+// with 1 until there are enough of them.
 //
 // Not thread-safe; depends on the sequence of calls only.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_TYPICAL_FIT_H_
@@ -22,22 +22,24 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Reference and limits of the scale.
 struct TypicalFitOptions {
   double reference = 0.65;    // in (0, 1]; 0: the scale is always 1
   double least_scale = 0.85;  // in (0, 1]
-  size_t window = 200;        // fits of a run that count
-  size_t min_fits = 20;       // before that nothing is said
+  size_t window = 200;        // most recent scores used
+  size_t min_fits = 20;       // with fewer the scale is 1
 };
 
+// Typical scores by trajectory, see above.
 class TypicalFit {
  public:
   explicit TypicalFit(const TypicalFitOptions& options) : options_(options) {}
 
-  // Otherwise there is no need to measure fits.
+  // If false, scores need not be measured.
   bool is_on() const { return options_.reference > 0.; }
   // `fit`: mean probability under the points of a scan, in [0, 1].
   void Add(int trajectory_id, double fit);
-  // By which floors of scores are multiplied, in [least_scale, 1].
+  // Factor on minimum scores, in [least_scale, 1].
   double Scale(int trajectory_id) const;
   void DeleteTrajectory(int trajectory_id) { fits_.erase(trajectory_id); }
 

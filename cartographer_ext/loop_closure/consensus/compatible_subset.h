@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The largest set of loops that can be true together (paper G, improved graph
-// optimisation 2024, section 3.4, eq. 20 and 21), kept up to date while loops
-// come in.
+// optimisation 2024, section 3.4, eq. 20 and 21), updated incrementally as
+// loops are added.
 //
 //   clusters   Loops of neighbouring nodes with neighbouring submaps are one
 //              piece of evidence. A loop joins the first cluster whose leader
@@ -25,18 +25,18 @@
 //              is neither stays buffered and is tested again when new evidence
 //              comes; `Flush` ends that.
 //
-// Pairwise tests of true loops fail now and then; `tolerance` forgives a few
-// contradictions so that long runs do not lose true loops. Zero is the paper's
-// rule.
+// Pairwise tests of true loops fail occasionally; `tolerance` allows a small
+// share of contradictions so that long runs do not lose true loops. Zero is the
+// paper's rule.
 //
-// Between trajectories one scan fits each of the submaps that overlap where it
-// was taken, which is no more evidence than one of them. There support counts
-// places along the run, `revisit_distance` apart, instead of clusters.
+// Between trajectories one scan matches each of the overlapping submaps at its
+// place, which is no more evidence than one match. There support counts places
+// along the run, `revisit_distance` apart, instead of clusters.
 //
-// Bounded: beyond `max_clusters` the oldest accepted cluster is forgotten when
-// more than half are accepted, otherwise the oldest undecided one is decided
-// as in `Flush`. Not thread-safe; loops are added in candidate order, which
-// alone determines the result.
+// Bounded: beyond `max_clusters` the oldest accepted cluster is dropped if more
+// than half are accepted, otherwise the oldest undecided one is decided as in
+// `Flush`. Not thread-safe; the result depends only on the order in which loops
+// are added.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_COMPATIBLE_SUBSET_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_COMPATIBLE_SUBSET_H_
 
@@ -53,44 +53,46 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// A loop with its score and prior.
 struct LoopEvidence {
   int64_t id = 0;  // of the caller, unique
   uncertainty::LoopEdge edge;
-  // Where the distance of revisits is measured from, the same for all loops of
-  // a submap; empty: edge.a.
+  // Vertex from which the distance of revisits is measured, the same for all
+  // loops of a submap; empty: edge.a.
   absl::optional<uncertainty::VertexId> anchor;
   double score = 0.;  // the fused score, in [0, 1]
-  // How well the place was predicted before the search, one standard deviation
-  // in metres; infinity without a prediction.
+  // Standard deviation of the prediction before the search, metres; infinity
+  // without a prediction.
   double prior_sigma = 0.;
 };
 
+// Options of clusters, relations and verdicts, see above.
 struct CompatibleSubsetOptions {
-  // Otherwise every candidate that has come so far is accepted.
+  // If false, every candidate that reaches this stage is accepted.
   bool enabled = true;
   uncertainty::CycleConsistencyOptions cycle;
   // Loops nearer than this along the trajectory, on both sides, are one
   // revisit.
   double revisit_distance = 5.;  // metres, >= 0
-  // A cycle supports when its translation is known this well, one sigma.
+  // A cycle supports only if the sigma of its translation is at most this.
   double informative_sigma = 1.;  // metres, > 0
   int min_revisits = 2;           // that agree, including the loop itself, >= 1
-  // Share of contradictions among the informative relations to the clique that
-  // is forgiven, in [0, 1).
+  // Tolerated share of contradictions among the informative relations to the
+  // clique, in [0, 1).
   double tolerance = 0.04;
-  // The same of clusters that lie where they were predicted (the single strong
-  // sigma): a place that only looks alike lies elsewhere.
+  // The same for clusters at their predicted place (within the single strong
+  // sigma), since look-alike places are elsewhere.
   double predicted_tolerance = 0.2;
-  // Both only of clusters with a loop of at least this score: one about which
-  // nothing is known has to fit.
+  // Both apply only to clusters with a loop of at least this score; without
+  // evidence, all relations must be compatible.
   double forgiven_score = 0.6;
   // Scores are probabilities that the loop is true, and count as such: in the
   // clique, among rivals, and for the loop itself, which needs the more support
   // the less likely it is. Otherwise all loops count alike.
   bool scores_are_probabilities = false;
-  // By which each of the first revisits that support a loop multiplies its
-  // odds, > 1; a loop needs these odds. Further ones are not independent of
-  // them.
+  // Factor on the odds of a loop for each of the first revisits that support
+  // it, > 1; a loop needs at least these odds. Further revisits are not
+  // independent.
   double odds_per_revisit = 3.;
   int max_revisits_for_odds = 3;
   double accepted_weight = 1.5;  // of a cluster accepted before, >= 1
@@ -98,28 +100,29 @@ struct CompatibleSubsetOptions {
   bool single_strong_enabled = true;
   double single_strong_score = 0.8;
   int single_strong_loops = 3;
-  // It has to be where it was predicted: one that was searched widely may be
-  // another place that looks alike.
+  // It must agree with its prediction: a match in a wide search may be a
+  // look-alike place.
   double single_strong_sigma = 0.5;  // metres
-  // A place predicted worse than this needs more revisits that agree.
+  // If the sigma of the prediction exceeds this, more revisits must agree.
   double weak_prior_sigma = 1.;  // metres
   int weak_prior_revisits = 3;   // including the loop itself, >= 1
-  // The same for a place that was not predicted at all, as of a run in the map
-  // of another one.
+  // The same without a prediction, as for a run in the map of another one.
   int unpredicted_revisits = 3;
   int max_clusters = 400;  // > 0
   MaxCliqueOptions clique;
 };
 
+// Reason of a decision.
 enum class SubsetReason {
   kSupported,      // accepted with its cluster
   kSingleStrong,   // accepted by the rule for single strong loops
   kJoinsAccepted,  // accepted, its cluster was accepted before
-  kContradicted,   // rejected, does not fit the compatible subset
+  kContradicted,   // rejected, contradicts the compatible subset
   kRival,          // rejected, a contradicting cluster has as much support
-  kUnsupported,    // rejected, nothing confirmed it until the end
+  kUnsupported,    // rejected, not confirmed until the end
 };
 
+// The decision on one loop.
 struct SubsetDecision {
   int64_t id = 0;
   bool accepted = false;
@@ -129,22 +132,23 @@ struct SubsetDecision {
   int subset_size = 0;     // clusters in the subset
 };
 
+// The compatible subset, see above.
 class CompatibleSubset {
  public:
-  // `paths` has to outlive this and to know the nodes of the loops added.
+  // `paths` must outlive this object and contain the nodes of all added loops.
   CompatibleSubset(const CompatibleSubsetOptions& options,
                    const uncertainty::PathUncertainty* paths);
 
   void Add(const LoopEvidence& loop);
 
-  // Decides what can be decided now, in the order of adding. Costs little when
-  // nothing was added since.
+  // Returns the decisions that can be made now, in the order of adding. Cheap
+  // if nothing was added since the last call.
   std::vector<SubsetDecision> Decide();
   // Decides, then rejects everything undecided with its reason. Accepted
-  // clusters stay known.
+  // clusters are kept.
   std::vector<SubsetDecision> Flush();
 
-  // Compares all loops again, after a change of what is known of the paths.
+  // Repeats all pairwise tests, after a change of the drift of the paths.
   void RelateAll();
 
   // Removes undecided loops, such as those of submaps or nodes that are
@@ -152,17 +156,17 @@ class CompatibleSubset {
   std::vector<int64_t> Remove(
       const std::function<bool(const LoopEvidence&)>& condition);
 
-  // Accepted loops no longer count, where the condition holds for the first of
-  // their revisit.
+  // Drops accepted revisits whose first loop fulfils the condition.
   void ForgetAccepted(
       const std::function<bool(const LoopEvidence&)>& condition);
 
-  // What waits and why, as of the last `Decide`, in the order of adding.
+  // The undecided loops with their reasons, as of the last `Decide`, in the
+  // order of adding.
   std::vector<SubsetDecision> Undecided() const;
   int num_undecided() const;
   int num_clusters() const { return static_cast<int>(clusters_.size()); }
-  // Accepted clusters that the last `Decide` found outside the subset: later
-  // evidence speaks against them.
+  // Number of accepted clusters outside the subset at the last `Decide`,
+  // contradicted by later evidence.
   int num_overturned() const { return num_overturned_; }
   // Whether the last clique search was exact.
   bool exact() const { return exact_; }
@@ -170,7 +174,7 @@ class CompatibleSubset {
  private:
   enum class Relation : char {
     kUntestable,  // no path between the loops
-    kVague,       // closes, but so would anything
+    kVague,       // closes, but is not informative
     kSupports,
     kContradicts,
   };
@@ -192,14 +196,14 @@ class CompatibleSubset {
                   const uncertainty::LoopEdge& v) const;
   bool SameRevisit(const LoopEvidence& u, const LoopEvidence& v) const;
   int Support(int index, bool of_subset) const;
-  // In the clique: by the best score of its loops.
+  // Weight of a cluster in the clique, by the best score of its loops.
   double Weight(const Cluster& cluster) const;
   void Solve();
   bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;
-  // Of a loop in a cluster that may be accepted.
+  // Whether a loop of an accepted cluster may be accepted itself.
   bool MayAcceptLoop(const Cluster& cluster, const LoopEvidence& loop) const;
-  // Takes those that may be accepted out of the undecided ones of a cluster that
-  // may be.
+  // Removes the loops that may be accepted from the undecided ones of an
+  // accepted cluster and returns them.
   std::vector<LoopEvidence> TakeLikely(Cluster* cluster) const;
   // Why the undecided loops of a cluster are not accepted.
   SubsetReason WhyNot(const Cluster& cluster) const;

@@ -1,21 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Learns from the candidates of a run how much local SLAM drifts.
+// Estimates the drift of local SLAM from the candidates of a run.
 //
-// Candidates in a row between the same two stretches of the path need no
-// assumption about the path between the stretches: two of them, a few metres
-// apart, close a cycle with the two short pieces of path between them, and it
-// stays open by as much as local SLAM has drifted there (drift_estimator.h). A
-// candidate with a place that was mapped shortly before closes a cycle with
-// the path itself. Wrong candidates are what the mixture of the estimator is
-// for; none has to be accepted before it counts, so a model that is too narrow
-// cannot keep itself alive by refusing what contradicts it.
+// Consecutive candidates between the same two pieces of the path need no
+// assumption about the long path between these pieces: two of them, a few
+// metres apart, close a cycle with two short pieces of path, and the error of
+// this cycle is the drift of local SLAM there (drift_estimator.h). A candidate
+// with a place that was mapped shortly before closes a cycle with the path
+// itself. The mixture of the estimator handles wrong candidates; candidates
+// need not be accepted before they are used, so an overconfident model cannot
+// perpetuate itself by rejecting what contradicts it.
 //
-// What consensus and search use is the bound from above, never below the prior:
-// what is learnt over metres says nothing about errors that add up along a
-// whole run. What is the same all along the run is taken out of the paths. Both
-// are passed on when they have changed enough to matter.
+// Consensus and search use the upper bound, which is never below the prior: an
+// estimate over metres does not cover errors that accumulate along a whole run.
+// The errors that are constant along the run are removed from the paths. Both
+// are passed on only after a significant change.
 //
 // Not thread-safe; loops are added in the order of the candidates.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_DRIFT_LEARNER_H_
@@ -33,20 +33,21 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Estimates the drift from candidates, see above.
 class DriftLearner {
  public:
-  // `paths` has to outlive this and to know the nodes of the loops; its drift
-  // is set. `prior` is the noise it was made with.
+  // `paths` must outlive this object and contain the nodes of the loops; its
+  // drift is set by this object. `prior` is the noise it was created with.
   DriftLearner(const uncertainty::PathNoiseOptions& prior,
                uncertainty::PathUncertainty* paths);
 
-  // A loop between nodes of one trajectory that may be right; others are
+  // Adds a possibly true loop between nodes of one trajectory; others are
   // ignored.
   void Add(const uncertainty::LoopEdge& loop);
-  // Passes what was learnt to the paths; true where that changed them.
+  // Passes the estimates to the paths; returns whether that changed them.
   bool Update();
   uncertainty::DriftEstimate Estimate(int trajectory_id) const;
-  // The trajectories of which something is known.
+  // The estimates of all trajectories that have one.
   std::map<int, uncertainty::DriftEstimate> Estimates() const;
   void DeleteTrajectory(int trajectory_id);
 
@@ -60,7 +61,7 @@ class DriftLearner {
     int num_fitted = 0;  // cycles
   };
 
-  // Of a loop with the path itself, where that is short.
+  // The cycle of a loop with the path itself, if that is short.
   absl::optional<uncertainty::DriftCycle> CycleWithPath(
       const uncertainty::LoopEdge& loop) const;
   absl::optional<uncertainty::DriftCycle> CycleWithLoop(

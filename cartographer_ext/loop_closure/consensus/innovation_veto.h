@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Could this loop be true, given how far the odometry may have drifted? (Paper
-// G, improved graph optimisation 2024, section 3.4, checks odometry after the
-// optimisation; this is the cheap question before.)
+// Tests whether a loop is possible, given the drift of local SLAM. (Paper G,
+// improved graph optimisation 2024, section 3.4, checks the odometry after the
+// optimisation; this is a cheap test before.)
 //
-// The path of the odometry between the two nodes of a loop predicts their
-// relative pose; the innovation is what the loop measures beyond that:
+// The path between the two nodes of a loop predicts their relative pose; the
+// innovation is the difference measured by the loop:
 //
 //   E = prior^-1 (b <- a)  loop (a <- b),   chi^2 = E^T cov(E)^-1 E.
 //
 // Beyond a high quantile of chi^2 with 3 degrees of freedom the loop is vetoed.
-// The default 0.9999 leaves much room, since real drift is not Gaussian.
+// The default quantile of 0.9999 is generous, since real drift is not Gaussian.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 
@@ -24,11 +24,13 @@ namespace loop_closure {
 struct LoopCandidate;
 struct LoopOptions;
 
+// Bound of the test.
 struct InnovationOptions {
   bool enabled = true;
   double chi_square_bound = 21.108;  // chi^2, 3 degrees of freedom, 0.9999
 };
 
+// Innovation of one loop.
 struct InnovationResult {
   Pose2 innovation;        // E above; (b <- b), metres and radians
   double chi_square = 0.;  // infinity when E is not zero but certain to be
@@ -36,14 +38,15 @@ struct InnovationResult {
   bool vetoed = false;
 };
 
+// Tests a loop (a <- b) against the prior (a <- b) from the path.
 InnovationResult TestInnovation(const InnovationOptions& options,
                                 const uncertainty::UncertainPose& prior,
                                 const uncertainty::UncertainPose& loop);
 
 // Tests a candidate within one trajectory against the path from its anchor to
 // its node (without an anchor: from the node next to the submap's origin), into
-// `innovation`, and rejects it where that is vetoed. Only the odometry counts:
-// a loop that contradicts accepted ones may still win the consensus.
+// `innovation`, and rejects it where that is vetoed. Only the path is used: a
+// loop that contradicts accepted ones may still prevail in the consensus.
 void VetoByInnovation(const LoopOptions& options,
                       const uncertainty::PathUncertainty& paths,
                       LoopCandidate* candidate);

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The last stage of loop closure: candidates wait here until enough others
-// agree with them (paper G, improved graph optimisation 2024, section 3.4,
-// eq. 20 and 21; compatible_subset.h). What the subset compares of a candidate
-// is
+// The last stage of loop closure: candidates are buffered until enough others
+// agree with them (paper G, improved graph optimisation 2024, section 3.4, eq.
+// 20 and 21; compatible_subset.h). The subset uses of a candidate
 //
 //   the loop     (anchor <- node) with the covariance of its match,
 //   its score    S_final where scores were fused, otherwise S_g,
@@ -29,33 +28,34 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Buffers candidates until they are decided, see above.
 class LoopConsensus {
  public:
   using Condition = std::function<bool(const LoopCandidate&)>;
 
-  // `paths` has to outlive this and to know the submaps and nodes of the
+  // `paths` must outlive this object and contain the submaps and nodes of the
   // candidates.
   LoopConsensus(const LoopOptions& options,
                 const uncertainty::PathUncertainty* paths);
 
   void Add(LoopCandidate candidate);
 
-  // The candidates that can be decided now, accepted or rejected; `Flush`
-  // rejects whatever is still undecided then.
+  // Returns the candidates that can be decided now, accepted or rejected;
+  // `Flush` rejects all that are still undecided.
   std::vector<LoopCandidate> Decide();
   std::vector<LoopCandidate> Flush();
 
-  // After a change of the drift that `paths` assumes.
+  // To be called after a change of the drift of `paths`.
   void DriftChanged() { subset_.RelateAll(); }
 
   // Removes the undecided candidates for which the condition holds.
   std::vector<LoopCandidate> Remove(const Condition& condition);
-  // Accepted loops of nodes of a trajectory up to an index with submaps of
-  // another one no longer count.
+  // Drops the accepted loops between nodes of a trajectory up to an index and
+  // submaps of another one.
   void ForgetAccepted(int trajectory_id, int submap_trajectory_id,
                       int last_node_index);
 
-  // What waits and why, in the order of the numbers.
+  // The undecided candidates with their reasons, in the order of their numbers.
   std::vector<LoopCandidate> Undecided() const;
   int num_undecided() const { return subset_.num_undecided(); }
 

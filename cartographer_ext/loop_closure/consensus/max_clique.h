@@ -8,10 +8,11 @@
 //
 // Vertices are loops, edges join compatible pairs, weights count the distinct
 // revisits a vertex represents (consecutive nodes matched to one submap are one
-// piece of evidence, not many). Loops that no chain of contradictions connects
-// are decided apart from each other. Exact branch and bound with a greedy
-// colouring bound, started from a greedy clique, stopped after a fixed amount
-// of work so that the result does not depend on the speed of the machine.
+// piece of evidence, not many). Components that are not connected by
+// contradictions are solved separately. Exact branch and bound with a greedy
+// colouring bound, started from a greedy clique and stopped after a fixed
+// amount of work, so that the result does not depend on the speed of the
+// machine.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_MAX_CLIQUE_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_MAX_CLIQUE_H_
 
@@ -44,16 +45,18 @@ class CompatibilityGraph {
   std::vector<uint64_t> bits_;
 };
 
+// Limits of the search.
 struct MaxCliqueOptions {
-  // Search nodes; one with many candidates counts for several. Deterministic
-  // cap, some milliseconds.
+  // Limit of search nodes; one with many candidates counts as several.
+  // Deterministic; a few milliseconds.
   int64_t max_steps = 100000;
 };
 
+// A maximum weight clique.
 struct MaxCliqueResult {
   std::vector<int> vertices;  // ascending
   double weight = 0.;
-  bool exact = false;  // false when the cap stopped the search
+  bool exact = false;  // false if the limit was reached
   int64_t steps = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Metrics of the loop closure, under names of their own beside the stock ones:
+// Metrics of the loop closure, in addition to the stock ones:
 //   cartographer_ext_loop_decisions{verdict=,reason=}     counter
 //   cartographer_ext_loop_searches{matcher=,search_region=}  counter
 //   cartographer_ext_loop_cpu_seconds{stage=}             counter
@@ -9,9 +9,9 @@
 //   cartographer_ext_loop_undecided, cartographer_ext_loop_submap_matchers,
 //   cartographer_ext_loop_cache_bytes                     gauges
 //
-// They belong to the process, not to a pose graph: that is how Cartographer
-// declares metrics. Its RegisterMetrics is a static function, called once for
-// all pose graphs and before the first of them is built.
+// They belong to the process, not to a pose graph, because Cartographer
+// declares metrics in this way. Its RegisterMetrics is a static function,
+// called once for all pose graphs and before the first of them is built.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_CONSTRAINT_METRICS_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_CONSTRAINT_METRICS_H_
 
@@ -27,12 +27,13 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Handles of the metrics above.
 struct ConstraintMetrics {
   using Counter = cartographer::metrics::Counter;
   using Gauge = cartographer::metrics::Gauge;
   using Histogram = cartographer::metrics::Histogram;
 
-  // Those of the process; they ignore everything until `Register`.
+  // The metrics of the process; without effect until `Register`.
   static ConstraintMetrics* Global();
   static void Register(cartographer::metrics::FamilyFactory* factory);
 
@@ -59,7 +60,7 @@ struct ConstraintMetrics {
   std::map<int, Counter*> decisions_;
 };
 
-// Counts the CPU seconds that the thread spends while this exists.
+// Counts the CPU seconds of the thread during its lifetime.
 class StageMeter {
  public:
   explicit StageMeter(ConstraintMetrics::Counter* const counter)

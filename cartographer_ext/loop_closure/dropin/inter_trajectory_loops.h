@@ -5,8 +5,8 @@
 // before a run was lost are withdrawn once it is located again
 // (common/withdrawn_loops.h).
 //
-// As many loops are kept as the pose graph holds: it deletes them with their
-// submaps and nodes. Not thread-safe.
+// Keeps the same loops as the pose graph, which deletes them with their submaps
+// and nodes. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_INTER_TRAJECTORY_LOOPS_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_INTER_TRAJECTORY_LOOPS_H_
 
@@ -21,14 +21,15 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Accepted inter-trajectory loops, see above.
 class InterTrajectoryLoops {
  public:
   using Constraint = cartographer::mapping::PoseGraphInterface::Constraint;
 
-  // An accepted loop. Those within one trajectory are ignored.
+  // Adds an accepted loop. Those within one trajectory are ignored.
   void Add(const Constraint& loop);
   // Withdraws the loops of a run with a map, of nodes up to an index: their
-  // marks go to `constraints`, or to the context where a node may have been
+  // marks are added to `constraints`, or to the context if a node may have been
   // trimmed.
   void Withdraw(int trajectory_id, int map_trajectory_id, int last_node,
                 PoseGraphContext* context,

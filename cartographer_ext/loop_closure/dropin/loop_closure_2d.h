@@ -14,17 +14,17 @@
 //              it accepts, now or from earlier rounds, becomes a constraint;
 //              what lacks evidence waits for the next round.
 //
-// Only planning and verification have memory, and both see the same sequence
+// Only planning and verification have state, and both process the same sequence
 // for any number of threads.
 //
-// A node of the host is the gravity-aligned frame, which does not turn with the
-// robot. Searches and constraints use it; whatever concerns motion (paths,
-// scans of several nodes, records) uses the tracking frame.
+// A node of the host is the gravity-aligned frame, which does not rotate with
+// the robot. Searches and constraints use it; everything that concerns motion
+// (paths, scans of several nodes, records) uses the tracking frame.
 //
 // The pose graph deletes nodes together with their submaps, but announces the
-// submaps only. A constraint with a deleted node would be fatal there, so with
-// a submap all undecided loops are rejected of nodes that may have belonged to
-// it (SubmapStore).
+// submaps only. A constraint with a deleted node would be fatal there, so when
+// a submap is deleted, all undecided loops of nodes that may have belonged to
+// it are rejected (SubmapStore).
 //
 // Not thread-safe, except that its tasks run on the pool at any time.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_LOOP_CLOSURE_2D_H_
@@ -64,12 +64,13 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Loop closure of one pose graph, see above.
 class LoopClosure2D {
  public:
   using Constraint = cartographer::mapping::PoseGraphInterface::Constraint;
   using NodeData = cartographer::mapping::TrajectoryNode::Data;
 
-  // A pair that the pose graph proposes. Submap and node have to live until
+  // A pair proposed by the pose graph. Submap and node must remain valid until
   // `Verify` has returned.
   struct Proposal {
     cartographer::mapping::SubmapId submap_id;
@@ -91,23 +92,23 @@ class LoopClosure2D {
   // searches before `end_of_node`.
   void AddNode(const std::vector<Proposal>& proposals,
                cartographer::common::Task* end_of_node);
-  // The next `Verify` is for the nodes added so far.
+  // The next `Verify` processes the nodes added so far.
   void MarkDue();
-  // Takes the candidates that are due through the stages after the search, and
-  // returns the constraints of those that are certain now. The tasks of their
-  // nodes have to have run.
+  // Processes the due candidates by the stages after the search, and returns
+  // the constraints of those that are accepted now. The tasks of their nodes
+  // must have run.
   std::vector<Constraint> Verify();
-  // Rejects what is undecided.
+  // Rejects all undecided candidates.
   void Flush();
   bool has_candidates() const { return !jobs_.empty(); }
 
   void DeleteSubmap(const cartographer::mapping::SubmapId& submap_id);
 
-  // Where every decision is recorded; that of the pose graph.
+  // The recorder of the pose graph, which records every decision.
   DecisionRecorder* recorder() const { return recorder_; }
-  // Records of what waits for other loops, as UNDECIDED.
+  // Records of the undecided candidates.
   std::vector<proto::LoopDecision> Undecided() const;
-  // Of all decisions so far, and what is undecided.
+  // Counts of all decisions so far, and of undecided candidates.
   DecisionCounts counts() const;
   // Counts, and how much local SLAM drifts, for the host's log.
   std::string Summary() const;
@@ -115,7 +116,8 @@ class LoopClosure2D {
  private:
   LoopCandidate Propose(const Proposal& proposal);
   void RememberNode(const Proposal& proposal);
-  // How well a node fits a submap of its trajectory that ended right before it.
+  // Measures the score of a node in a submap of its trajectory that ended right
+  // before it.
   void MeasureFit(const Proposal& proposal, const LoopCandidate& candidate,
                   const SubmapEntry& entry);
   void ScheduleSearch(SearchJob* job, cartographer::common::Task* end_of_node);
@@ -126,10 +128,10 @@ class LoopClosure2D {
   // that are withdrawn on its account (common/withdrawn_loops.h).
   void Close(const LoopCandidate& accepted,
              std::vector<Constraint>* constraints);
-  // Frees trajectories that the pose graph has deleted, as it seems.
+  // Frees trajectories that the pose graph has apparently deleted.
   void FreeDormantTrajectories();
   proto::LoopDecision Describe(const LoopCandidate& candidate) const;
-  // To the recorder, the counts and, where the options say so, a log.
+  // Adds to the recorder, the counts and, if enabled, a log.
   void Record(const std::vector<LoopCandidate>& decided);
 
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
@@ -147,7 +149,7 @@ class LoopClosure2D {
   Relocalizer relocalizer_;
   TypicalFit typical_fit_;
   InterTrajectoryLoops inter_trajectory_loops_;
-  // Of all nodes since the last `Verify`; they stay where they are. The first
+  // Jobs of all nodes since the last `Verify`, at stable addresses. The first
   // ones, as many as are due, belong to the next `Verify`.
   std::deque<SearchJob> jobs_;
   std::deque<PlaceQuery> queries_;

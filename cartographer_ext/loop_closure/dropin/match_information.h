@@ -15,7 +15,7 @@ namespace loop_closure {
 // a scan matched at `pose` (frame of the grid <- cloud), by the estimator of
 // local SLAM (uncertainty/match_information.h): zero along a corridor, large
 // across it. `submap_pose` is (frame of the grid <- submap). Zero for a TSDF,
-// an empty cloud, and where the scan does not touch the map.
+// an empty cloud, and if the scan does not overlap the map.
 Eigen::Matrix3d MatchInformation(const cartographer::mapping::Grid2D& grid,
                                  const cartographer::sensor::PointCloud& cloud,
                                  const Pose2& pose, const Pose2& submap_pose);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The host's ids, poses and nodes as loop closure uses them. A node of the host
-// is the gravity-aligned frame, which does not turn with the robot.
+// Conversion of the host's ids, poses and nodes. A node of the host is the
+// gravity-aligned frame, which does not rotate with the robot.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_NODE_GEOMETRY_H_
 
@@ -19,10 +19,12 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// The host's id as ours.
 inline uncertainty::NodeId ToKey(const cartographer::mapping::NodeId& id) {
   return uncertainty::NodeId{id.trajectory_id, id.node_index};
 }
 
+// The host's id as ours.
 inline uncertainty::SubmapId ToKey(const cartographer::mapping::SubmapId& id) {
   return uncertainty::SubmapId{id.trajectory_id, id.submap_index};
 }

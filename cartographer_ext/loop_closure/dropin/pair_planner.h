@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which of the pairs of a submap and a node that the pose graph proposes are
-// searched, and how.
+// Selects which of the pairs of a submap and a node proposed by the pose graph
+// are searched, and how.
 //
 //   one trajectory     SearchPlanner, or Cartographer's sampler and fixed
 //                      window.
-//   two trajectories   MapLocalization decides whether around the prediction or
-//                      everywhere. Everywhere, all submaps of the other
-//                      trajectory are searched at once; submaps overlap by
-//                      half, so that every second one is enough.
-//   loaded map         Nodes of a map that was loaded are not searched in the
-//                      submaps of the run that is localised in it: the nodes of
-//                      the run are, in the submaps of the map.
+//   two trajectories   MapLocalization decides whether to search around the
+//                      prediction or everywhere. Everywhere means that all
+//                      submaps of the other trajectory are searched at once;
+//                      submaps overlap by half, so every second one is enough.
+//   loaded map         Nodes of a loaded map are not searched in the submaps of
+//                      the run that is localised in it; the nodes of the run
+//                      are searched in the submaps of the map.
 //
 // Not thread-safe; depends on the sequence of calls only.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_PAIR_PLANNER_H_
@@ -38,8 +38,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// A run lost its place in a map: the loops found up to the node no longer
-// locate it.
+// A run got lost in a map: the loops found up to the node no longer locate it.
 struct LostPlace {
   int trajectory_id = 0;
   int map_trajectory_id = 0;
@@ -47,22 +46,23 @@ struct LostPlace {
   bool by_decisions = false;  // about its place
 };
 
+// Plans the searches of pairs, see above.
 class PairPlanner {
  public:
-  // `paths` has to outlive this and to know the nodes.
+  // `paths` must outlive this object and contain the nodes.
   PairPlanner(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
       const LoopOptions& extension, const uncertainty::PathUncertainty* paths);
 
-  // The candidates with their plans. `proposed` are those proposed when one
-  // node was added: those of this node first, then older nodes with a submap
-  // that has become complete. The same pair may be planned twice, around its
-  // prediction and everywhere.
+  // Returns the candidates with their plans. `proposed` are those proposed when
+  // one node was added: those of this node first, then older nodes with a
+  // submap that has just been finished. The same pair may be planned twice,
+  // around its prediction and everywhere.
   std::vector<LoopCandidate> Plan(const std::vector<LoopCandidate>& proposed,
                                   std::vector<LostPlace>* lost);
 
-  // A candidate that was accepted, with its loop if the anchor is known. True
+  // Adds an accepted candidate, with its loop if the anchor is known. Returns
   // as MapLocalization::AddAcceptedLoop.
   bool AddAcceptedLoop(const LoopCandidate& accepted,
                        const absl::optional<uncertainty::LoopEdge>& loop);
@@ -76,7 +76,7 @@ class PairPlanner {
     size_t proposed = 0;  // index
     SearchPlan plan;
   };
-  // One planning call: what is proposed, and what is known of it so far.
+  // State of one planning call.
   struct Session {
     const std::vector<LoopCandidate>& proposed;
     std::vector<Planned> planned;
@@ -97,7 +97,7 @@ class PairPlanner {
   MapLocalization localization_;
   std::map<uncertainty::SubmapId, cartographer::common::FixedRatioSampler>
       samplers_;
-  // Those of nodes that the pose graph has added, not loaded.
+  // Trajectories of nodes that were added to the pose graph, not loaded.
   std::set<int> live_trajectories_;
   int64_t num_queries_ = 0;
   // The last query of each submap.

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the search tasks do: match a node against a submap, or against all
-// submaps of a map, and refine what was found. Nothing here has a memory of its
-// own; a task touches only its job or query, and what it depends on.
+// The work of the search tasks: matching a node against a submap, or against
+// all submaps of a map, and refining the match. Stateless; a task accesses only
+// its job or query and their dependencies.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_PAIR_SEARCHER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_PAIR_SEARCHER_H_
 
@@ -28,19 +28,20 @@ struct SearchJob {
   LoopCandidate candidate;
   const cartographer::mapping::TrajectoryNode::Data* node = nullptr;
   std::shared_ptr<SubmapEntry> entry;
-  // By which the smallest scores that count are multiplied (typical_fit.h).
+  // Factor on the minimum scores (typical_fit.h).
   double score_scale = 1.;
 };
 
-// A node that is relocalised in a whole map, and what its task finds.
+// A node that is relocalised in a whole map, and the result of its task.
 struct PlaceQuery {
   std::vector<SearchJob*> jobs;  // its candidates, in their order
   std::shared_ptr<PlaceSearch> places;
-  bool is_known = false;  // its place, as it seems
+  bool is_known = false;  // its place is presumably known
   int forget_up_to = -1;  // node index
   PlaceResult result;
 };
 
+// Searches pairs, see above. Thread-safe.
 class PairSearcher {
  public:
   explicit PairSearcher(
@@ -50,8 +51,8 @@ class PairSearcher {
 
   // Fills `match` of the candidate.
   void Search(SearchJob* job) const;
-  // The same for all submaps of the query. The candidates that were searched
-  // are rejected: loops come from the places that are decided for.
+  // The same for all submaps of the query. The searched candidates are
+  // rejected: loops come from the selected place only.
   void SearchPlace(PlaceQuery* query) const;
 
  private:

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Relocalises a run in the whole map of another run: a node is searched in all
-// submaps, and the places found are followed by PlaceTracker until one of them
-// is decided for. Keeps copies of the clouds of the nodes it follows; the host
+// submaps, and PlaceTracker tracks the hypotheses until one of them is
+// selected. Keeps copies of the clouds of the tracked nodes, because the host
 // guarantees its own only until the callback.
 //
-// One object for a run in a map, used by one task after the other.
+// One object per run and map, used by one task at a time.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_PLACE_SEARCH_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_PLACE_SEARCH_H_
 
@@ -31,13 +31,15 @@ namespace loop_closure {
 // A submap of the map.
 struct PlaceSubmap {
   int submap_index = 0;
-  // Asked for where it is used, as it may be built then.
+  // Called on use, because the matcher may have to be built.
   std::function<std::shared_ptr<const SubmapMatcher>()> matcher;
   const cartographer::mapping::Submap2D* submap = nullptr;
-  // Searched as a whole; otherwise places are followed into it only.
+  // Whether it is searched as a whole; otherwise hypotheses are only tracked
+  // into it.
   bool search = true;
 };
 
+// A node of the run that is searched.
 struct PlaceNode {
   int node_index = 0;
   int64_t time = 0;             // host ticks
@@ -46,22 +48,24 @@ struct PlaceNode {
   cartographer::sensor::PointCloud cloud;
 };
 
+// Scores and decision for one node.
 struct PlaceResult {
-  // Of the submaps searched, in their order: score, 0 where nothing was found.
+  // Scores in the searched submaps, in their order; 0: no match.
   std::vector<double> scores;
-  // Others have fitted better, so that this one was not looked at to the end.
+  // Whether the search was abandoned because others matched better.
   std::vector<bool> outscored;
   bool decided = false;
   double significance = 0.;
   // Of the newest node, (local frame of the map <- node).
   Pose2 decided_pose;
   int decided_submap = -1;
-  // Nodes of the decided place that were not returned before, each in the
-  // submaps where it fits best: candidates with a match and without
+  // Nodes of the selected place that were not returned before, each in the
+  // submaps with the best match: candidates with a match and without
   // trajectories.
   std::vector<LoopCandidate> placed;
 };
 
+// Relocalises one run in one map, see above. Not thread-safe.
 class PlaceSearch {
  public:
   // The pose of a cloud in the grid of a submap, refined, both (local frame of
@@ -72,17 +76,17 @@ class PlaceSearch {
 
   PlaceSearch(const RelocalizationOptions& options, double min_score);
 
-  // The next node of the run; places are not followed to nodes that are older
-  // than the one before. `is_known`: its place is thought to be known, and the
-  // search is to confirm that; then fewer nodes decide, and no candidates are
-  // returned.
+  // Processes the next node of the run; nodes older than the previous one are
+  // not tracked. `is_known`: its place is presumably known and the search
+  // should confirm it; then fewer nodes are needed for a decision, and no
+  // candidates are returned.
   PlaceResult Search(PlaceNode node, const std::vector<PlaceSubmap>& submaps,
                      bool is_known, const Refiner& refiner);
 
   bool IsSamePlace(const Pose2& a, const Pose2& b) const {
     return tracker_.IsSamePlace(a, b);
   }
-  // Forgets nodes up to an index.
+  // Drops nodes up to an index.
   void DeleteNodes(int last_node_index);
 
  private:
@@ -94,7 +98,7 @@ class PlaceSearch {
   absl::optional<PlaceMatch> MatchNearby(int node_index, const Pose2& guess,
                                          const PlaceSubmap& submap,
                                          double min_score) const;
-  // The same in the submap where it fits best.
+  // The same in the submap with the best match.
   absl::optional<PlaceMatch> Follow(
       int node_index, const Pose2& guess,
       const std::vector<PlaceSubmap>& submaps) const;

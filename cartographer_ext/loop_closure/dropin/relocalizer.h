@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Relocalisation of runs in the maps of other trajectories: one PlaceSearch for
-// each run and map, its queries in order, and what follows from their results.
-// MapLocalization, which decides when a run is searched in the whole map, is
-// told whether the places found agree with the predictions; the nodes of a
-// place that was decided for become candidates of their own.
+// Relocalisation of runs in the maps of other trajectories: one PlaceSearch per
+// run and map, its queries in order, and the handling of their results.
+// MapLocalization, which decides when the whole map is searched, is notified
+// whether the places agree with the predictions; the nodes of a selected place
+// become candidates.
 //
 // Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_RELOCALIZER_H_
@@ -25,9 +25,10 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Relocalises runs in maps, see above.
 class Relocalizer {
  public:
-  // `min_score`: of a match anywhere in a submap.
+  // `min_score`: minimum score of a match anywhere in a submap.
   Relocalizer(const RelocalizationOptions& options, double min_score);
 
   // The query of the candidates of one node in one map.
@@ -37,14 +38,13 @@ class Relocalizer {
   // after the other.
   std::weak_ptr<cartographer::common::Task>* LastTask(const PlaceQuery& query);
 
-  // Of a query whose task has run: whether the place agrees with the
-  // prediction.
+  // To be called for a query whose task has run: reports whether the place
+  // agrees with the prediction.
   void ReportDecision(const PlaceQuery& query,
                       MapLocalization* localization) const;
 
-  // The places of a run are forgotten up to a node: in one map, because it was
-  // lost, or in all, because nodes are deleted. Takes effect with the next
-  // query.
+  // Drops the places of a run up to a node: in one map, because it was lost, or
+  // in all, because nodes are deleted. Takes effect with the next query.
   void ForgetPlaces(int trajectory_id, int map_trajectory_id, int last_node);
   void DeleteNodes(int trajectory_id, int last_node);
   void DeleteTrajectory(int trajectory_id);

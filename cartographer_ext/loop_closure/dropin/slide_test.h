@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether a scan that was found in a submap could as well lie elsewhere along
-// the direction that it determines least. A search always finds a best place;
-// of a scan that sees nothing but a straight wall it is an accident where along
-// the wall that is.
+// Tests whether a scan that was matched in a submap matches equally well
+// elsewhere along its least observable direction. A search always returns a
+// best pose; for a scan of a single straight wall, its position along the wall
+// is arbitrary.
 //
-// The log-odds of the pose found against one that is slid by d are
+// The log-odds of the match against a pose displaced by d are
 //
 //   L(0) - L(d) + (|o + d|^2 - |o|^2) / (2 sigma^2),
 //
 // the evidence of the scan (scan_matching/dropin/scan_evidence.h) and that of
-// the prediction, from which the pose found is off by o.
+// the prediction, whose offset from the match is o.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SLIDE_TEST_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SLIDE_TEST_H_
 
@@ -30,8 +30,8 @@ struct PredictedPosition {
   double sigma = 0.;  // metres, > 0
 };
 
-// The smallest log-odds over slides of half a metre and of a metre to both
-// sides; infinite where no direction is much less determined than the other.
+// The smallest log-odds over displacements of half a metre and of a metre to
+// both sides; infinite if no direction is much less observable than the other.
 // `pose` is (grid <- cloud), `information` that of the match about it in the
 // frame of the grid, 1/m^2 and 1/rad^2.
 double SlideOdds(const Pose2& pose, const Eigen::Matrix3d& information,

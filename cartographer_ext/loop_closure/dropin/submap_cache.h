@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What searches and verification derive from the grids of submaps: correlative
-// matchers and occupancy views. A matcher takes several times the memory of its
-// grid and is built in milliseconds, so only those used last are kept, up to a
-// limit, and the others are built again from their grids when they are needed.
-// Grids of finished submaps do not change, so the results are the same for any
-// limit.
+// Data derived from the grids of submaps for search and verification:
+// correlative matchers and occupancy views. A matcher takes several times the
+// memory of its grid and is built in milliseconds, so only the most recently
+// used ones are kept, up to a limit, and the others are rebuilt from their
+// grids when they are needed. Grids of finished submaps do not change, so the
+// results are the same for any limit.
 //
-// Thread-safe. Of two threads that want the same, one waits for the other.
+// Thread-safe. If two threads request the same object, one waits for the other.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_CACHE_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_CACHE_H_
 
@@ -30,24 +30,26 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// What is in use of one submap.
+// The object of one submap, if in use.
 template <typename Value>
 struct CachedOfSubmap {
   absl::Mutex mutex;  // held while it is built
   std::weak_ptr<const Value> in_use ABSL_GUARDED_BY(mutex);
 };
 
+// A submap with its cached objects.
 struct CachedSubmap {
   CachedSubmap(const int64_t number_in,
                const cartographer::mapping::Submap2D* const submap_in)
       : number(number_in), submap(submap_in) {}
 
-  const int64_t number;  // no other has or had it
+  const int64_t number;  // unique over the lifetime of the cache
   const cartographer::mapping::Submap2D* const submap;  // finished
   CachedOfSubmap<SubmapMatcher> matcher;
   CachedOfSubmap<OccupancyView> view;
 };
 
+// The cache, see above. Thread-safe.
 class SubmapCache {
  public:
   // `max_bytes` bounds what is kept, not what is in use at a time.
@@ -59,7 +61,7 @@ class SubmapCache {
   // Never null.
   std::shared_ptr<const SubmapMatcher> Matcher(CachedSubmap* submap);
   std::shared_ptr<const OccupancyView> View(CachedSubmap* submap);
-  // Of a submap that will not be needed any more.
+  // Removes a submap that is no longer needed.
   void Erase(const CachedSubmap& submap);
 
   size_t bytes() const;  // kept

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The search in one submap: what the builder of loop closures wants from a
-// matcher, and no more.
+// The search in one submap: the interface that loop closure needs of a matcher.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
 
@@ -18,6 +17,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// The best pose found in a submap.
 struct SubmapMatch {
   bool found = false;
   double score = 0.;
@@ -39,7 +39,7 @@ class SubmapMatcher {
                     double angular_window,
                     const cartographer::sensor::PointCloud& cloud,
                     double min_score) const;
-  // The same anywhere in the submap.
+  // The same in the whole submap.
   SubmapMatch MatchFullSubmap(const cartographer::sensor::PointCloud& cloud,
                               double min_score) const;
 
@@ -54,24 +54,24 @@ class SubmapMatcher {
   const scan_matching::FastCorrelativeMatcher2D matcher_;
 };
 
-// The best poses of the scan anywhere in some of the submaps: of the
-// `num_best` submaps that fit best, best first. Submaps that turn out to fit
-// worse are left alone as soon as that is clear. Not exact: a part of the
-// points finds the places.
+// The best poses of the scan in the `num_best` submaps that match best, best
+// first. Other submaps are abandoned as soon as they cannot be among them. Not
+// exact: the search uses a part of the points.
 struct SubmapRanking {
   size_t submap = 0;  // index
   SubmapMatch match;
 };
+// Computes the ranking; `min_score` in [0, 1].
 std::vector<SubmapRanking> MatchBestSubmaps(
     const std::vector<const SubmapMatcher*>& submaps,
     const cartographer::sensor::PointCloud& cloud, double min_score,
     int num_best);
 
-// Cells more likely occupied than not are occupied, other known ones free. Of a
-// TSDF those within one cell of the surface are occupied.
+// Cells with a probability above 0.5 are occupied, other known ones free. In a
+// TSDF, cells within one cell of the surface are occupied.
 OccupancyView MakeOccupancyView(const cartographer::mapping::Grid2D& grid);
 
-// The same with what the temporal verification needs of it.
+// The same, prepared for temporal verification.
 OccupancyView MakeReferenceView(const TemporalVerificationOptions& options,
                                 const cartographer::mapping::Grid2D& grid);
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What loop closure keeps of each submap: what is known about its nodes, and,
-// in a cache, its correlative matcher and its occupancy view for verification.
+// Data that loop closure keeps of each submap: its nodes and, in a cache, its
+// correlative matcher and its occupancy view for verification.
 //
 // The pose graph deletes nodes together with the submaps they belong to, but
 // announces the submaps only. `newest_node_bound` bounds the nodes of a submap:
-// it is the newest node known when the submap had been complete for a while.
+// it is the newest node at a time when the submap had been finished for a
+// while.
 //
 // Not thread-safe, except `cache`.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_STORE_H_
@@ -31,6 +32,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Data of one submap.
 struct SubmapEntry {
   static constexpr int kUnknownNode = std::numeric_limits<int>::max();
 
@@ -48,6 +50,7 @@ struct SubmapEntry {
   std::unique_ptr<CachedSubmap> cached;
 };
 
+// Data of all submaps, see above.
 class SubmapStore {
  public:
   SubmapStore(
@@ -55,15 +58,15 @@ class SubmapStore {
           options,
       const LoopOptions& extension);
 
-  // For every node and, after it, every pair proposed. Pairs of one group have
-  // been proposed when one node was added.
+  // To be called for every node and, after it, every proposed pair. Pairs of
+  // one group were proposed when one node was added.
   void AddNode(const uncertainty::NodeId& node, int64_t time);
   std::shared_ptr<SubmapEntry> AddPair(
       const uncertainty::SubmapId& submap_id,
       const cartographer::mapping::Submap2D* submap, int node_trajectory_id);
   void EndGroup() { ++num_groups_; }
 
-  // Null where the submap is not known.
+  // Null if the submap is unknown.
   std::shared_ptr<SubmapEntry> Find(const uncertainty::SubmapId& id) const;
   bool HasSubmapsOf(int trajectory_id) const;
   // -1 without a node of the trajectory.
@@ -74,16 +77,16 @@ class SubmapStore {
     newest_nodes_.erase(trajectory_id);
   }
 
-  // What is the same for all candidates of a submap and a trajectory: the
-  // submap, its local pose, its nodes, its anchor.
+  // Creates a candidate with the fields that are common to a submap and a
+  // trajectory: the submap, its local pose, its nodes, its anchor.
   LoopCandidate MakeCandidate(const uncertainty::SubmapId& id,
                               const SubmapEntry& entry, int node_trajectory_id,
                               const uncertainty::PathUncertainty& paths) const;
-  // Before the submap is searched, so that it and its neighbours are there for
-  // the verification.
+  // To be called before the submap is searched, so that it and its neighbours
+  // are available for verification.
   void AnnounceSearch(const uncertainty::SubmapId& id);
-  // The occupancy views of the submap and its neighbours, as far as they are
-  // there, into the candidate.
+  // Adds the available occupancy views of the submap and its neighbours to the
+  // candidate.
   void AddMaps(LoopCandidate* candidate);
 
   SubmapCache* cache() { return &cache_; }

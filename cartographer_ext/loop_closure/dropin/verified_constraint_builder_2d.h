@@ -10,10 +10,10 @@
 //   searches (pool)              each on its own, without any lock
 //   WhenDone -> callback (pool)  verifies in the order of the pairs, calls back
 //
-// Two mutexes. `mutex_` guards queue, counters and tasks; it is held for
-// moments only, never while something is planned, searched or verified.
-// `work_mutex_` is held while LoopClosure2D plans or verifies, in one sequence
-// whatever the number of threads. The calls that wait for it say so.
+// Two mutexes. `mutex_` guards queue, counters and tasks; it is held only
+// briefly, never during planning, searches or verification. `work_mutex_` is
+// held while LoopClosure2D plans or verifies, in the same sequence for any
+// number of threads. Calls that wait for it are documented.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_VERIFIED_CONSTRAINT_BUILDER_2D_H_
 
@@ -39,6 +39,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Constraint builder with verification, see above. Thread-safe.
 class VerifiedConstraintBuilder2D {
  public:
   using ConstraintBuilderOptions =
@@ -51,20 +52,19 @@ class VerifiedConstraintBuilder2D {
   using NodeData = cartographer::mapping::TrajectoryNode::Data;
   using Rigid2d = cartographer::transform::Rigid2d;
 
-  // `extension` is our block of `options`. The pool has to outlive this.
+  // `extension` is our block of `options`. The pool must outlive this object.
   VerifiedConstraintBuilder2D(
-      const ConstraintBuilderOptions& options,
-      const LoopOptions& extension,
+      const ConstraintBuilderOptions& options, const LoopOptions& extension,
       cartographer::common::ThreadPoolInterface* thread_pool);
   // WhenDone must have been called, and have called back, since the last node.
-  // What is still undecided is rejected and goes to the decision log.
+  // Undecided candidates are rejected and recorded.
   ~VerifiedConstraintBuilder2D();
   VerifiedConstraintBuilder2D(const VerifiedConstraintBuilder2D&) = delete;
   VerifiedConstraintBuilder2D& operator=(const VerifiedConstraintBuilder2D&) =
       delete;
 
   // Proposes a pair around (submap <- node) = `initial_relative_pose`, which
-  // may or may not be searched. The submap has to be finished. Submap and node
+  // may or may not be searched. The submap must be finished. Submap and node
   // data must live until WhenDone has called back. Never waits.
   void MaybeAddConstraint(const SubmapId& submap_id, const Submap2D* submap,
                           const NodeId& node_id, const NodeData* node,
@@ -73,7 +73,7 @@ class VerifiedConstraintBuilder2D {
     Propose({submap_id, submap, node_id, node, initial_relative_pose});
   }
 
-  // The same without a prediction: somewhere in the whole submap.
+  // The same without a prediction, in the whole submap.
   void MaybeAddGlobalConstraint(const SubmapId& submap_id,
                                 const Submap2D* submap, const NodeId& node_id,
                                 const NodeData* node)
@@ -82,25 +82,25 @@ class VerifiedConstraintBuilder2D {
   }
 
   // The pairs since the last call were proposed when one node was added. Plans
-  // them together and schedules their searches. Waits for verification, if that
-  // is under way.
+  // them together and schedules their searches. Waits for a running
+  // verification.
   void NotifyEndOfNode() ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
 
   // Calls back once, on the pool and without a lock, when the searches of all
-  // nodes so far are done and verified. The result is what became certain since
-  // the last callback, in the order of the pairs, which includes pairs of
-  // earlier rounds that waited for evidence. The callback may use the builder.
-  // One callback at a time.
+  // nodes so far are done and verified. The result contains the constraints
+  // accepted since the last callback, in the order of the pairs, including
+  // buffered pairs of earlier rounds. The callback may use the builder. Only
+  // one callback may be pending.
   void WhenDone(const std::function<void(const Result&)>& callback)
       ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
 
-  // Nodes whose searches are done, over the whole life of the builder. Never
-  // waits.
+  // Number of nodes whose searches are done, over the lifetime of the builder.
+  // Never waits.
   int GetNumFinishedNodes() ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
 
-  // Forgets a submap, and rejects the undecided pairs of it and of nodes that
-  // the pose graph may delete with it. None of its pairs may be under way.
-  // Waits for verification, if that is under way.
+  // Removes a submap, and rejects its undecided pairs and those of nodes that
+  // the pose graph may delete with it. None of its pairs may be pending. Waits
+  // for a running verification.
   void DeleteScanMatcher(const SubmapId& submap_id)
       ABSL_LOCKS_EXCLUDED(mutex_, work_mutex_);
 
@@ -116,7 +116,7 @@ class VerifiedConstraintBuilder2D {
   int64_t pending_id_ = 0;            // at recorder_
 
   absl::Mutex mutex_;
-  // Of the node that is not complete yet.
+  // Pairs of the current node.
   std::vector<LoopClosure2D::Proposal> proposals_ ABSL_GUARDED_BY(mutex_);
   std::function<void(const Result&)> callback_ ABSL_GUARDED_BY(mutex_);
   // Collects dependencies until it is scheduled.

@@ -17,7 +17,7 @@
 //   w_t = w_t,stock (S / S_ref)^(alpha / 2)
 //   w_r = w_r,stock (S / S_ref)^(beta / 2)
 //
-// A score of S_ref leaves the stock weights as they are.
+// A score of S_ref leaves the stock weights unchanged.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_INFORMATION_CONSTRAINT_INFORMATION_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_INFORMATION_CONSTRAINT_INFORMATION_H_
 
@@ -26,6 +26,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Parameters of eq. 8 to 11.
 struct ConfidenceWeightOptions {
   bool enabled = true;           // otherwise every loop has the stock weights
   double alpha = 1.2;            // translation exponent, >= 0
@@ -36,6 +37,7 @@ struct ConfidenceWeightOptions {
   bool full_matrix = false;
 };
 
+// The two scalar weights of a constraint.
 struct ConstraintWeights {
   double translation = 0.;  // 1/metre, square root of information
   double rotation = 0.;     // 1/radian
@@ -57,20 +59,20 @@ Eigen::Matrix3d PaperInformation(double final_score, double alpha, double beta,
 //
 //   Omega = W L^(1/2) C^-1 L^(1/2) W,  W = diag(w_t, w_t, w_r)
 //
-// with L and C the two covariances. A certain match has W^2; along a corridor
-// that the scan does not observe the loop pulls less. Weights are no deviations
-// in metres, therefore only the ratio of the covariances counts. Zero where C
-// has no inverse.
+// with L and C the two covariances. A certain match has W^2; along a direction
+// that the scan does not observe, such as a corridor, the information is
+// smaller. The weights are not standard deviations in metres, so only the ratio
+// of the covariances counts. Zero if C has no inverse.
 Eigen::Matrix3d FullInformation(const ConstraintWeights& weights,
                                 const Eigen::Matrix3d& certain_covariance,
                                 const Eigen::Matrix3d& match_covariance);
 
-// A pair of scalar weights for a full information matrix (metres, radians), so
-// that a solver which knows only two scalars stays sane: the translation weight
-// is the square root of the smaller eigenvalue of the translation block after
-// the rotation has been marginalised out, the rotation weight that of the
-// rotation entry after the translation has been marginalised out. A matrix that
-// is not positive semi-definite gives zero weights.
+// A pair of scalar weights for a full information matrix (metres, radians), for
+// solvers that support two scalars only: the translation weight is the square
+// root of the smaller eigenvalue of the translation block after the rotation
+// has been marginalised out, the rotation weight that of the rotation entry
+// after the translation has been marginalised out. A matrix that is not
+// positive semi-definite gives zero weights.
 ConstraintWeights ScalarWeights(const Eigen::Matrix3d& information);
 
 }  // namespace loop_closure

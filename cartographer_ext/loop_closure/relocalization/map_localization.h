@@ -1,25 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether the pose of a run in the map of another run is known, and when the
-// run is searched in the whole map.
+// State of the localisation of a run in the map of another run, and when the
+// whole map is searched.
 //
 //   unknown   From the first node on without a prediction, and once the run is
 //             lost. All submaps of the map are searched for a node every
-//             `query_spacing` metres, and the places found are followed
+//             `query_spacing` metres, and the hypotheses are tracked
 //             (PlaceTracker).
 //   given     From the first node on with a prediction (an operator's), for
 //             `lost_distance` metres. Searched around the prediction.
 //   known     From the first accepted loop on, as long as others follow within
 //             `lost_distance` metres. Searched around the prediction; every
-//             `watch_spacing` metres the whole map is searched nevertheless,
-//             for the search around a wrong prediction may go on finding a
-//             place that looks alike.
+//             `watch_spacing` metres the whole map is searched as well,
+//             because the search around a wrong prediction may keep finding
+//             a look-alike place.
 //
 // A run whose place was known becomes lost when no loop is accepted for too
-// long a distance, or when of the last `watches` + 1 decisions about its place
-// all but one were for another one. Loops from before then do not locate it any
-// more: somebody may have carried the robot.
+// long a distance, or when all but one of the last `watches` + 1 decisions
+// about its place were for a different place. Earlier loops then no longer
+// locate it, because the robot may have been carried.
 //
 // Keyed by the trajectory of the run and that of the map. Depends on the calls
 // in their order only. Not thread-safe.
@@ -36,40 +36,42 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Distances between searches, and limits.
 struct MapLocalizationOptions {
-  // Places half as far apart as revisits count as evidence, so that one query
-  // in two may find nothing.
+  // Half the spacing at which revisits count as evidence, so that every second
+  // query may fail.
   double query_spacing = 2.5;  // metres, >= 0
   // Larger is cheaper and detects a wrong place later.
   double watch_spacing = 5.;   // metres, >= 0
   double lost_distance = 15.;  // metres, > 0: three revisits without a loop
-  // One decision for another place may be wrong.
+  // Tolerates one wrong decision.
   int watches = 2;  // >= 1
 };
 
+// State of runs localised in maps, see above.
 class MapLocalization {
  public:
-  // How the pairs of a node with the submaps of a map are to be searched.
+  // How the pairs of a node with the submaps of a map are searched.
   struct Plan {
     bool around_prediction = false;
     bool everywhere = false;
-    // The run has just become lost, and whether it is by decisions.
+    // Whether the run has just become lost, and whether because of decisions.
     bool newly_lost = false;
     bool by_decisions = false;
   };
 
-  // `paths` has to outlive this and to know the nodes.
+  // `paths` must outlive this object and contain the nodes.
   MapLocalization(const MapLocalizationOptions& options,
                   const uncertainty::PathUncertainty* paths);
 
-  // For each node that is offered to submaps of `map_trajectory_id`, in order.
-  // `is_predicted`: the host says where it is.
+  // To be called in order for each node proposed with submaps of
+  // `map_trajectory_id`. `is_predicted`: the host has a prediction.
   Plan PlanNode(const uncertainty::NodeId& node, int map_trajectory_id,
                 bool is_predicted);
 
-  // True when the run knows its place again, by this loop, after it was lost.
+  // Returns true if this loop relocalises the run after it was lost.
   bool AddAcceptedLoop(const uncertainty::NodeId& node, int map_trajectory_id);
-  // Whether it was decided for the place that was predicted.
+  // Adds a decision: whether it agrees with the prediction.
   void AddDecision(const uncertainty::NodeId& node, int map_trajectory_id,
                    bool agrees);
 
@@ -77,7 +79,7 @@ class MapLocalization {
   // The last node from before the run was lost, -1 without.
   int LastNodeBeforeLost(int trajectory_id, int map_trajectory_id) const;
 
-  // Frees what is remembered of a run, and of runs in it as a map.
+  // Frees the data of a run, and of runs localised in it.
   void DeleteTrajectory(int trajectory_id);
 
  private:

@@ -22,7 +22,7 @@
 // right (the robot was carried, or local SLAM went astray); what was before is
 // forgotten.
 //
-// Tracks at the same place are one, the better one. Bounded: the newest nodes
+// Of tracks at the same place the better one is kept. Bounded: the newest nodes
 // and the best tracks are kept. Not thread-safe; depends on the calls in their
 // order only.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_RELOCALIZATION_PLACE_TRACKER_H_
@@ -39,6 +39,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Limits and tolerances of the tracks.
 struct PlaceTrackerOptions {
   // Nodes along which places are followed and compared, > 0. More separate
   // places that look very much alike, and cost more.
@@ -47,8 +48,8 @@ struct PlaceTrackerOptions {
   int min_nodes = 4;          // of a decision, > 0
   double significance = 3.;   // z above, >= 0
   double sigma_floor = 0.01;  // s above, > 0
-  // Nearer than this is the same place, metres and radians. Submaps of several
-  // visits are a little off each other before the map is optimised.
+  // Poses closer than this are the same place, metres and radians. Submaps of
+  // several visits are a little off each other before the map is optimised.
   double same_metres = 1.2;
   double same_radians = 0.15;
   // Scores that differ by more show that the motion was wrong.
@@ -64,6 +65,7 @@ struct PlaceMatch {
   double score = 0.;
 };
 
+// Tracks hypotheses of the place of a run, see above.
 class PlaceTracker {
  public:
   // The best match of a kept node near a guess (local frame of the map <-
@@ -81,8 +83,8 @@ class PlaceTracker {
 
   struct Decision {
     bool decided = false;
-    // How far the best place is ahead of the next one: mean difference of the
-    // scores, and in standard deviations; infinite without another one.
+    // Lead of the best place over the next one: mean difference of the scores,
+    // and in standard deviations; infinite if there is no other one.
     double lead = 0.;
     double significance = 0.;
     // Of the best place, with the newest node last. Nodes without a match are
@@ -95,9 +97,9 @@ class PlaceTracker {
 
   bool IsSamePlace(const Pose2& a, const Pose2& b) const;
 
-  // Forgets nodes up to an index, and places that only they knew.
+  // Drops nodes up to an index, and places supported only by them.
   void DeleteNodes(int last_node_index);
-  // Index of the oldest node that is kept, -1 without.
+  // Index of the oldest node that is kept, -1 if none.
   int oldest_node() const;
   int num_nodes() const { return static_cast<int>(nodes_.size()); }
   int num_tracks() const { return static_cast<int>(tracks_.size()); }

@@ -1,23 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Does a scan agree with a map from a given pose, beam by beam? Look-alike
-// places differ in little: a door a hand's breadth farther on, a wall at the
-// far end of a corridor. Averages over sectors blur just that, so the temporal
+// Agreement of a scan with a map at a given pose, beam by beam. Look-alike
+// places differ in details: a door shifted by ten centimetres, a wall at the
+// far end of a corridor. Averages over sectors blur these, so the temporal
 // score (temporal_verification.h) compares each beam at its own angle:
 //
-//   ends at a wall or in free space   It disagrees by the distance from its end
-//                                     to the nearest occupied cell, which
-//                                     forgives beams that graze a wall.
-//   ends in unknown space             It disagrees by the difference between
+//   ends at a wall or in free space   The disagreement is the distance from its
+//                                     end to the nearest occupied cell, which
+//                                     tolerates beams that graze a wall.
+//   ends in unknown space             The disagreement is the difference between
 //                                     its range and the range that the map
-//                                     predicts along it: a beam does not go
-//                                     through walls. Where the map predicts
-//                                     nothing the beam is not compared.
+//                                     predicts along it: a beam does not pass
+//                                     through walls. Without a prediction the
+//                                     beam is not compared.
 //
-// A tolerance is forgiven, and disagreements are clipped since people walk by.
-// A beam longer than the largest range has no end; space is free along it up to
-// that range.
+// A tolerance is subtracted, and disagreements are clipped because of moving
+// people. A beam longer than the maximum range has no end; space along it is
+// free up to that range.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_BEAM_AGREEMENT_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_BEAM_AGREEMENT_H_
 
@@ -30,21 +30,22 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// A map that predicts, and where it lies.
+// A map used as reference, with its pose.
 struct ReferenceMap {
   const OccupancyView* view = nullptr;
   Pose2 view_from_submap;  // (frame of the view <- frame of the candidate)
 };
 
+// Range limits and tolerances of the comparison.
 struct BeamAgreementOptions {
   double max_range = 25.;     // metres, > 0
   double min_range = 0.1;     // metres, >= 0; nearer points are the robot
   double max_unknown = 0.15;  // metres of unknown space a beam may cross
   double tolerance = 1.;      // cells of the map, >= 0
   double clip = 0.2;          // metres, > 0
-  // Share of the beams that the maps have to know, in (0, 1].
+  // Required share of beams for which the maps have data, in (0, 1].
   double minimum_overlap = 0.7;
-  // Scans are thinned out to this number of beams.
+  // Scans are subsampled to this number of beams.
   int max_beams = 120;  // > 0
 };
 
@@ -59,28 +60,28 @@ struct Beam {
 std::vector<Beam> BeamsFromPoints(const BeamAgreementOptions& options,
                                   const std::vector<Eigen::Vector2f>& points);
 
-// How far, in cells, the views have to know distances for this.
+// The reach, in cells, up to which the views must have distances.
 int DistanceReach(const BeamAgreementOptions& options, double resolution);
 
 // Maps seen from one pose.
 class PlacedMaps {
  public:
-  // `pose`: (frame of the candidate <- node). The views have to know distances
-  // and to outlive this.
+  // `pose`: (frame of the candidate <- node). The views must have distances and
+  // outlive this object.
   PlacedMaps(const std::vector<ReferenceMap>& maps, const Pose2& pose);
 
-  // Mean disagreement of the beams as a share of the clip, in [0, 1]. Of the
-  // maps the first that knows about a beam counts. NaN when less than the
-  // minimum overlap is known.
+  // Mean disagreement of the beams as a share of the clip, in [0, 1]. For each
+  // beam the first map with data is used. NaN if the overlap is below the
+  // minimum.
   double Disagreement(const BeamAgreementOptions& options,
                       const std::vector<Beam>& beams) const;
-  // A number that the disagreement is not below, unless it is NaN, at a small
-  // part of the cost: nothing is predicted along beams.
+  // A lower bound of the disagreement (unless that is NaN), at a fraction of
+  // the cost: no ranges are predicted.
   double LeastDisagreement(const BeamAgreementOptions& options,
                            const std::vector<Beam>& beams) const;
 
  private:
-  // Where the node lies in one map.
+  // Position of the node in one map.
   struct Place {
     const OccupancyView* view;
     Eigen::Vector2d start;  // frame of the view, metres
@@ -94,7 +95,7 @@ class PlacedMaps {
     int num_open = 0;  // neither known nor unknown yet
   };
 
-  // NaN where no map knows about the end of the beam.
+  // NaN if no map has data at the end of the beam.
   double EndDisagreement(const Beam& beam, double tolerance) const;
   Sums Sum(const BeamAgreementOptions& options, const std::vector<Beam>& beams,
            bool predict) const;

@@ -4,10 +4,10 @@
 // Dynamic time warping of two sequences of range signatures, and the variable
 // window (paper C, optimised Cartographer 2025, section 1.2, eq. 4).
 //
-// The query is what the robot saw at its last nodes, the reference is what a
-// submap predicts along the same path placed at the candidate pose, sampled
-// finer. Warping absorbs the error of the odometry's scale; a Sakoe-Chiba band
-// keeps it from matching anything with anything.
+// The query are the scans of the last nodes, the reference is the prediction of
+// a submap along the same path placed at the candidate pose, sampled more
+// finely. Warping absorbs the error of the odometry scale; a Sakoe-Chiba band
+// limits it.
 //
 //   D(i, j) = c(i, j) + min(D(i-1, j), D(i, j-1), D(i-1, j-1))
 //
@@ -23,6 +23,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Parameters of eq. 4.
 struct VariableWindowOptions {
   // N_0 of eq. 4, nodes. The paper has 4; over 6 m of the path, nodes half a
   // metre apart, look-alike places differ somewhere.
@@ -33,9 +34,10 @@ struct VariableWindowOptions {
 
 // C eq. 4: N = base + span (1 - exp(-gamma t)), rounded to the nearest integer
 // and at least one. `age` is the age of the submap in seconds or in nodes,
-// whichever the options of the builder name; negative ages count as zero.
+// depending on the options of the builder; negative ages count as zero.
 int VariableWindow(const VariableWindowOptions& options, double age);
 
+// The best warping path.
 struct DtwResult {
   double cost = 0.;     // sum of local costs along the best path
   int path_length = 0;  // cells on the best path
@@ -44,23 +46,22 @@ struct DtwResult {
 };
 
 // `local_cost[i * num_reference + j]` is the cost, in [0, 1], of matching query
-// i with reference j; NaN means "not comparable" and bars the cell.
-// `band` is the half width of the Sakoe-Chiba band in reference elements,
-// around the straight line between the corners; negative: no band. The path
-// runs from corner to corner. Of equal costs the shorter path wins, so the
-// result is the same everywhere. Empty when a sequence is empty or no path
-// exists.
+// i with reference j; NaN means "not comparable" and excludes the cell. `band`
+// is the half width of the Sakoe-Chiba band in reference elements, around the
+// straight line between the corners; negative: no band. The path runs from
+// corner to corner. Of paths with equal costs the shorter one is used, so the
+// result is unique. Empty if a sequence is empty or no path exists.
 absl::optional<DtwResult> DynamicTimeWarping(
     int num_query, int num_reference, const std::vector<double>& local_cost,
     double band);
 
-// The same with one step for each query element: the path holds exactly one
-// cell a query element, and the reference advances by 0 ... `max_advance` (>=
-// 0) elements from one to the next. A finely sampled reference then costs
-// nothing by being fine, a perfect repetition has score 1. The last query
-// element meets the last reference element (the candidate pose); the first may
-// meet any within the band. Empty as above. `path`, where given, gets the
-// reference element of each query element.
+// The same with one step for each query element: the path has exactly one cell
+// per query element, and the reference advances by 0 ... `max_advance` (>= 0)
+// elements from one to the next. Fine sampling of the reference then adds no
+// cost, and a perfect repetition has score 1. The last query element is matched
+// with the last reference element (the candidate pose); the first with any
+// within the band. Empty as above. `path`, unless null, receives the reference
+// element of each query element.
 absl::optional<DtwResult> AsymmetricTimeWarping(
     int num_query, int num_reference, const std::vector<double>& local_cost,
     double band, int max_advance, std::vector<int>* path = nullptr);

@@ -14,9 +14,9 @@
 //   kAsPrinted              tau = low + span exp(-C Var)
 //   kStricterWhenUnstable   tau = low + span (1 - exp(-C Var))
 //
-// Score variances are of the order 1e-3 ... 1e-2, so C has to be tens to
-// hundreds to matter: C = 100 puts the middle of the range at Var = 0.007.
-// Until k scores exist the fixed base threshold holds.
+// Score variances are of the order 1e-3 ... 1e-2, so C must be tens to hundreds
+// to have an effect: C = 100 puts the middle of the range at Var = 0.007. Until
+// k scores exist the fixed base threshold applies.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_DYNAMIC_THRESHOLD_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_DYNAMIC_THRESHOLD_H_
 
@@ -25,8 +25,10 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Effect of a large variance on the threshold, see above.
 enum class ThresholdDirection { kAsPrinted, kStricterWhenUnstable };
 
+// Parameters of eq. 1 to 3.
 struct DynamicThresholdOptions {
   bool enabled = true;  // otherwise there is no threshold
   ThresholdDirection direction = ThresholdDirection::kStricterWhenUnstable;

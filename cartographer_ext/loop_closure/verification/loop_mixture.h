@@ -17,16 +17,16 @@
 //
 // The fit is the maximum a posteriori estimate by expectation maximisation over
 // a bounded window of candidates. Normal-inverse-Wishart priors (strength in
-// pseudo-observations) keep a component where it belongs when few candidates
-// were seen, keep covariances from collapsing and fix which component is which;
-// the true component's means are never below the false one's.
+// pseudo-observations) keep the components in place with few candidates, keep
+// covariances from collapsing and determine which component is which; the means
+// of the true component are never below those of the false one.
 //
-// What scans reach at the right place depends on the robot: walls blurred by
-// its local SLAM, people, a sparse laser. So the priors follow the run. Scores
-// at places that are certain, because the path to them is short or because
-// other loops confirm them, are samples of the true component; they replace its prior after some tens of them. A wrong
-// place is wrong for the same blurred scans: the false component keeps the
-// ratio of its mean scores to those of the true one.
+// The scores of scans at the right place depend on the run: walls blurred by
+// local SLAM, people, a sparse laser. So the priors adapt to the run. Scores at
+// certain places, where the path is short or other loops confirm the match, are
+// samples of the true component; some tens of them replace its prior. Wrong
+// places are affected by the same blur: the false component keeps the ratio of
+// its mean scores to those of the true one.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_LOOP_MIXTURE_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_LOOP_MIXTURE_H_
 
@@ -43,6 +43,7 @@ double TemporalCoordinate(double temporal_score);
 // The inverse.
 double ScoreOfCoordinate(double coordinate);
 
+// A weighted Gaussian over (S_g, u).
 struct MixtureComponent {
   double weight = 0.5;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();  // (S_g, u)
@@ -53,21 +54,22 @@ struct MixtureComponent {
 double LogWeightedDensity(const MixtureComponent& component,
                           const Eigen::Vector2d& scores);
 
+// Priors and limits of the fit.
 struct LoopMixtureOptions {
   // Component 0 is "false", 1 is "true".
   std::array<MixtureComponent, 2> prior = DefaultPrior();
-  // Pseudo-observations per component, > 0. Few candidates are false, so it is
-  // the prior above all that says what they are like; a weak one lets the
-  // component of the false ones take over poor true ones.
+  // Pseudo-observations per component, > 0. Few candidates are false, so the
+  // false component is mainly determined by its prior; with a weak one it would
+  // absorb poor true loops.
   double prior_strength = 500.;
-  // The same for what `prior` itself is worth against scores of places that are
-  // certain, > 0.
+  // The same for the weight of `prior` itself against scores at certain places,
+  // > 0.
   double certain_prior_strength = 20.;
-  int capacity = 500;       // candidates remembered, and certain ones, > 0
+  int capacity = 500;       // of candidates, and of certain ones, > 0
   int max_iterations = 50;  // of EM per fit
   double tolerance = 1e-6;  // change of the mean log-posterior that stops EM
 
-  // Of scores by beams (temporal_verification.h).
+  // For scores by beams (temporal_verification.h).
   static std::array<MixtureComponent, 2> DefaultPrior();
 };
 
@@ -78,13 +80,13 @@ class LoopMixture {
 
   // Posterior probability of "true" for (S_g, S_t) under the current fit.
   double ProbabilityTrue(double grid_score, double temporal_score) const;
-  // The same where only S_g is known.
+  // The same if only S_g is known.
   double ProbabilityTrue(double grid_score) const;
-  // Remembers the candidate; `Fit` uses it.
+  // Adds a candidate for `Fit`.
   void Add(double grid_score, double temporal_score);
-  // The same for one that is true for sure. Where scans compared are in the
-  // submap themselves (`has_own_scans`), scores are too good: such samples
-  // count only while there are hardly others.
+  // The same for one that is certainly true. If compared scans are part of the
+  // submap themselves (`has_own_scans`), scores are too high: such samples are
+  // used only while there are hardly any others.
   void AddCertain(double grid_score, double temporal_score, bool has_own_scans);
   // Runs EM from the current parameters; returns the iterations used.
   int Fit();
@@ -93,11 +95,11 @@ class LoopMixture {
     return components_;
   }
   int size() const { return static_cast<int>(scores_.size()); }
-  // S_t at right places of this run over that of the prior, in (0, 1].
+  // S_t at right places of this run relative to that of the prior, in (0, 1].
   double temporal_scale() const;
 
  private:
-  // The priors of this run, from the scores that are certain.
+  // Updates the priors from the scores at certain places.
   void UpdatePrior();
 
   const LoopMixtureOptions options_;

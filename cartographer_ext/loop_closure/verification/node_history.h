@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A bounded memory of the scans at the last nodes. The host guarantees a node's
+// A bounded history of the scans of recent nodes. The host guarantees a node's
 // data only until its constraints are computed and does not announce when it is
-// trimmed, so whatever spans several nodes keeps copies of its own. They are
-// taken of every node proposed, before any sampler, so that the sequence has no
-// gaps.
+// trimmed, so code that uses several nodes keeps its own copies. They are taken
+// of every proposed node, before any sampler, so that the sequence has no gaps.
 //
 // Not thread-safe; nodes may be added in any order (a finished submap is
 // proposed with all older nodes in a burst).
@@ -24,25 +23,28 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// A node with the description of its scan.
 struct HistoryNode {
   int node_index = 0;
   int64_t time = 0;  // host ticks
   Pose2 local_pose;  // (local frame of the trajectory <- node)
-  // What the temporal score compares, one of them (DescribeScan).
+  // Description of the scan for the temporal score, one of the two
+  // (DescribeScan).
   std::vector<Beam> beams;
   RangeSignature signature;
 };
 
+// Recent nodes by trajectory, see above.
 class NodeHistory {
  public:
   // Keeps the newest `max_nodes` (> 0) nodes of each trajectory.
   explicit NodeHistory(int max_nodes);
 
-  // False when the node is there already or older than all that are kept of a
-  // full trajectory; then nothing changes.
+  // Returns false, without effect, if the node exists already or is older than
+  // all that are kept of a full trajectory.
   bool Add(int trajectory_id, HistoryNode node);
   bool Contains(int trajectory_id, int node_index) const;
-  // Null when the node is not kept.
+  // Null if the node is not kept.
   const HistoryNode* Find(int trajectory_id, int node_index) const;
   int size(int trajectory_id) const;
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What loop verification needs of a submap's grid: one byte a cell that says
-// free, occupied or unknown, and how far the nearest occupied cell is. It is a
-// copy, so it outlives the submap it came from, and it knows nothing of the
-// host's grids.
+// A submap's grid as needed by loop verification: one byte per cell for free,
+// occupied or unknown and the distance to the nearest occupied cell. It is a
+// copy, so it is independent of the lifetime of the submap and of the host's
+// grids.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_OCCUPANCY_VIEW_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_OCCUPANCY_VIEW_H_
 
@@ -19,8 +19,10 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// State of a cell.
 enum class CellState : uint8_t { kUnknown = 0, kFree = 1, kOccupied = 2 };
 
+// A grid of cell states with distances, see above.
 class OccupancyView {
  public:
   // Cell (i, j) covers the square from `origin` + resolution * (i, j) to
@@ -53,7 +55,7 @@ class OccupancyView {
     if ((cell & kKnown) == 0) return CellState::kUnknown;
     return cell == kKnown ? CellState::kOccupied : CellState::kFree;
   }
-  // Distances have to be found again afterwards.
+  // Invalidates the distances.
   void Set(int i, int j, CellState state) {
     CHECK(Contains(i, j));
     cells_[Offset(i, j)] = state == CellState::kUnknown ? kFar
@@ -61,15 +63,15 @@ class OccupancyView {
                                                         : kKnown;
   }
 
-  // Longest distance that a cell has room for, in cells.
+  // Largest distance that a cell can store, in cells.
   static constexpr int kMaxReach = 11;
-  // Squared distance of cells that have nothing occupied within the reach.
+  // Squared distance of cells without an occupied cell within the reach.
   static constexpr uint8_t kFar = 127;
   // Finds the distances from every cell, known or not, to the nearest occupied
   // one, exactly within `reach` cells (at most kMaxReach).
   void FindDistances(int reach);
-  // In squared cells, between the middles of the cells; kFar where nothing
-  // occupied is within the reach, outside the view, and before `FindDistances`.
+  // In squared cells, between the centres of the cells; kFar if no occupied
+  // cell is within the reach, outside the view, and before `FindDistances`.
   uint8_t SquaredDistance(int i, int j) const {
     return Contains(i, j) ? cells_[Offset(i, j)] & kFar : kFar;
   }
@@ -92,15 +94,16 @@ class OccupancyView {
   std::vector<uint8_t> cells_;
 };
 
+// Limits of a cast ray.
 struct RayOptions {
   double max_range = 10.;  // metres, > 0
-  // A ray that crosses more than this of unknown space sees nothing.
+  // A ray that crosses more unknown space than this has no result.
   double max_unknown = 0.15;  // metres, >= 0
 };
 
 // Distance in metres from `start` along `angle` (radians, frame of the view) to
 // where the ray enters the first occupied cell; `max_range` when everything up
-// to there is free; NaN when unknown space hides the answer, when the start is
+// to there is free; NaN if it crosses too much unknown space, if the start is
 // not in free space, or for arguments that are not finite.
 double CastRay(const OccupancyView& view, const Eigen::Vector2d& start,
                double angle, const RayOptions& options);

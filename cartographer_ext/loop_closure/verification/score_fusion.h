@@ -11,9 +11,9 @@
 //
 // with means and deviations over the last k scores of each kind. Eq. 6 is
 // printed with unnormalised Gaussians (no 1/sigma, no mixture weights): it
-// rewards the score that is typical, not the one that is good, and it is 0/0
-// far from both means. It is evaluated in the log domain, where it is a
-// logistic function of the difference of the exponents, with a floor on sigma.
+// rewards typical scores rather than high ones, and it is 0/0 far from both
+// means. It is evaluated in the log domain, where it is a logistic function of
+// the difference of the exponents, with a floor on sigma.
 //
 // The other mode, a calibrated probability by a mixture over both scores, is in
 // loop_mixture.h.
@@ -25,12 +25,14 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Parameters of eq. 5 to 7.
 struct ScoreFusionOptions {
   int window = 10;              // k, > 0
   double sigma_floor = 0.01;    // > 0, in units of the scores
   double initial_lambda = 0.5;  // until k scores exist, in [0, 1]
 };
 
+// Means and standard deviations of both kinds of scores.
 struct ScoreStatistics {
   double mean = 0.;
   double sigma = 0.;
@@ -41,6 +43,7 @@ double FusionLambda(const ScoreFusionOptions& options, double grid_score,
                     const ScoreStatistics& grid, double temporal_score,
                     const ScoreStatistics& temporal);
 
+// Result of eq. 6 and 7.
 struct FusedScore {
   double lambda = 0.;  // eq. 6
   double score = 0.;   // S_final of eq. 7

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What verification finds out about a candidate (score_verifier.h).
+// Results of the verification of a candidate (score_verifier.h).
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_RESULT_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_RESULT_H_
 
@@ -13,6 +13,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Temporal score with the threshold it was compared with.
 struct TemporalScore {
   TemporalResult result;
   int window = 0;              // N of C eq. 4, nodes
@@ -34,6 +35,7 @@ struct MixtureDescription {
   double variance_temporal = 0.;
 };
 
+// Fused score and the parameters in force.
 struct ScoreFusionResult {
   double lambda = 0.;       // of C eq. 6; 0 for the likelihood ratio
   double final_score = 0.;  // S_final of C eq. 7

@@ -3,7 +3,7 @@
 //
 // Verification of a candidate that the search has matched (paper C, optimised
 // Cartographer 2025, sections 1.2 and 1.3). Three steps, each of which can be
-// off:
+// disabled:
 //
 //   temporal score   S_t: do the last N nodes before the candidate's fit the
 //                    submap along the path that the robot took (eq. 4 gives N;
@@ -14,12 +14,12 @@
 //                    (eq. 5 to 7; score_fusion.h) or as the probability of a
 //                    true loop (loop_mixture.h).
 //
-// A candidate without S_t (too few nodes, a path that the maps do not know) is
-// not rejected for it, but its final score is neutral at best, so that it needs
-// the confirmation of others.
+// A candidate without S_t (too few nodes, a path outside the maps) is not
+// rejected for it, but its final score is neutral at best, so that it needs
+// confirmation by others.
 //
-// The steps remember the scores of the candidates before: the result depends on
-// the order of the calls. Not thread-safe.
+// The steps use the scores of previous candidates, so the result depends on the
+// order of the calls. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_VERIFIER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_VERIFIER_H_
 
@@ -36,28 +36,30 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Verifies matched candidates, see above.
 class ScoreVerifier {
  public:
   explicit ScoreVerifier(const LoopOptions& options);
 
-  // How `history` describes scans (DescribeScan).
+  // The options by which `history` describes scans (DescribeScan).
   const TemporalVerificationOptions& temporal_options() const {
     return options_.temporal.comparison;
   }
 
-  // S_t and N of eq. 4, into `temporal`.
+  // Computes S_t and N of eq. 4 into `temporal`.
   void ComputeTemporalScore(const NodeHistory& history,
                             LoopCandidate* candidate) const;
-  // tau of eq. 1 to 3 in force, into `temporal`; rejects S_t < tau.
+  // Writes tau of eq. 1 to 3 into `temporal`; rejects S_t < tau.
   void TestTemporalScore(LoopCandidate* candidate);
-  // S_final of eq. 5 to 7, into `fusion`; rejects what is too low. Also to be
-  // called for candidates that were rejected: it learns from their scores.
+  // Computes S_final of eq. 5 to 7 into `fusion`; rejects if it is too low. To
+  // be called for rejected candidates as well, because their scores are used
+  // for the fit.
   void FuseScores(LoopCandidate* candidate);
-  // What scores a loop has that others have confirmed.
+  // Adds the scores of a loop that others have confirmed.
   void Learn(const LoopCandidate& accepted);
 
  private:
-  // Whether the path to the node is so short that the match is right.
+  // Whether the path to the node is so short that the match is certainly right.
   bool IsCertain(const LoopCandidate& candidate) const;
   void FuseByLikelihoodRatio(const LoopCandidate& candidate,
                              ScoreFusionResult* result);

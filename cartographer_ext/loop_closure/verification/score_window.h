@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The last k scores of a kind, with their mean and variance: the memory behind
-// the dynamic threshold (paper C, optimised Cartographer 2025, eq. 2 and 3) and
-// the score fusion (eq. 6). Scores are added in candidate order by one thread.
+// The last k scores of a kind, with their mean and variance, for the dynamic
+// threshold (paper C, optimised Cartographer 2025, eq. 2 and 3) and the score
+// fusion (eq. 6). Scores are added in the order of the candidates. Not
+// thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_WINDOW_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SCORE_WINDOW_H_
 
@@ -15,6 +16,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// The last k scores, see above.
 class ScoreWindow {
  public:
   explicit ScoreWindow(size_t capacity) : capacity_(capacity) {

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The temporal score S_t of a loop candidate (paper C, optimised Cartographer
-// 2025, section 1.2; the paper names dynamic time warping and leaves the rest
-// open).
+// 2025, section 1.2; the paper specifies dynamic time warping only).
 //
 // A look-alike place matches one scan as well as the true place does. It rarely
 // matches all scans along the path that the robot took to get there. So the
-// last nodes up to the candidate's node (the query) are compared with what the
-// submap predicts along the same path, placed so that its last pose is the
-// candidate pose (the reference):
+// last nodes up to the candidate's node (the query) are compared with the
+// prediction of the submap along the same path, placed so that its last pose is
+// the candidate pose (the reference):
 //
 //   reference pose k:  (submap <- k) = (submap <- node) (node <- local)
 //                                      (local <- k)
@@ -26,11 +25,11 @@
 // warping within the band absorbs the error of the odometry's scale. In the
 // textbook's symmetric warping the samples between two nodes have to be matched
 // as well, so even a perfect repetition scores below one; the asymmetric
-// warping picks one sample for each node and lets the first begin anywhere in
+// warping selects one sample for each node and lets the first be anywhere in
 // the band.
 //
 // Neighbouring submaps continue the reference where the path leaves the submap.
-// Where none of them knows it any more the query is cut: the rest must have a
+// Where none of them covers it, the query is truncated: the rest must have a
 // minimum length, otherwise there is no score.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_TEMPORAL_VERIFICATION_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_TEMPORAL_VERIFICATION_H_
@@ -46,6 +45,7 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// Steps of the warping path.
 enum class WarpingStep {
   kSymmetric,   // every reference sample has to be matched, as in the textbook
   kAsymmetric,  // one reference sample for each node of the query
@@ -57,6 +57,7 @@ enum class ScanComparison {
   kBeams,
 };
 
+// Sampling, warping and comparison of scans.
 struct TemporalVerificationOptions {
   ScanComparison comparison = ScanComparison::kBeams;
   RangeSignatureOptions signature;
@@ -71,12 +72,14 @@ struct TemporalVerificationOptions {
   int minimum_length = 4;
 };
 
+// Whether there is a score, or why not.
 enum class TemporalOutcome {
   kScored,
   kShortHistory,  // too few nodes before the candidate's
-  kPathUnknown,   // the maps know too little of the path
+  kPathUnknown,   // the maps cover too little of the path
 };
 
+// Temporal score of one candidate.
 struct TemporalResult {
   TemporalOutcome outcome = TemporalOutcome::kShortHistory;
   double score = 0.;  // S_t in [0, 1], 0 unless kScored
@@ -85,16 +88,16 @@ struct TemporalResult {
   double travelled = 0.;  // metres from the first to the last compared node
 };
 
-// Puts into a node of the history what the comparison needs of its scan; points
-// in the frame of the node, metres.
+// Stores the description of a scan that the comparison needs in a node of the
+// history; points in the frame of the node, metres.
 void DescribeScan(const TemporalVerificationOptions& options,
                   const std::vector<Eigen::Vector2f>& points,
                   HistoryNode* node);
 
 // `query`: nodes of one trajectory, oldest first, the last is the candidate's
 // node. `candidate`: (frame of the candidate <- last node). `maps`: the submap
-// first, then its neighbours; each fills what those before it do not know.
-// Their views have to know distances where beams are compared.
+// first, then its neighbours; each fills what the previous ones do not cover.
+// If beams are compared, their views must have distances.
 TemporalResult VerifySequence(const TemporalVerificationOptions& options,
                               const std::vector<const HistoryNode*>& query,
                               const Pose2& candidate,

@@ -3,8 +3,8 @@
 //
 // OptimizationProblem2D for options with our block: before each optimization it
 // selects the loop constraints to optimize with (SelectLoops); the stock
-// problem does everything else, so that without wrong loops the result is the
-// stock one. What was switched off is recorded in the current PoseGraphContext.
+// problem does everything else, so without wrong loops the result is that of
+// stock. Disabled loops are recorded in the current PoseGraphContext.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_ROBUST_OPTIMIZATION_PROBLEM_2D_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_ROBUST_OPTIMIZATION_PROBLEM_2D_H_
 
@@ -130,7 +130,7 @@ class RobustOptimizationProblem2D
       const std::vector<Constraint>& constraints,
       const std::map<int, PoseGraphInterface::TrajectoryState>&
           trajectories_state) const;
-  // The constraints to optimize with; the loops switched off go to `off`.
+  // The constraints to optimize with; disabled loops are added to `off`.
   std::vector<Constraint> Select(
       const std::vector<Constraint>& constraints,
       const std::map<int, PoseGraphInterface::TrajectoryState>&
@@ -142,7 +142,7 @@ class RobustOptimizationProblem2D
   const double local_slam_rotation_weight_;
   cartographer::mapping::optimization::StockOptimizationProblem2D stock_;
   int stock_iterations_;
-  // Nodes at the last thorough selection.
+  // Number of nodes at the last thorough selection.
   int nodes_when_thorough_ = 0;
   std::set<LoopId> switched_off_;
 };

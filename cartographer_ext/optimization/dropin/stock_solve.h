@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The stock optimization as our classes call it: loops that have a full
-// information matrix in the context of the pose graph are weighted by it
-// (common/loop_information.h), given that the swap `full_information` is built.
+// Calls the stock optimisation; loops that have a full information matrix in
+// the context of the pose graph are weighted by it (common/loop_information.h),
+// if the swap `full_information` is built.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_STOCK_SOLVE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_STOCK_SOLVE_H_
 
@@ -32,7 +32,7 @@ void StockSolve(
     cartographer::mapping::optimization::StockOptimizationProblem2D* problem);
 
 // The constraints that are not withdrawn (common/withdrawn_loops.h). Returns
-// `constraints` itself where all are in force, else a reference to `*kept`.
+// `constraints` itself if all are in force, otherwise a reference to `*kept`.
 const std::vector<cartographer::mapping::PoseGraphInterface::Constraint>&
 WithoutWithdrawnLoops(
     const std::vector<cartographer::mapping::PoseGraphInterface::Constraint>&

@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A smaller pose graph with the same loops. Most poses of a trajectory are
-// joined to others by trusted edges only; what they say about the ends of the
-// loops is said as well by one edge per stretch of the chain between
+// joined to others by trusted edges only; their information about the ends of
+// the loops can be represented by one edge per piece of the chain of
 // neighbouring poses:
 //
 //   z_ac = z_ab z_bc,  C_ac = Ad C_ab Ad^T + C_bc   (uncertain_pose.h)
 //
 // with C the covariance of the measurement z and Ad the adjoint of z_cb. A
-// trusted edge to a pose that goes is moved along the chain to the kept pose
+// trusted edge to a removed pose is moved along the chain to the kept pose
 // before it, and edges which then join the same two poses become one (their
 // information adds up). This is exact for trusted edges that agree with each
 // other, as the output of local SLAM does, and as long as the chain within a
-// stretch is stiff compared with the edges moved along it.
+// piece is stiff compared with the edges moved along it.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_CONDENSED_GRAPH_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_CONDENSED_GRAPH_H_
 
@@ -24,6 +24,7 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// A condensed graph with its relation to the original.
 struct CondensedGraph {
   PoseGraph graph;                  // poses in the order of the original
   std::vector<int> pose_of_vertex;  // original pose of each pose
@@ -33,9 +34,9 @@ struct CondensedGraph {
 };
 
 // `neighbours` are the edges along the chain: from a pose to a later one, at
-// most one out of and one into a pose. Poses stay which are the first of the
-// graph, an end of a loop, not on the chain or an end of it, and so many more
-// that no stretch has more than `max_steps` edges.
+// most one out of and one into a pose. Kept are the first pose, ends of loops,
+// poses that are not on the chain or at its ends, and as many more as needed so
+// that no piece has more than `max_steps` edges.
 CondensedGraph Condense(const PoseGraph& graph,
                         const std::vector<int>& neighbours, int max_steps);
 

@@ -11,8 +11,8 @@
 // is r = A e with A' A = Omega, so that chi2 = r' r. Poses are stepped
 // additively in (x, y, theta), as sparse pose adjustment does.
 //
-// Edges are either odometry (trusted, never switched) or loops (each may be
-// wrong). The papers tell them apart by their ends: odometry joins k to k + 1.
+// Edges are either odometry (trusted, never disabled) or loops (each may be
+// wrong). The papers distinguish them by their ends: odometry joins k to k + 1.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_POSE_GRAPH_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_POSE_GRAPH_H_
 
@@ -26,6 +26,7 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// A relative measurement with its information.
 struct PoseGraphEdge {
   int from = 0;       // index into PoseGraph::poses
   int to = 0;         // index into PoseGraph::poses
@@ -34,16 +35,17 @@ struct PoseGraphEdge {
   bool is_loop = false;
 };
 
+// Poses and edges.
 struct PoseGraph {
-  std::vector<int64_t> ids;  // the name of each pose in its file
+  std::vector<int64_t> ids;  // id of each pose in its file
   std::vector<Pose2> poses;  // initial or current estimate, (map <- pose)
   std::vector<PoseGraphEdge> edges;
-  // Poses that stay where they are (Optimize); none: the first.
+  // Fixed poses (Optimize); if empty, the first one is fixed.
   std::vector<int> fixed;
 };
 
-// The rule of the papers and of Vertigo: a loop is whatever does not lead from
-// pose k to pose k + 1.
+// The rule of the papers and of Vertigo: every edge that does not lead from
+// pose k to pose k + 1 is a loop.
 inline bool IsLoopById(int64_t from_id, int64_t to_id) {
   return to_id != from_id + 1;
 }
@@ -70,13 +72,13 @@ Pose2 MeasuredNeighbour(const PoseGraphEdge& edge, int pose,
                         const std::vector<Pose2>& poses);
 
 // Chains odometry edges from the pose `start` (breadth first, over non-loop
-// edges in both directions, given by EdgesAtPoses). What has been reached
-// already stays where it is; what this reaches is marked, `start` included.
+// edges in both directions, given by EdgesAtPoses). Poses already reached keep
+// their estimate; newly reached ones are marked, `start` included.
 void ChainFrom(const PoseGraph& graph,
                const std::vector<std::vector<int>>& edges_at, int start,
                std::vector<bool>* reached, std::vector<Pose2>* poses);
 
-// Poses by chaining odometry edges from the first pose. Poses out of reach keep
+// Poses by chaining odometry edges from the first pose. Unreachable poses keep
 // their estimate.
 std::vector<Pose2> DeadReckoning(const PoseGraph& graph);
 
@@ -91,7 +93,9 @@ struct WhitenedEdge {
   Eigen::Matrix3d whitening;
 };
 
+// Prepares edges; the information matrix must be positive definite.
 WhitenedEdge Whiten(const PoseGraphEdge& edge);
+// Prepares edges; the information matrix must be positive definite.
 std::vector<WhitenedEdge> Whiten(const std::vector<PoseGraphEdge>& edges);
 
 // Whitened residual r of the edge at the poses of its ends; `cos_from` and
@@ -106,6 +110,7 @@ inline Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,
       NormalizeAngle(to.theta - from.theta - edge.measurement.z()));
   return edge.whitening * error;
 }
+// The same without precomputed cosine and sine.
 Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,
                          const Pose2& to);
 

@@ -10,10 +10,10 @@
 //   constraints   submap -> node; those of tag INTER_SUBMAP are loops
 //   local SLAM    node -> next node of the trajectory, with the local SLAM
 //                 weights of the optimization problem
-//   frozen        vertex 0 -> each vertex of a frozen trajectory, which keeps
-//                 it in place
+//   frozen        vertex 0 -> each vertex of a frozen trajectory, which holds
+//                 it fixed
 //
-// Odometry readings are not used; local SLAM has used them already.
+// Odometry readings are not used, because local SLAM has already used them.
 //
 // Cartographer's weights are relative: 1.1e4 per metre does not mean a standard
 // deviation of 0.1 mm. Kernels and gates need standard deviations in metres, so
@@ -35,17 +35,20 @@ namespace optimization {
 // Trajectory and index of a node or of a submap.
 using SlamId = std::pair<int, int>;
 
+// A node of the host.
 struct SlamNode {
   SlamId id;
   Pose2 local_pose;   // (local frame of the trajectory <- node)
   Pose2 global_pose;  // (map <- node)
 };
 
+// A submap of the host.
 struct SlamSubmap {
   SlamId id;
   Pose2 global_pose;  // (map <- submap)
 };
 
+// A constraint of the host.
 struct SlamConstraint {
   LoopId id;            // submap and node
   Pose2 relative_pose;  // (submap <- node)
@@ -54,6 +57,7 @@ struct SlamConstraint {
   bool is_loop = false;
 };
 
+// The pose graph of the host in plain types.
 struct SlamGraph {
   std::vector<SlamNode> nodes;      // ascending ids
   std::vector<SlamSubmap> submaps;  // ascending ids
@@ -61,6 +65,7 @@ struct SlamGraph {
   std::set<int> frozen_trajectories;
 };
 
+// Scale and weights of the edges.
 struct SlamPoseGraphOptions {
   double loop_sigma = 0.1;  // metres, of the translation of the median loop
   // Zero: no edges of local SLAM.
@@ -68,6 +73,7 @@ struct SlamPoseGraphOptions {
   double local_slam_rotation_weight = 1e5;
 };
 
+// The pose graph with its relation to the host.
 struct SlamPoseGraph {
   PoseGraph graph;  // ids are indices
   // Per vertex, an index in SlamGraph::submaps or ::nodes.
@@ -81,8 +87,8 @@ struct SlamPoseGraph {
   std::vector<int> local_slam_edges;
 };
 
-// Constraints without weight, or of submaps or nodes that are not in the graph,
-// get no edge.
+// Constraints without weight, or with submaps or nodes that are not in the
+// graph, have no edge.
 SlamPoseGraph MakeSlamPoseGraph(const SlamGraph& slam,
                                 const SlamPoseGraphOptions& options);
 

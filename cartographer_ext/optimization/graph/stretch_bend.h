@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How much do the steps within a stretch of a condensed graph bend? The poses
-// in between are solved for with the vertices of the condensed graph held where
-// its solution has them: a few small systems instead of the whole graph.
+// Distortion of the steps within a path piece of a condensed graph. The poses
+// in between are solved for with the vertices of the condensed graph fixed at
+// its solution: a few small systems instead of the whole graph.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_STRETCH_BEND_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_STRETCH_BEND_H_
 
@@ -15,10 +15,10 @@
 namespace cartographer_ext {
 namespace optimization {
 
-// Largest chi2 of any of `neighbours` within these stretches, indices into
+// Largest chi2 of any of `neighbours` within these pieces, indices into
 // CondensedGraph::chain. `condensed` is the condensed `graph`, `poses` its
-// solution. Infinite where an edge joins such a stretch to a pose within
-// another one, which these poses do not tell, and where a system is singular.
+// solution. Infinite if an edge joins such a piece to a pose within another
+// one, which these poses do not determine, or if a system is singular.
 double LargestBend(const PoseGraph& graph, const std::vector<int>& neighbours,
                    const CondensedGraph& condensed,
                    const std::vector<Pose2>& poses,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// `auto`, the method that guards against what every single kernel fails at:
+// `auto`, the method that handles the failure cases of the single kernels:
 //
 //   1. a search by many solvers from many starts (portfolio.h) with the noise
 //      that the information matrices claim;
@@ -35,6 +35,7 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Options of `auto`.
 struct AutoOptions {
   PortfolioOptions portfolio;
   bool estimate_noise = true;
@@ -42,6 +43,7 @@ struct AutoOptions {
   bool lowest_cost = true;
 };
 
+// Result of `auto`.
 struct AutoResult {
   std::vector<Pose2> poses;
   std::vector<double> weights;  // per edge
@@ -59,6 +61,7 @@ struct AutoResult {
   std::vector<RivalSets> undecidable;
 };
 
+// Runs `auto` on a valid graph.
 AutoResult SearchAutomatically(const PoseGraph& graph,
                                const AutoOptions& options);
 

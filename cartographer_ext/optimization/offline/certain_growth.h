@@ -38,9 +38,10 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Limits of the growth.
 struct CertainGrowthOptions {
   double gate = kChi2Gate;  // of the innovation
-  // It ends before where nothing more comes in.
+  // Ends earlier if no more loops are accepted.
   int max_rounds = 100;
   // Open loops that are predicted by the factor in one round, and the chi2 of
   // their last prediction, which further loops only make sharper, in gates; poses
@@ -56,9 +57,9 @@ std::vector<Eigen::Matrix3d> PredictAlongChain(
     const PoseGraph& graph, const std::vector<WhitenedEdge>& edges,
     const std::vector<Pose2>& poses);
 
-// Replaces `poses`, chained odometry, by a solution with the certain loops;
-// `weights`, one per edge, tells which. `solver` is that of the graph's edges.
-// Returns the number of loops in force, 0 where odometry is no chain.
+// Replaces `poses`, chained odometry, by a solution with the certain loops,
+// given by `weights`, one per edge. `solver` is that of the graph's edges.
+// Returns the number of loops in force, 0 if odometry is not a chain.
 int GrowCertainLoops(const PoseGraph& graph,
                      const CertainGrowthOptions& options, RobustSolver* solver,
                      std::vector<Pose2>* poses, std::vector<double>* weights);

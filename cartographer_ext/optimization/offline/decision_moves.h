@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Moves in the space of decisions that lower the truncated cost where deciding
-// and solving in turn (PolishTruncated) has come to rest.
+// Moves in the space of decisions that lower the truncated cost after
+// PolishTruncated has converged.
 //
 //   FlipLoops    one loop at a time. To bring in a rejected loop costs its
 //                squared innovation r' (I + Q)^-1 r, Q = J H^-1 J', and saves
@@ -16,7 +16,7 @@
 //                what is in force then is the start: a folded ring does not
 //                unfold by descent.
 //
-// A move is kept only where the truncated cost of the graph has fallen.
+// A move is kept only if it lowers the truncated cost of the graph.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_
 
@@ -29,17 +29,19 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Limits of FlipLoops.
 struct FlipOptions {
   double gate = kChi2Gate;
   int max_trials = 20;
-  // Loops looked at per round, those nearest to the gate first.
+  // Loops tested per round, those nearest to the gate first.
   int max_loops = 300;
 };
 
-// Returns the number of moves kept. `poses` must have come to rest.
+// Returns the number of moves kept. `poses` must have converged.
 int FlipLoops(const FlipOptions& options, RobustSolver* solver,
               std::vector<Pose2>* poses);
 
+// Limits of ForceGroups.
 struct ForceOptions {
   double gate = kChi2Gate;
   int max_trials = 30;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How good is an optimised graph? Two numbers for the poses against a reference
-// (ground truth, or the optimum without outliers), two for the loops.
+// Metrics of an optimised graph: two for the poses against a reference (ground
+// truth, or the optimum without outliers), two for the loops.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_GRAPH_METRICS_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_GRAPH_METRICS_H_
 
@@ -23,22 +23,23 @@ Pose2 Align(const std::vector<Pose2>& estimate,
 double AbsoluteTrajectoryError(const std::vector<Pose2>& estimate,
                                const std::vector<Pose2>& reference);
 
-// For references that were sampled at other moments and without stamps (the GPS
+// For references sampled at other times and without stamps (the GPS ground
 // truth of Bicocca): index of the reference pose belonging to each pose of the
 // estimate, from dynamic time warping of positions after alignment, repeated
 // until the alignment settles. First and last poses belong together. It
-// flatters all estimates a little, and alike.
+// underestimates the error of all estimates slightly and equally.
 std::vector<int> AssociateByPath(const std::vector<Pose2>& estimate,
                                  const std::vector<Pose2>& reference);
 
 // RPE of the papers (ACS eq. 15, R-iSAM eq. 20) in square metres: mean over
 // odometry edges of the squared difference of the relative displacement in the
-// frame of the edge's first pose. It cannot see a folded map, so never use it
-// alone.
+// frame of the edge's first pose. It does not detect a folded map, so never use
+// it alone.
 double RelativePoseError(const std::vector<PoseGraphEdge>& edges,
                          const std::vector<Pose2>& estimate,
                          const std::vector<Pose2>& reference);
 
+// Counts of right and wrong decisions on loops.
 struct LoopScore {
   int true_accepted = 0;
   int true_total = 0;

@@ -1,23 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A start that grows from odometry by one group of loops after the other, the
-// surest first. For poses where odometry says little about long paths: a right
-// loop then has a huge chi2 and no solver that starts from odometry sees it.
-// Its innovation r, with the covariance of the prediction
+// An initial guess that is grown from odometry by one group of loops after the
+// other, the most certain first. For graphs whose odometry is uncertain over
+// long paths: a right loop then has a huge chi2 and no solver that starts from
+// odometry accepts it. Its innovation r, with the covariance of the prediction
 //
 //   S = I + J H^-1 J',   d2 = r' S^-1 r,
 //
-// tells right from wrong as far as the data do. The order is that of the
-// logarithm of the likelihood ratio between a right loop and one that may lead
-// anywhere in the map (area A, any direction),
+// separates right from wrong loops as far as the data allow. The order is that
+// of the logarithm of the likelihood ratio between a right loop and one that
+// may lead anywhere in the map (area A, any direction),
 //
 //   log N(r; 0, S) - log 1 / (2 pi A det W^-1),
 //
 // to which each loop of the same group (loop_support.h) adds its own. After
-// each group the poses are solved anew, if need be from a chordal relaxation,
-// and all innovations are worked out again: what was far off before is then
-// sharply predicted.
+// each group the poses are solved again, if necessary from a chordal
+// relaxation, and all innovations are recomputed: loops with an uncertain
+// prediction before are then predicted accurately.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_GROWTH_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_GROWTH_H_
 
@@ -30,16 +30,17 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Gate and limits of the growth.
 struct GrowthOptions {
   double gate = kChi2Gate;  // of d2
   int max_rounds = 80;
-  // Loops looked at per round; more are thinned evenly.
+  // Loops tested per round; more are subsampled evenly.
   int max_candidates = 1500;
   // Loops that a group of more members counts for.
   int max_support = 8;
 };
 
-// Poses times loops beyond which the search by groups is too dear.
+// Poses times loops beyond which the search by groups is too expensive.
 constexpr double kMaxGrowthWork = 4e6;
 
 // Squared innovation of a loop and the size of its covariance.
@@ -56,8 +57,8 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
                                      const std::vector<Pose2>& poses,
                                      RobustSolver* solver);
 
-// Whether more rejected loops lie within the gate than wrong ones do by chance:
-// then the map may have lost right ones.
+// Whether more rejected loops are within the gate than expected of wrong ones
+// by chance: then the map may lack right ones.
 bool MorePossibleThanByChance(const std::vector<Innovation>& innovations);
 
 // Logarithm of the area (square metres) that poses are spread over.
@@ -72,9 +73,8 @@ double LogVolume(const WhitenedEdge& edge, double log_area);
 // gate.
 double ChanceToFit(const WhitenedEdge& edge, double log_area, double gate);
 
-// Replaces `poses` by a solution with the loops that grew in; `weights`, one
-// per edge, tells which. `solver` is that of `edges`. Odometry must reach all
-// poses.
+// Replaces `poses` by a solution with the accepted loops, given by `weights`,
+// one per edge. `solver` is that of `edges`. Odometry must reach all poses.
 bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,
                RobustSolver* solver, std::vector<Pose2>* poses,
                std::vector<double>* weights);

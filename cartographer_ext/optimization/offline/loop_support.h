@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which loops agree with their neighbours? Two loops (a, b) and (c, d) whose
-// ends are a few poses apart make a cycle a - b - d - c - a that closes when
-// both are right. Only short stretches of odometry enter it, so the test is
-// sharp however little odometry says about the long path from a to b (pairwise
-// consistency as in PCM, Mangelson et al. 2018, restricted to neighbours).
+// Finds loops that agree with their neighbours. Two loops (a, b) and (c, d)
+// whose ends are a few poses apart make a cycle a - b - d - c - a that closes
+// when both are right. It contains only short pieces of odometry, so the test
+// is accurate regardless of the uncertainty of the long path from a to b
+// (pairwise consistency as in PCM, Mangelson et al. 2018, restricted to
+// neighbours).
 //
 // Loops that agree, directly or over others, form a group: one revisit of a
-// stretch of the path. A group is one piece of evidence that is as strong as
-// it has members.
+// piece of the path. A group is one piece of evidence, whose strength grows
+// with its size.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_SUPPORT_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOOP_SUPPORT_H_
 
@@ -21,12 +22,14 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Neighbourhood and gate of the test.
 struct LoopSupportOptions {
   int window = 15;  // poses between the ends of neighbours
   double gate = kChi2Gate;
   int max_neighbours = 30;  // tested per loop
 };
 
+// Agreement of loops and their groups.
 struct LoopSupport {
   // Per edge: the loops that agree with it.
   std::vector<std::vector<int>> agreeing;
@@ -38,6 +41,7 @@ struct LoopSupport {
   std::vector<double> cycle_chi2;
 };
 
+// Tests all pairs of neighbouring loops.
 LoopSupport FindLoopSupport(const PoseGraph& graph,
                             const LoopSupportOptions& options);
 

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The metric of a search: by what the standard deviations of odometry and of
-// loops are multiplied. Where the map of a portfolio shows that the information
-// matrices claim too much, or that one of odometry and loops claims too much in
-// relation to the other, solving in a metric and estimating the metric
-// (noise_scale.h) alternate until both agree.
+// The metric of a search: factors on the standard deviations of odometry and of
+// loops. If the map of a portfolio shows that the information matrices are
+// overconfident, or that one of odometry and loops is overconfident relative to
+// the other, solving in a metric and estimating the metric (noise_scale.h)
+// alternate until both agree.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_METRIC_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_METRIC_H_
 
@@ -17,11 +17,13 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Factors on the standard deviations.
 struct NoiseMetric {
   double odometry = 1.;  // factors of the standard deviations
   double loops = 1.;
 };
 
+// An estimated metric.
 struct NoiseHypothesis {
   NoiseMetric metric;
   std::vector<Pose2> poses;  // that the metric was estimated from
@@ -29,7 +31,7 @@ struct NoiseHypothesis {
   int accepted = 0;  // loops
 };
 
-// What the best map of a portfolio says about the noise of its graph.
+// The noise of a graph according to the best map of a portfolio.
 struct NoiseOfMap {
   std::vector<double> decisions;  // per edge
   int loops = 0;
@@ -37,16 +39,17 @@ struct NoiseOfMap {
   NoiseScale scale;  // where ten loops are accepted
 };
 
+// Measures the noise of the best map of a portfolio.
 NoiseOfMap MeasureNoise(Portfolio* portfolio);
 
-// The noise that explains the graph better than its matrices do; false where
+// Finds a noise that explains the graph better than its matrices; false if
 // there is none. `map` is that of the portfolio, which has the metric of the
 // graph.
 bool FindLargerNoise(const PoseGraph& graph, const NoiseOfMap& map,
                      Portfolio* portfolio, NoiseHypothesis* found);
 
-// The metric in which odometry and loops count as they are, where they differ
-// in what their matrices claim; false where they do not. `applied` is the
+// Finds the metric with the actual ratio of the noise of odometry and loops, if
+// it differs from that of their matrices; false otherwise. `applied` is the
 // metric of the portfolio, whose best map has to be explained as well.
 bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
                     const Portfolio& portfolio, NoiseHypothesis* found);

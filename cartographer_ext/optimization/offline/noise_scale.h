@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How large is the noise, compared with what the information matrices claim?
-// Two variance components, one factor for odometry and one for loops, after
-// Helmert: with C the chi2 of a kind of edges at the optimum and
+// Noise scale of a graph relative to its information matrices. Two variance
+// components, one factor for odometry and one for loops, after Helmert: with C
+// the chi2 of a kind of edges at the optimum and
 //
 //   r = sum over these edges of trace(I - J H^-1 J')
 //
 // their redundancy, C / r estimates the variance factor. The redundancies of
-// both kinds add up to three for each loop in force; where odometry is weak it
-// takes all of it, and nothing can be said about the loops. So each factor
-// comes with its degrees of freedom and an interval, and a prior worth a few
-// degrees of freedom holds it at one where the data are silent.
+// both kinds add up to three for each loop in force; if odometry is weak it
+// takes all of it, and the factor of the loops is undetermined. So each factor
+// has its degrees of freedom and an interval, and a prior with a few degrees of
+// freedom keeps it at one without data.
 //
 // Whether loops in force follow their noise model shows in their leave-one-out
 // innovations d2 = r' (I - J H^-1 J')^-1 r, which are chi2 with three degrees
@@ -36,6 +36,7 @@ struct ScaleEstimate {
   double degrees_of_freedom = 0.;
 };
 
+// Noise scales of both kinds of edges.
 struct NoiseScale {
   ScaleEstimate odometry;
   ScaleEstimate loops;
@@ -54,8 +55,8 @@ std::vector<double> LeaveOneOutInnovations(const std::vector<Pose2>& poses,
                                            size_t limit, RobustSolver* solver);
 
 // Whether values may be a sample of chi2 with three degrees of freedom,
-// truncated at the gate: their 5 % and 50 % quantiles are where they should be.
-// False for fewer than ten.
+// truncated at the gate, by their 5 % and 50 % quantiles. False for fewer than
+// ten.
 bool IsLikeChi2(const std::vector<double>& values);
 
 // Whether many values lie just inside the gate, as where a gate cuts through
@@ -64,6 +65,7 @@ bool IsCutByGate(const std::vector<double>& values, double gate);
 
 // The graph with the standard deviations of odometry and loops multiplied.
 PoseGraph WithNoiseScale(const PoseGraph& graph, double odometry, double loops);
+// The same for whitened edges.
 std::vector<WhitenedEdge> WithNoiseScale(std::vector<WhitenedEdge> edges,
                                          double odometry, double loops);
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// One entrance to all back ends of this folder: a graph and the name of a
-// method in, poses and a verdict on each loop out.
+// Common interface to all back ends of this folder: from a graph and the name
+// of a method to poses and a verdict on each loop.
 //
-// What `auto` does is told in auto_search.h.
+// auto_search.h describes `auto`.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_OPTIMIZE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_OPTIMIZE_H_
 
@@ -21,17 +21,18 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Method and its options.
 struct OptimizeOptions {
   // none huber sc gm dcs acs acs_paper gnc_tls auto r_isam
   std::string method = "auto";
-  // 0: the method's customary value (see DefaultKernel; sc: w = 1).
+  // 0: the method's usual value (see DefaultKernel; sc: w = 1).
   double parameter = 0.;
   CovarianceNorm norm = CovarianceNorm::kSpectral;  // acs_paper
   int max_iterations = 200;
   double max_seconds = 1e9;  // sc, gnc_tls: processor time
   bool prune = true;
-  // auto: estimate the scale of the noise, and use it where the information
-  // matrices claim too much.
+  // auto: estimate the noise scale, and use it if the information matrices are
+  // overconfident.
   bool estimate_noise = true;
   // Other methods solve with the matrices as they are; this measures their
   // result (chi2, accepted) with the noise that `auto` would use, so that the
@@ -39,8 +40,8 @@ struct OptimizeOptions {
   // not counted.
   bool measure_with_estimated_noise = false;
   // auto: end with the gate narrowed to the scale of the accepted loops
-  // (AdaptiveGate). For graphs whose information matrices are only a guess,
-  // such as those of Cartographer, it would cost right loops.
+  // (AdaptiveGate). Not for graphs whose information matrices are arbitrary,
+  // such as Cartographer's, where it would reject right loops.
   bool adaptive_gate = true;
   // auto with adaptive_gate: no truncated cost above that of any single kernel,
   // and of such maps one near that of the adapted gate (polish_near.h).
@@ -52,6 +53,7 @@ struct OptimizeOptions {
   std::vector<Pose2> start;
 };
 
+// Poses, verdicts and statistics.
 struct OptimizeResult {
   std::vector<Pose2> poses;
   // Per edge: the weight with which it counts at the end, in [0, 1].
@@ -85,13 +87,12 @@ struct OptimizeResult {
 // Names accepted as OptimizeOptions::method.
 const std::vector<std::string>& MethodNames();
 
-// Edges that hold the fixed poses of the graph where they are, seen from the
-// first of them.
+// Edges that hold the fixed poses of the graph relative to the first of them.
 std::vector<PoseGraphEdge> FixedPoseEdges(const PoseGraph& graph);
 
-// The fixed poses of the graph, or else the first, end where they were. An
-// error for an invalid graph (ValidatePoseGraph), an unknown method or, with
-// r_isam, a graph that cannot be replayed.
+// The fixed poses of the graph, or otherwise the first, do not move. An error
+// for an invalid graph (ValidatePoseGraph), an unknown method or, with r_isam,
+// a graph that cannot be replayed.
 absl::StatusOr<OptimizeResult> Optimize(const PoseGraph& graph,
                                         const OptimizeOptions& options);
 

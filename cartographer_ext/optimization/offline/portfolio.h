@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The search behind `auto`: many solvers from many starts, each solution
-// polished by deciding and solving in turn, and the lowest truncated cost wins.
-// As a polish never raises that cost, the winner is never above any solver that
-// took part.
+// The search used by `auto`: many solvers from many initial guesses, each
+// solution polished by alternately deciding and solving; the lowest truncated
+// cost wins. As a polish never raises that cost, the winner is never above any
+// participating solver.
 //
 //   Quick   dcs, gm and acs from the given poses, none and huber where few
 //           loops are wrong. Where these agree up to decisions near the gate,
@@ -34,8 +34,8 @@
 // (certain_growth.h) and polished, and that is all. Where a smaller one has too
 // many poses and loops for the search by groups, this takes its place.
 //
-// Solvers that keep all loops in their equations are left to graphs where that
-// is affordable: the fill of thousands of wrong loops is not.
+// Solvers that keep all loops in their equations are used only where that is
+// affordable; the fill caused by thousands of wrong loops is not.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_PORTFOLIO_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_PORTFOLIO_H_
 
@@ -52,6 +52,7 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Limits of the search.
 struct PortfolioOptions {
   int max_iterations = 200;  // of one solution
   // Poses times loops of a graph that is called large below.
@@ -59,6 +60,7 @@ struct PortfolioOptions {
   SmootherOptions smoother;
 };
 
+// The search over solvers and initial guesses, see above. Not thread-safe.
 class Portfolio {
  public:
   struct Member {
@@ -76,8 +78,8 @@ class Portfolio {
   // The same from members of a search of the graph with other information
   // matrices. What keeps all loops in its equations has had its part there.
   void Continue(const std::vector<Member>& known);
-  // The best member solved with softer kernels, single decisions changed where
-  // that lowers its cost, and solved to the last digit.
+  // Solves the best member with softer kernels, changes single decisions if
+  // that lowers its cost, and solves to convergence.
   void Improve();
 
   const std::vector<Member>& members() const { return members_; }
@@ -87,14 +89,14 @@ class Portfolio {
   // The lowest truncated cost of a solver before any polish, from a start that
   // it would have alone.
   double lowest_of_solvers() const { return lowest_of_solvers_; }
-  // Whether every solver has taken part from every start.
+  // Whether every solver has run from every initial guess.
   bool ran_all_solvers() const { return ran_all_solvers_; }
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
   RobustSolver* solver() { return &solver_; }
   int iterations() const { return iterations_; }
   bool converged() const { return converged_; }
   const LoopSupport& support();
-  // Whether solutions with all loops in the equations are worth their price.
+  // Whether solutions with all loops in the equations are affordable.
   bool CanKeepAllLoops();
 
  private:

@@ -16,9 +16,9 @@
 namespace cartographer_ext {
 namespace optimization {
 
-// Replaces poses and decisions of `replay` and returns true where there is such
-// a map. Does nothing where no loop may be lost, and on graphs of too many
-// poses and loops.
+// Replaces poses and decisions of `replay` and returns true if there is such a
+// map. Does nothing if no loop can have been lost, or if the graph is too
+// large.
 bool ReadmitGroups(const PoseGraph& graph, ReplayResult* replay);
 
 }  // namespace optimization

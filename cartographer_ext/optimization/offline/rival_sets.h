@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the data leave undecided: another set of loops that explains the graph
-// about as well as the one in force, but cannot be true together with it. The
-// truncated costs then differ by less than one loop's worth, and no estimator
-// that has only the graph can tell which set is right.
+// Ambiguous decisions: another set of loops that explains the graph about as
+// well as the one in force, but is incompatible with it. The truncated costs
+// then differ by less than the gate, and no estimator can determine from the
+// graph alone which set is right.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_
 
@@ -25,11 +25,12 @@ struct RivalSets {
   double largest_shift = 0.;    // metres, between the poses of the two maps
 };
 
+// When two sets of loops count as different.
 struct RivalOptions {
   double gate = kChi2Gate;
-  // Sets that differ by fewer loops, on either side, are one set with loops
-  // near the gate. Where fewer than ten times as many are in force, one less
-  // is enough.
+  // Sets that differ by fewer loops, on either side, are considered one set
+  // with loops near the gate. If fewer than ten times as many are in force, one
+  // less is enough.
   int min_loops = 2;
   size_t max_rivals = 5;
 };

@@ -10,8 +10,8 @@
 // with Ceres, one extra variable per loop. Also the same robust kernels as loss
 // functions of Ceres, as an independent check of our own solver. Ceres'
 // EvaluationCallback is not used: weights changed there make it compare costs
-// of two different functions (it then stops after ten iterations without having
-// moved).
+// of two different functions (it then stops after ten iterations without
+// progress).
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_SWITCHABLE_CONSTRAINTS_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_SWITCHABLE_CONSTRAINTS_H_
 
@@ -24,6 +24,7 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Penalty and limits.
 struct SwitchableOptions {
   double penalty = 1.;  // w
   int max_iterations = 200;
@@ -40,7 +41,7 @@ SolverSummary SolveSwitchable(const std::vector<WhitenedEdge>& edges,
                               std::vector<double>* switches);
 
 // Ceres with the kernel as loss function of the loops; kAcsPaper and kTruncated
-// have none and are refused by a CHECK.
+// have none and are rejected by a CHECK.
 SolverSummary SolveWithCeres(const std::vector<WhitenedEdge>& edges,
                              const KernelOptions& kernel, int max_iterations,
                              double function_tolerance,

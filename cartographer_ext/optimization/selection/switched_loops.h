@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which loops the robust optimization problem of a pose graph switched off, for
+// The loops disabled by the robust optimization problem of a pose graph, for
 // reports. The problem records them in the context of the pose graph
 // (common/pose_graph_context.h).
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SELECTION_SWITCHED_LOOPS_H_
@@ -20,11 +20,13 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// A disabled loop.
 struct SwitchedLoop : LoopId {
   double chi2 = 0.;
   bool by_odometry_check = false;
 };
 
+// Statistics of the selection.
 struct SwitchedLoops {
   int64_t optimizations = 0;      // of the pose graph so far
   int64_t loops = 0;              // in the last one
@@ -47,10 +49,10 @@ class SwitchedLoopRecorder {
   SwitchedLoops loops_ ABSL_GUARDED_BY(mutex_);
 };
 
-// One line per loop switched off, with a heading.
+// One line per disabled loop, with a header line.
 std::string SwitchedLoopsTable(const SwitchedLoops& loops);
 
-// The loops of such a table; an error which names the first bad line.
+// Parses such a table; an error names the first invalid line.
 absl::StatusOr<std::vector<SwitchedLoop>> ParseSwitchedLoopsTable(
     absl::string_view table);
 

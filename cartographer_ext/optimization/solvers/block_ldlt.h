@@ -7,8 +7,8 @@
 // our own, because the update routines of CHOLMOD are GPL and because whole
 // blocks are faster than scalars at this size.
 //
-// Usage: Analyze once per pattern; then, as often as wanted, SetZero,
-// AddDiagonal, AddOffDiagonal, Factorize, Solve.
+// Usage: Analyze once per pattern; then, repeatedly, SetZero, AddDiagonal,
+// AddOffDiagonal, Factorize, Solve.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_
 
@@ -20,7 +20,7 @@
 namespace cartographer_ext {
 namespace optimization {
 
-// Makes a block symmetric by what is below its diagonal, all that InvertSpd
+// Makes a block symmetric from its lower triangle, which is all that InvertSpd
 // reads.
 void CopyLowerTriangle(Eigen::Matrix3d* block);
 
@@ -35,15 +35,16 @@ std::vector<int> FillReducingOrder(
     int size, const std::vector<std::pair<int, int>>& pairs,
     const std::vector<int>& groups);
 
+// The factorisation, see above. Not thread-safe.
 class BlockLdlt {
  public:
   void Analyze(int size, const std::vector<std::pair<int, int>>& pairs,
                const std::vector<int>& groups);
-  // The same for other pairs of as many variables in the order of before, which
-  // saves most of the time and costs some fill.
+  // The same for different pairs with the same number of variables and the
+  // previous order, which saves most of the time at the cost of some fill.
   void AnalyzeInOrder(const std::vector<std::pair<int, int>>& pairs);
-  // Appends pairs if the fill has room for all of them; false, and nothing has
-  // changed, if it has not.
+  // Appends pairs if all of them fit into the existing fill; otherwise returns
+  // false without effect.
   bool Extend(const std::vector<std::pair<int, int>>& pairs);
 
   void SetZero();
@@ -51,7 +52,7 @@ class BlockLdlt {
   // `block` is H(pairs[pair].first, pairs[pair].second).
   void AddOffDiagonal(int pair, const Eigen::Matrix3d& block);
 
-  // Factors H + lambda * diag(H). False when that is not positive definite.
+  // Factors H + lambda * diag(H). False if that is not positive definite.
   bool Factorize(double lambda);
 
   // Replaces the right hand side, 3 * size values in the order of the

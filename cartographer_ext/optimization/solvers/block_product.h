@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Many products a * b of 3 x 3 blocks with the same b: what factorisations
-// spend their time on. The upper two values of a column are computed at once,
-// in the same order as one by one, so that results do not depend on it.
+// Many products a * b of 3 x 3 blocks with the same b, which dominate the time
+// of factorisations. The upper two values of a column are computed together, in
+// the same order as one by one, so results are identical.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_PRODUCT_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_PRODUCT_H_
 
@@ -14,6 +14,7 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// A column of three values.
 class PackedColumn {
  public:
   PackedColumn() = default;
@@ -35,7 +36,7 @@ class PackedColumn {
   PackedColumn operator-(const PackedColumn& other) const {
     return {upper_ - other.upper_, lower_ - other.lower_};
   }
-  // Value by value.
+  // Element-wise product.
   PackedColumn operator*(const PackedColumn& other) const {
     return {upper_ * other.upper_, lower_ * other.lower_};
   }
@@ -50,6 +51,7 @@ class PackedColumn {
   double lower_;
 };
 
+// A 3 x 3 block by columns.
 struct PackedBlock {
   PackedBlock() = default;
   explicit PackedBlock(const Eigen::Matrix3d& block) {
@@ -64,6 +66,7 @@ struct PackedBlock {
   PackedColumn columns[3];
 };
 
+// A right factor b for many products.
 class RightFactor {
  public:
   explicit RightFactor(const Eigen::Matrix3d& b) {

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A factor L D L' of 3 x 3 blocks which follows its graph: poses are appended
-// and measurements added or taken away without factoring anew. This is what
-// iSAM does with Givens rotations on R (R-iSAM eq. 9-11), written as an update
-// of rank 3 by blocks, after the rank-1 method of Davis and Hager: for H + W M
-// W',
+// A factor L D L' of 3 x 3 blocks that is updated with its graph: poses are
+// appended and measurements added or removed without refactorisation. This is
+// what iSAM does with Givens rotations on R (R-iSAM eq. 9-11), written as an
+// update of rank 3 by blocks, after the rank-1 method of Davis and Hager: for H
+// + W M W',
 //
 //   D'  = D + W_j M W_j',  K = M W_j' D'^-1,
 //   W_i <- W_i - L_ij W_j, L_ij <- L_ij + W_i K,  M <- M - M W_j' K'
 //
 // for j along the elimination tree from the lowest pose touched to the root;
-// other columns do not change. The right hand side rides along as one more row
-// of L, so that the solution of H x = b needs only the backward substitution.
+// other columns do not change. The right hand side is kept as one more row of
+// L, so that solving H x = b needs only the backward substitution.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_FACTOR_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_FACTOR_H_
 
@@ -26,7 +26,7 @@ namespace cartographer_ext {
 namespace optimization {
 
 // One linearised measurement J_a x_a + J_b x_b = target with unit covariance. A
-// variable of -1 is held and its Jacobian not used.
+// variable of -1 is fixed and its Jacobian not used.
 struct LinearFactor {
   int a = -1;
   int b = -1;
@@ -35,37 +35,37 @@ struct LinearFactor {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
 };
 
+// The factor, see above. Not thread-safe.
 class IncrementalFactor {
  public:
-  // Takes over a factorised matrix; `rhs` is b in the order of the variables.
+  // Initialises from a factorised matrix; `rhs` is b in the order of the
+  // variables.
   void Reset(const BlockLdlt& factor, const Eigen::VectorXd& rhs);
 
   // Adds a variable without information, last in the order, and returns its
-  // number. An Update must reach it before anything else is asked of it.
+  // number. It must be reached by an Update before any other call uses it.
   int Append();
 
-  // H += weight * J'J, b += weight * J' target. A negative weight takes the
-  // measurement away again. False, and the factor is of no further use, when H
-  // is no longer positive definite.
+  // H += weight * J'J, b += weight * J' target. A negative weight removes the
+  // measurement again. Returns false if H is no longer positive definite; the
+  // factor is then invalid.
   bool Update(const LinearFactor& factor, double weight);
 
   // J H^-1 J' (3 x 3): covariance of the measurement's prediction.
   Eigen::Matrix3d PredictedCovariance(const LinearFactor& factor) const;
 
-  // Solution of H x = b for the one variable, 0 for -1. What is worked out on
-  // the path serves later calls until the factor changes.
+  // Solution of H x = b for one variable, 0 for -1. Intermediate results are
+  // reused by later calls until the factor changes.
   Eigen::Vector3d SolveFor(int variable) const;
-  // For all, 3 values per variable.
+  // Solution for all variables, 3 values per variable.
   void Solve(Eigen::VectorXd* solution) const;
 
-  // Replaces a right hand side of its own, 3 values per variable, by the
-  // solution.
+  // Replaces a given right hand side, 3 values per variable, by the solution.
   void SolveSystem(Eigen::VectorXd* rhs) const;
 
   int size() const { return columns_.size(); }
   size_t num_blocks() const;
-  // Longest path an update may walk is size(); this is the last one's length,
-  // in blocks, for reports and caps.
+  // Length of the path of the last update, in blocks, at most size().
   size_t last_update_blocks() const { return last_update_blocks_; }
 
  private:
@@ -82,7 +82,7 @@ class IncrementalFactor {
   std::vector<int> variable_;    // position -> variable
   // Dense work space by position, zero between calls.
   mutable std::vector<Eigen::Matrix3d> work_;
-  // Solution by position, of use where its version is that of the factor.
+  // Solution by position, valid if its version is that of the factor.
   mutable std::vector<Eigen::Vector3d> work_solution_;
   mutable std::vector<int64_t> solution_version_;
   int64_t version_ = 0;

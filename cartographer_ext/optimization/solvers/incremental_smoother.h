@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// R-iSAM: incremental smoothing which survives wrong loops (Zhang, Yao, Yue,
-// Sun 2015). Poses arrive one at a time with their odometry and with the loops
-// that end in them.
+// R-iSAM: incremental smoothing that is robust against wrong loops (Zhang, Yao,
+// Yue, Sun 2015). Poses arrive one at a time with their odometry and with the
+// loops that end in them.
 //
 //   Each step (eq. 14-16): the new measurements update the factor. For a loop
 //   the switch alone is estimated together with the poses,
@@ -17,20 +17,19 @@
 //   whole graph with a robust kernel, then decide each loop by the gate
 //   chi2 < 11.345: accepted loops count in full, others not at all.
 //
-// A loop which closes after a long drift has a huge chi2 and would stay out for
-// ever. So at the end of an epoch the rejected loops that are compatible with
-// the uncertainty of the poses (innovation chi2 inside the gate) are tried: the
-// most supported ones, at most `max_hypotheses`, are each forced in, the graph
-// is solved and the loop released again. The truncated cost decides, and must
-// fall by more than one loop's worth.
+// A loop that closes after a long drift has a huge chi2 and would never be
+// accepted. So at the end of an epoch the rejected loops that are compatible
+// with the uncertainty of the poses (innovation chi2 inside the gate) are
+// tried: the best supported ones, at most `max_hypotheses`, are each forced in,
+// the graph is solved and the loop released again. The truncated cost decides,
+// and must decrease by more than the gate.
 //
-// The paper decides each loop once and for ever. Here every epoch weighs all
-// loops again, so that a wrong loop accepted early is put out late (late
-// rejection) and a true one comes back (re-admission); both can be switched
-// off.
+// The paper decides each loop once. Here every epoch re-evaluates all loops, so
+// that a wrong loop accepted early is rejected later (late rejection) and a
+// true one is accepted again (readmission); both can be disabled.
 //
 // A step is bounded: at most `max_loops_per_step` loops are tested, the rest
-// wait for the next steps.
+// are deferred to the next steps.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
 
@@ -45,21 +44,23 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// How the switch of a new loop is estimated.
 enum class SwitchEstimate {
   kJoint,      // the minimum of g(s), with the uncertainty of the poses
   kPointwise,  // s = w / (w + chi2) at the current poses
 };
 
+// Options of steps and epochs.
 struct SmootherOptions {
   int epoch_poses = 100;
   // With more poses than this an epoch is as long as a tenth of them.
   int large_map = 12000;
   // Pointwise is the default: the joint estimate closes larger gaps at once,
-  // but lets in whatever the uncertainty allows, and fails when nine loops in
-  // ten are wrong.
+  // but accepts whatever the uncertainty allows, and fails when nine out of ten
+  // loops are wrong.
   SwitchEstimate switch_estimate = SwitchEstimate::kPointwise;
   // w of the switch penalty. Pointwise: the papers' 1. For the joint estimate
-  // kChi2Gate is the sensible value: 1 would refuse most true loops, whose chi2
+  // kChi2Gate is the sensible value: 1 would reject most true loops, whose chi2
   // has mean 3.
   double switch_penalty = 1.;
   // Loops with s^2 below this are not added before the next epoch.
@@ -70,7 +71,7 @@ struct SmootherOptions {
   double epoch_cost_tolerance = 1e-3;
   bool late_rejection = true;
   bool readmission = true;
-  // At the end, narrow the gate where the data call for it (AdaptiveGate).
+  // At the end, narrow the gate if the data indicate it (AdaptiveGate).
   bool adaptive_gate = true;
   int max_loops_per_step = 50;
   // Rounds of deciding and solving (PolishTruncated) after the kernel.
@@ -78,6 +79,7 @@ struct SmootherOptions {
   int max_hypotheses = 3;  // at the end of an epoch; 0: as in the paper
 };
 
+// Cost and result of one step.
 struct StepReport {
   double cpu_seconds = 0.;
   int loops_tested = 0;
@@ -85,29 +87,31 @@ struct StepReport {
   bool epoch = false;
 };
 
+// R-iSAM, see above. Not thread-safe.
 class IncrementalSmoother {
  public:
-  // The first pose is held at `origin`.
+  // The first pose is fixed at `origin`.
   IncrementalSmoother(const SmootherOptions& options, const Pose2& origin);
 
   // Adds pose number num_poses(). `edges` end in it: `from` or `to` is the new
   // number and the other end exists. At least one is not a loop; the first such
   // gives the pose's initial estimate. An invalid argument leaves the smoother
-  // unchanged. Where information matrices are so uneven that the factor is lost
-  // to rounding, this and all later calls return an internal error.
+  // unchanged. If information matrices are so badly scaled that the factor is
+  // lost to rounding, this and all later calls return an internal error.
   absl::Status AddPose(const std::vector<PoseGraphEdge>& edges,
                        StepReport* report);
 
   // Ends the current epoch now.
   void EndEpoch();
-  // Call at the end of the data: ends the epoch, then decides and solves in
-  // turn until the decisions no longer change (PolishTruncated). With late
-  // rejection and re-admission both off, as in the paper, only ends the epoch.
+  // Call at the end of the data: ends the epoch, then decides and solves
+  // alternately until the decisions no longer change (PolishTruncated). With
+  // late rejection and readmission both off, as in the paper, only ends the
+  // epoch.
   void Finish();
 
   int num_poses() const { return poses_.size(); }
-  // Current estimate of all poses. Worked out when asked for; the steps
-  // themselves only need the newest pose and the ends of its loops.
+  // Current estimate of all poses. Computed on demand; the steps themselves
+  // need only the newest pose and the ends of its loops.
   const std::vector<Pose2>& poses() const;
   // All edges in order of arrival, and which loops are in force.
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
@@ -115,7 +119,7 @@ class IncrementalSmoother {
   // Loops that changed from accepted to rejected, and back, at an epoch's end.
   int num_late_rejections() const { return num_late_rejections_; }
   int num_readmissions() const { return num_readmissions_; }
-  // Not OK once the factor is lost.
+  // Not OK if the factor is lost.
   const absl::Status& status() const { return status_; }
   size_t factor_blocks() const { return factor_.num_blocks(); }
   const IncrementalFactor& factor() const { return factor_; }
@@ -132,28 +136,27 @@ class IncrementalSmoother {
   void UpdateFactor(const LinearFactor& factor, double weight);
   LinearFactor LinearizeEdge(const WhitenedEdge& edge) const;
   Eigen::Vector3d Offset(int pose) const;
-  // Estimates the switch of a loop and adds it. True when it entered.
+  // Estimates the switch of a loop and adds it. Returns whether it was added.
   bool TestLoop(int edge_index);
   double EstimateSwitch(const LinearFactor& factor,
                         const Eigen::Vector3d& residual) const;
   void UpdateEstimate() const;
-  // Brings one pose up to date.
+  // Updates the estimate of one pose.
   void RefreshPose(int pose);
   SolverOptions EpochSolverOptions() const;
   void DecideLoops();
   void RebuildFactor(RobustSolver* batch);
   std::vector<Candidate> FindCandidates(int first_edge, double majority) const;
   std::vector<int> ChooseSeeds(std::vector<Candidate> candidates) const;
-  // Where the information is honest, true loops have chi2 around 3: the epochs'
-  // kernel then weakens them and leaves some behind. True when most loops agree
-  // and count for less than half on average.
+  // If the information matrices are realistic, true loops have chi2 around 3;
+  // the epochs' kernel then downweights them and rejects some. True if most
+  // loops agree and have less than half their weight on average.
   bool KernelIsNarrow() const;
   // At the end, where rejected loops are within reach.
   void TryWiderKernels(RobustSolver* solver);
-  // Whether enough loops, `majority` of all or more, back `poses` as a
-  // hypothesis.
+  // Whether at least `majority` of all loops support `poses` as a hypothesis.
   bool IsSupported(const std::vector<Pose2>& poses, double majority) const;
-  // True when a hypothesis was taken over into the poses.
+  // Returns whether a hypothesis was accepted.
   bool TryHypotheses(int first_edge, double majority, RobustSolver* solver);
 
   const SmootherOptions options_;
@@ -172,6 +175,7 @@ class IncrementalSmoother {
   int num_readmissions_ = 0;
 };
 
+// Result of replaying a graph.
 struct ReplayResult {
   std::vector<Pose2> poses;
   std::vector<double> step_seconds;  // processor time of every AddPose
@@ -179,9 +183,9 @@ struct ReplayResult {
   double cpu_seconds = 0.;
 };
 
-// Feeds a whole graph pose by pose, as if it were recorded now: pose k comes
-// with all edges to poses before it. Starts from nothing but the first pose. An
-// error when a pose has no odometry edge to an earlier one.
+// Replays a whole graph pose by pose, as if it were recorded now: pose k
+// arrives with all edges to earlier poses. Uses no initial pose but the first.
+// An error if a pose has no odometry edge to an earlier one.
 absl::Status Replay(const PoseGraph& graph, const SmootherOptions& options,
                     ReplayResult* result);
 

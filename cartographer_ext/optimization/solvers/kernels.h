@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Robust kernels for loop edges, all seen as iteratively reweighted least
-// squares: an edge with squared Mahalanobis error z = chi2 contributes rho(z)
-// to the objective and enters each linear solve with weight omega = rho'(z).
-// The papers speak of a switch s in [0, 1] which scales the residual, so
-// omega = s^2.
+// Robust kernels for loop edges, all as iteratively reweighted least squares:
+// an edge with squared Mahalanobis error z = chi2 contributes rho(z) to the
+// objective and enters each linear solve with weight omega = rho'(z). The
+// papers speak of a switch s in [0, 1] which scales the residual, so omega =
+// s^2.
 //
 //   none    rho = z
 //
@@ -35,8 +35,8 @@
 //           The literal form has the same rho with k = chi' |L| / chi2, which
 //           is constant for an isotropic covariance and is otherwise held
 //           during one iteration. As an objective, eq. (14) of the paper with
-//           (12) inserted would reward breaking every loop; only this reading
-//           descends.
+//           (12) inserted would reward violating every loop; only this form
+//           is a consistent objective.
 //
 //   TLS     rho = min(z, c), the target of graduated non-convexity.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_KERNELS_H_
@@ -55,6 +55,7 @@ namespace optimization {
 // whether an error is compatible with its information matrix.
 constexpr double kChi2Gate = 11.344866730144373;
 
+// The kernels above.
 enum class KernelType {
   kNone,
   kHuber,
@@ -65,7 +66,7 @@ enum class KernelType {
   kTruncated,
 };
 
-// What |Lambda| of the ACS paper means; the paper does not say.
+// The meaning of |Lambda| of the ACS paper, which does not define it.
 enum class CovarianceNorm {
   kSpectral,     // largest eigenvalue of the covariance (the default)
   kDeterminant,  // det(covariance)
@@ -73,6 +74,7 @@ enum class CovarianceNorm {
   kInformation,  // det(information): the matrix of the g2o file taken as Lambda
 };
 
+// A kernel with its parameter.
 struct KernelOptions {
   KernelType type = KernelType::kNone;
   // Huber: b. Geman-McClure: w. DCS: P. ACS and TLS: c. Not used otherwise.
@@ -80,16 +82,18 @@ struct KernelOptions {
   CovarianceNorm norm = CovarianceNorm::kSpectral;  // kAcsPaper
 };
 
-// The kernel with its customary parameter: Huber b = 1.345, w = 1, P = 1,
-// c = kChi2Gate.
+// The kernel with its usual parameter: Huber b = 1.345, w = 1, P = 1, c =
+// kChi2Gate.
 KernelOptions DefaultKernel(KernelType type);
 
 // "none", "huber", "gm", "dcs", "acs", "acs_paper", "tls".
 absl::StatusOr<KernelType> KernelTypeFromName(absl::string_view name);
+// The name of a kernel, see KernelTypeFromName.
 std::string KernelName(KernelType type);
 // "spectral", "determinant", "root", "information".
 absl::StatusOr<CovarianceNorm> CovarianceNormFromName(absl::string_view name);
 
+// Value and derivative of a kernel.
 struct KernelValue {
   double rho = 0.;     // contribution to the objective
   double weight = 1.;  // d rho / d chi2, in [0, 1]

@@ -6,25 +6,26 @@
 //
 //   (H + lambda diag H) dx = -g,   H = sum omega J'J,   g = sum omega J'r,
 //
-// with omega = rho'(chi2) at the current poses, and the step is taken when it
+// with omega = rho'(chi2) at the current poses, and the step is accepted if it
 // lowers the robust cost sum rho(chi2). Because omega belongs to the same rho
-// which judges the step, this descends; weights changed behind a solver's back
-// do not (measured with Ceres: it stops after a few rejected steps, calling
-// that convergence).
+// that judges the step, this converges; weights that change without the
+// solver's knowledge do not (Ceres stops after a few rejected steps and reports
+// convergence).
 //
-// Dead edges: an outlier pulled to weight 1e-6 changes nothing but still fills
-// the factor. Loops whose weight is below `prune_weight` leave the pattern; all
-// loops are weighed anew in each iteration and come back as soon as their
-// weight allows (measured: 10 to 20 times faster at 1000 outliers, same
-// optimum). What comes back often finds room in the fill of the factor; only
-// where it does not is the order of elimination worked out anew.
+// Pruned edges: an outlier with weight 1e-6 has no effect on the solution but
+// causes fill in the factor. Loops whose weight is below `prune_weight` are
+// removed from the pattern; all weights are recomputed in each iteration, and
+// loops are added again as soon as their weight rises (10 to 20 times faster at
+// 1000 outliers, same optimum). A loop that is added again often fits into the
+// existing fill of the factor; only otherwise the elimination order is
+// recomputed.
 //
-// Undecided edges: the weight of a loop near the gate follows its residual and
-// the residual the weight, a little in each iteration. Near the end, where few
-// loops still do that, both are carried to the limit at once, on the linearised
-// graph (robust_solver_undecided.cc).
+// Undecided edges: the weight of a loop near the gate depends on its residual
+// and the residual on the weight, and both change a little in each iteration.
+// Near the end, when few such loops remain, both are carried to their limit at
+// once, on the linearised graph (robust_solver_undecided.cc).
 //
-// The first pose is held.
+// The first pose is fixed.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_ROBUST_SOLVER_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_ROBUST_SOLVER_H_
 
@@ -38,6 +39,7 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Kernel and stopping rules of one solution.
 struct SolverOptions {
   KernelOptions kernel;  // of the loops; other edges count in full
   int max_iterations = 100;
@@ -45,8 +47,8 @@ struct SolverOptions {
   double cost_tolerance = 1e-7;
   // Ends when no pose moves more than this (metres or radians).
   double step_tolerance = 1e-7;
-  // Larger values slow the long waves of a trajectory down: their curvature is
-  // far below the diagonal.
+  // Larger values slow down the low-frequency modes of a trajectory, whose
+  // curvature is far below the diagonal.
   double initial_lambda = 1e-9;
   bool prune = true;
   double prune_weight = 1e-4;
@@ -54,6 +56,7 @@ struct SolverOptions {
   std::vector<double> edge_weights;
 };
 
+// Summary of one solution.
 struct SolverSummary {
   int iterations = 0;        // linear systems solved
   int analyses = 0;          // symbolic factorisations
@@ -64,25 +67,25 @@ struct SolverSummary {
   double cpu_seconds = 0.;
 };
 
-// Solves the same graph time and again, from other poses, with other kernels or
-// edge weights, and keeps the factor's pattern as long as it serves.
+// Solves the same graph repeatedly, from different poses, with different
+// kernels or edge weights, and reuses the factor's pattern where possible.
 class RobustSolver {
  public:
-  // The edges must refer to poses that exist and outlive the solver. Which of
+  // The edges must refer to existing poses and outlive the solver. Which of
   // them are loops may change between solutions.
   struct LastPoseLast {};
 
   explicit RobustSolver(const std::vector<WhitenedEdge>& edges)
       : edges_(edges) {}
-  // The same with the last pose last in the order of elimination, where the
-  // next one attaches.
+  // The same with the last pose last in the elimination order, where the next
+  // one will be attached.
   RobustSolver(const std::vector<WhitenedEdge>& edges, LastPoseLast)
       : edges_(edges), last_pose_last_(true) {}
 
   // Improves `poses` in place; their number is the same in all calls.
   SolverSummary Solve(const SolverOptions& options, std::vector<Pose2>* poses);
 
-  // The weight of each edge where the last solution ended.
+  // The weight of each edge at the end of the last solution.
   const std::vector<double>& weights() const { return weights_; }
 
   // The factorised system of the edges at these poses with these weights, one
@@ -101,14 +104,14 @@ class RobustSolver {
     std::vector<double> shapes;  // of the literal ACS kernel only
   };
 
-  // What one call of Solve() carries from step to step.
+  // State of one call of Solve().
   struct Descent {
     Evaluation now;
     Evaluation next;
     Eigen::VectorXd step;
     double lambda = 0.;
     bool settling = false;
-    std::vector<int> undecided;  // loops about to be let go or brought in
+    std::vector<int> undecided;  // loops about to be rejected or accepted
     bool done = false;
     SolverSummary summary;
   };
@@ -151,27 +154,29 @@ SolverSummary SolveRobust(const std::vector<WhitenedEdge>& edges,
                           const SolverOptions& options,
                           std::vector<Pose2>* poses);
 
+// Schedule of graduated non-convexity.
 struct GncOptions {
   double truncation = kChi2Gate;  // c: chi2 beyond which a loop is an outlier
   double mu_step = 1.4;
   int max_outer_iterations = 100;
   int inner_iterations = 4;
-  // Each round starts from the given poses instead of from the last solution,
-  // which with many outliers is folded in the first rounds.
+  // Each round starts from the given poses instead of the last solution, which
+  // with many outliers is folded in the first rounds.
   bool restart = true;
-  // Chi2 at the given poses up to which a loop counts in the first round. 0: all
-  // loops count, and are solved once with full weights before.
+  // Chi2 at the given poses up to which a loop is used in the first round. 0:
+  // all loops are used, after one solution with full weights.
   double reach = 0.;
-  // Processor time. Asked after each round, so that the rounds of the first,
-  // full graphs may exceed it; what it ends has not converged.
+  // CPU time. Checked after each round, so that the first rounds with full
+  // graphs may exceed it; a solution stopped by it has not converged.
   double max_seconds = 1e9;
 };
 
-// Graduated non-convexity with truncated least squares (Yang et al. 2020), the
-// odometry known to be right. Weights are returned one per edge.
+// Graduated non-convexity with truncated least squares (Yang et al. 2020), with
+// trusted odometry. Weights are returned one per edge.
 SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
                        const GncOptions& options, std::vector<Pose2>* poses,
                        std::vector<double>* weights);
+// The same with an existing solver.
 SolverSummary SolveGnc(const GncOptions& options, RobustSolver* solver,
                        std::vector<Pose2>* poses, std::vector<double>* weights);
 
@@ -179,43 +184,45 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* solver,
 std::vector<double> DecideLoops(const std::vector<WhitenedEdge>& edges,
                                 const std::vector<Pose2>& poses, double gate);
 
-// Rounds of the polishes below where a graph is solved at leisure.
+// Rounds of the polishes below for offline use.
 constexpr int kFullPolishRounds = 30;
 
 // Alternates between deciding each loop by `gate` on chi2 (weight 1 inside, 0
 // outside) and solving with those weights, until the decisions no longer
-// change. Each half lowers the truncated cost, so this ends; loops judged wrong
-// come back when the poses have moved towards them. `weights`, if not null,
-// receives one value per edge.
+// change. Each half-step lowers the truncated cost, so this terminates;
+// rejected loops are accepted again when the poses have moved towards them.
+// `weights`, if not null, receives one value per edge.
 SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
                               double gate, int max_rounds,
                               std::vector<Pose2>* poses,
                               std::vector<double>* weights);
+// The same with an existing solver.
 SolverSummary PolishTruncated(double gate, int max_rounds, RobustSolver* solver,
                               std::vector<Pose2>* poses,
                               std::vector<double>* weights);
 
-// A gate made narrower where the information matrices are conservative: chi2 of
-// the loops inside kChi2Gate is compared with what it should be, by its median
-// and, for heavy tails, by its 98th percentile; the gate is four times (two
-// standard deviations for one) what the larger of the two suggests, and never
-// more than kChi2Gate. In the simulated sets true loops have a median of 0.02
-// instead of 2.4, so that an "accepted" chi2 of 1 is an outlier.
+// A gate that is narrower if the information matrices are conservative: chi2 of
+// the loops inside kChi2Gate is compared with its expected distribution, by its
+// median and, for heavy tails, by its 98th percentile; the gate is four times
+// (two standard deviations) the larger of the two estimates, and at most
+// kChi2Gate. In the simulated sets true loops have a median of 0.02 instead of
+// 2.4, so that an "accepted" chi2 of 1 is an outlier.
 double AdaptiveGate(const std::vector<WhitenedEdge>& edges,
                     const std::vector<Pose2>& poses);
 
-// PolishTruncated with the adapted gate, again as long as what it leaves out
-// narrows the gate.
+// PolishTruncated with the adapted gate, repeated as long as the rejected loops
+// narrow the gate.
 SolverSummary PolishAdapted(const std::vector<WhitenedEdge>& edges,
                             int max_rounds, std::vector<Pose2>* poses,
                             std::vector<double>* weights);
+// The same with an existing solver.
 SolverSummary PolishAdapted(int max_rounds, RobustSolver* solver,
                             std::vector<Pose2>* poses,
                             std::vector<double>* weights);
 
 // Truncated cost: chi2 of the odometry plus sum over loops of min(chi2, gate).
-// Comparable between kernels, and the criterion that tells a folded map from a
-// right one: every true loop lost costs the gate.
+// Comparable between kernels, and the criterion that distinguishes a folded map
+// from a right one: every rejected true loop costs the gate.
 double TruncatedCost(const std::vector<WhitenedEdge>& edges,
                      const std::vector<Pose2>& poses, double gate = kChi2Gate);
 

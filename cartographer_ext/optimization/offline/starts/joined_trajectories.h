@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A start for graphs of several trajectories that only loops join. Nothing is
-// known about where they lie relative to each other but what these loops say,
-// and some of them are wrong:
+// An initial guess for graphs of several trajectories that are connected by
+// loops only. Their relative poses are known only from these loops, some of
+// which are wrong:
 //   1. each trajectory is replayed by itself (IncrementalSmoother);
 //   2. beginning with the first, the one with the most loops to those already
 //      placed is put where one of these loops wants it, the one which the
@@ -22,8 +22,8 @@
 namespace cartographer_ext {
 namespace optimization {
 
-// Poses to start from, the first where it is in the graph. False, and nothing
-// has changed, where odometry joins all poses.
+// Computes initial poses; the first is that of the graph. Returns false,
+// without effect, if odometry connects all poses.
 bool JoinTrajectories(const PoseGraph& graph, const SmootherOptions& options,
                       std::vector<Pose2>* poses);
 

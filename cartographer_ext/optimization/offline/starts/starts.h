@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Initial poses for a pose graph. Which local minimum a solver ends in depends
-// on where it starts, and each of these is good where others are not:
+// Initial guesses for a pose graph. The local minimum that a solver finds
+// depends on its initial guess, and each of these is good where others are not:
 //
 //   ChainOdometry   needs no loop, drifts without bounds;
 //   SpanningTree    prefers short paths over loops to long odometry, a wrong
@@ -12,7 +12,7 @@
 //                   two linear systems without any initial poses, so the
 //                   length of the drift does not matter.
 //
-// All keep the first pose where it is.
+// All keep the first pose fixed.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_STARTS_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_STARTS_STARTS_H_
 
@@ -30,7 +30,7 @@ std::vector<Pose2> ChainOdometry(const PoseGraph& graph);
 
 // Poses along the tree of least uncertain paths from the first pose, over
 // odometry and the loops whose weight is above one half. `weights` has one
-// entry per edge. Poses out of reach keep their estimate.
+// entry per edge. Unreachable poses keep their estimate.
 std::vector<Pose2> SpanningTree(const PoseGraph& graph,
                                 const std::vector<double>& weights);
 
@@ -42,15 +42,14 @@ std::vector<Pose2> SpanningTree(const PoseGraph& graph,
 //
 //   min sum |W_ij (R_i' (p_j - p_i) - t_ij)|^2,           p_0 given.
 //
-// `weights` multiply the edges; zero removes one. Returns false, and changes
-// nothing, where the edges in force do not determine the poses.
+// `weights` multiply the edges; zero removes one. Returns false, without
+// effect, if the edges in force do not determine the poses.
 bool ChordalPoses(const std::vector<WhitenedEdge>& edges,
                   const std::vector<double>& weights,
                   std::vector<Pose2>* poses);
 
-// The same with rotations and positions of loops that contradict the rest
-// weighed down, in a few rounds of reweighting by the kernel of Geman and
-// McClure: robust rotation averaging.
+// The same with loops that contradict the rest downweighted, in a few rounds of
+// reweighting by the Geman-McClure kernel: robust rotation averaging.
 bool RobustChordalPoses(const std::vector<WhitenedEdge>& edges,
                         std::vector<Pose2>* poses);
 
