@@ -47,8 +47,8 @@ inline Map Corridor() {
   return map;
 }
 
-// The points of a laser with 180 beams all around and 8 m of range that stands
-// at `pose` (map <- laser), in the frame of the laser.
+// The points of a stationary laser with 180 beams all around and 8 m of range at
+// `pose` (map <- laser), in the frame of the laser.
 inline std::vector<Eigen::Vector2f> Scan(const cartographer_ext::Pose2& pose) {
   std::vector<Eigen::Vector2f> points;
   for (int beam = 0; beam < 180; ++beam) {

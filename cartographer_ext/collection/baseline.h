@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What has become of maps since they were judged before.
+// Changes of the verdicts of maps since an earlier evaluation.
 #ifndef CARTOGRAPHER_EXT_COLLECTION_BASELINE_H_
 #define CARTOGRAPHER_EXT_COLLECTION_BASELINE_H_
 
@@ -16,16 +16,16 @@
 namespace cartographer_ext {
 namespace collection {
 
-// By the name of the map. Reads lines of JSON as ToJsonLines writes them.
-// Errors name file and line.
+// Reads lines of JSON written by ToJsonLines, by the name of the map. Errors
+// name file and line.
 absl::StatusOr<std::map<std::string, MapRecord>> ReadBaseline(
     const std::string& filename);
 
 struct MapChange {
   std::string filename;
-  std::string before, after;  // verdicts; empty: not there
-  // "worse", "better", "same", "new", "gone". By severity, so that a map that
-  // cannot be read any more is worse than a broken one.
+  std::string before, after;  // verdicts; empty: missing
+  // "worse", "better", "same", "new", "gone". By severity: a map that can no
+  // longer be read is worse than a broken one.
   std::string kind;
 };
 

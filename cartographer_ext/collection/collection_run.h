@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Judging many maps from the command line: what is asked for, and what is
-// written.
+// Judging many maps from the command line: options and outputs.
 #ifndef CARTOGRAPHER_EXT_COLLECTION_COLLECTION_RUN_H_
 #define CARTOGRAPHER_EXT_COLLECTION_COLLECTION_RUN_H_
 
@@ -19,14 +18,14 @@
 namespace cartographer_ext {
 namespace collection {
 
-// Files; empty ones are not wanted.
+// Output files; empty: not written.
 struct CollectionFiles {
   std::string overview;           // HTML
-  std::string reports_directory;  // made where it is missing
+  std::string reports_directory;  // created if missing
   std::string csv;
   std::string json_lines;
   std::string journal;
-  std::string baseline;  // input: JSON lines of before
+  std::string baseline;  // input: JSON lines of an earlier run
 };
 
 struct CollectionResult {
@@ -42,17 +41,18 @@ absl::StatusOr<CollectionResult> RunCollection(
 nlohmann::ordered_json ToJson(const CollectionResult& result);
 std::string ToText(const CollectionResult& result);
 
-// An error that counts and names the maps that could not be judged; OK where
-// there is none.
+// An error that counts and names the maps that could not be judged; OK if there
+// are none.
 absl::Status CheckAllJudged(const std::vector<MapRecord>& records);
 
-// What -fail_on may be: "", "broken", "doubtful", "worse".
+// Valid values of -fail_on: "", "broken", "doubtful", "worse".
 bool IsFailOn(const std::string& fail_on);
 
 // Whether a verdict is as bad as `fail_on` or worse.
 bool FailsOn(const std::string& verdict, const std::string& fail_on);
 
-// Whether any map is, or, with "worse", has become so since the baseline.
+// Whether this holds for any map, or, with "worse", for any map since the
+// baseline.
 bool FailsOn(const CollectionResult& result, const std::string& fail_on);
 
 }  // namespace collection

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is told of one map among many: enough for a table, a page and a
-// comparison with an earlier day.
+// Summary of one map among many, for a table, a page and a comparison with an
+// earlier evaluation.
 #ifndef CARTOGRAPHER_EXT_COLLECTION_MAP_RECORD_H_
 #define CARTOGRAPHER_EXT_COLLECTION_MAP_RECORD_H_
 
@@ -20,18 +20,18 @@ namespace collection {
 struct MapRecord {
   std::string filename;
   // "sound", "unknown", "doubtful", "broken", or "failed": the file could not
-  // be judged, and `reasons` says why.
+  // be judged, for the reason in `reasons`.
   std::string verdict;
   std::vector<std::string> reasons;
   int64_t nodes = 0;
   int64_t submaps = 0;
   int64_t loops = 0;
   double path = 0.;           // metres
-  double severe_share = 0.;   // of the nodes that see a place again
+  double severe_share = 0.;   // of the nodes that revisit a place
   double open_cycles = 0.;    // share of short cycles of two loops
   double wall_doubling = 1.;  // all visits to one visit
   int64_t wrong_turns = 0;
-  std::string picture;  // a small one, as a data URI; may be empty
+  std::string picture;  // thumbnail as a data URI; may be empty
   std::string report;   // file name of its own page; empty without one
 };
 
@@ -43,13 +43,12 @@ absl::StatusOr<MapRecord> RecordFromJson(const nlohmann::json& json);
 
 // Lines of JSON, without pictures.
 std::string ToJsonLines(const std::vector<MapRecord>& records);
-// With a head line.
+// With a header line.
 std::string ToCsv(const std::vector<MapRecord>& records);
 
-// The whole work on one map, which may crash on a damaged file and therefore
-// has a process of its own: request { "filename", "report" } (the second empty
-// without a page), answer as those of tuning/worker_pool.h with "metrics" the
-// record.
+// Evaluates one map; runs in a separate process because it may crash on a
+// damaged file. Request { "filename", "report" } (the second is empty without a
+// page); the answer is as in tuning/worker_pool.h with the record as "metrics".
 nlohmann::json AnswerMapRequest(const nlohmann::json& request);
 
 }  // namespace collection

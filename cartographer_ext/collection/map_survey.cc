@@ -54,7 +54,7 @@ struct KnownMap {
 
 bool IsStillTrue(const KnownMap& known, const std::string& filename,
                  const std::string& report) {
-  // A file that could not be read may have been brought back.
+  // A file that could not be read may be available again.
   return !known.state.empty() && known.state == StateOf(filename) &&
          known.record.report ==
              (known.record.verdict == "failed" ? "" : report) &&

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Many maps on one page: small pictures, verdicts, reasons. One HTML file that
-// needs nothing else; the script sorts and filters, and without it all is there,
-// worst first.
+// Many maps on one page: thumbnails, verdicts, reasons. One self-contained HTML
+// file; the script sorts and filters, without it all maps are shown, worst
+// first.
 #ifndef CARTOGRAPHER_EXT_COLLECTION_OVERVIEW_PAGE_H_
 #define CARTOGRAPHER_EXT_COLLECTION_OVERVIEW_PAGE_H_
 
@@ -20,7 +20,7 @@ namespace collection {
 // "3 broken, 12 sound": the verdicts that occur, worst first.
 std::string CountsInWords(const std::vector<MapRecord>& records);
 
-// How many maps have each verdict.
+// Number of maps by verdict.
 std::map<std::string, int> CountVerdicts(const std::vector<MapRecord>& records);
 
 // `page_filename`: where the page will be, for links to the pages of the maps.

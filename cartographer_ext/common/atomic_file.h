@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Output files that are either whole or absent: written to a temporary file in
-// the target's folder, flushed, then renamed. A full disk or an unwritable path
-// gives an error naming the path and leaves nothing behind. What a killed process
-// of this computer left is removed when its file is written again.
+// Output files that are either complete or absent: written to a temporary file
+// in the target's folder, flushed, then renamed. A full disk or an unwritable
+// path gives an error naming the path and leaves nothing behind. Temporary
+// files left by a killed process on this machine are removed when the same file
+// is written again.
 #ifndef CARTOGRAPHER_EXT_COMMON_ATOMIC_FILE_H_
 #define CARTOGRAPHER_EXT_COMMON_ATOMIC_FILE_H_
 
@@ -28,7 +29,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  // Not OK when the temporary file could not be created.
+  // Not OK if the temporary file could not be created.
   const absl::Status& status() const { return status_; }
   std::ostream& stream();
   // The temporary file's name, for writers that want a path (cairo, rosbag).
@@ -43,9 +44,10 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-// While it lives, files that are committed wait for its own Commit, so that a
-// command writes all of its files or none. Without it they are removed. Readers
-// of what may wait open NameToRead. One at a time, used by one thread.
+// While an object of this class exists, committed files are renamed only by its
+// own Commit, so that a command writes all of its files or none; without Commit
+// they are removed. Code that may read such a pending file opens NameToRead. At
+// most one at a time, used by one thread.
 class AtomicFileSet {
  public:
   AtomicFileSet();
@@ -53,30 +55,31 @@ class AtomicFileSet {
   AtomicFileSet(const AtomicFileSet&) = delete;
   AtomicFileSet& operator=(const AtomicFileSet&) = delete;
 
-  // The first file that cannot be put in its place ends it.
+  // Stops at the first file that cannot be renamed.
   absl::Status Commit();
 
-  // Where the content of `path` is: that of the temporary file while a set
-  // lives in which `path` waits, empty if it waits to be removed, else `path`.
+  // The name under which `path` can be read: the temporary file while `path` is
+  // pending in a set, empty if it is to be removed, otherwise `path`.
   static std::string NameToRead(const std::string& path);
 
  private:
   friend class AtomicFile;
   friend void RemoveWithSet(const std::string& path);
-  // The set that lives, or null.
+  // The existing set, or null.
   static AtomicFileSet*& Current();
 
-  // What waited for `path` before is given up.
+  // A file that was pending for `path` before is discarded.
   void Add(const std::string& temporary, const std::string& path);
 
-  // Temporary files and what they become; without one the file is removed.
+  // Temporary files and their targets; a target without a temporary file is
+  // removed.
   std::vector<std::pair<std::string, std::string>> waiting_;
 };
 
-// Removes a file, if it is there; while a set lives, with its Commit.
+// Removes a file if it exists; while a set exists, at its Commit.
 void RemoveWithSet(const std::string& path);
 
-// The whole content in one call. "-" writes to standard output.
+// Writes the whole content in one call. "-" writes to standard output.
 absl::Status WriteFileAtomically(const std::string& path,
                                  absl::string_view content);
 

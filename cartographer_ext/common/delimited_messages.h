@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Length-delimited protobuf messages one after the other: a varint length, then
-// the message. Any protobuf library reads them.
+// A sequence of length-delimited protobuf messages: a varint length, then the
+// message. Any protobuf library can read them.
 #ifndef CARTOGRAPHER_EXT_COMMON_DELIMITED_MESSAGES_H_
 #define CARTOGRAPHER_EXT_COMMON_DELIMITED_MESSAGES_H_
 
@@ -21,6 +21,7 @@
 
 namespace cartographer_ext {
 
+// Appends one message.
 template <typename Message>
 void AppendDelimited(const Message& message, std::string* const bytes) {
   const std::string serialized = message.SerializeAsString();
@@ -33,8 +34,8 @@ void AppendDelimited(const Message& message, std::string* const bytes) {
   bytes->append(serialized);
 }
 
-// All messages; DataLoss with the byte offset where they end in the middle of
-// one or do not decode. `what` names one of them in the error.
+// Parses all messages; DataLoss with the byte offset if they are truncated or
+// cannot be decoded. `what` names a message in the error.
 template <typename Message>
 absl::StatusOr<std::vector<Message>> ParseDelimited(
     const absl::string_view bytes, const absl::string_view what) {

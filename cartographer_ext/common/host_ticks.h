@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Cartographer counts ticks of 100 ns since the year 1 (UTC); tables for people
-// and other programs have Unix seconds.
+// Cartographer counts ticks of 100 ns since the year 1 (UTC); tables and other
+// programs use Unix seconds.
 #ifndef CARTOGRAPHER_EXT_COMMON_HOST_TICKS_H_
 #define CARTOGRAPHER_EXT_COMMON_HOST_TICKS_H_
 

@@ -10,6 +10,7 @@
 
 namespace cartographer_ext {
 
+// Submap and node of a loop by their host ids. Ordered by these ids.
 struct LoopId {
   int submap_trajectory = 0;
   int submap_index = 0;
@@ -17,6 +18,7 @@ struct LoopId {
   int node_index = 0;
 };
 
+// The ids as a tuple, for comparison.
 inline std::tuple<int, int, int, int> AsTuple(const LoopId& id) {
   return std::make_tuple(id.submap_trajectory, id.submap_index,
                          id.node_trajectory, id.node_index);
@@ -29,7 +31,7 @@ inline bool operator<(const LoopId& a, const LoopId& b) {
   return AsTuple(a) < AsTuple(b);
 }
 
-// Of Cartographer's mapping::SubmapId and mapping::NodeId.
+// Converts Cartographer's mapping::SubmapId and mapping::NodeId.
 template <typename SubmapId, typename NodeId>
 LoopId MakeLoopId(const SubmapId& submap, const NodeId& node) {
   LoopId id;

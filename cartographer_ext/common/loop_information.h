@@ -5,10 +5,10 @@
 //
 // Cartographer's constraints carry a relative pose and two scalar weights, the
 // square roots of the information of translation and of rotation. A scan
-// matched in a corridor is certain across it and uncertain along it, which
-// takes the 3x3 matrix. The constraint builder stores the matrix of a loop in
-// the context of the pose graph (pose_graph_context.h), and the optimization
-// problem of the same pose graph uses it in place of the weights:
+// matched in a corridor is certain across it and uncertain along it, which only
+// a 3x3 matrix can represent. The constraint builder stores the matrix of a
+// loop in the context of the pose graph (pose_graph_context.h), and the
+// optimization problem of the same pose graph uses it in place of the weights:
 //
 //   with a matrix   r = S e,                            S^T S = information
 //   without         r = (w_t e_x, w_t e_y, w_r e_theta), the stock residual
@@ -16,8 +16,8 @@
 // with e = (z_xy - R(theta_i)^T (t_j - t_i), z_theta - (theta_j - theta_i)),
 // metres and radians in the frame of the submap i (Konolige et al., "Efficient
 // sparse pose adjustment for 2D mapping", IROS 2010, equation 1). The two
-// weights of the constraint must make sense on their own: they are all that a
-// stored map contains.
+// weights of the constraint must be meaningful on their own, because a stored
+// map contains nothing else.
 #ifndef CARTOGRAPHER_EXT_COMMON_LOOP_INFORMATION_H_
 #define CARTOGRAPHER_EXT_COMMON_LOOP_INFORMATION_H_
 
@@ -43,7 +43,7 @@ inline Eigen::Matrix3d InformationOfWeights(const double translation_weight,
       .asDiagonal();
 }
 
-// A part of PoseGraphContext. Thread-safe.
+// The matrices by loop; a part of PoseGraphContext. Thread-safe.
 class LoopInformation {
  public:
   // Beyond this number the oldest matrices are dropped (about 25 MB); those
@@ -55,8 +55,8 @@ class LoopInformation {
   // semi-definite.
   bool Set(const LoopId& id, const Eigen::Matrix3d& information)
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // A square root S of the information, S^T S = information. False where the
-  // loop has no matrix.
+  // A square root S of the information, S^T S = information. False if the loop
+  // has no matrix.
   bool FindSqrt(const LoopId& id, Eigen::Matrix3d* sqrt) const
       ABSL_LOCKS_EXCLUDED(mutex_);
   size_t size() const ABSL_LOCKS_EXCLUDED(mutex_);
@@ -70,10 +70,10 @@ class LoopInformation {
   std::deque<LoopId> oldest_first_ ABSL_GUARDED_BY(mutex_);
 };
 
-// Hands square roots to the residuals of one optimization. Cartographer makes
-// the residual of a constraint from a reference to its pose, without ids; so
-// the address of the pose is the key, valid on this thread while the scope
-// lives. Scopes nest.
+// Passes square roots to the residuals of one optimisation. Cartographer
+// creates the residual of a constraint from a reference to its pose, without
+// ids, so the address of the pose is the key, valid on this thread during the
+// lifetime of the scope. Scopes nest.
 class ScopedSqrtInformation {
  public:
   using Sqrt = std::array<double, 9>;  // column-major

@@ -12,8 +12,8 @@
 
 namespace cartographer_ext {
 
-// R of a frame b that is turned by `angle` (radians) against a: a covariance C
-// in b is R C R^T in a, one in a is R^T C R in b. The heading is left alone.
+// Rotation R of a frame b by `angle` (radians) relative to a: a covariance C in
+// b is R C R^T in a, one in a is R^T C R in b. The heading is unchanged.
 inline Eigen::Matrix3d PlanarRotation(const double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   Eigen::Matrix3d result = Eigen::Matrix3d::Identity();
@@ -21,7 +21,7 @@ inline Eigen::Matrix3d PlanarRotation(const double angle) {
   return result;
 }
 
-// Without what rounding has made of a symmetric matrix.
+// The symmetric part, to remove rounding errors.
 inline Eigen::Matrix3d Symmetric(const Eigen::Matrix3d& matrix) {
   return 0.5 * (matrix + matrix.transpose());
 }

@@ -20,9 +20,12 @@ inline double NormalizeAngle(double angle) {
   return std::remainder(angle, 2. * kPi);
 }
 
+// Degrees to radians.
 inline double DegToRad(double degrees) { return degrees * kPi / 180.; }
+// Radians to degrees.
 inline double RadToDeg(double radians) { return radians * 180. / kPi; }
 
+// A planar rigid transform: rotation by theta, then translation by (x, y).
 struct Pose2 {
   double x = 0.;      // metres
   double y = 0.;      // metres
@@ -57,11 +60,12 @@ inline Eigen::Vector2d operator*(const Pose2& pose, const Eigen::Vector2d& p) {
 // Pose of b seen from a: a^-1 * b.
 inline Pose2 Between(const Pose2& a, const Pose2& b) { return a.Inverse() * b; }
 
-// Linear in translation, shortest way in angle; `ratio` 0 gives a, 1 gives b.
+// Linear in translation, and in the smaller rotation between the angles;
+// `ratio` 0 gives a, 1 gives b.
 inline Pose2 Interpolate(const Pose2& a, const Pose2& b, double ratio) {
-  return Pose2(a.x + ratio * (b.x - a.x), a.y + ratio * (b.y - a.y),
-               NormalizeAngle(a.theta +
-                              ratio * NormalizeAngle(b.theta - a.theta)));
+  return Pose2(
+      a.x + ratio * (b.x - a.x), a.y + ratio * (b.y - a.y),
+      NormalizeAngle(a.theta + ratio * NormalizeAngle(b.theta - a.theta)));
 }
 
 }  // namespace cartographer_ext

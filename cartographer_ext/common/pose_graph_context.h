@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What our classes share about one pose graph.
+// State that our classes share about one pose graph.
 //
 // Cartographer builds the classes that we replace (constraint builder,
 // optimization problem, local trajectory builder) deep inside MapBuilder and
-// PoseGraph2D and passes none of them a handle to the pose graph they work for.
-// A context is that handle. It is shared by the objects of one pose graph,
-// owned by them and freed with the last of them; there is no process-wide
-// table. It travels by scope, on the thread that makes the call:
+// PoseGraph2D and passes none of them a handle to their pose graph. A context
+// is that handle. It is shared and owned by the objects of one pose graph and
+// freed with the last of them; there is no process-wide table. It is passed by
+// scope, on the thread that makes the call:
 //
 //   construction  A program that wants to read the context (records, statistics
 //                 of the optimization) puts a scope around CreateMapBuilder()
@@ -18,8 +18,8 @@
 //                 around this call, so that OptimizationProblem2D::Solve() sees
 //                 the context of the builder of the same pose graph.
 //
-// Without a scope, as in an unedited program, each constraint builder makes its
-// own context; a local trajectory builder has none and records nothing.
+// Without a scope, as in an unedited program, each constraint builder creates
+// its own context; a local trajectory builder has none and records nothing.
 //
 //   auto context = std::make_shared<PoseGraphContext>();
 //   {
@@ -30,8 +30,8 @@
 //   context->Get<loop_closure::DecisionRecorder>()->All();
 //
 // The parts are objects of the modules, one of each type, default-constructed
-// when first asked for. Get() may be called by several threads at once; parts
-// that several threads use are thread-safe themselves, and bounded.
+// on first use. Get() may be called by several threads at once; parts used by
+// several threads are thread-safe themselves, and bounded.
 #ifndef CARTOGRAPHER_EXT_COMMON_POSE_GRAPH_CONTEXT_H_
 #define CARTOGRAPHER_EXT_COMMON_POSE_GRAPH_CONTEXT_H_
 
@@ -45,6 +45,7 @@
 
 namespace cartographer_ext {
 
+// The shared state of one pose graph, see above. Get() is thread-safe.
 class PoseGraphContext {
  public:
   PoseGraphContext() = default;
@@ -62,7 +63,7 @@ class PoseGraphContext {
 
   // The context of the innermost scope on this thread, null without one.
   static std::shared_ptr<PoseGraphContext> Current();
-  // The same, but a new context instead of null.
+  // The same, with a new context instead of null.
   static std::shared_ptr<PoseGraphContext> CurrentOrNew();
 
  private:
@@ -71,9 +72,9 @@ class PoseGraphContext {
       ABSL_GUARDED_BY(mutex_);
 };
 
-// Makes a context the current one of this thread while it lives. Scopes nest
-// and end in reverse order, on the thread that began them. With null the scope
-// hides those around it.
+// Makes a context the current one of this thread during the lifetime of the
+// scope. Scopes nest and end in reverse order, on the thread that created them.
+// With null the scope hides the enclosing ones.
 class ScopedPoseGraphContext {
  public:
   explicit ScopedPoseGraphContext(std::shared_ptr<PoseGraphContext> context);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A progress line with time left on standard error, only when that is a
-// terminal; silent in a pipe.
+// A progress line with the time left on standard error, shown only if that is a
+// terminal.
 #ifndef CARTOGRAPHER_EXT_COMMON_PROGRESS_H_
 #define CARTOGRAPHER_EXT_COMMON_PROGRESS_H_
 
@@ -16,16 +16,17 @@ namespace cartographer_ext {
 std::string FormatDuration(double seconds);
 
 // One line: label, counts, share and time left (elapsed time where `total` is
-// unknown or reached), note. The time left is what the counts say unless
-// `seconds_left` is given, that is, not negative.
+// unknown or reached), note. The time left is extrapolated from the counts
+// unless `seconds_left` is given (>= 0).
 std::string FormatProgress(const std::string& label, int64_t done,
                            int64_t total, double elapsed_seconds,
                            const std::string& note, double seconds_left = -1.);
 
+// The progress line of one step. Not thread-safe.
 class Progress {
  public:
-  // `total` <= 0: unknown, shows counts and elapsed time only, and before
-  // anything is counted the label alone: a step that is drawn once.
+  // `total` <= 0: unknown; shows counts and elapsed time only, or just the
+  // label before the first count.
   Progress(std::string label, int64_t total);
   // Clears the line.
   ~Progress();

@@ -13,6 +13,7 @@
 
 namespace cartographer_ext {
 
+// A generator with its own state; the same seed gives the same numbers.
 class Random {
  public:
   explicit Random(uint64_t seed) : engine_(seed) {}

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Records written while a program runs, so that they are there when it is
-// killed: <directory>/<stem>-<number>.csv as a table and .pb as messages. The
-// number is the first that is free; nothing is overwritten.
+// Records written while a program runs, so that they survive if it is killed:
+// <directory>/<stem>-<number>.csv as a table and .pb as messages. The number is
+// the first unused one; nothing is overwritten.
 #ifndef CARTOGRAPHER_EXT_COMMON_RECORD_LOG_H_
 #define CARTOGRAPHER_EXT_COMMON_RECORD_LOG_H_
 
@@ -15,11 +15,11 @@
 
 namespace cartographer_ext {
 
-// One thread at a time.
+// Writes records as a table and as messages. Not thread-safe.
 class RecordLog {
  public:
-  // Writes nothing without a directory, which is made where its parent exists.
-  // `head` is the first line of the table, ended.
+  // Writes nothing if `directory` is empty; it is created if its parent exists.
+  // `head` is the first line of the table, with its line break.
   RecordLog(const std::string& directory, const std::string& stem,
             absl::string_view head);
   RecordLog(const RecordLog&) = delete;
@@ -29,10 +29,11 @@ class RecordLog {
   bool is_on() const { return table_.is_open(); }
   // OK, or why the log was closed; it names the file.
   const absl::Status& status() const { return status_; }
-  // Of the table.
+  // Name of the table.
   const std::string& filename() const { return filename_; }
 
-  // Lines of the table and the same as bytes; both are on disk when it returns.
+  // Appends lines to the table and the same records as bytes; both are on disk
+  // on return.
   void Append(absl::string_view lines, absl::string_view bytes);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// "Did you mean": the known name that an unknown one was probably meant to be.
+// "Did you mean": the known name that is most similar to an unknown one.
 #ifndef CARTOGRAPHER_EXT_COMMON_SIMILAR_WORD_H_
 #define CARTOGRAPHER_EXT_COMMON_SIMILAR_WORD_H_
 

@@ -5,6 +5,7 @@
 
 namespace cartographer_ext {
 
+// The square of a value.
 inline double Squared(const double x) { return x * x; }
 
 }  // namespace cartographer_ext

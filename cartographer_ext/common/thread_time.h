@@ -7,8 +7,7 @@
 
 namespace cartographer_ext {
 
-// CPU seconds that the calling thread has spent; 0 where the system does not
-// tell.
+// CPU seconds of the calling thread; 0 if the system does not measure them.
 inline double ThreadCpuSeconds() {
   timespec spent;
   if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent) != 0) return 0.;

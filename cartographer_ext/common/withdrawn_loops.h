@@ -1,25 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Loop closure constraints that were accepted and are withdrawn later, for
-// example those of a run that turns out to have been lost.
+// Loop closure constraints that were accepted and later withdrawn, for example
+// those of a run that turns out to have been lost.
 //
-// A pose graph of Cartographer accepts new constraints from its constraint
-// builder but gives up none, and its weights are fixed. So the builder adds a
+// Cartographer's pose graph accepts new constraints from its constraint builder
+// but cannot remove any, and their weights are fixed. So the builder adds a
 // mark: a second loop constraint between the same submap and node with both
-// weights zero. It pulls at nothing, in any Cartographer, and it is stored and
-// loaded with the constraints, which makes the rule a property of the data:
+// weights zero. It has no effect on the optimisation in any Cartographer, and
+// it is stored and loaded with the constraints, so the rule is a property of
+// the data:
 //
 //   A loop constraint with both weights zero withdraws every loop constraint
 //   before it in the list between the same submap and node.
 //
 // OptimizationProblem2D of the swap `optimization_problem` and the reader of
-// stored maps skip withdrawn loops and their marks. An optimization problem
-// without the swap does not know the rule and still uses withdrawn loops.
+// stored maps skip withdrawn loops and their marks. An optimisation problem
+// without the swap does not implement the rule and still uses withdrawn loops.
 //
-// A mark must not name a node that the pose graph has trimmed. Where that is
-// not certain, the loop is withdrawn in WithdrawnLoops only, for the lifetime
-// of the pose graph.
+// A mark must not name a node that the pose graph has trimmed. If that is not
+// certain, the loop is withdrawn in WithdrawnLoops only, for the lifetime of
+// the pose graph.
 #ifndef CARTOGRAPHER_EXT_COMMON_WITHDRAWN_LOOPS_H_
 #define CARTOGRAPHER_EXT_COMMON_WITHDRAWN_LOOPS_H_
 
@@ -51,7 +52,7 @@ class WithdrawnLoops {
   std::deque<LoopId> ids_ ABSL_GUARDED_BY(mutex_);
 };
 
-// What the rule above needs to know of a constraint.
+// The properties of a constraint that the rule above needs.
 struct LoopDescription {
   bool is_loop = false;
   LoopId id;

@@ -21,7 +21,7 @@ namespace evaluation {
 namespace {
 
 constexpr int kFatalExitCode = 93;
-// Of a child whose `body` returned, which 0 does not tell.
+// Exit code of a child whose `body` returned; 0 would be ambiguous.
 constexpr int kReturnedExitCode = 94;
 
 // Forwards fatal messages to the parent.

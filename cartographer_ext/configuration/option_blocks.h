@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The blocks of ours that this build understands, with the values that a
-// configuration gives them.
+// Our blocks that this build supports, with their values in a configuration.
 #ifndef CARTOGRAPHER_EXT_CONFIGURATION_OPTION_BLOCKS_H_
 #define CARTOGRAPHER_EXT_CONFIGURATION_OPTION_BLOCKS_H_
 
@@ -14,8 +13,8 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// In the order in which data passes through them. Only blocks of swaps that the
-// host library was built with.
+// In the order of the data flow. Only blocks of swaps that the host library was
+// built with.
 std::vector<options::OptionBlock> OptionBlocks(
     const SlamConfiguration& configuration);
 

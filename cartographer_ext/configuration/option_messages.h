@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Option messages as a whole: our blocks inside them, and differences.
+// Operations on whole option messages: our blocks inside them, and differences.
 #ifndef CARTOGRAPHER_EXT_CONFIGURATION_OPTION_MESSAGES_H_
 #define CARTOGRAPHER_EXT_CONFIGURATION_OPTION_MESSAGES_H_
 
@@ -13,8 +13,8 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// Removes our blocks from a message and its parts. True when there
-// were any.
+// Removes our blocks from a message and its parts. Returns whether there were
+// any.
 bool RemoveExtensions(google::protobuf::Message* message);
 
 // Copies our blocks from `source` and its parts to the same places of
@@ -22,7 +22,7 @@ bool RemoveExtensions(google::protobuf::Message* message);
 void CopyExtensions(const google::protobuf::Message& source,
                     google::protobuf::Message* target);
 
-// Keys by which two messages of options differ, a line each:
+// Differing keys of two option messages, one per line:
 // "constraint_builder_options.min_score: 0.55 -> 0.6".
 std::vector<std::string> DescribeDifferences(
     const google::protobuf::Message& first,

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// docs/options.md: all options, the basic ones first, with what each changes.
+// Generates docs/options.md: all options, the basic ones first, with their
+// effects.
 #ifndef CARTOGRAPHER_EXT_CONFIGURATION_OPTION_REFERENCE_H_
 #define CARTOGRAPHER_EXT_CONFIGURATION_OPTION_REFERENCE_H_
 
@@ -19,11 +20,11 @@ namespace evaluation {
 // value and recording.
 struct OptionEffect {
   // With the name of its block: "constraint_builder.search.enabled". "scatter":
-  // three times the spread by what should not matter.
+  // three times the spread under irrelevant changes.
   std::string key;
   std::string value;
   std::string recording;
-  // Error of the map over that with the default, > 0; NaN where the run failed.
+  // Error of the map over that with the default, > 0; NaN if the run failed.
   double ratio = 1.;
 };
 
@@ -32,7 +33,7 @@ struct OptionEffect {
 absl::StatusOr<std::vector<OptionEffect>> ParseOptionEffects(
     absl::string_view text, const std::string& name);
 
-// The document, in Markdown. The blocks have to have their defaults.
+// The document, in Markdown. The blocks must have their defaults.
 std::string OptionReference(const std::vector<options::OptionBlock>& blocks,
                             const std::vector<OptionEffect>& effects);
 

@@ -181,8 +181,8 @@ absl::Status CheckValues(const nlohmann::json& table,
   return absl::OkStatus();
 }
 
-// What the host said, and where a name that it does not know is the cause, the
-// one that was probably meant.
+// The host's message and, if an unknown name is the cause, the one that was
+// probably meant.
 absl::Status Suggest(const absl::Status& status, const nlohmann::json& table) {
   // The host quotes the key; in the lines that follow, the table it missed.
   const absl::string_view said =

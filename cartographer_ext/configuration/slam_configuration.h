@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A configuration file as the commands take it: Lua that returns
+// A configuration file of the commands: Lua code that returns
 //   { map_builder = MAP_BUILDER, trajectory_builder = TRAJECTORY_BUILDER }
-// and, if it likes, two more kinds of keys:
+// and optionally two more kinds of keys:
 //   sensors = { use_odometry = true, odometry_source = "auto",
 //               min_range = 0., max_range = 80., tracking_frame = "base_link" }
-//     all of them optional: what of a recording is used. Ranges outside the
-//     limits (metres) are dropped before local SLAM sees them.
+//     all optional: which data of a recording is used. Ranges outside the limits
+//     (metres) are dropped before local SLAM.
 //   the keys of a ROS node's file (map_frame, num_laser_scans, ...): such files
-//     can be used as they are. Of these only use_odometry and tracking_frame
-//     mean anything here.
+//     can be used unchanged. Of these only use_odometry and tracking_frame have
+//     an effect here.
 #ifndef CARTOGRAPHER_EXT_CONFIGURATION_SLAM_CONFIGURATION_H_
 #define CARTOGRAPHER_EXT_CONFIGURATION_SLAM_CONFIGURATION_H_
 
@@ -27,7 +27,7 @@ namespace evaluation {
 
 struct SensorSettings {
   bool use_odometry = true;
-  // Of CARMEN logs, see io::SensorSourceOptions.
+  // For CARMEN logs, see io::SensorSourceOptions.
   std::string odometry_source = "auto";
   double min_range = 0.;                                       // metres
   double max_range = std::numeric_limits<double>::infinity();  // metres
@@ -40,19 +40,19 @@ struct SlamConfiguration {
   cartographer::mapping::proto::TrajectoryBuilderOptions
       trajectory_builder_options;
   SensorSettings sensors;
-  // Values that hardly do what was meant.
+  // Values that are unlikely to be intended.
   std::vector<std::string> warnings;
 };
 
-// Reads `basename` and what it includes from the directories, the first that
-// has a file wins. Everything the host would end the program for becomes an
-// error that names the file and the key, and so do values it could not work
-// with (option_ranges.h), code that does not end or takes too much memory, and
-// os.exit; see fatal_guard.h for what that asks of the caller.
+// Reads `basename` and the files it includes from the directories, searched in
+// this order. Everything for which the host would abort becomes an error that
+// names the file and the key, as do invalid values (option_ranges.h), code that
+// does not terminate or takes too much memory, and os.exit; fatal_guard.h
+// states the requirements for the caller.
 absl::StatusOr<SlamConfiguration> LoadSlamConfiguration(
     const std::vector<std::string>& directories, const std::string& basename);
 
-// The same for Lua code at hand, which is called `name` in messages.
+// The same for given Lua code, named `name` in messages.
 absl::StatusOr<SlamConfiguration> ParseSlamConfiguration(
     const std::vector<std::string>& directories, const std::string& name,
     const std::string& code);

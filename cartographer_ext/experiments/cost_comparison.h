@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Does `auto` end with the lowest cost? On each graph it is compared with every
-// other kernel from every start, all measured by one truncated cost: that of
-// the noise which `auto` applied.
+// Tests whether `auto` finds the lowest cost. On each graph it is compared with
+// every other kernel from every initial guess, all by the same truncated cost,
+// with the noise that `auto` applied.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_COST_COMPARISON_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_COST_COMPARISON_H_
 
@@ -41,9 +41,9 @@ struct CostComparison {
 // spanning tree of short paths over all edges and a robust chordal relaxation;
 // r_isam, which starts from nothing. With the information matrices as they are
 // and as `auto` scales them. Of `options`, kernels and limits are not used;
-// without outliers each graph is compared once, whatever the counts. What the
-// journal holds is not compared again; one of a sweep, or of other options, is
-// an error.
+// without outliers each graph is compared once, whatever the counts.
+// Comparisons in the journal are not repeated; the journal of a sweep, or with
+// other options, is an error.
 absl::StatusOr<std::vector<CostComparison>> CompareCosts(
     const SweepOptions& options);
 

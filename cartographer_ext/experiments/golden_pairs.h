@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Golden files: what the scan matchers of the real Cartographer found.
+// Golden files: results of the scan matchers of the real Cartographer.
 //
 // A golden file is a CSV with one line per pair of a submap and a node of a
-// pbstream: the initial pose, what the branch-and-bound search found from it
-// (7 m, 30 degrees, depth 7; or in the full submap), and where the Ceres
-// matcher (weights 20, 10 and 1; non-monotonic; 10 iterations) went from there.
-// Columns are found by their names in the first line.
+// pbstream: the initial pose, the result of the branch-and-bound search around
+// it (7 m, 30 degrees, depth 7; or in the full submap), and the result of the
+// Ceres matcher (weights 20, 10 and 1; non-monotonic; 10 iterations) started
+// from there. Columns are found by their names in the first line.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_GOLDEN_PAIRS_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_GOLDEN_PAIRS_H_
 
@@ -34,7 +34,7 @@ struct GoldenPair {
   double score = 0.;
   Pose2 pose;
   double search_microseconds = 0.;
-  // The rest only where found.
+  // The rest only if found.
   Pose2 refined_pose;
   double final_cost = 0.;
   double refine_microseconds = 0.;

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Compares the host's scan matchers with what the real Cartographer found
+// Compares the host's scan matchers with the results of the real Cartographer
 // (golden_pairs.h).
 //
-// The search is exact, so found, score and pose must agree. Where the optimum
-// is not unique either pose is right. Refinement starts from the golden pose
-// in any case, so that ties do not hide it.
+// The search is exact, so found, score and pose must agree. If the optimum is
+// not unique, either pose is right. Refinement always starts from the golden
+// pose, so that it is compared for ties as well.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_GOLDEN_SEARCH_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_GOLDEN_SEARCH_H_
 
@@ -50,7 +50,7 @@ struct GoldenOutcome {
   std::string mismatch;  // empty when within the tolerance
 };
 
-// Who searches: the host's matcher, or FastCorrelativeSearch2D.
+// The matcher: the host's, or FastCorrelativeSearch2D.
 enum class GoldenMatcher { kStock, kOurs };
 
 struct GoldenReport {
@@ -110,9 +110,9 @@ class GoldenMap {
 
 // Search grids are built once per run of pairs with the same submap. Times are
 // CPU time of this thread, the smallest of `repeat` tries. With several
-// matchers, each try is made with all of them in turn, so that their ratios
-// mean something on a busy machine. `progress`, if any, gets the number of
-// pairs done. One report per matcher.
+// matchers, each try is made with all of them in turn, so that their ratios are
+// meaningful on a busy machine. `progress`, if any, receives the number of
+// finished pairs. One report per matcher.
 struct GoldenCheckOptions {
   GoldenTolerance tolerance;
   std::vector<GoldenMatcher> matchers = {GoldenMatcher::kStock};

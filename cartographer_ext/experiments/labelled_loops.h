@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How well do the scores of loop candidates separate true from false ones? Every
-// candidate that the search found gets a label by truth, as loop_statistics.h
-// judges loops; each score then gives a curve of rates over its thresholds.
+// Separation of true and false loop candidates by their scores. Every matched
+// candidate is labelled by ground truth, as in loop_statistics.h; each score
+// then gives a curve of rates over its thresholds.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_LABELLED_LOOPS_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_LABELLED_LOOPS_H_
 
@@ -25,10 +25,9 @@ struct LabelledLoop {
   double rotation_error = 0.;     // radians
 };
 
-// `graph` with the candidates of `decisions` that the search found in place of
-// its loops, in their order: what loop statistics can judge. `candidates` gets
-// the decision of each loop. Candidates whose submap or node the graph does
-// not have are skipped.
+// `graph` with the matched candidates of `decisions` in place of its loops, in
+// their order, for the loop statistics. `candidates` gets the decision of each
+// loop. Candidates whose submap or node the graph does not have are skipped.
 MapGraph CandidateGraph(const MapGraph& graph,
                         const std::vector<proto::LoopDecision>& decisions,
                         std::vector<proto::LoopDecision>* candidates);
@@ -44,7 +43,8 @@ struct ScoredLabel {
   bool is_true = false;
 };
 
-// One threshold: what has at least this score counts as accepted.
+// Rates at one threshold: candidates with at least this score count as
+// accepted.
 struct RatePoint {
   double threshold = 0.;
   double true_positive_rate = 0.;  // recall
@@ -76,8 +76,8 @@ struct ChainRates {
 };
 ChainRates RatesOfChain(const std::vector<LabelledLoop>& loops);
 
-// The labels as CSV with a head line: candidate, label, errors, and the columns
-// of the decision log.
+// The labels as CSV with a header line: candidate, label, errors, and the
+// columns of the decision log.
 std::string LabelledCsv(const std::vector<LabelledLoop>& loops);
 
 // ROC and precision-recall curves of the three scores and the point of the

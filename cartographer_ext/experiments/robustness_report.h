@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a sweep says: medians over seeds as a table, as JSON and as a plot.
+// Results of a sweep: medians over seeds as a table, as JSON and as a plot.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_REPORT_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_REPORT_H_
 
@@ -16,7 +16,7 @@
 namespace cartographer_ext {
 namespace experiments {
 
-// Runs that differ in their seed only; medians unless said otherwise.
+// Runs that differ in their seed only; medians unless stated otherwise.
 struct SweepCell {
   std::string dataset, kernel, type;
   int count = 0;
@@ -30,8 +30,9 @@ struct SweepCell {
   int undecidable = 0;   // failed runs in which the data favour a wrong map
 };
 
-// From how many outliers on no estimator can tell. A bound from above: a search
-// that finds more wrong maps which cost less than the right one lowers it.
+// Number of outliers from which no estimator can find the right map. An upper
+// bound: a search that finds more wrong maps with a lower cost than the right
+// one lowers it.
 struct SweepLimit {
   std::string dataset, type;
   // Smallest share of outliers among all loops at which the data of some run

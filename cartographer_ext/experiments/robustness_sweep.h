@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Runs back ends on graphs with outliers, many times over. Every finished run
-// is a line of a journal, so that a sweep which was interrupted goes on where
-// it stopped.
+// Runs back ends on many graphs with outliers. Every finished run is a line of
+// a journal, so that an interrupted sweep can be resumed.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_SWEEP_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_ROBUSTNESS_SWEEP_H_
 
@@ -50,8 +49,8 @@ struct SweepRun {
   double inherent_ate = -1.;
   // Truncated cost of the right map, measured as `truncated`.
   double right_truncated = 0.;
-  // A failure at less than the cost of the right map: the data are in favour of
-  // a wrong one, and no estimator by this cost could have told.
+  // A failure with less than the cost of the right map: the data favour a wrong
+  // one, and no estimator with this cost could succeed.
   bool undecidable = false;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The graphs that back ends are tried on: data sets and generated families,
-// with wrong loops added.
+// The graphs of a sweep: data sets and generated families, with wrong loops
+// added.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_SWEEP_GRAPHS_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_SWEEP_GRAPHS_H_
 
@@ -21,8 +21,7 @@ namespace experiments {
 struct SweepOptions {
   std::string data_directory;         // where names of data sets are looked up
   std::vector<std::string> datasets;  // names ("intel") or files
-  // Families of generated graphs (graph_families.h); each seed is another
-  // graph.
+  // Families of generated graphs (graph_families.h); one graph per seed.
   std::vector<std::string> families;
   std::vector<std::string> kernels;  // optimization::MethodNames()
   std::vector<std::string> types;    // R L RG LG, or none

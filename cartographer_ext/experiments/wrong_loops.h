@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Wrong loops put into a map on purpose, to see what a back end makes of them:
-// into a finished map, or into the pose graph of a run while it maps.
+// Injects wrong loops to test a back end: into a finished map, or into the pose
+// graph of a run.
 //
 // A wrong loop joins a random submap with a random node that is far from it and
 // claims "the same place", as the outliers of the papers do: x, y ~ N(0, 0.3
-// m), theta ~ N(0, 10 deg), with the weights of the map's own loops. How far
-// apart the two really are is taken from local SLAM, which no optimisation
-// changes, so that a run injects the same loops whatever its back end does and
-// however many threads it has. Portable: the same seed gives the same loops on
-// every platform.
+// m), theta ~ N(0, 10 deg), with the weights of the map's own loops. Their true
+// distance is taken from local SLAM, which is independent of optimisations, so
+// that a run injects the same loops for any back end and any number of threads.
+// Portable: the same seed gives the same loops on every platform.
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_WRONG_LOOPS_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_WRONG_LOOPS_H_
 
@@ -40,20 +39,20 @@ struct WrongLoopOptions {
   double rotation_weight = 1e5;
 };
 
-// The options with the weights that this configuration gives its loops.
+// The options with the loop weights of this configuration.
 WrongLoopOptions WithLoopWeights(
     const cartographer::mapping::proto::MapBuilderOptions& configuration,
     WrongLoopOptions options);
 
-// One wrong loop for the map as it is, both ends of one trajectory. The last
-// two submaps, which may still grow, are left alone. An error when no such pair
-// turns up in 1000 draws: the map is too small.
+// One wrong loop for the current map, within one trajectory. The last two
+// submaps, which may still grow, are not used. An error when no such pair turns
+// up in 1000 draws: the map is too small.
 absl::StatusOr<GraphConstraint> MakeWrongLoop(const MapGraph& map,
                                               const WrongLoopOptions& options,
                                               Random* random);
 
 // `options.count` wrong loops at the end of the constraints, with the median
-// weights of the map's own loops where it has any. Returns their indices.
+// weights of the map's own loops, if any. Returns their indices.
 absl::StatusOr<std::vector<int>> AddWrongLoops(const WrongLoopOptions& options,
                                                io::Pbstream* pbstream);
 
@@ -65,11 +64,11 @@ class WrongLoopInjector {
 
   // Call after each scan. Adds those loops that are due: number k of n after
   // the share k / (n + 1) of the scans. A loop for which the map is still too
-  // small waits.
+  // small is deferred.
   void AfterScan(int64_t scans, int64_t total_scans,
                  cartographer::mapping::MapBuilderInterface* map_builder);
 
-  // AfterScan of this injector, which has to outlive the callback.
+  // AfterScan of this injector, which must outlive the callback.
   std::function<void(int64_t, int64_t,
                      cartographer::mapping::MapBuilderInterface*)>
   Callback() {

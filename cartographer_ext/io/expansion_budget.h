@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What compressed data may expand to: a file of a megabyte that holds a
-// gigabyte of zeros is no recording.
+// Limits the expansion of compressed data: a megabyte that expands to a
+// gigabyte of zeros is not a recording.
 #ifndef CARTOGRAPHER_EXT_IO_EXPANSION_BUDGET_H_
 #define CARTOGRAPHER_EXT_IO_EXPANSION_BUDGET_H_
 
@@ -14,9 +14,9 @@
 namespace cartographer_ext {
 namespace io {
 
-// Bytes that a byte of a compressed file may expand to, in the mean and after
-// the first 64 MB; logs expand 3 to 30 times, bombs a thousand. For all files
-// that are opened from now on; above 0.
+// Mean expansion factor allowed for a compressed file, after the first 64 MB;
+// logs expand 3 to 30 times, decompression bombs a thousand times. For all
+// files opened from now on; above 0.
 void SetMaxExpansion(int64_t factor);
 
 // Of one file, or of one reading of it.
@@ -24,7 +24,7 @@ class ExpansionBudget {
  public:
   explicit ExpansionBudget(int64_t compressed_size);
 
-  // False once more has been taken than there is.
+  // False once the budget is exceeded.
   bool Take(uint64_t bytes);
 
   // ResourceExhausted, names the file and the flag that allows more.

@@ -12,7 +12,7 @@
 // the same fields. Comment lines start with '#'. Files compressed by gzip, xz
 // or bzip2 are read transparently.
 //
-// Two liberties of public data sets are taken as well: a file without any
+// Two variants in public data sets are accepted as well: a file without any
 // vertex (its vertices are the ends of the edges), and planar landmarks
 // (VERTEX_XY, EDGE_SE2_XY, EDGE_BEARING_SE2_XY, PARAMS_SE2OFFSET), which are
 // counted and skipped.
@@ -45,7 +45,7 @@ struct G2oEdge {
 struct G2oGraph {
   std::map<int64_t, Pose2> vertices;  // (world <- vertex) by id
   std::vector<G2oEdge> edges;         // in the order of the file
-  std::set<int64_t> fixed;            // ids held still
+  std::set<int64_t> fixed;            // ids of fixed poses
   // The file had no vertex: the poses of `vertices` are all zero.
   bool lacks_vertices = false;
   std::map<std::string, int64_t> skipped;  // lines by element
@@ -62,9 +62,9 @@ absl::StatusOr<G2oGraph> ReadG2o(const std::string& filename);
 // that a double needs; atomically.
 absl::Status WriteG2o(const G2oGraph& graph, const std::string& filename);
 
-// Poses by id from whatever a ground truth comes as: a g2o graph (its
-// vertices), edges only (chained from the origin along consecutive ids), or
-// plain lines "x y theta" numbered from 0.
+// Poses by id from a ground truth file: a g2o graph (its vertices), edges only
+// (chained from the origin along consecutive ids), or plain lines "x y theta"
+// numbered from 0.
 absl::StatusOr<std::map<int64_t, Pose2>> ReadPosesById(
     const std::string& filename);
 

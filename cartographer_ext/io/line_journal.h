@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What has been done, on disk: a line of JSON for each finished piece of work,
-// appended and flushed to the disk at once, so that a command that is started
-// again goes on where it was killed.
+// Journal of finished work: one line of JSON per item, appended and flushed to
+// disk immediately, so that an interrupted command can be resumed.
 //
-// The first line says what kind of work it is and what it depends on. A power
-// cut or kill -9 can leave half a line at the end, which is cut off; half a line
-// anywhere else is an error. A lock keeps two commands from writing into one
-// journal.
+// The first line identifies the kind of work and its dependencies. A power
+// failure or kill -9 can leave an incomplete last line, which is removed; an
+// incomplete line anywhere else is an error. A lock keeps two commands from
+// writing into one journal.
 #ifndef CARTOGRAPHER_EXT_IO_LINE_JOURNAL_H_
 #define CARTOGRAPHER_EXT_IO_LINE_JOURNAL_H_
 
@@ -23,7 +22,8 @@
 namespace cartographer_ext {
 namespace io {
 
-// What a journal must be of, and the words of the errors where it is not.
+// The expected kind of a journal, and the texts of the errors for a different
+// one.
 struct JournalKind {
   std::string key;     // of the version in the first line, the command's name
   std::string name;    // "tuning journal"
@@ -39,7 +39,7 @@ class LineJournal {
 
   // Opens or starts the journal. `fingerprint` identifies what the lines depend
   // on; a journal of another fingerprint is an error. Errors name the file, and
-  // the line where there is one. An empty name gives a journal that is not kept.
+  // the line where there is one. With an empty name the journal is not stored.
   static absl::StatusOr<std::unique_ptr<LineJournal>> Open(
       const std::string& filename, const JournalKind& kind,
       const std::string& fingerprint, const Reader& reader);
@@ -47,10 +47,10 @@ class LineJournal {
   LineJournal(const LineJournal&) = delete;
   LineJournal& operator=(const LineJournal&) = delete;
 
-  // Whether half a line was cut off its end.
+  // Whether an incomplete last line was removed.
   bool was_torn() const { return was_torn_; }
 
-  // On disk when it returns OK.
+  // On disk if it returns OK.
   absl::Status Append(const nlohmann::ordered_json& line);
 
  private:

@@ -28,9 +28,9 @@ absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
 
 class LineReader {
  public:
-  // Longer lines are cut off there; `truncated` is set.
+  // Longer lines are truncated; `truncated` is set.
   static constexpr size_t kMaxLineLength = 1 << 20;
-  // What is longer is no text but a device that never ends.
+  // Longer input is not text, but for example an endless device.
   static constexpr size_t kMaxSkippedLength = 64 << 20;
 
   static absl::StatusOr<std::unique_ptr<LineReader>> Open(

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Occupancy maps as map_server and nav2 exchange them: a grey PGM picture and a
-// YAML file with its resolution and place.
+// Occupancy maps in the format of map_server and nav2: a grey PGM picture and a
+// YAML file with its resolution and origin.
 #ifndef CARTOGRAPHER_EXT_IO_OCCUPANCY_MAP_H_
 #define CARTOGRAPHER_EXT_IO_OCCUPANCY_MAP_H_
 
@@ -21,7 +21,7 @@ namespace io {
 struct OccupancyMap {
   int width = 0;           // cells along x
   int height = 0;          // cells along y
-  double resolution = 0.;  // metres a cell
+  double resolution = 0.;  // metres per cell
   Pose2 origin;            // (map <- lower left corner of cell (0, 0))
   // Probability of occupancy, NaN where unknown. Row by row from the bottom
   // (smallest y) up: cell (x, y) is at y * width + x.

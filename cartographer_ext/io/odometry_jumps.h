@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Odometry without what no robot drives: a damaged line of a log that puts it
-// 600 m away for one reading makes Cartographer's grids grow beyond memory.
-// Smaller faults are left to local SLAM (front_end/odometry).
+// Removes implausible jumps from odometry: a damaged log line that moves it 600
+// m away for one reading makes Cartographer's grids exceed the memory. Smaller
+// faults are handled by local SLAM (front_end/odometry).
 #ifndef CARTOGRAPHER_EXT_IO_ODOMETRY_JUMPS_H_
 #define CARTOGRAPHER_EXT_IO_ODOMETRY_JUMPS_H_
 
@@ -17,12 +17,13 @@ namespace io {
 
 class OdometryJumps {
  public:
-  // Farther than this, faster than this: between two readings.
+  // A jump exceeds both limits between two readings.
   static constexpr double kMaxDistance = 10.;  // metres
   static constexpr double kMaxSpeed = 50.;     // metres per second
 
-  // (odometry <- robot) without the jumps so far, of readings in order of time:
-  // in a jump the robot stands. The same pose where there was none.
+  // (odometry <- robot) without the jumps so far, for readings in order of
+  // time: during a jump the robot counts as stationary. Unchanged if there was
+  // no jump.
   Pose2 Remove(TimeNs time, const Pose2& pose);
 
   int64_t count() const { return count_; }

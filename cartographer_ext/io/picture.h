@@ -3,7 +3,7 @@
 //
 // Drawings of maps, trajectories and constraints as PNG, by cairo. Coordinates
 // are metres in the map frame, x to the right, y up; widths and text are in
-// pixels. Later things cover earlier ones; legend and scale bar come on top.
+// pixels. Later elements cover earlier ones; legend and scale bar are on top.
 //
 //   PictureBounds bounds;
 //   bounds.Add(map);
@@ -32,7 +32,7 @@ struct Color {
   double alpha = 1.;
 };
 
-// The palette of Okabe and Ito, distinguishable by colour-blind readers too.
+// The palette of Okabe and Ito, distinguishable by colour-blind readers.
 namespace palette {
 constexpr Color kBlack{0., 0., 0.};
 constexpr Color kGrey{0.6, 0.6, 0.6};

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Reference relations of Kuemmerle et al., one a line:
+// Reference relations of Kuemmerle et al., one per line:
 //
 //   t1 t2 x y z roll pitch yaw
 //
-// the pose at t2 seen from the pose at t1, in seconds, metres and radians;
+// the pose at t2 relative to the pose at t1, in seconds, metres and radians;
 // rotation = Rz(yaw) Ry(pitch) Rx(roll). Comment lines start with '#'.
 // Compressed files are read transparently.
 #ifndef CARTOGRAPHER_EXT_IO_RELATIONS_FILE_H_
@@ -33,7 +33,8 @@ struct StampedRelation {
 absl::StatusOr<std::vector<StampedRelation>> ReadRelations(
     const std::string& filename);
 
-// Atomically; "-" is standard output. Lines of `comment` stand at the top.
+// Atomically; "-" is standard output. Lines of `comment` are written at the
+// top.
 absl::Status WriteRelations(const std::vector<StampedRelation>& relations,
                             const std::string& filename,
                             const std::string& comment = "");

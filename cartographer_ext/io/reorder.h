@@ -32,10 +32,10 @@ struct EventKey {
 };
 
 struct ReorderPlan {
-  // Most events that wait for a later one at any time.
+  // Largest number of events that have to be buffered.
   size_t window = 0;
-  // Ordinals of events that come so late that not even `max_window` events
-  // could wait for them; they have to be dropped. Ascending.
+  // Ordinals of events that are too late even for a window of `max_window`
+  // events and have to be dropped. Ascending.
   std::vector<int64_t> dropped;
 };
 
@@ -51,7 +51,7 @@ class ReorderBuffer {
   void Push(const EventKey& key, Event event) {
     events_.emplace(key, std::move(event));
   }
-  // True if the first event can be taken without seeing more of the file.
+  // Whether the first event can be taken without reading more of the file.
   bool Ready() const { return events_.size() > window_; }
   bool empty() const { return events_.empty(); }
   EventKey first_key() const { return events_.begin()->first; }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What every recording looks like to the rest of the library, whatever its file
-// format: a stream of scans, odometry and IMU readings in order of their
-// stamps. A new format is one more SensorSource.
+// Interface of a recording, independent of its file format: a stream of scans,
+// odometry and IMU readings in order of their stamps. A new format is a new
+// SensorSource.
 #ifndef CARTOGRAPHER_EXT_IO_SENSOR_SOURCE_H_
 #define CARTOGRAPHER_EXT_IO_SENSOR_SOURCE_H_
 
@@ -72,7 +72,7 @@ inline TimeNs EventTime(const SensorEvent& event) {
   return absl::visit([](const auto& e) { return e.time; }, event);
 }
 
-// What a recording holds, known after opening it.
+// Contents of a recording, known after opening it.
 struct SensorSourceInfo {
   std::string format;  // "carmen", "rosbag", "mcap", "db3", "world"
   int64_t num_scans = 0;
@@ -82,7 +82,7 @@ struct SensorSourceInfo {
   TimeNs end = 0;
   // The lasers, as LaserScan::sensor_id names them, where there are several.
   std::vector<std::string> lasers;
-  int64_t num_out_of_order = 0;       // stamps that went backwards, sorted away
+  int64_t num_out_of_order = 0;       // stamps that went backwards, sorted
   std::vector<std::string> warnings;  // lines skipped, topics guessed, ...
 };
 
@@ -97,8 +97,8 @@ class SensorSource {
 
 struct SensorSourceOptions {
   // Of ROS; empty: the only (or first by name) topic of that type. Scans of
-  // several topics, separated by commas, are read together. For the odometry a
-  // topic of transforms may be named, too.
+  // several topics, separated by commas, are read together. For the odometry, a
+  // topic of transforms may be given as well.
   std::string scan_topic;
   std::string odometry_topic;
   std::string imu_topic;

@@ -15,7 +15,7 @@
 namespace cartographer_ext {
 namespace io {
 
-// Takes words off a line, separated by blanks.
+// Splits a line into words separated by blanks.
 class Tokens {
  public:
   explicit Tokens(absl::string_view line) : rest_(line) {}
@@ -34,8 +34,8 @@ class Tokens {
 bool ParseDouble(absl::string_view token, double* value);
 // The same, but only finite numbers.
 bool ParseFinite(absl::string_view token, double* value);
-// The same, but only what sums and squares of metres, seconds and radians can
-// bear: up to 1e9 either way.
+// The same, but only values of at most 1e9 in magnitude, so that sums and
+// squares of metres, seconds and radians stay accurate.
 bool ParseCoordinate(absl::string_view token, double* value);
 bool ParseInt(absl::string_view token, int64_t* value);
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The map that a running or finished host holds, in plain types.
+// The map of a running or finished host, in plain types.
 #ifndef CARTOGRAPHER_EXT_MAP_HOST_MAP_H_
 #define CARTOGRAPHER_EXT_MAP_HOST_MAP_H_
 
@@ -16,7 +16,7 @@ namespace evaluation {
 MapGraph MakeMapGraph(
     const cartographer::mapping::PoseGraphInterface& pose_graph);
 
-// Of all submaps, metres a cell.
+// Paints all submaps; resolution in metres per cell.
 absl::StatusOr<io::OccupancyMap> PaintHostMap(
     const cartographer::mapping::PoseGraphInterface& pose_graph,
     double resolution);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Between the host's types and those of the metrics.
+// Conversion between the host's types and those of the metrics.
 #ifndef CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_
 #define CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_
 
@@ -17,7 +17,7 @@ namespace cartographer_ext {
 namespace evaluation {
 
 // The host counts ticks of 100 ns since the year 1. Stamps relative to the
-// start of a log are taken as if they counted from 1970.
+// start of a log are treated as times since 1970.
 inline cartographer::common::Time ToHostTime(const io::TimeNs time) {
   // Rounds to the nearest tick, also below zero.
   const io::TimeNs ticks = (time + (time >= 0 ? 50 : -50)) / 100;

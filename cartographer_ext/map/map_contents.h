@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The scans and grids of a stored map in plain types. Together with the poses
-// of a MapGraph, which may be those of the file or of another run, they say
-// how well the map agrees with itself.
+// of a MapGraph, from the file or from another run, they are used to check the
+// consistency of the map.
 #ifndef CARTOGRAPHER_EXT_MAP_MAP_CONTENTS_H_
 #define CARTOGRAPHER_EXT_MAP_MAP_CONTENTS_H_
 
@@ -18,8 +18,8 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// What a submap says of a cell. Cells in between, and those next to an edge of
-// what is known, are unsure.
+// State of a cell in a submap. Cells with intermediate probability, and those
+// next to unknown cells, are unsure.
 enum class CellEvidence : uint8_t { kUnsure, kFree, kOccupied };
 
 // The grid of one submap.
@@ -36,8 +36,8 @@ class SubmapCells {
   CellEvidence At(const Eigen::Vector2d& point) const;
   // Occupied, or within the margin of an occupied cell.
   bool NearOccupied(const Eigen::Vector2d& point) const;
-  // Mean probability of occupancy where the points fall, as the loop search
-  // scores a match (unknown cells count 0.1); to a few thousandths. `points` in
+  // Mean probability of occupancy under the points, as the loop search scores a
+  // match (0.1 for unknown cells); accurate to a few thousandths. `points` in
   // the frame of a node, `local_from_node` places them in the local frame.
   double Score(const std::vector<Eigen::Vector2d>& points,
                const Pose2& local_from_node) const;
@@ -59,14 +59,14 @@ class SubmapCells {
 };
 
 struct MapContents {
-  // Returns in the frame of the node as MapGraph has it, metres.
+  // Returns in the frame of the node as in MapGraph, metres.
   std::map<GraphId, std::vector<Eigen::Vector2d>> scans;
   std::map<GraphId, SubmapCells> submaps;
 };
 
 struct MapContentsOptions {
   double margin = 0.15;  // metres, see SubmapCells
-  // Of each scan every so-manieth return is kept so that no more remain.
+  // Scans with more returns are subsampled evenly to this number.
   int max_points = 400;
 };
 
@@ -74,11 +74,11 @@ MapContents ReadMapContents(const io::Pbstream& pbstream,
                             const MapContentsOptions& options);
 
 // The score of each loop of the graph at its own pose, in the order of the
-// constraints; -1 where the scan or the grid is missing.
+// constraints; -1 if the scan or the grid is missing.
 std::vector<double> LoopScores(const MapGraph& graph,
                                const MapContents& contents);
 
-// (map <- local frame of the trajectory), as a submap's poses have it.
+// (map <- local frame of the trajectory), by the poses of a submap.
 Pose2 MapFromLocal(const GraphSubmap& submap);
 
 }  // namespace evaluation

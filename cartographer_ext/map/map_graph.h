@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The pose graph of a finished map in plain types: what the metrics, the
-// exporters and the loop statistics look at. All poses are x, y and yaw, and a
-// node represents the tracking frame at its stamp, so that poses of nodes can
-// be compared with each other and with ground truth. (In the host it represents
-// the gravity-aligned frame, whose yaw against the tracking frame differs
-// from node to node.) Submaps being level,
+// The pose graph of a finished map in plain types, for metrics, exporters and
+// loop statistics. All poses are x, y and yaw, and a node represents the
+// tracking frame at its stamp, so that poses of nodes can be compared with each
+// other and with ground truth. (In the host it represents the gravity-aligned
+// frame, whose yaw against the tracking frame differs from node to node.)
+// Submaps being level,
 //   relative_pose = submap_pose^-1 * node_pose
-// holds for the yaw, too, whatever the tilt.
+// also holds for the yaw, regardless of the tilt.
 #ifndef CARTOGRAPHER_EXT_MAP_MAP_GRAPH_H_
 #define CARTOGRAPHER_EXT_MAP_MAP_GRAPH_H_
 
@@ -42,17 +42,17 @@ struct GraphId {
 // For example "(0, 17)".
 std::string ToString(const GraphId& id);
 
-// "submap_trajectory:submap:node_trajectory:node", as commands take it.
+// "submap_trajectory:submap:node_trajectory:node", as used by the commands.
 std::string LoopName(const GraphId& submap_id, const GraphId& node_id);
 
 struct GraphNode {
   io::TimeNs time = 0;
   Pose2 local_pose;   // (local frame of the trajectory <- node)
   Pose2 global_pose;  // (map <- node), optimised
-  // (map <- node) with the tilt that the planar poses leave out.
+  // (map <- node) including the tilt that the planar poses omit.
   Eigen::Isometry3d global_tracking_pose = Eigen::Isometry3d::Identity();
-  // From the records of local SLAM (MarkMatches); no map stores them. The scan
-  // did not determine the position along this direction (radians, map frame).
+  // From the records of local SLAM (MarkMatches), not stored in maps: the
+  // degenerate direction of the scan (radians, map frame).
   bool weak_direction_is_known = false;
   double weak_direction = 0.;
   bool odometry_fault = false;
@@ -72,7 +72,7 @@ struct GraphConstraint {
   double translation_weight = 0.;
   double rotation_weight = 0.;
   bool is_loop = false;  // INTER_SUBMAP: found by search, not by insertion
-  // Left out of the last optimisation (MarkSwitchedOff); no file stores this.
+  // Disabled in the last optimisation (MarkSwitchedOff); not stored in files.
   bool switched_off = false;
 };
 
@@ -88,12 +88,12 @@ struct MapGraph {
   Trajectory GlobalTrajectory() const;
   // (local <- node) at the nodes of one trajectory, planar.
   Trajectory LocalTrajectory(int trajectory_id) const;
-  // Nodes inserted in each submap, in order of id; from the constraints that
-  // are no loops.
+  // Nodes inserted into each submap, in order of id, from the intra-submap
+  // constraints.
   std::map<GraphId, std::vector<GraphId>> InsertedNodes() const;
 };
 
-// How far a constraint is from the poses of the graph: (constraint)^-1 *
+// Residual of a constraint against the poses of the graph: (constraint)^-1 *
 // (submap^-1 * node), with the optimised poses.
 Pose2 Residual(const GraphConstraint& constraint, const GraphSubmap& submap,
                const GraphNode& node);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // One occupancy map of all submaps at their optimised poses. Submaps overlap:
-// each cell of the map takes what every submap that knows it has to say, as
-// independent evidence, which is the sum of the log odds of occupancy.
+// each cell of the map combines all submaps in which it is known as independent
+// evidence, by the sum of the log odds of occupancy.
 #ifndef CARTOGRAPHER_EXT_MAP_MAP_PAINTER_H_
 #define CARTOGRAPHER_EXT_MAP_MAP_PAINTER_H_
 
@@ -24,18 +24,18 @@ struct PlacedGrid {
   Pose2 map_from_local;  // (map <- submap) * (local <- submap)^-1
 };
 
-// Probability of occupancy of cell (ix, iy), NaN where unknown. Of TSDF grids,
-// which know distances to surfaces, a cell counts as occupied within half a
-// cell of a surface and as free elsewhere. The grid must be one that
-// CheckGrid accepts.
+// Probability of occupancy of cell (ix, iy), NaN where unknown. In TSDF grids,
+// a cell is occupied within half a cell of a surface and free elsewhere. The
+// grid must be one that CheckGrid accepts.
 float Occupancy(const cartographer::mapping::proto::Grid2D& grid, int ix,
                 int iy);
 
-// An error where sizes or limits of the grid make no sense.
+// An error if sizes or limits of the grid are invalid.
 absl::Status CheckGrid(const cartographer::mapping::proto::Grid2D& grid);
 
-// Metres a cell. An error when nothing is known or the map would need more than
-// 4e8 cells, or 64 times as many as are known and 1.6e7. The map's edges lie on multiples of the resolution.
+// Resolution in metres per cell. An error if no cell is known, or if the map
+// would need more than 4e8 cells, or more than 1.6e7 and 64 times the number of
+// known cells. The map's edges lie on multiples of the resolution.
 absl::StatusOr<io::OccupancyMap> PaintMap(const std::vector<PlacedGrid>& grids,
                                           double resolution);
 

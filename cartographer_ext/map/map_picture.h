@@ -13,10 +13,10 @@ namespace cartographer_ext {
 namespace evaluation {
 
 // A PNG of the map with the path of the robot through its nodes and the loop
-// constraints as lines from submap to node: those that the map agrees with to
-// half a metre in one colour, the others in another. Nodes that MarkMatches has
-// marked get a dash along the direction that their scan did not determine, or a
-// dot where odometry was at fault. Atomically.
+// constraints as lines from submap to node: those with a residual of at most
+// half a metre in one colour, the others in another. Nodes marked by
+// MarkMatches get a dash along the degenerate direction of their scan, or a dot
+// for an odometry fault. Atomically.
 absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
                              const std::string& title,
                              const std::string& filename);

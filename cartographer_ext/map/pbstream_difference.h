@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How two stored states differ.
+// Differences between two stored states.
 #ifndef CARTOGRAPHER_EXT_MAP_PBSTREAM_DIFFERENCE_H_
 #define CARTOGRAPHER_EXT_MAP_PBSTREAM_DIFFERENCE_H_
 
@@ -16,10 +16,10 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// How alike the local SLAM of two maps of the same recording is. Nodes are
+// Agreement of the local SLAM of two maps of the same recording. Nodes are
 // matched by their stamps, which may differ by a tenth of a millisecond
-// (readers round differently); compared is the motion from one node to the
-// next.
+// (readers round differently); the motion from one node to the next is
+// compared.
 struct LocalAgreement {
   int64_t nodes_first = 0;
   int64_t nodes_second = 0;
@@ -35,14 +35,14 @@ LocalAgreement CompareLocalSlam(const MapGraph& first, const MapGraph& second);
 
 struct PbstreamDifference {
   bool identical = true;
-  // One sentence each.
+  // One sentence per difference.
   std::vector<std::string> differences;
   nlohmann::ordered_json numbers;
 };
 
-// `first` and `second` are compared by ids: what only one of them has, by how
-// much poses and constraints differ, whether grids, clouds and options are the
-// same.
+// Compares `first` and `second` by ids: elements of only one of them,
+// differences of poses and constraints, and whether grids, clouds and options
+// are equal.
 PbstreamDifference Compare(const io::Pbstream& first,
                            const io::Pbstream& second);
 

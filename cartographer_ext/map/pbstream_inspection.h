@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a stored state contains and whether it is consistent.
+// Contents and consistency of a stored state.
 #ifndef CARTOGRAPHER_EXT_MAP_PBSTREAM_INSPECTION_H_
 #define CARTOGRAPHER_EXT_MAP_PBSTREAM_INSPECTION_H_
 
@@ -14,18 +14,18 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// Numbers of everything, by trajectory: nodes, submaps, constraints, readings,
-// time span, length of the path, options.
+// Counts by trajectory: nodes, submaps, constraints, readings, time span,
+// length of the path, options.
 nlohmann::ordered_json Summarise(const io::Pbstream& pbstream);
 
-// The same for people.
+// The same as text.
 std::string SummaryToText(const nlohmann::ordered_json& summary);
 
-// What io::FindPbstreamProblems finds, and beyond: constraints of inserted
-// nodes that disagree with the local poses by more than a millimetre or a
-// milliradian, loops that name a node inserted in the same submap, submaps
-// without nodes. (Nodes in no submap are fine: files saved without unfinished
-// submaps have them at the end.)
+// The problems of io::FindPbstreamProblems, and in addition: constraints of
+// inserted nodes that disagree with the local poses by more than a millimetre
+// or a milliradian, loops with a node inserted into the same submap, submaps
+// without nodes. (Nodes without a submap are valid: files saved without
+// unfinished submaps have them at the end.)
 std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
                                       size_t max_problems = 100);
 

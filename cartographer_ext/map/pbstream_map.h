@@ -16,12 +16,11 @@ namespace evaluation {
 // Nodes and submaps without a global pose are skipped.
 MapGraph MakeMapGraph(const io::Pbstream& pbstream);
 
-// Of all submaps with a global pose, metres a cell.
+// Paints all submaps with a global pose; resolution in metres per cell.
 absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
                                                   double resolution);
 
-// The same with the submaps where `graph` has them; those it lacks are left
-// out.
+// The same with the submap poses of `graph`; submaps that it lacks are skipped.
 absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
                                                   const MapGraph& graph,
                                                   double resolution);

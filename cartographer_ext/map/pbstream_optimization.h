@@ -6,12 +6,12 @@
 //
 // Vertices are submaps and nodes. Edges are the constraints (INTER_SUBMAP ones
 // are loops) and, between consecutive nodes, the motion by local SLAM with the
-// stock weights of the optimisation problem. Odometry readings are left out;
-// local SLAM has used them.
+// stock weights of the optimisation problem. Odometry readings are not used,
+// because local SLAM has already used them.
 //
 // Cartographer's weights are relative: 1.1e4 per metre does not mean a standard
-// deviation of 0.1 mm. Kernels and gates need real ones, so all weights are
-// scaled by one factor which gives the loops `loop_sigma`.
+// deviation of 0.1 mm. Kernels and gates need metric ones, so all weights are
+// scaled by one factor that gives the loops `loop_sigma`.
 #ifndef CARTOGRAPHER_EXT_MAP_PBSTREAM_OPTIMIZATION_H_
 #define CARTOGRAPHER_EXT_MAP_PBSTREAM_OPTIMIZATION_H_
 
@@ -42,15 +42,15 @@ struct MapPoseGraph {
   std::vector<int> constraint_of_edge;
 };
 
-// Vertices are in the order in which mapping made them (a submap follows the
-// first node inserted in it), so that the graph can be replayed. Constraints of
-// missing submaps or nodes, or without weight, are left out. Ids are those of
-// SubmapVertexId and NodeVertexId. The graph is checked.
+// Vertices are in the order in which mapping created them (a submap follows the
+// first node inserted in it), so that the graph can be replayed. Constraints
+// with missing submaps or nodes, or without weight, are skipped. Ids are those
+// of SubmapVertexId and NodeVertexId. The graph is checked.
 absl::StatusOr<MapPoseGraph> MakeMapPoseGraph(
     const MapGraph& map, const MapOptimizationOptions& options);
 
 // Replaces the global poses in `pbstream` by those of the vertices; height,
-// roll and pitch are kept. Landmarks stay where they are.
+// roll and pitch are kept. Landmarks are unchanged.
 void StorePoses(const MapPoseGraph& graph, const std::vector<Pose2>& poses,
                 io::Pbstream* pbstream);
 
@@ -59,7 +59,7 @@ void DropConstraints(const std::vector<int>& indices, io::Pbstream* pbstream);
 
 // Indices of the loops named by
 // "submap_trajectory:submap:node_trajectory:node", comma separated. An error
-// for malformed names and for what is no loop of the map.
+// for malformed names and for loops that the map does not have.
 absl::StatusOr<std::vector<int>> FindLoops(const MapGraph& map,
                                            const std::string& names);
 

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A map's pose graph in g2o's format. Submaps and nodes are vertices; their ids
-// must not meet, so those of a trajectory t are
+// must not overlap, so those of trajectory t are
 //
 //   submap  t * 2000000 + submap_index
 //   node    t * 2000000 + 1000000 + node_index
 //
 // Every constraint is an edge from submap to node, in the order of the map,
 // with the information diag(w_t^2, w_t^2, w_r^2) of its weights. The first
-// submap is held still.
+// submap is fixed.
 #ifndef CARTOGRAPHER_EXT_MAP_POSE_GRAPH_EXPORT_H_
 #define CARTOGRAPHER_EXT_MAP_POSE_GRAPH_EXPORT_H_
 

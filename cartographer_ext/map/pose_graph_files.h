@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Pose graphs between files and the optimisation module.
+// Pose graphs of the optimisation module from and to files.
 #ifndef CARTOGRAPHER_EXT_MAP_POSE_GRAPH_FILES_H_
 #define CARTOGRAPHER_EXT_MAP_POSE_GRAPH_FILES_H_
 
@@ -30,8 +30,8 @@ absl::Status WritePoseGraph(const optimization::PoseGraph& graph,
                             const std::vector<Pose2>& poses,
                             const std::string& filename);
 
-// Truth in any format of io::ReadPosesById, for the poses of `graph`: the pose
-// of the same id or, where the truth does not have them all, the pose that
+// Ground truth in any format of io::ReadPosesById, for the poses of `graph`:
+// the pose of the same id or, if not all ids are present, the pose that
 // AssociateByPath finds for `estimate`.
 absl::StatusOr<std::vector<Pose2>> ReadTruth(
     const optimization::PoseGraph& graph, const std::vector<Pose2>& estimate,

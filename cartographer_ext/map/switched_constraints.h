@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The verdicts of the robust optimisation problem, found again in a map.
+// Marks the verdicts of the robust optimisation problem in a map.
 #ifndef CARTOGRAPHER_EXT_MAP_SWITCHED_CONSTRAINTS_H_
 #define CARTOGRAPHER_EXT_MAP_SWITCHED_CONSTRAINTS_H_
 
@@ -15,7 +15,7 @@ namespace evaluation {
 
 // Sets GraphConstraint::switched_off for the loops named in `off` and clears it
 // for all others. Returns the indices of those set; loops that the map does not
-// have are passed over.
+// have are ignored.
 std::vector<int> MarkSwitchedOff(
     const std::vector<optimization::SwitchedLoop>& off, MapGraph* map);
 

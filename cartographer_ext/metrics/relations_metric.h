@@ -2,21 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The relations metric of Kuemmerle et al. ("On measuring the accuracy of SLAM
-// algorithms", Autonomous Robots 2009) in the form that Cartographer's
-// compute_relations_metrics has given it: for a reference relation between the
-// stamps t1 and t2,
+// algorithms", Autonomous Robots 2009) in the form of Cartographer's
+// compute_relations_metrics: for a reference relation between the stamps t1 and
+// t2,
 //
 //   error = (pose(t1)^-1 * pose(t2)) * expected^-1,
 //
 // of which the length of the translation and the angle of the rotation are
-// taken. No alignment is needed, and being metres off far away does not count
-// against relations that are right near by. The length of the translation
-// depends on the direction of the relation (an error of rotation levers the
-// expected translation), so relations are used as they are.
+// taken. No alignment is needed, and an error far away does not affect
+// relations that are locally right. The length of the translation depends on
+// the direction of the relation (an error of rotation acts on the expected
+// translation), so relations are used as given.
 //
-// A folded map looks good on the relations between successive scans. They are
-// therefore reported apart from those that close a loop, which are taken to be
-// the ones whose stamps lie more than a minute apart.
+// A folded map has small errors in the relations between consecutive scans.
+// They are therefore reported separately from those that close a loop, defined
+// as those whose stamps are more than a minute apart.
 #ifndef CARTOGRAPHER_EXT_METRICS_RELATIONS_METRIC_H_
 #define CARTOGRAPHER_EXT_METRICS_RELATIONS_METRIC_H_
 
@@ -60,17 +60,17 @@ struct RelationsMetric {
 };
 
 struct RelationsMetricOptions {
-  // Stamps this near are the same scan; 0 always interpolates.
+  // Stamps within this distance belong to the same scan; 0 always interpolates.
   io::TimeNs stamp_tolerance = 1000000;
   io::TimeNs loop_time_gap = 60LL * 1000000000LL;
 };
 
-// An error when none of the relations lies within the trajectory.
+// An error if no relation is within the trajectory.
 absl::StatusOr<RelationsMetric> ComputeRelationsMetric(
     const Trajectory& trajectory, const std::vector<Relation>& relations,
     const RelationsMetricOptions& options);
 
-// CSV with a head line: the error of every relation.
+// CSV with a header line: the error of every relation.
 std::string RelationErrorTable(const RelationsMetric& metric);
 
 }  // namespace evaluation

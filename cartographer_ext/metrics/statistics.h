@@ -9,12 +9,12 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// Of a list of values; all zero for an empty one.
+// Statistics of a list of values; all zero for an empty one.
 struct Statistics {
   int64_t count = 0;
   double mean = 0.;
   double std = 0.;     // of the sample (divisor n - 1); 0 for one value
-  double median = 0.;  // of an even count the mean of the two in the middle
+  double median = 0.;  // for an even count the mean of the middle two
   double rmse = 0.;    // square root of the mean square
   double max = 0.;
 };

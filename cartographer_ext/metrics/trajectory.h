@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A trajectory as the metrics see it: poses in order of time, looked up by
-// time.
+// A trajectory for the metrics: poses in order of time, with lookup by time.
 #ifndef CARTOGRAPHER_EXT_METRICS_TRAJECTORY_H_
 #define CARTOGRAPHER_EXT_METRICS_TRAJECTORY_H_
 
@@ -36,8 +35,8 @@ class Trajectory {
 
   // The pose whose stamp is nearest, if it is at most `tolerance` away;
   // otherwise interpolated between the two neighbours in time (linear in
-  // translation, spherical in rotation). Nothing outside the covered span.
-  // A tolerance of 0 always interpolates, as Cartographer's own tool does.
+  // translation, spherical in rotation). Empty outside the covered time span. A
+  // tolerance of 0 always interpolates, as Cartographer's own tool does.
   absl::optional<Eigen::Isometry3d> Lookup(io::TimeNs time,
                                            io::TimeNs tolerance) const;
 

@@ -5,13 +5,13 @@
 // (Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS
 // 2012), in the plane: x, y and yaw are compared.
 //
-// * ATE: the estimate is first laid over the reference by the rigid motion
+// * ATE: the estimate is first aligned with the reference by the rigid motion
 //   that minimises the sum of squared distances (Umeyama 1991, without scale;
 //   in the plane the rotation is atan2(sum of cross products, sum of dot
-//   products) of the centred points). What is left of each distance is the
-//   error. One wrong turn early on spreads over the whole run.
-// * RPE: motion over a stretch of given length, estimate against reference;
-//   needs no alignment and measures drift.
+//   products) of the centred points). The remaining distances are the errors. One
+//   early wrong turn affects the whole run.
+// * RPE: motion over a given path length, estimate against reference; needs no
+//   alignment and measures drift.
 #ifndef CARTOGRAPHER_EXT_METRICS_TRAJECTORY_METRICS_H_
 #define CARTOGRAPHER_EXT_METRICS_TRAJECTORY_METRICS_H_
 
@@ -33,13 +33,13 @@ struct PosePair {
 };
 
 // One pair for each estimated pose that the reference covers: the reference
-// stamp within `tolerance`, else interpolated.
+// stamp within `tolerance`, otherwise interpolated.
 std::vector<PosePair> Associate(const Trajectory& estimate,
                                 const Trajectory& reference,
                                 io::TimeNs tolerance);
 
-// (reference <- map) of least squares. Where the positions do not determine the
-// rotation (a robot that stays in place) the mean heading does.
+// (reference <- map) by least squares. If the positions do not determine the
+// rotation (a stationary robot), the mean heading is used.
 Pose2 AlignInPlane(const std::vector<PosePair>& pairs);
 
 struct TrajectoryErrors {
@@ -60,7 +60,7 @@ struct TrajectoryMetricsOptions {
   double rpe_distance = 1.;  // metres along the reference
 };
 
-// An error when fewer than two poses have a reference.
+// An error if fewer than two poses have a reference.
 absl::StatusOr<TrajectoryErrors> ComputeTrajectoryErrors(
     const Trajectory& estimate, const Trajectory& reference,
     const TrajectoryMetricsOptions& options);

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where the option factory that is being called is in the user's Lua file.
-// Cartographer hands a factory its own table only, and one factory serves
-// several tables (ceres_scan_matcher is in both the pose graph and the
-// trajectory builder), so the factories further out leave their name here for
-// error messages.
+// The position in the user's Lua file of the option factory that is being
+// called. Cartographer passes a factory its own table only, and one factory is
+// used for several tables (ceres_scan_matcher is in both the pose graph and the
+// trajectory builder), so the outer factories record their name here for error
+// messages.
 #ifndef CARTOGRAPHER_EXT_OPTIONS_LUA_PATH_H_
 #define CARTOGRAPHER_EXT_OPTIONS_LUA_PATH_H_
 
@@ -14,8 +14,8 @@
 namespace cartographer_ext {
 namespace options {
 
-// While it lives, the tables read by this thread are below `path`, such as
-// "POSE_GRAPH.constraint_builder". May be nested; the innermost counts.
+// During its lifetime the tables read by this thread are below `path`, such as
+// "POSE_GRAPH.constraint_builder". May be nested; the innermost applies.
 class ScopedLuaPath {
  public:
   explicit ScopedLuaPath(const std::string& path);

@@ -25,7 +25,7 @@ struct OptionDescription {
   std::string unit;
   std::string documentation;
   std::string value;      // of the message described
-  bool is_basic = false;  // one of the few that a first look shows
+  bool is_basic = false;  // one of the few to look at first
 };
 
 // Sets every field to the default of its annotation. A field without
@@ -41,10 +41,10 @@ std::string CheckNumber(const google::protobuf::FieldDescriptor& field,
 const google::protobuf::EnumValueDescriptor* FindChoice(
     const google::protobuf::FieldDescriptor& field, const std::string& name);
 
-// The name that the key of the field had before; empty where it had no other.
+// The former name of the key of the field; empty if it had none.
 std::string FormerName(const google::protobuf::FieldDescriptor& field);
 
-// The field that had this name before, or null.
+// The field that formerly had this name, or null.
 const google::protobuf::FieldDescriptor* FindRenamed(
     const google::protobuf::Descriptor& options, const std::string& name);
 

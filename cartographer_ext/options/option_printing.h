@@ -15,37 +15,37 @@
 namespace cartographer_ext {
 namespace options {
 
-// One place where a block of ours is allowed.
+// One place in the stock tables where one of our blocks is allowed.
 struct OptionBlock {
   // The stock table it extends: "POSE_GRAPH.constraint_builder".
   std::string stock_path;
   // Its name in configuration_files/cartographer_ext.lua.
   std::string name;
-  // One sentence: what the block switches on.
+  // One sentence: what the block enables.
   std::string summary;
   // Whether the configuration has the block.
   bool present = false;
-  // Its values; the defaults where it is absent.
+  // Its values; the defaults if it is absent.
   std::unique_ptr<google::protobuf::Message> options;
 };
 
-// As the text of one cell of a Markdown table.
+// Escapes the text of a cell of a Markdown table.
 std::string EscapeCell(const std::string& text);
 
-// For people: the basic options of all blocks, then one paragraph for each
-// block with the others, one line for each option. A star marks values that are
-// not the default.
+// Human-readable: the basic options of all blocks, then one paragraph per block
+// with the others, one line per option. A star marks values that are not the
+// default.
 std::string ToText(const std::vector<OptionBlock>& blocks);
 
-// One table for each block, basic options first.
+// One table per block, basic options first.
 std::string ToMarkdown(const std::vector<OptionBlock>& blocks);
 
-// Assignments for the blocks that are present, to be put behind the stock files
-// of a configuration.
+// Assignments for the blocks that are present, to be placed after the stock
+// files of a configuration.
 std::string ToLua(const std::vector<OptionBlock>& blocks);
 
 // The values that are not the default, for a line of a log: "search.enabled =
-// false, fusion.window = 5"; "defaults" where there are none.
+// false, fusion.window = 5"; "defaults" if there are none.
 std::string ChangesToText(const google::protobuf::Message& options);
 
 // The whole of configuration_files/cartographer_ext.lua: every option with its

@@ -5,9 +5,9 @@
 
 #include <type_traits>
 
-// Fails to compile where a function of the stock class no longer has the type
-// that our wrapper forwards to. Without it a changed default or an added
-// overload could go unnoticed: a wrapper compiles with anything convertible.
+// Fails to compile if a function of the stock class no longer has the type that
+// our wrapper forwards to. Without it a changed default or an added overload
+// could go unnoticed: a wrapper compiles with anything convertible.
 //   CARTOGRAPHER_EXT_EXPECT_SIGNATURE(Stock::Add, void (Stock::*)(int))
 #define CARTOGRAPHER_EXT_EXPECT_SIGNATURE(function, ...)               \
   static_assert(std::is_same<decltype(&function), __VA_ARGS__>::value, \

@@ -12,9 +12,8 @@
 
 namespace cartographer_ext {
 
-// The line by which a user sees that a class of ours runs: in place of
-// `stock_class`, because the configuration has the block `lua_path`, with these
-// options.
+// Logs that one of our classes is used in place of `stock_class`, because the
+// configuration has the block `lua_path`, with these options.
 inline void LogStart(const std::string& stock_class,
                      const std::string& lua_path,
                      const google::protobuf::Message& options) {

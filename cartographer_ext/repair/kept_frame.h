@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Keeps the frame of a map over a repair, so that what refers to it (docks,
-// waypoints) stays valid wherever the map was right.
+// Keeps the frame of a map in a repair, so that poses in it (docks, waypoints)
+// stay valid wherever the map was right.
 #ifndef CARTOGRAPHER_EXT_REPAIR_KEPT_FRAME_H_
 #define CARTOGRAPHER_EXT_REPAIR_KEPT_FRAME_H_
 
@@ -14,18 +14,18 @@
 namespace cartographer_ext {
 namespace repair {
 
-// (old map <- new map): a robust rigid fit of the nodes, so that those that the
-// repair has not moved against each other stay where they were. The identity
-// without common nodes.
+// (old map <- new map): a robust rigid fit of the nodes, so that those with
+// unchanged relative poses keep their coordinates. The identity without common
+// nodes.
 Pose2 OldFromNewByNodes(const evaluation::MapGraph& before,
                         const evaluation::MapGraph& after);
 
-// (old map <- new map): the first node stays.
+// (old map <- new map): the first node is fixed.
 Pose2 OldFromNewByStart(const evaluation::MapGraph& before,
                         const evaluation::MapGraph& after);
 
-// CSV with a head line: each node's pose in the old and in the new map, metres
-// and radians.
+// CSV with a header line: each node's pose in the old and in the new map,
+// metres and radians.
 std::string PoseTable(const evaluation::MapGraph& before,
                       const evaluation::MapGraph& after);
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where the local SLAM of a map went wrong, by what a repair has made of it:
+// Errors of the local SLAM of a map, found by comparison with the repaired map:
 // from one node to the next the stored local poses and the repaired map differ
-// by more than any optimisation bends.
+// by more than any optimisation would.
 #ifndef CARTOGRAPHER_EXT_REPAIR_LOCAL_FAULTS_H_
 #define CARTOGRAPHER_EXT_REPAIR_LOCAL_FAULTS_H_
 
@@ -20,11 +20,11 @@ struct LocalFault {
   evaluation::GraphId node_id;  // the step before this node
   double seconds = 0.;          // after the start of the map
   double metres = 0.;           // too far, or too short
-  double radians = 0.;          // what local SLAM turned too far, signed
+  double radians = 0.;          // excess rotation of local SLAM, signed
 };
 
 struct LocalFaultOptions {
-  double window_seconds = 3.;  // steps that are summed up to one event
+  double window_seconds = 3.;  // steps that are merged into one event
   double metres = 0.5;
   double radians = DegToRad(10.);
   size_t max_listed = 10;

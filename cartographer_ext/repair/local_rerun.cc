@@ -35,7 +35,7 @@ constexpr char kSensor[] = "scan";
 constexpr double kTranslationWeight = 5e2;
 constexpr double kRotationWeight = 1.6e3;
 // The wheels replace local SLAM where the two differ by more than this, and by
-// so many times the median difference.
+// as a multiple of the median difference.
 constexpr double kLeastAngle = 0.087;    // radians
 constexpr double kLeastDistance = 0.15;  // metres
 constexpr double kOutlying = 10.;

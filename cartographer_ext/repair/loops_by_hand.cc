@@ -158,8 +158,8 @@ std::set<GraphId> Inserted(const GraphId& submap,
   return nodes;
 }
 
-// S_t of the path to the node (`step` -1), or of the one on from it (1), which a
-// finished map knows as well. No scan is compared with submaps it is part of.
+// S_t of the path to the node (`step` -1), or of the one on from it (1), which
+// a finished map has as well. No scan is compared with submaps it is part of.
 loop_closure::TemporalResult Verify(const LoopByHand& loop, const Pose2& pose,
                                     const int step,
                                     const evaluation::MapGraph& graph,

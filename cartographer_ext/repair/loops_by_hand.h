@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Loops that a user names because he knows the place. A name is a hint, no
-// proof: the scan is searched in the submap as the constraint builder does
-// [Olson 2009; Hess et al. 2016, section V], refined, and verified by the scans
-// on the path before and after it (temporal_verification.h).
+// Loops proposed by a user. A proposal is only a hint: the scan is searched in
+// the submap as the constraint builder does [Olson 2009; Hess et al. 2016,
+// section V], refined, and verified by the scans on the path before and after
+// it (temporal_verification.h).
 #ifndef CARTOGRAPHER_EXT_REPAIR_LOOPS_BY_HAND_H_
 #define CARTOGRAPHER_EXT_REPAIR_LOOPS_BY_HAND_H_
 
@@ -24,7 +24,7 @@ namespace repair {
 
 struct LoopByHand {
   evaluation::GraphId submap_id, node_id;
-  // (submap <- node) as the user has it, metres and radians.
+  // (submap <- node) as given by the user, metres and radians.
   absl::optional<Pose2> pose;
 };
 
@@ -32,19 +32,20 @@ struct LoopByHand {
 std::string ToString(const LoopByHand& loop);
 
 // "submap_trajectory:submap:node_trajectory:node[:x:y:theta]", comma separated.
-// An error for malformed names, for what is not in the map, for a node that was
-// inserted in the submap, for a loop that the map has, and for one named twice.
+// An error for malformed names, for ids that are not in the map, for a node
+// that was inserted into the submap, for a loop that the map already has, and
+// for duplicates.
 absl::StatusOr<std::vector<LoopByHand>> ParseLoopsByHand(
     const evaluation::MapGraph& graph, const std::string& names);
 
 struct HandMatchOptions {
-  // Its thresholds and weights are those of any loop.
+  // Thresholds and weights are those of other loops.
   cartographer::mapping::constraints::proto::ConstraintBuilderOptions builder;
-  // Half widths of the search around a pose of the user. Without one, the whole
+  // Half widths of the search around a given pose. Without a pose, the whole
   // submap is searched.
   double linear_window = 1.;              // metres
   double angular_window = DegToRad(20.);  // radians
-  // The least that loop closure asks for when scores are steady, in [0, 1].
+  // The threshold of loop closure for scores with low variance, in [0, 1].
   double min_temporal_score = loop_closure::DynamicThresholdOptions().low;
   int nodes_to_verify = 10;  // up to the node, and on from it
   double spacing = 0.5;      // metres between them
@@ -57,8 +58,8 @@ struct HandMatch {
   int num_verified = 0;  // nodes compared there
 };
 
-// An error that names the loop where the map lacks the cloud or the grid, where
-// no pose scores enough, and where the scans around the node do not fit.
+// An error that names the loop if the map lacks the cloud or the grid, if no
+// pose reaches the score, or if the scans around the node do not match.
 absl::StatusOr<HandMatch> MatchByHand(const LoopByHand& loop,
                                       const evaluation::MapGraph& graph,
                                       const io::Pbstream& pbstream,

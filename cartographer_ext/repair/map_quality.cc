@@ -16,7 +16,7 @@ constexpr double kSameSevere = 0.005;
 constexpr double kSameRays = 0.01;
 constexpr double kSameCycles = 0.05;
 constexpr double kSameEntropy = 0.02;
-// Of the nodes that agree, so many must remain.
+// Share of the agreeing nodes that must remain.
 constexpr double kKeptAgreement = 0.8;
 
 int Rank(const std::string& verdict) {

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which of two versions of a map is the better one, by the verdict's own
-// measures and in its order: the share of nodes that contradict the map
-// severely, then rays that contradict it, cycles of loops that do not close,
-// and how sharp the walls are.
+// Compares two versions of a map by the measures of the verdict, in this order:
+// the share of severely contradicted nodes, contradicted rays, open cycles of
+// loops, and map entropy.
 //
-// A map can also be made free of contradictions by tearing it apart: what does
-// not overlap does not contradict. So what was seen again and agrees must not
-// become less.
+// Tearing a map apart also removes contradictions, because parts that do not
+// overlap cannot contradict. So the number of nodes that agree with scans of
+// another time must not decrease.
 #ifndef CARTOGRAPHER_EXT_REPAIR_MAP_QUALITY_H_
 #define CARTOGRAPHER_EXT_REPAIR_MAP_QUALITY_H_
 
@@ -24,18 +23,18 @@ struct MapQuality {
   double severe_share = 0.;
   double contradicted_rays = 0.;  // share
   double open_cycles = 0.;        // share
-  double entropy = 0.;            // nats, of the walls
-  double agreeing_nodes = 0.;     // that see a place again without conflict
+  double entropy = 0.;            // nats
+  double agreeing_nodes = 0.;     // that revisit a place without conflict
 };
 
 MapQuality QualityOf(const evaluation::SelfConsistency& consistency);
 
-// An empty reason means `candidate` is better than `current`; otherwise the
-// reason says, in a clause for people, why it is not.
+// Empty if `candidate` is better than `current`; otherwise a clause with the
+// reason why it is not.
 std::string WhyNotBetter(const MapQuality& current,
                          const MapQuality& candidate);
 
-// "broken, 12.3 % severe, 4.5 % of rays against it, entropy -1.52".
+// "broken, 12.3 % severe, 4.5 % of rays contradicted, entropy -1.52".
 std::string ToText(const MapQuality& quality);
 
 }  // namespace repair

@@ -374,8 +374,7 @@ class Repairer {
     CloseLoops(absl::StrCat(best_name_, ", "), best_base_, false);
   }
 
-  // What loops have put right helps local SLAM to follow, and the other way
-  // round.
+  // Corrected loops help local SLAM to follow, and vice versa.
   void RepeatAlongBest() {
     if (!options_.local) return;
     for (int i = 0; i < options_.max_rounds && !done(); ++i) {

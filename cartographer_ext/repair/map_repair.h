@@ -1,22 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Repairs a finished map from what the map itself holds. Each step makes a
-// version of the map and is kept only if the verdict finds that version better
-// (map_quality.h):
+// Repairs a finished map from its own contents. Each step produces a version of
+// the map and is kept only if that version is better (map_quality.h):
 //
-//   loops judged again     robust selection among the stored loops; wrong ones
-//                          are left out
-//   loop closure again     global SLAM from the stored nodes and submaps, with
+//   loops re-evaluated     robust selection among the stored loops; wrong ones
+//                          are removed
+//   loop closure re-run    global SLAM from the stored nodes and submaps, with
 //                          our loop closure and with stock's
-//   local SLAM again       node clouds matched and submaps built anew, along
-//                          the stored chain of poses, along the odometry, and
-//                          where the two differ; then loop closure and the
-//                          judgement of its loops over each
-//   submaps again          built anew along the best version so far
+//   local SLAM re-run      node clouds matched and submaps rebuilt, along the
+//                          stored chain of poses, along the odometry, and
+//                          with odometry where the two differ; then loop
+//                          closure and re-evaluation of its loops for each
+//   submaps rebuilt        along the best version so far
 //
-// Steps end as soon as the map is sound. The result is the best version, or the
-// input where nothing was better.
+// The steps stop as soon as the map is sound. The result is the best version,
+// or the input if nothing was better.
 #ifndef CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_
 #define CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_
 
@@ -39,22 +38,22 @@ namespace cartographer_ext {
 namespace repair {
 
 struct RepairOptions {
-  bool loops = true;  // steps that only touch loops
-  bool local = true;  // steps that run local SLAM again
-  // Of the pose graph, stock and ours.
+  bool loops = true;  // steps that only change loops
+  bool local = true;  // steps that re-run local SLAM
+  // Options of the pose graph, stock and ours.
   evaluation::RerunConfiguration configuration;
-  // Of local SLAM, ours.
+  // Options of local SLAM, ours.
   cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D local_slam;
-  // Indices of constraints that the user wants left out, see FindLoops.
+  // Indices of constraints that the user wants removed, see FindLoops.
   std::vector<int> dropped_loops;
-  // Loops that the user wants in; those that do not match are not taken.
+  // Loops that the user wants to add; those that do not match are rejected.
   std::vector<LoopByHand> added_loops;
   // The repaired map keeps the frame of the map by a robust fit of its nodes;
-  // otherwise its first node stays where it was.
+  // otherwise its first node is fixed.
   bool keep_frame = false;
   int max_rounds = 3;  // of local SLAM along the best version so far
   int num_background_threads = 2;
-  // Called when a step begins, with its name.
+  // Called at the start of a step, with its name.
   std::function<void(const std::string&)> on_step;
   // Called within a step: nodes done and in total.
   std::function<void(int64_t, int64_t)> on_progress;
@@ -80,19 +79,19 @@ struct RepairStep {
 struct MapRepair {
   MapVersion before, after;
   std::vector<RepairStep> steps;
-  // What local SLAM did wrong, by the repaired map.
+  // Errors of local SLAM, according to the repaired map.
   std::vector<LocalFault> faults;
   bool changed() const { return before.pbstream != after.pbstream; }
   // A sentence without full stop, such as "nothing to repair: ...".
   std::string conclusion;
-  // What the user can do, sentences.
+  // Advice for the user, sentences.
   std::vector<std::string> advice;
 };
 
 MapVersion Assess(std::shared_ptr<const io::Pbstream> pbstream);
 
-// The loops of the map judged again; null with a reason where there are none
-// or none is wrong.
+// Re-evaluates the loops of the map; null with a reason if there are none or
+// none is wrong.
 std::shared_ptr<const io::Pbstream> JudgeLoops(const MapVersion& version,
                                                std::string* reason);
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a repair did, for programs, for a terminal and as a page.
+// The result of a repair as JSON, as text and as a page.
 #ifndef CARTOGRAPHER_EXT_REPAIR_REPAIR_OUTPUT_H_
 #define CARTOGRAPHER_EXT_REPAIR_REPAIR_OUTPUT_H_
 
@@ -16,12 +16,11 @@ namespace repair {
 
 nlohmann::ordered_json ToJson(const MapRepair& repair);
 
-// Several lines, the last one ended.
+// Several lines of text, with a final line break.
 std::string ToText(const MapRepair& repair);
 
-// One HTML file: what became of the map, what to do, the steps with their
-// reasons, both versions laid over each other. An error where a version has no
-// walls to draw.
+// One HTML file: the result, advice, the steps with their reasons, both
+// versions aligned. An error if a version has no walls.
 absl::StatusOr<std::string> MakeRepairReport(const MapRepair& repair,
                                              const std::string& title,
                                              const std::string& command_line);

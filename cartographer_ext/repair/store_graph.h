@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Puts the result of a run over a stored map back into the map.
+// Stores the result of a re-run in the map.
 #ifndef CARTOGRAPHER_EXT_REPAIR_STORE_GRAPH_H_
 #define CARTOGRAPHER_EXT_REPAIR_STORE_GRAPH_H_
 
@@ -12,12 +12,12 @@
 namespace cartographer_ext {
 namespace repair {
 
-// Optimised poses of nodes and submaps, and the loops, become those of
-// `graph`, which has the ids of the map. Height, roll and pitch stay, as do
-// insertions. Landmarks move along with the node that saw them last.
+// Optimised poses of nodes and submaps, and the loops, become those of `graph`,
+// which has the ids of the map. Height, roll, pitch and insertions are kept.
+// Landmarks move with the node that last observed them.
 void StoreGraph(const evaluation::MapGraph& graph, io::Pbstream* pbstream);
 
-// Moves the whole map: (new map frame <- old map frame).
+// Transforms the whole map: (new map frame <- old map frame).
 void MoveMap(const Pose2& new_from_old, io::Pbstream* pbstream);
 
 }  // namespace repair

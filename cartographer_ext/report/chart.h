@@ -27,28 +27,28 @@ struct Axis {
 
 class Chart {
  public:
-  // `title` is read out where the chart cannot be seen. Axes of no length are
+  // `title` is the accessible name of the chart. Axes without extent are
   // widened.
   Chart(const std::string& title, Axis x, Axis y, int width = 640,
         int height = 260);
 
-  // `style`: a class such as "s1". Points outside the axes are held at the
+  // `style`: a class such as "s1". Points outside the axes are clamped to the
   // edge.
   void Line(const std::vector<Eigen::Vector2d>& points,
             const std::string& style);
   // `hover` is shown for the point; may be empty.
   void Point(const Eigen::Vector2d& point, const std::string& style,
              const std::string& hover, double radius = 2.5);
-  // From the x axis up, from `left` to `right`.
+  // A bar from the x axis up, from `left` to `right`.
   void Bar(double left, double right, double height, const std::string& style,
            const std::string& hover);
-  // Coloured ground between two values of x.
+  // Coloured background between two values of x.
   void Band(double left, double right, const std::string& style,
             const std::string& hover);
   // A dashed line across, with a label.
   void VerticalMark(double x, const std::string& label);
   void HorizontalMark(double y, const std::string& label);
-  // The ellipse of a covariance at so many standard deviations.
+  // The ellipse of a covariance at the given number of standard deviations.
   void Ellipse(const Eigen::Vector2d& center, const Eigen::Matrix2d& covariance,
                double sigmas, const std::string& style);
   void Legend(const std::string& label, const std::string& style);
@@ -69,7 +69,8 @@ class Chart {
   std::vector<std::pair<std::string, std::string>> legend_;
 };
 
-// Counts of values in bins of equal width; values outside go to the ends.
+// Counts of values in bins of equal width; values outside are counted in the
+// outermost bins.
 std::vector<int> Histogram(const std::vector<double>& values, double low,
                            double high, int bins);
 

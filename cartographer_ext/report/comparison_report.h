@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Two maps laid over each other as one HTML file, and as a part of a larger
-// page.
+// The comparison of two maps as one HTML file, and as a part of a larger page.
 #ifndef CARTOGRAPHER_EXT_REPORT_COMPARISON_REPORT_H_
 #define CARTOGRAPHER_EXT_REPORT_COMPARISON_REPORT_H_
 
@@ -18,7 +17,7 @@
 namespace cartographer_ext {
 namespace report {
 
-// One of the two; only the map must be there.
+// One of the two; only the map is required.
 struct ComparedMap {
   std::string name;
   const io::OccupancyMap* map = nullptr;
@@ -30,7 +29,7 @@ struct ComparedMap {
 void OpenPage(const std::string& title, Markup* page);
 void ClosePage(Markup* page);
 
-// A box with the verdict and what speaks for it.
+// A box with the verdict and its reasons.
 void AddVerdictBox(const std::string& name,
                    const evaluation::SelfConsistency& consistency,
                    Markup* page);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// All that is known about each loop of a run, side by side.
+// All evidence about each loop of a run.
 #ifndef CARTOGRAPHER_EXT_REPORT_LOOP_EVIDENCE_H_
 #define CARTOGRAPHER_EXT_REPORT_LOOP_EVIDENCE_H_
 
@@ -18,23 +18,23 @@ struct LoopEvidence {
   evaluation::GraphId submap_id, node_id;
   bool accepted = true;
   Pose2 relative_pose;  // (submap <- node), the loop's
-  double score = -1.;   // on the grid; negative where not known
+  double score = -1.;   // on the grid; negative: unknown
   bool in_graph = false;
   // Against the optimised map.
   double residual_translation = 0.;  // metres
   double residual_rotation = 0.;     // radians
-  // Cycles with other loops near by, and the share of those that stay open.
+  // Cycles with nearby loops, and the share of open ones.
   int partners = 0;
   double open_share = 0.;
   evaluation::LoopVerdict truth = evaluation::LoopVerdict::kUnknown;
   double truth_translation = 0.;  // metres
-  // Record of the decision, where there is one.
+  // Record of the decision, if any.
   const proto::LoopDecision* decision = nullptr;
 
-  // Wrong by truth where that is known; else overruled by the map by more than
-  // half a metre.
+  // Wrong by ground truth if known; otherwise more than half a metre off the
+  // map.
   bool suspicious() const;
-  // For sorting: how bad it is, metres.
+  // Sort key: error in metres.
   double badness() const;
 };
 
@@ -43,10 +43,10 @@ struct LoopEvidence {
 std::vector<LoopEvidence> CollectEvidence(
     const ReportRun& run, const evaluation::MapContents& contents);
 
-// Several lines, for hovering.
+// Several lines, for a tooltip.
 std::string Describe(const LoopEvidence& evidence);
 
-// "low temporal score", of the enumeration.
+// For example "low temporal score".
 std::string ReasonInWords(proto::LoopDecision::Reason reason);
 
 // "rejected: low temporal score", "not searched: budget", "undecided".

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A map with things drawn over it, as inline SVG. All coordinates are metres in
-// the frame of the map, x to the right, y up.
+// A map with overlays, as inline SVG. All coordinates are metres in the frame
+// of the map, x to the right, y up.
 #ifndef CARTOGRAPHER_EXT_REPORT_MAP_FIGURE_H_
 #define CARTOGRAPHER_EXT_REPORT_MAP_FIGURE_H_
 
@@ -20,9 +20,9 @@ namespace report {
 // Pictures used by several figures are embedded once.
 class ImageStore {
  public:
-  // Under this id, which must be new.
+  // Adds a picture with a new id.
   void Add(const std::string& id, const io::OccupancyMap& map);
-  // To be put into the page before the figures.
+  // Must precede the figures in the page.
   std::string ToHtml() const;
 
  private:
@@ -34,12 +34,12 @@ class MapFigure {
   // `bounds`: the part that is shown; must not be empty.
   MapFigure(const std::string& title, const io::PictureBounds& bounds);
 
-  // A picture of the store.
+  // Draws a picture of the store.
   void Image(const std::string& id);
   // Breaks the line at points that are not finite.
   void Path(const std::vector<Eigen::Vector2d>& points,
             const std::string& style);
-  // `more`: attributes for the script.
+  // `more`: additional attributes, for the script.
   void Line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
             const std::string& style, const std::string& hover,
             const Attributes& more = {});

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The report of a map that was just made: judged without ground truth, with the
-// records that lie beside it.
+// The report of a new map: judged without ground truth, with the records beside
+// it.
 #ifndef CARTOGRAPHER_EXT_REPORT_MAP_REPORT_H_
 #define CARTOGRAPHER_EXT_REPORT_MAP_REPORT_H_
 
@@ -18,7 +18,7 @@
 namespace cartographer_ext {
 namespace report {
 
-// A map of a file and what it says of itself.
+// A map from a file with its evaluation.
 struct JudgedMap {
   std::string filename;
   io::Pbstream pbstream;
@@ -31,9 +31,9 @@ struct JudgedMap {
 absl::StatusOr<std::unique_ptr<const JudgedMap>> JudgeMap(
     const std::string& pbstream_filename);
 
-// The page of a map, with the records of loop closure and local SLAM beside it
-// where they are there. `title` and `command_line` stand in the page. Errors
-// name the file.
+// The page of a map, with the records of loop closure and local SLAM beside it,
+// if any. `title` and `command_line` are shown in the page. Errors name the
+// file.
 absl::StatusOr<std::string> MakeMapPage(const JudgedMap& map,
                                         const std::string& title,
                                         const std::string& command_line);

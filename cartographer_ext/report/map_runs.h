@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A stored map and what runs of the pose graph over it leave, each evaluated
-// the same way.
+// A stored map and the results of re-runs of its pose graph, all evaluated
+// alike.
 #ifndef CARTOGRAPHER_EXT_REPORT_MAP_RUNS_H_
 #define CARTOGRAPHER_EXT_REPORT_MAP_RUNS_H_
 
@@ -20,7 +20,7 @@
 namespace cartographer_ext {
 namespace report {
 
-// What the runs share; nothing is owned.
+// Inputs of the runs; not owned.
 struct RunInputs {
   const io::Pbstream* pbstream = nullptr;
   const evaluation::MapGraph* graph = nullptr;
@@ -34,19 +34,19 @@ struct RunInputs {
 // The map of the file, evaluated as given.
 ReportRun StoredRun(const RunInputs& inputs, evaluation::Evaluation evaluation);
 
-// Runs the pose graph with stock's options and, where the configuration has
-// blocks of ours, with them; evaluates both and compares their loops with the
-// stored ones. Names of the options and assumptions go to `data`, too.
+// Re-runs the pose graph with stock's options and, if the configuration has our
+// blocks, with ours; evaluates both and compares their loops with the stored
+// ones. Names of the options and assumptions are added to `data`.
 absl::Status AddReruns(const RunInputs& inputs,
                        const evaluation::RerunConfiguration& configuration,
                        ReportData* data);
 
-// From the records that a run of local SLAM leaves beside a map; only those of
-// nodes. Errors name the file; NotFound where there is none.
+// From the records of local SLAM beside a map; those of nodes only. Errors name
+// the file; NotFound if there is none.
 absl::StatusOr<std::vector<DegeneracySample>> ReadDegeneracy(
     const std::string& filename);
 
-// This library, its host, and the libraries that decide results.
+// Versions of this library, its host, and the libraries that affect results.
 std::vector<std::pair<std::string, std::string>> Versions();
 
 }  // namespace report

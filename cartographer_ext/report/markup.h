@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A little writer of HTML and SVG. Names of elements and attributes are trusted
-// (they are ours), values and texts are escaped.
+// A small writer of HTML and SVG. Names of elements and attributes are trusted;
+// values and texts are escaped.
 //
 //   Markup page;
 //   page.Open("p", {{"class", "note"}});
@@ -26,14 +26,14 @@ using Attributes = std::vector<std::pair<std::string, std::string>>;
 // & < > " ' as references; characters that XML does not allow become a space.
 std::string Escape(absl::string_view text);
 
-// A number with at most so many decimals and no trailing zeros. Numbers that
-// are not finite become 0: SVG has no other.
+// A number with at most `decimals` decimals and no trailing zeros. Numbers that
+// are not finite become 0, since SVG cannot represent them.
 std::string Number(double value, int decimals = 2);
 
 class Markup {
  public:
   void Open(const std::string& name, const Attributes& attributes = {});
-  // The innermost element that is open.
+  // Closes the innermost open element.
   void Close();
   void Text(absl::string_view text);
   // <name attributes>text</name>
@@ -41,7 +41,7 @@ class Markup {
                absl::string_view text);
   // <name attributes/>
   void Empty(const std::string& name, const Attributes& attributes);
-  // As it is: markup made elsewhere.
+  // Adds markup without escaping.
   void Raw(absl::string_view markup);
 
   // All elements must be closed.
@@ -55,7 +55,7 @@ class Markup {
   std::vector<std::string> open_;
 };
 
-// Rows of text as a table; numbers are set right.
+// Rows of text as a table; numbers are right-aligned.
 class Table {
  public:
   explicit Table(std::vector<std::string> head) : head_(std::move(head)) {}
@@ -63,7 +63,7 @@ class Table {
     rows_.push_back(std::move(cells));
   }
   bool empty() const { return rows_.empty(); }
-  // The first column is the head of its row.
+  // The first column is the header of its row.
   std::string ToHtml(const std::string& caption) const;
 
  private:

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Maps as small grey pictures inside a page. Sixteen shades are enough for a
-// map and make a third of the bytes of a colour picture.
+// map and need a third of the bytes of a colour picture.
 #ifndef CARTOGRAPHER_EXT_REPORT_PNG_IMAGE_H_
 #define CARTOGRAPHER_EXT_REPORT_PNG_IMAGE_H_
 
@@ -15,8 +15,8 @@
 namespace cartographer_ext {
 namespace report {
 
-// A PNG of 4 bits a pixel. `shades`: 0 black to 15 white, row by row from the
-// top, width * height of them.
+// A PNG with 4 bits per pixel. `shades`: 0 black to 15 white, row by row from
+// the top, width * height of them.
 std::string EncodePng(int width, int height,
                       const std::vector<uint8_t>& shades);
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A map's report as one HTML file that needs nothing else: no network, no
-// server, no fonts. docs/report.md describes its figures.
+// The report of a map as one self-contained HTML file without network, server
+// or fonts. docs/report.md describes its figures.
 #ifndef CARTOGRAPHER_EXT_REPORT_REPORT_H_
 #define CARTOGRAPHER_EXT_REPORT_REPORT_H_
 
@@ -15,17 +15,17 @@
 namespace cartographer_ext {
 namespace report {
 
-// An error where there is no run or the map has no nodes.
+// An error without runs, or if the map has no nodes.
 absl::StatusOr<std::string> MakeReport(const ReportData& data);
 
-// The numbers of the runs, for programs: an array of objects with name, loops,
+// The numbers of the runs as JSON: an array of objects with name, loops,
 // evaluation, comparison, times.
 nlohmann::ordered_json RunsToJson(const ReportData& data);
 
-// The runs over the stored map for people, several lines; none without runs.
+// The re-runs as text, several lines; empty without re-runs.
 std::string RunsToText(const ReportData& data);
 
-// The loops of all runs with their evidence as CSV, with a head line.
+// The loops of all runs with their evidence as CSV, with a header line.
 std::string LoopsToCsv(const ReportData& data);
 
 }  // namespace report

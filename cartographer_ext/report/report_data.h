@@ -22,27 +22,27 @@
 namespace cartographer_ext {
 namespace report {
 
-// The map as it is stored, or as a run of the pose graph left it.
+// The map as stored, or the result of a re-run.
 struct ReportRun {
-  std::string name;   // "as stored", "stock again", "ours"
+  std::string name;   // "as stored", "stock re-run", "ours"
   std::string style;  // class of its lines
   evaluation::MapGraph graph;
   evaluation::Evaluation evaluation;  // with loops and consistency
-  // What the run took and decided; absent for the stored map.
+  // Resource use and decisions of the run; absent for the stored map.
   absl::optional<evaluation::Rerun> rerun;
-  // Of the run that made the stored map, where they were found beside it.
+  // Decisions of the run that made the stored map, if stored beside it.
   std::vector<proto::LoopDecision> stored_decisions;
 
-  // Of our loop closure; empty for stock.
+  // Decisions of our loop closure; empty for stock.
   const std::vector<proto::LoopDecision>& decisions() const {
     return rerun.has_value() ? rerun->decisions : stored_decisions;
   }
 
-  // Loops of the stored map against those of this run.
+  // Comparison of the loops of the stored map with those of this run.
   absl::optional<evaluation::LoopComparison> against_stored;
 };
 
-// Of the local scan matching at a node, where a run has left such records.
+// Degeneracy of the scan match at a node, from the records of local SLAM.
 struct DegeneracySample {
   io::TimeNs time = 0;
   double ratio = 0.;      // weakest to strongest direction, 0 to 1
@@ -60,9 +60,9 @@ struct ReportData {
   std::vector<ReportRun> runs;
   std::vector<DegeneracySample> degeneracy;
   std::string stock_name, ours_name;
-  double stock_min_score = 0.;  // 0 where not known
+  double stock_min_score = 0.;  // 0: unknown
   std::vector<std::string> assumptions;
-  // From stock's options to ours, a line each.
+  // Differences from stock's options to ours, one per line.
   std::vector<std::string> option_differences;
   std::vector<std::string> notes;
   // Times are not reproducible; without them the page is.

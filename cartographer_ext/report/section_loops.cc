@@ -21,7 +21,7 @@ using evaluation::LoopVerdict;
 // Lines in one figure; of more loops the good ones are thinned out.
 constexpr size_t kMaxLines = 1500;
 
-// The scans that a click shows: centimetres, at most so many bytes in all.
+// The scans that a click shows: centimetres, limit of the bytes in total.
 constexpr size_t kMaxScanBytes = 1500000;
 constexpr size_t kPointBytes = 10;
 constexpr size_t kMaxScanPoints = 160;

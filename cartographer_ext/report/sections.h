@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The parts of the page, in its order. Each adds a heading with an anchor and
-// what belongs under it, or nothing where there is nothing to show.
+// The sections of the page, in order. Each adds a heading with an anchor and
+// its content, or nothing if there is nothing to show.
 #ifndef CARTOGRAPHER_EXT_REPORT_SECTIONS_H_
 #define CARTOGRAPHER_EXT_REPORT_SECTIONS_H_
 
@@ -19,17 +19,17 @@
 namespace cartographer_ext {
 namespace report {
 
-// What several parts use, made once.
+// Data used by several sections.
 struct Prepared {
   // Parallel to ReportData::runs.
   std::vector<std::vector<LoopEvidence>> evidence;
-  std::vector<std::string> image_ids;  // empty where there is no picture
+  std::vector<std::string> image_ids;  // empty without a picture
   io::PictureBounds bounds;            // of all maps
   io::TimeNs start = 0;                // of the first node
 };
 
 void AddHeading(const std::string& id, const std::string& text, Markup* page);
-// The head of a page, with its style; no file beside it is needed.
+// The head of a page, including its style.
 void AddHead(const std::string& title, Markup* page);
 
 // Verdict, figures, and all runs in one table.
@@ -43,19 +43,19 @@ void AddLoops(const ReportData& data, const Prepared& prepared, Markup* page);
 void AddScans(const ReportData& data, const Prepared& prepared, Markup* page);
 // Histograms of scores and residuals, and the two scores against each other.
 void AddScores(const ReportData& data, const Prepared& prepared, Markup* page);
-// What is known along the path: contradiction, odometry, degeneracy.
+// Quantities along the path: contradiction, odometry, degeneracy.
 void AddPath(const ReportData& data, const Prepared& prepared, Markup* page);
 // Which loops the runs have in common, and why candidates were rejected.
 void AddComparison(const ReportData& data, Markup* page);
 // The worst loops with their scans, as pictures and as a table.
 void AddWorstLoops(const ReportData& data, const Prepared& prepared,
                    Markup* page);
-// What the runs took.
+// Time and memory of the runs.
 void AddTiming(const ReportData& data, Markup* page);
 // Options, versions, command line.
 void AddOrigin(const ReportData& data, Markup* page);
 
-// Positions of the nodes; trajectories are parted by a point that is not
+// Positions of the nodes; trajectories are separated by a point that is not
 // finite.
 std::vector<Eigen::Vector2d> NodePath(const evaluation::MapGraph& graph);
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The pose graph of a run over a stored map numbers nodes and submaps anew;
-// from its ids to those of the map.
+// The pose graph of a re-run renumbers nodes and submaps; converts its ids to
+// those of the stored map.
 #ifndef CARTOGRAPHER_EXT_RERUN_REPLAY_IDS_H_
 #define CARTOGRAPHER_EXT_RERUN_REPLAY_IDS_H_
 
@@ -19,12 +19,12 @@ class ReplayIds {
  public:
   explicit ReplayIds(const ReplayPlan& plan);
 
-  // Of the stored map, from an id of the run.
+  // Id in the stored map of an id of the run.
   GraphId StoredNode(const GraphId& id) const;
   // The index is negative for placeholders.
   GraphId StoredSubmap(const GraphId& id) const;
 
-  // Of the run: step of the plan, position in the plan's submaps.
+  // Ids of the run for a step of the plan and for a position in its submaps.
   const GraphId& NodeOfStep(size_t step) const { return step_nodes_[step]; }
   const GraphId& SubmapAt(int position) const {
     return position_submaps_[position];

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// In which order, and into which submaps, the nodes of a stored map were
-// inserted. A map does not say so itself, but its constraints do: those that
-// are no loops name the submaps of every node, and the stamps the order.
+// The order in which the nodes of a stored map were inserted, and their
+// submaps. A map does not store this explicitly, but the intra-submap
+// constraints give the submaps of every node, and the stamps the order.
 //
-// The pose graph wants, with every node, one submap (while there is only one)
-// or two, the older first, and a new one only next to one it knows. Stored maps
-// often lack the newest submaps, because unfinished ones were not stored. A
-// placeholder takes the place of such a submap: it is never finished, so that
-// nothing is ever searched in it.
+// The pose graph requires, for every node, one submap (while there is only one)
+// or two, the older first, and a new one only together with a known one. Stored
+// maps often lack the newest submaps, because unfinished ones were not stored.
+// Such a submap is represented by a placeholder that is never finished, so that
+// nothing is searched in it.
 #ifndef CARTOGRAPHER_EXT_RERUN_REPLAY_PLAN_H_
 #define CARTOGRAPHER_EXT_RERUN_REPLAY_PLAN_H_
 
@@ -21,16 +21,16 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// A submap as the pose graph will number it.
+// A submap by its number in the pose graph.
 struct ReplaySubmap {
   int trajectory_id = 0;
-  // Of the stored map; -1 for a placeholder.
+  // Index in the stored map; -1 for a placeholder.
   int stored_index = -1;
   // Position in ReplayPlan::steps of the first and of the last node.
   size_t first_step = 0;
   size_t last_step = 0;
-  // The stored submap is finished, and the pose graph is informed with the
-  // last node.
+  // The stored submap is finished; the pose graph is notified with the last
+  // node.
   bool finished = false;
 
   bool is_placeholder() const { return stored_index < 0; }
@@ -44,18 +44,18 @@ struct ReplayStep {
 
 struct ReplayPlan {
   std::vector<ReplayStep> steps;
-  // Of each trajectory in the order of their indices in the pose graph.
+  // Submaps of each trajectory in the order of their indices in the pose graph.
   std::vector<ReplaySubmap> submaps;
   int64_t num_placeholders = 0;
-  // Nodes that count as inserted in one submap more, or one less, than they
-  // were, to bridge what was trimmed.
+  // Number of nodes that count as inserted into one submap more or fewer than
+  // they were, to bridge trimmed submaps.
   int64_t num_guessed = 0;
 };
 
 // Trajectories whose spans of time overlap are interleaved by the stamps of
-// their nodes, others follow each other in the order of their numbers. An error
-// where a node was inserted in more than two submaps, in one of another
-// trajectory, or in an older one than the node before it.
+// their nodes, others are ordered by their numbers. An error if a node was
+// inserted into more than two submaps, into one of another trajectory, or into
+// an older one than the previous node.
 absl::StatusOr<ReplayPlan> MakeReplayPlan(const MapGraph& graph);
 
 }  // namespace evaluation

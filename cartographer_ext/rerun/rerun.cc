@@ -38,7 +38,7 @@ namespace mapping_proto = cartographer::mapping::proto;
 constexpr std::chrono::seconds kPatience(2);
 // Decision records kept, about 400 bytes each.
 constexpr size_t kMaxDecisions = 500000;
-// Side of the grid of a placeholder, which nobody looks at.
+// Side of the unused grid of a placeholder.
 constexpr int kPlaceholderCells = 10;
 
 // Hands sensor readings to the pose graph up to given times.

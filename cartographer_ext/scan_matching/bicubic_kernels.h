@@ -12,7 +12,8 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
-// Where the points of a scan lie in a grid; arrays of one element a point.
+// Positions of the points of a scan in a grid; arrays with one element per
+// point.
 struct PointPlaces {
   // In the frame of the grid, but without the translation of the pose, metres.
   double* turned_x;
@@ -22,16 +23,19 @@ struct PointPlaces {
   double* column;
 };
 
+// Position and resolution of a grid.
 struct GridFrame {
   double max_x;
   double max_y;
   double cells_per_metre;
 };
 
+// Function pointers of one instruction set.
 struct BicubicKernels {
   const char* name;
 
-  // Turns points by (cosine, sine), moves them by (x, y) and finds their cells:
+  // Rotates points by (cosine, sine), translates them by (x, y) and finds their
+  // cells:
   //   row = (max_x - x) cells_per_metre - 1/2, column likewise with y.
   void (*find_places)(const GridFrame& frame, double cosine, double sine,
                       double x, double y, const double* point_x,
@@ -47,10 +51,10 @@ struct BicubicKernels {
                       double* column_slope);
 };
 
-// The fastest set of this machine.
+// The fastest set that this machine supports.
 const BicubicKernels& BestBicubicKernels();
 
-// All that this machine has, the plain C++ one first. For tests.
+// All sets that this machine supports, the plain C++ one first. For tests.
 std::vector<const BicubicKernels*> AllBicubicKernels();
 
 }  // namespace scan_matching

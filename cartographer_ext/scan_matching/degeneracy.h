@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which motions of the robot a scan does not observe (paper G, improved graph
+// Motions of the robot that a scan does not observe (paper G, improved graph
 // optimisation 2024, section 3.3, eq. 17 and 18).
 //
-// A laser in a corridor sees nothing that moves when the robot does: the cost
-// of the scan matcher has no curvature along the corridor, and whatever it
-// returns in that direction is noise. The paper looks at the covariance of the
+// In a blank corridor the scan does not change when the robot moves along it:
+// the cost of the scan matcher has no curvature in this direction, and the
+// result of the match along it is noise. The paper uses the covariance of the
 // match,
 //
 //   G eq. 17   Sigma = [cov(x,x) cov(x,y); cov(y,x) cov(y,y)]
@@ -22,7 +22,7 @@
 //
 // This file finds v_i and w_i; eq. 19 is applied in scan_information.h.
 //
-// What is different here, and why:
+// Differences from the paper, and the reasons:
 //  * The matrix is the information of the occupied space alone. The Hessian of
 //    the whole problem contains the priors that pull to the prediction, and
 //    these dominate it: its covariance is round even in a corridor.
@@ -31,12 +31,12 @@
 //    decomposed; the rotation has its own information c - b^T A^-1 b.
 //  * A bare ratio of eigenvalues fails, because a quantised wall has spurious
 //    information along itself. An eigenvalue counts only as far as it exceeds a
-//    floor (see match_information.h for where the floor comes from).
+//    floor (match_information.h gives its origin).
 //  * w_i changes smoothly from 0 at the floor to 1 at `full_ratio` times the
 //    floor, so that the map does not jump when a door comes into view.
 //
-// Worked example: H = diag(4, 400, 50), floor 10, full_ratio 10. Along x
-// (4 < 10) w = 0: the match is not believed. Along y (400 >= 100) w = 1.
+// Worked example: H = diag(4, 400, 50), floor 10, full_ratio 10. Along x (4 <
+// 10) w = 0: the match is ignored. Along y (400 >= 100) w = 1.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_DEGENERACY_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_DEGENERACY_H_
 
@@ -45,34 +45,38 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// How degenerate directions are determined.
 enum class DegeneracyMode {
   kNoiseFloor,    // as described above
-  kPaperLiteral,  // eq. 17, 18: ratio of the covariance eigenvalues, all or
-                  // nothing
+  kPaperLiteral,  // eq. 17, 18: ratio of the covariance eigenvalues,
+                  // weights 0 or 1
 };
 
+// Floors and thresholds of the analysis.
 struct DegeneracyOptions {
   DegeneracyMode mode = DegeneracyMode::kNoiseFloor;
   // Spurious information of a blank wall along itself, in the units of the
-  // Hessian, >= 0. Small rotations are scaled by how far they move the points.
-  // Depends on the scan (MatchInformation).
+  // Hessian, >= 0. Small rotations are scaled by the displacement of the
+  // points. Depends on the scan (MatchInformation).
   double translation_floor = 0.;  // 1/m^2
   double rotation_floor = 0.;     // 1/rad^2
   double full_ratio = 3.;         // > 1
   double paper_ratio = 2.;        // kPaperLiteral: degenerate above, > 1
 };
 
+// The degenerate part of the pose.
 enum class DegeneracyState {
   kNone,         // everything is observed
-  kTranslation,  // one direction of the plane is not
-  kPosition,     // no direction of the plane is
+  kTranslation,  // one direction of translation is not
+  kPosition,     // no direction of translation is
   kRotation,     // only the heading is not
-  // One direction and the heading are not: as in a round room, where driving
-  // around the centre while turning along changes nothing.
+  // One direction of translation and the heading are not: as in a round room,
+  // where the scan is unchanged by driving around the centre while turning.
   kTranslationAndRotation,
   kEverything,  // nothing is observed
 };
 
+// Result of the analysis of one scan.
 struct DegeneracyResult {
   // Translation information with the rotation eliminated: eigenvalues in
   // ascending order (1/m^2), unit eigenvectors as columns, in the frame of the
@@ -80,8 +84,7 @@ struct DegeneracyResult {
   Eigen::Vector2d eigenvalues = Eigen::Vector2d::Zero();
   Eigen::Matrix2d eigenvectors = Eigen::Matrix2d::Identity();
   double rotation_information = 0.;  // 1/rad^2, with translation eliminated
-  // How far the match is believed along each eigenvector and in rotation,
-  // [0,1].
+  // Weight of the match along each eigenvector and in rotation, [0, 1].
   Eigen::Vector2d translation_weights = Eigen::Vector2d::Ones();
   double rotation_weight = 1.;
   DegeneracyState state = DegeneracyState::kNone;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How badly a scan fits a grid of correspondence costs, with derivatives
-// (paper G, improved graph optimisation 2024, eq. 14 to 16).
+// Cost of a scan in a grid of correspondence costs, with derivatives (paper G,
+// improved graph optimisation 2024, eq. 14 to 16).
 //
 // A point p of the scan, seen from the pose xi = (x, y, theta), is at
 //
@@ -18,11 +18,12 @@
 //
 //   u(f) = (-f + 2f^2 - f^3, 2 - 5f^2 + 3f^3, f + 4f^2 - 3f^3, f^3 - f^2) / 2,
 //
-// A cell that no scan has seen costs as much as a free one in the stock matcher.
-// Where the sight of the laser ends, the walls of a map do, too: every new scan
-// reaches further by what the robot has moved, and fits better where it has
-// moved less. With a laser of 4.5 m in a corridor that shortens a path by 3 %.
-// So what nobody has seen is even odds for points at the limit of sight.
+// In the stock matcher an unknown cell costs as much as a free one. The walls
+// of a map end at the limit of the laser's range; a new scan extends beyond
+// them by the motion of the robot, and matches better if the robot has moved
+// less. With a laser of 4.5 m in a corridor this shortens a path by 3 %.
+// Therefore unknown cells cost 0.5 (even odds) for points at the limit of the
+// range.
 //
 // c = u(f_row)^T P u(f_column) with P the 4 x 4 cells around the point, and the
 // derivatives have u' in place of one u. The solver evaluates a scan a few
@@ -62,11 +63,11 @@ class OccupiedSpaceCost {
  public:
   // Cost of everything outside the grid.
   static constexpr float kOutside = 0.9f;
-  // Cost of what no scan has seen, for points at the limit of sight.
+  // Cost of unknown cells for points at the limit of the range.
   static constexpr float kUnknownAtLimit = 0.5f;
 
   // `points` in metres, in the frame of the node; those from `num_near` on are
-  // at the limit of sight (-1: none is). `cells` must outlive this.
+  // at the limit of the range (-1: none). `cells` must outlive this object.
   OccupiedSpaceCost(const Cells* cells, std::vector<Eigen::Vector2d> points,
                     const BicubicKernels& kernels = BestBicubicKernels(),
                     const int num_near = -1)
@@ -118,8 +119,8 @@ class OccupiedSpaceCost {
     return sums;
   }
 
-  // The sum of c^2 with linear interpolation between cells: a few times faster,
-  // and good enough for steps of whole cells.
+  // The sum of c^2 with linear interpolation between cells: several times
+  // faster, and accurate enough for steps of whole cells.
   double LinearSquares(const Pose2& pose) const {
     const double cosine = std::cos(pose.theta) * cells_per_metre_;
     const double sine = std::sin(pose.theta) * cells_per_metre_;
@@ -171,7 +172,8 @@ class OccupiedSpaceCost {
   };
   static constexpr int kNoRow = -1000000;
 
-  // Of one element a point, and at the end the 16 cells, column by column.
+  // Arrays with one element per point; the last are the 16 cells, column by
+  // column.
   enum ArrayName {
     kPointX,
     kPointY,

@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Levenberg and Marquardt's method for the three unknowns of a pose.
+// The Levenberg-Marquardt method for the three unknowns of a pose.
 //
 // Each iteration solves (H + D / radius) step = -g, with g and H gradient and
 // Gauss-Newton Hessian of the cost at the pose, D the diagonal of H
 // (Marquardt's scaling: metres and radians need no common unit). With rho the
-// decrease of the cost over the one predicted, a step with rho > 0.001 is taken
-// and the radius divided by max(1/3, 1 - (2 rho - 1)^3) (Nielsen 1999, "Damping
-// parameter in Marquardt's method"); else the radius is divided by 2, 4, 8, ...
-// and the step tried again. The start, bounds and stopping rules are the
-// defaults of Ceres, so that both stop at the same minimum.
+// ratio of actual to predicted decrease of the cost, a step with rho > 0.001 is
+// accepted and the radius divided by max(1/3, 1 - (2 rho - 1)^3) (Nielsen 1999,
+// "Damping parameter in Marquardt's method"); otherwise the radius is divided
+// by 2, 4, 8, ... and the step is repeated. Initial radius, bounds and stopping
+// rules are the defaults of Ceres, so that both stop at the same minimum.
 //
-// D is bounded from below, so a direction along which nothing is known (one
-// point, a blank wall, no prior) makes no step rather than an infinite one.
+// D is bounded from below, so along a direction without information (one point,
+// a blank wall, no prior) the step is zero rather than infinite.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_POSE_SOLVER_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_POSE_SOLVER_H_
 
@@ -33,8 +33,9 @@ struct PoseCost {
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
 };
 
+// Limits and tolerances, with the defaults of Ceres.
 struct PoseSolverOptions {
-  // Steps taken; steps tried are at most twice as many.
+  // Accepted steps; at most twice as many are tried.
   int max_iterations = 20;
   double function_tolerance = 1e-6;   // relative to the cost
   double gradient_tolerance = 1e-10;  // largest component
@@ -42,6 +43,7 @@ struct PoseSolverOptions {
   double initial_radius = 1e4;
 };
 
+// The minimum found by the solver.
 struct PoseSolution {
   Pose2 pose;  // the angle is not wrapped
   PoseCost at_pose;
@@ -51,9 +53,9 @@ struct PoseSolution {
   bool converged = false;
 };
 
-// The step that solves (hessian + diag(damping)) step = -gradient, by
-// Cholesky's factors of the matrix scaled to a unit diagonal. False when it is
-// not positive definite, or anything is not finite.
+// The step that solves (hessian + diag(damping)) step = -gradient, by a
+// Cholesky factorisation of the matrix scaled to a unit diagonal. False if it
+// is not positive definite, or if a value is not finite.
 bool SolveDamped(const Eigen::Matrix3d& hessian, const Eigen::Vector3d& damping,
                  const Eigen::Vector3d& gradient, Eigen::Vector3d* step);
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How scan match X_s and prediction X_0 are put together (paper G, improved
-// graph optimisation 2024, section 3.3, eq. 19):
+// Combination of scan match X_s and prediction X_0 (paper G, improved graph
+// optimisation 2024, section 3.3, eq. 19):
 //
 //   X_f = X_0 + K (X_s - X_0)
 //
-// The gain K keeps of the match what the scan determines and takes the rest
-// from the prediction. There are three, all applied by `Remap`:
+// The gain K follows the match along observable directions and the prediction
+// along the others. There are three gains, all applied by `Remap`:
 //
 //   information   The default, where the prediction has a covariance P. With L
 //                 the information of the match (match_information.h),
@@ -22,8 +22,9 @@
 //   directions    Where P is not known: K = sum of w_i v_i v_i^T over the
 //                 directions v_i of translation, with belief w_i in [0, 1]. The
 //                 heading is then that of the match, which has the prior of the
-//                 stock matcher in it: a scan in a round room that knows little
-//                 of its heading is treated no worse than there. For the same
+//                 stock matcher in it: a scan in a round room with little
+//                 information about its heading is treated no worse than
+//                 there. For the same
 //                 reason the directions are judged with the heading given (no
 //                 Schur complement).
 //   as printed    kPaperLiteral: the same sum over the eigenvectors of eq. 17
@@ -40,19 +41,21 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// Options of the analysis of a scan and of its combination with the prediction.
 struct ScanInformationOptions : uncertainty::MatchInformationOptions {
   DegeneracyMode mode = DegeneracyMode::kNoiseFloor;
-  // kPaperLiteral, > 1: the paper has no value. Noise along a blank wall keeps
-  // the ratio near 2 to 4 in a corridor.
+  // Threshold of kPaperLiteral, > 1: the paper gives no value. Noise along a
+  // blank wall keeps the ratio near 2 to 4 in a corridor.
   double paper_ratio = 2.;
 };
 
+// Information of a scan match with its degenerate directions.
 struct ScanInformation : uncertainty::MatchInformation {
   DegeneracyMode mode = DegeneracyMode::kNoiseFloor;
   // In the frame of the grid, real units: eigenvalues are 1/m^2 and 1/rad^2.
   DegeneracyResult degeneracy;
-  // Directions of translation while the heading stays that of the match, as
-  // columns, and the belief in them.
+  // Directions of translation for the heading of the match, as columns, and
+  // their weights.
   Eigen::Matrix2d directions = Eigen::Matrix2d::Identity();
   Eigen::Vector2d direction_weights = Eigen::Vector2d::Zero();
 };
@@ -64,7 +67,7 @@ ScanInformation AnalyzeScan(const ScanInformationOptions& options,
                             int num_points,
                             const Eigen::Matrix3d& gauss_newton);
 
-// What counts as no information at all: nothing is determined.
+// The result of a scan without information.
 ScanInformation NoInformation();
 
 // X_f of G eq. 19. `prior` is P^-1, positive definite, or null where the

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Matches a scan with a grid of correspondence costs: the whole of the scan
-// matcher, without the host.
+// Matches a scan with a grid of correspondence costs: the complete scan
+// matcher, independent of the host.
 //
 //   1. minimise  w^2 / (2 n) sum c^2  +  prior            (pose_solver.h)
 //   2. measure how fast that sum rises around the minimum (scan_curvature.h)
@@ -14,8 +14,8 @@
 //
 //   (w_t |t - t_0|)^2 / 2 + (w_r (theta - theta_0))^2 / 2.
 //
-// With a covariance it is a weak one that keeps the solver near its start (G
-// eq. 16 has none), and step 3 weighs both.
+// With a covariance it is a weak prior that keeps the solver near its start (G
+// eq. 16 has none), and step 3 combines both by their information.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_MATCH_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_SCAN_MATCH_H_
 
@@ -37,44 +37,46 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// Weights as those of the stock matcher, and options of the steps above.
 struct ScanMatchOptions {
   double occupied_space_weight = 1.;  // > 0, as the next two
   double translation_weight = 10.;
   double rotation_weight = 40.;
   PoseSolverOptions solver;
   bool remap = true;  // step 3
-  // How far the scan is moved to measure how its cost rises, cells, > 0.
-  // Shorter measures the noise of single cells, longer overlooks small
-  // structures.
+  // Step by which the scan is moved to measure the curvature of its cost,
+  // cells, > 0. Shorter steps measure the noise of single cells, longer ones
+  // miss small structures.
   double curvature_step = 2.;
   ScanInformationOptions information;
-  // Standard deviations of a prediction whose covariance is not known; they
-  // only enter the reported covariance.
+  // Standard deviations of a prediction with unknown covariance; used in the
+  // reported covariance only.
   double prediction_translation_sigma = 0.1;  // metres, > 0
   double prediction_rotation_sigma = 0.05;    // radians, > 0
 };
 
 namespace internal {
 
-// Of the weak prior, in curvature (squared cost per squared cell).
+// Curvature of the weak prior (squared cost per squared cell).
 constexpr double kWeakPrior = 1e-3;
 
-// By how much the standard deviation of a match is larger with a map of only a
-// few scans. Measured as the noise of the match itself (scan_information.h):
-// variances are 4 times as large with one scan, 1.3 times with two, as with
-// many from the third on.
+// Factor on the standard deviation of a match in a map of only a few scans.
+// Measured as the noise of the match itself (scan_information.h): variances are
+// 4 times as large with one scan, 1.3 times with two, as with many from the
+// third on.
 inline double YoungMapNoise(const int scans_in_map) {
   if (scans_in_map <= 0) return 1.;
   const double n = scans_in_map;
   return std::sqrt(1. + 3. / (n * n * n));
 }
 
+// Whether all components are finite.
 inline bool IsFinite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) &&
          std::isfinite(pose.theta);
 }
 
-// Weights of a prior, squared, along x, y and theta, and where it pulls to.
+// A prior: squared weights along x, y and theta, and the pose it pulls to.
 struct Prior {
   Eigen::Vector3d weights;
   Pose2 pose;
@@ -90,7 +92,7 @@ struct Prior {
 
 }  // namespace internal
 
-// Returns X_f (grid <- node), its angle on the same turn as the initial one.
+// Returns X_f (grid <- node), its angle within half a turn of the initial one.
 // `prediction.covariance` as in match_report.h; `initial` is where the solver
 // starts. Points that are not finite are ignored; a prediction or initial pose
 // that is not finite is replaced by the other. `cells` as in
@@ -112,7 +114,7 @@ template <typename Cells>
 class ScanMatch {
  public:
   // Points, prediction and initial pose are finite; points from `num_near` on
-  // are at the limit of sight.
+  // are at the limit of the range.
   ScanMatch(const ScanMatchOptions& options, const Prediction& prediction,
             const Pose2& initial, std::vector<Eigen::Vector2d> points,
             const int num_near, const Cells& cells)
@@ -139,7 +141,7 @@ class ScanMatch {
                                              start_);
       prior_.weights =
           kWeakPrior * weight2_ * motion.FromPose().diagonal().cwiseAbs2();
-      // A start that a search has found may be far from the prediction.
+      // A start found by a search may be far from the prediction.
       prior_.pose = start_;
     }
   }

@@ -168,8 +168,8 @@ class Driver {
     return true;
   }
 
-  // A way point is left behind when the robot is level with it; the last one
-  // when it is also nearly standing.
+  // A waypoint is passed when the robot is level with it; the last one when it
+  // is also nearly standing.
   bool Reached(const Leg& leg, const size_t to) const {
     const Eigen::Vector2d along =
         (leg.points[to] - leg.points[to - 1]).normalized();
@@ -195,7 +195,7 @@ class Driver {
         return from + lookahead / length * rest;
       }
       if (to + 1 == leg.points.size()) {
-        // Beyond the end the last stretch is prolonged: the aim stays ahead.
+        // Beyond the end the last piece is prolonged: the aim stays ahead.
         const Eigen::Vector2d last =
             (leg.points[to] - leg.points[to - 1]).normalized();
         return leg.points[to] +
@@ -309,9 +309,11 @@ absl::StatusOr<Drive> Drive::Plan(const World& world, const uint64_t seed) {
       if (leg.points.size() >= 2) reached = reached && driver.Follow(leg);
     }
     if (driver.must_turn_in_place()) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          command.where, ": the drive needs a turn in place, and the robot has "
-          "a turning radius of ", world.robot.turn_radius, " m"));
+      return absl::InvalidArgumentError(
+          absl::StrCat(command.where,
+                       ": the drive needs a turn in place, and the robot has "
+                       "a turning radius of ",
+                       world.robot.turn_radius, " m"));
     }
     if (!reached) {
       return absl::InvalidArgumentError(absl::StrCat(

@@ -44,7 +44,7 @@ class PlanBuilder {
   void ReadPlace(Statement* statement);
   void OpenBlock(Statement* statement);
   void CloseBlock(Statement* statement);
-  // Blocks inside blocks multiply; this bounds the memory they can ask for.
+  // Nested blocks multiply; this bounds their memory.
   bool Spend(size_t shapes, Statement* statement);
 
   Shapes plan_;

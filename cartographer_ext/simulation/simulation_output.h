@@ -11,7 +11,7 @@
 //   .places.csv      visits of the marked places
 //   .distances.csv   key distances and the scans that see their ends
 //   .faults.csv      odometry faults: kind, from, to, size
-//   .truth.pgm/.yaml what a perfect mapper would draw
+//   .truth.pgm/.yaml the ideal map
 // The columns are described in docs/world_format.md.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_SIMULATION_OUTPUT_H_
 #define CARTOGRAPHER_EXT_SIMULATION_SIMULATION_OUTPUT_H_
@@ -35,8 +35,8 @@ struct SimulationOutputOptions {
   bool mcap = false;
   bool db3 = false;
   bool truth_map = true;
-  double map_resolution = 0.05;  // metres a cell
-  // Told the number of scans written so far.
+  double map_resolution = 0.05;  // metres per cell
+  // Called with the number of scans written so far.
   std::function<void(int64_t)> progress;
 };
 
@@ -51,7 +51,7 @@ struct SimulationSummary {
   std::vector<std::string> files;
 };
 
-// Every file is whole or absent. An error names the file.
+// Every file is complete or absent. An error names the file.
 absl::Status WriteSimulation(std::shared_ptr<const Simulation> simulation,
                              const SimulationOutputOptions& options,
                              SimulationSummary* summary);

@@ -5,9 +5,9 @@
 //
 //   circle 3 4 0.5 reflectivity=0.3      # comment
 //
-// Values are read through checked accessors that remember the first mistake, so
-// that a statement's reader is a list of its fields; `Finish` then reports the
-// mistake (file, line, key, value, allowed range), or names what was left over.
+// Values are read through checked accessors that store the first error, so the
+// reader of a statement is a list of its fields; `Finish` then reports the
+// error (file, line, key, value, allowed range), or unused values.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_STATEMENT_H_
 #define CARTOGRAPHER_EXT_SIMULATION_STATEMENT_H_
 
@@ -47,7 +47,7 @@ class Statement {
   std::vector<std::vector<double>> ListOptions(absl::string_view key,
                                                size_t count, double limit);
 
-  // Remembers a mistake of the caller's own finding; the first one wins.
+  // Stores an error found by the caller; the first one is kept.
   void Fail(absl::string_view message);
   absl::Status Finish();
 
@@ -69,7 +69,7 @@ class Statement {
   absl::Status status_;
 };
 
-// Coordinates beyond this are a typing error, and would overflow the grids.
+// Larger coordinates are typing errors, and would overflow the grids.
 constexpr double kMaxCoordinate = 1e4;
 
 }  // namespace simulation

@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxCells = 64e6;
 constexpr double kViewDistance = 0.25;  // metres driven between two views
 constexpr double kViewTime = 0.1;       // seconds between poses looked at
-// Each view sends at least so many beams: walls far away come out closed.
+// Minimum number of beams per view, so that distant walls are closed.
 constexpr int kBeams = 720;
 constexpr float kOccupied = 1.f;
 constexpr float kFree = 0.f;

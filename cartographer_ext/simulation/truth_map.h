@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The map a perfect mapper would make of a run: what exact scans of the plan
-// alone (no moving obstacle, no noise) show from the true poses. Cells passed
-// by a beam are free, cells a beam ends in are occupied, the others unknown.
+// The ideal map of a run: exact scans of the plan alone (no moving obstacle, no
+// noise) from the true poses. Cells passed by a beam are free, cells a beam
+// ends in are occupied, the others unknown.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_TRUTH_MAP_H_
 #define CARTOGRAPHER_EXT_SIMULATION_TRUTH_MAP_H_
 
@@ -14,8 +14,8 @@
 namespace cartographer_ext {
 namespace simulation {
 
-// `resolution` in metres a cell. The map's frame is the world; its borders lie
-// on multiples of the resolution. An error when it would need more than 64
+// `resolution` in metres per cell. The map's frame is the world; its borders
+// are multiples of the resolution. An error when it would need more than 64
 // million cells.
 absl::StatusOr<io::OccupancyMap> MakeTruthMap(const Simulation& simulation,
                                               double resolution);

@@ -35,7 +35,7 @@ struct LaserSettings {
   double rate = 10.;               // scans per second
   double resolution = 0.;          // ranges are multiples of it; 0: exact
   double sweep = 0.;               // seconds from first to last beam
-  double no_return = 81.91;        // the range that says "no echo"
+  double no_return = 81.91;        // range of a miss
   Pose2 mounting;                  // (robot <- laser)
 };
 
@@ -45,9 +45,9 @@ struct LaserSettings {
 //   right/left = scale_right/left + common +- mismatch / 2,
 // with common ~ N(0, scale_sigma^2) and mismatch ~ N(0, mismatch_sigma^2).
 //
-// Wheels that can roll sideways (mecanum) are besides carried sideways by
+// Wheels that can roll sideways (mecanum) also slip sideways by
 //   lateral_noise sqrt(|d|) N(0, 1)
-// of which they measure nothing.
+// which they do not measure.
 struct OdometrySettings {
   bool present = true;
   double rate = 20.;            // messages per second
@@ -79,7 +79,7 @@ struct ImuSettings {
   double gravity = 9.80665;      // m/s^2, on +z
 };
 
-// A disc that walks its closed loop of waypoints for ever.
+// A disc that moves along its closed path of waypoints repeatedly.
 struct MovingObstacle {
   double radius = 0.25;
   double speed = 0.5;
@@ -109,7 +109,7 @@ struct DriveCommand {
   std::string where;                                 // "file:line", for errors
 };
 
-// What goes wrong with the odometry. Times count from the start of the drive.
+// A fault of the odometry. Times are relative to the start of the drive.
 struct OdometryFault {
   enum class Kind {
     kSlip,     // wheels turn by (1 + gain) of the distance, plus spin
@@ -120,12 +120,12 @@ struct OdometryFault {
   };
   Kind kind = Kind::kSlip;
   double start = 0.;      // seconds; of kReverse and kOffset too
-  double duration = 0.;   // seconds; kReverse and kOffset: 0 means for ever
+  double duration = 0.;   // seconds; kReverse and kOffset: 0: until the end
   bool in_place = false;  // slip: inside a circle, not a time window
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   double radius = 0.;
   double gain_left = 0., gain_right = 0.;  // slip
-  double spin_left = 0., spin_right = 0.;  // slip: m/s, also when standing
+  double spin_left = 0., spin_right = 0.;  // slip: m/s, also when stationary
   double distance = 0., angle = 0.;        // jump: metres forward, radians
   double seconds = 0.;                     // offset
 };

@@ -28,7 +28,7 @@ absl::Status WriteDecisionsBeside(
     const std::string& pbstream_filename,
     const std::vector<proto::LoopDecision>& decisions);
 
-// NotFound where there is no such file.
+// NotFound if there is no such file.
 absl::StatusOr<std::vector<proto::LoopDecision>> ReadDecisions(
     const std::string& records_filename);
 

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How long a robot would wait: the time that local SLAM takes for a scan, and
-// how far the back end is behind.
+// Latency on a robot: the time of local SLAM per scan, and the delay of the
+// back end.
 //
-// The host may handle a scan only when the next reading of another sensor has
-// come, so that all readings since the scan before count for a scan. The back
-// end is behind by the age of the oldest node that waits in its queue.
+// The host may process a scan only when the next reading of another sensor
+// arrives, so the time of all readings since the previous scan is attributed to
+// a scan. The delay of the back end is the age of the oldest node in its queue.
 //
 // Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_SLAM_LATENCY_METER_H_
@@ -22,8 +22,8 @@ namespace evaluation {
 
 struct LatencySummary {
   int64_t scans = 0;
-  // Wall time of local SLAM for a scan, milliseconds; 0 without scans. The
-  // percentiles are those of the nearest rank.
+  // Wall time of local SLAM for a scan, milliseconds; 0 without scans.
+  // Percentiles by nearest rank.
   double local_slam_p50 = 0.;
   double local_slam_p99 = 0.;
   double local_slam_max = 0.;
@@ -32,11 +32,13 @@ struct LatencySummary {
 
 class LatencyMeter {
  public:
-  // A reading was handled within `seconds` of wall time.
+  // Adds a reading that was processed within `seconds` of wall time.
   void AddReading(double seconds, bool is_scan);
-  // A node was handed to the back end at `now`, in seconds of any clock.
+  // Adds a node that was passed to the back end at `now`, in seconds of any
+  // clock.
   void AddNode(double now);
-  // So many nodes wait in the back end at `now`, later than those before.
+  // Sets the number of nodes in the queue at `now`, later than in previous
+  // calls.
   void SetQueueLength(size_t num_nodes, double now);
 
   LatencySummary Summary() const;
@@ -44,7 +46,7 @@ class LatencyMeter {
  private:
   double since_scan_ = 0.;
   std::vector<double> scans_;  // milliseconds
-  std::deque<double> nodes_;   // that may wait, when they were handed over
+  std::deque<double> nodes_;   // times of queued nodes
   double max_backlog_ = 0.;
 };
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Records of local SLAM beside a map: run.pbstream has run.nodes.pb
-// (length-delimited MatchRecord messages, one a matched scan) and run.nodes.csv
-// (the same as a table), if local SLAM of ours made it.
+// (length-delimited MatchRecord messages, one per matched scan) and
+// run.nodes.csv (the same as a table), if it was made by our local SLAM.
 #ifndef CARTOGRAPHER_EXT_SLAM_MATCH_FILES_H_
 #define CARTOGRAPHER_EXT_SLAM_MATCH_FILES_H_
 
@@ -24,17 +24,16 @@ std::string MatchRecordsFilename(const std::string& pbstream_filename);
 std::string MatchCsvFilename(const std::string& pbstream_filename);
 
 // Writes both files atomically; without records it removes those of an earlier
-// run, which would not belong to the map.
+// run, which do not belong to the map.
 absl::Status WriteMatchesBeside(const std::string& pbstream_filename,
                                 const std::vector<proto::MatchRecord>& records);
 
 absl::StatusOr<std::vector<proto::MatchRecord>> ReadMatches(
     const std::string& records_filename);
 
-// Marks the nodes of `graph` for the picture: those whose scan did not
-// determine the position, with the direction, and those next to which odometry
-// was at fault. Records of trajectories that the graph does not have are
-// ignored.
+// Marks the nodes of `graph` for the picture: those with a degenerate scan,
+// with the direction, and those near an odometry fault. Records of trajectories
+// that the graph does not have are ignored.
 void MarkMatches(const std::vector<proto::MatchRecord>& records,
                  MapGraph* graph);
 

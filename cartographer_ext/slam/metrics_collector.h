@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Keeps the values of the host's metrics, to be read by name: how many searches
-// were made, how long the queue is. The host registers its metrics once for the
-// whole process and never lets go of them, so there is one collector that lives
-// as long as the process; runs take differences.
+// Collects the values of the host's metrics, for lookup by name, such as the
+// number of searches or the length of the queue. The host registers its metrics
+// once per process and never releases them, so there is one collector with the
+// lifetime of the process; runs use differences.
 #ifndef CARTOGRAPHER_EXT_SLAM_METRICS_COLLECTOR_H_
 #define CARTOGRAPHER_EXT_SLAM_METRICS_COLLECTOR_H_
 
@@ -26,7 +26,7 @@ class MetricsCollector : public cartographer::metrics::FamilyFactory {
   using Labels = std::map<std::string, std::string>;
 
   // The collector that the host's metrics report to; registers them on the
-  // first call, which must come before a map builder is made.
+  // first call, which must precede the creation of a map builder.
   static MetricsCollector* Global();
 
   MetricsCollector();
@@ -43,7 +43,7 @@ class MetricsCollector : public cartographer::metrics::FamilyFactory {
                          boundaries) override;
 
   // Sum of the counters and gauges of a family whose labels include those
-  // given; of histograms the number of observations. 0 for an unknown name.
+  // given; for histograms the number of observations. 0 for an unknown name.
   double Sum(const std::string& name, const Labels& labels = {}) const;
   bool Has(const std::string& name) const;
   // All values by name and labels, "name{key=value,...}".
@@ -57,7 +57,7 @@ class MetricsCollector : public cartographer::metrics::FamilyFactory {
   Value* AddValue(const std::string& name, const Labels& labels);
 
   mutable absl::Mutex mutex_;
-  // Handles given out stay valid: values are never moved or removed.
+  // Handles remain valid: values are never moved or removed.
   std::deque<std::unique_ptr<Value>> values_;
   std::multimap<std::string, std::pair<Labels, Value*>> by_name_;
   std::deque<std::shared_ptr<void>> families_;

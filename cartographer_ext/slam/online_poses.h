@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The pose that a user of the running system sees at each scan, which is not
-// the pose that the finished map gives the scan later:
+// The pose of each scan as published by the running system, which differs from
+// its pose in the finished map:
 //
 //   (map <- robot) = (map <- local) * (local <- robot),
 //
-// with (map <- local) as the last optimisation before the scan left it. Every
-// optimisation belongs to the node that asked for it: scans later than that
-// node see its result, as they would with a back end that takes no time. That
-// does not depend on how fast a recording is played, nor on threads.
+// with (map <- local) after the last optimisation before the scan. Every
+// optimisation belongs to the node that triggered it: later scans use its
+// result, as with a back end without delay. This does not depend on the replay
+// speed or on threads.
 #ifndef CARTOGRAPHER_EXT_SLAM_ONLINE_POSES_H_
 #define CARTOGRAPHER_EXT_SLAM_ONLINE_POSES_H_
 
@@ -36,17 +36,17 @@ class OnlinePoses {
   // (map <- local) until the first optimisation; identity unless set.
   void Start(const Eigen::Isometry3d& map_from_local)
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // That the scan at `time` became this node. In any order.
+  // Records that the scan at `time` became this node. In any order.
   void AddNode(int node_index, io::TimeNs time) ABSL_LOCKS_EXCLUDED(mutex_);
-  // What an optimisation up to and with this node found.
+  // Adds the result of an optimisation up to and including this node.
   void AddOptimization(int node_index, const Eigen::Isometry3d& map_from_local)
       ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // That an optimisation up to and with this node has tied it to a loaded map.
-  // The first counts.
+  // Records that an optimisation up to and including this node has constrained
+  // it to a loaded map. The first call counts.
   void SetLocalized(int node_index) ABSL_LOCKS_EXCLUDED(mutex_);
   bool is_localized() const ABSL_LOCKS_EXCLUDED(mutex_);
-  // (map <- robot) at the first scan from that node on; none when never.
+  // (map <- robot) at the first scan from that node on; none if there is none.
   absl::optional<StampedPose> LocalizedAt(
       const std::vector<StampedPose>& local_scans) const
       ABSL_LOCKS_EXCLUDED(mutex_);

@@ -15,13 +15,13 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// A log, a bag, or a world file (*.world), which is driven through with that
+// Opens a log, a bag, or a world file (*.world), which is simulated with that
 // seed while it is read.
 absl::StatusOr<std::unique_ptr<io::SensorSource>> OpenRecording(
     const std::string& filename, const io::SensorSourceOptions& options,
     uint64_t seed);
 
-// What the configuration says about reading a recording.
+// The options of the configuration for reading a recording.
 io::SensorSourceOptions ToSourceOptions(const SensorSettings& settings);
 
 // The name of a recording without folder and ending, for files made from it:

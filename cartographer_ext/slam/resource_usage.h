@@ -14,9 +14,9 @@ double ProcessCpuSeconds();
 // Largest resident memory of this process so far, in bytes.
 int64_t PeakMemoryBytes();
 
-// Starts a new count of the peak and returns the resident memory at this time,
-// in bytes. Where the system cannot (it is a Linux matter), the peak goes on
-// counting from the start of the process.
+// Resets the peak and returns the current resident memory, in bytes. If the
+// system does not support this (Linux only), the peak continues to count from
+// the start of the process.
 int64_t ResetPeakMemory();
 
 // Largest resident memory since ResetPeakMemory, in bytes.

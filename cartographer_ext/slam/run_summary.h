@@ -11,10 +11,10 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// What was fed, what came out and what it took, for programs.
+// Input, results and resource use, as JSON.
 nlohmann::ordered_json ToJson(const SlamRun& run);
 
-// The most important of it in two lines, the last one ended.
+// A summary in a few lines, with a final line break.
 std::string ToText(const SlamRun& run);
 
 }  // namespace evaluation

@@ -11,10 +11,10 @@ namespace evaluation {
 
 // The scan as points in the tracking frame with the laser as origin. Beams
 // without an echo are skipped: NaN, infinite, and ranges outside the laser's
-// own limits and outside [min_range, max_range] (metres). What is a hit and
-// what only clears free space is decided further on, by the range limits of
-// local SLAM. The time of a point counts from the stamp of the scan, which is
-// that of the last beam, so it is never above zero.
+// own limits and outside [min_range, max_range] (metres). Hits and rays that
+// only clear free space are distinguished later, by the range limits of local
+// SLAM. The time of a point is relative to the stamp of the scan, which is that
+// of the last beam, so it is never positive.
 cartographer::sensor::TimedPointCloudData ToTimedPointCloudData(
     const io::LaserScan& scan, double min_range, double max_range);
 

@@ -3,16 +3,16 @@
 //
 // Global poses at every scan. The pose graph holds nodes only, and the motion
 // filter makes far fewer nodes than there are scans; interpolating between
-// nodes in time supposes a constant speed that no robot has. Local SLAM however
-// did match every scan. Between two nodes its path is right but for the
-// correction that the optimisation gave them, so each scan is seen once from
-// the node before and once from the node after, each at its optimised pose:
+// nodes in time would assume constant speed. But local SLAM has matched every
+// scan. Between two nodes its path is right except for the correction by the
+// optimisation, so the pose of each scan is computed once from the previous and
+// once from the next node, each at its optimised pose:
 //
 //   from before   global(a) * local(a)^-1 * local(scan)
 //   from after    global(b) * local(b)^-1 * local(scan)
 //
-// and the two are blended in proportion to the time that has passed, which
-// meets both nodes exactly and leaves no jump.
+// and the two are interpolated in time, which is exact at both nodes and
+// continuous.
 #ifndef CARTOGRAPHER_EXT_SLAM_SCAN_TRAJECTORY_H_
 #define CARTOGRAPHER_EXT_SLAM_SCAN_TRAJECTORY_H_
 
@@ -31,7 +31,7 @@ struct NodePoses {
 };
 
 // `local_scans` and `nodes` in order of time. Scans before the first or after
-// the last node follow that node alone. Empty when there are no nodes.
+// the last node use that node only. Empty without nodes.
 std::vector<StampedPose> GlobalScanPoses(
     const std::vector<StampedPose>& local_scans,
     const std::vector<NodePoses>& nodes);

@@ -20,20 +20,20 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// What was fed and what was not.
+// Counts of fed and skipped readings.
 struct FedReadings {
   int64_t scans = 0;
   int64_t odometry_readings = 0;
   int64_t imu_readings = 0;
-  // Without a valid range, or not later than the scan before.
+  // Without a valid range, or not later than the previous scan.
   int64_t skipped_scans = 0;
-  // Odometry and IMU readings not later than the one before.
+  // Odometry and IMU readings not later than the previous one.
   int64_t skipped_readings = 0;
-  io::OdometryJumps odometry_jumps;  // taken out of the odometry
+  io::OdometryJumps odometry_jumps;  // removed from the odometry
   double sensor_seconds = 0.;        // first to last scan
 };
 
-// A line for everything odd about them.
+// One line per warning about the readings.
 std::vector<std::string> WarningsOf(const FedReadings& fed,
                                     bool wants_odometry);
 
@@ -42,8 +42,8 @@ class SensorFeeder {
  public:
   using TrajectoryBuilder = cartographer::mapping::TrajectoryBuilderInterface;
 
-  // What the builder has to be made for. `lasers`: names of the sensors of
-  // scans; none where the recording does not name them.
+  // The sensors for which the builder must be created. `lasers`: names of the
+  // scan sensors; empty if the recording does not name them.
   static std::set<TrajectoryBuilder::SensorId> Sensors(
       const std::vector<std::string>& lasers, bool use_odometry, bool use_imu);
 

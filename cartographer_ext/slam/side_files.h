@@ -20,17 +20,17 @@ namespace evaluation {
 std::string SideFilename(absl::string_view pbstream_filename,
                          absl::string_view ending);
 
-// Both files. Without records, that is without bytes, files of an earlier map
-// are removed.
+// Writes both files. Without records (no bytes), files of an earlier map are
+// removed.
 absl::Status WriteSideFiles(const std::string& records_filename,
                             const std::string& bytes,
                             const std::string& csv_filename,
                             const std::string& csv);
 
-// NotFound naming the file.
+// Reads a file; NotFound names it.
 absl::StatusOr<std::string> ReadBytes(const std::string& filename);
 
-// What `parse` makes of the bytes of the file; its errors name the file.
+// Reads a file and parses it with `parse`; errors name the file.
 template <typename Records>
 absl::StatusOr<Records> ReadSideFile(
     const std::string& filename,

@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Drives a recording through the host from the first reading to the finished
-// map. The same for every command that maps: the map, the numbers beside it,
-// and the trajectory at every scan.
+// Runs the host on a recording from the first reading to the finished map. Used
+// by every command that maps: gives the map, its statistics, and the trajectory
+// at every scan.
 //
-// What reaches the host, in order of time:
+// Input of the host, in order of time:
 // * every scan as points in the tracking frame (scan_conversion.h). A scan that
-//   is not later than the one before, or has no point, is left out and counted.
-// * odometry at its own stamps, where the recording has any and the
-//   configuration wants it. Readings that are not later than the one before are
-//   left out and counted.
-// * IMU readings where trajectory_builder_2d.use_imu_data is set.
+//   is not later than the previous one, or has no point, is skipped and counted.
+// * odometry at its own stamps, if the recording has any and the configuration
+//   uses it. Readings that are not later than the previous one are skipped and
+//   counted.
+// * IMU readings if trajectory_builder_2d.use_imu_data is set.
 //
-// Feeding pauses while the back end has much left to do, which bounds memory on
-// slow machines and changes no result.
+// Feeding pauses while the back end has a long queue, which bounds memory on
+// slow machines without affecting the result.
 #ifndef CARTOGRAPHER_EXT_SLAM_SLAM_RUNNER_H_
 #define CARTOGRAPHER_EXT_SLAM_SLAM_RUNNER_H_
 
@@ -43,13 +43,13 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// How far a run is.
+// Progress of a run.
 struct SlamProgress {
   enum class Stage { kFeeding, kOptimizing };
   Stage stage = Stage::kFeeding;
   int64_t scans = 0;
   int64_t total_scans = 0;
-  int64_t queue_length = 0;  // work left in the back end
+  int64_t queue_length = 0;  // of the back end
 };
 
 struct SlamRunOptions {
@@ -59,51 +59,51 @@ struct SlamRunOptions {
   StartingState state;
   // Feeding waits while the back end's queue is longer.
   int max_queue_length = 1000;
-  // Readings are fed when they would have come, this many times as fast; 0: as
-  // fast as possible.
+  // Readings are fed at this multiple of real time; 0: as fast as possible.
   double realtime_factor = 0.;
-  // Called from the calling thread after each scan that was fed, with their
-  // number so far and the number in the recording. May add to the pose graph.
+  // Called from the calling thread after each scan, with the number of scans so
+  // far and in the recording. May add to the pose graph.
   std::function<void(int64_t, int64_t,
                      cartographer::mapping::MapBuilderInterface*)>
       after_scan;
-  // Called now and then from the calling thread.
+  // Called occasionally from the calling thread.
   std::function<void(const SlamProgress&)> on_progress;
 };
 
-// A run, with what was fed to it.
+// A run and its input.
 struct SlamRun : FedReadings {
   // Finished and optimised; holds the map.
   std::unique_ptr<cartographer::mapping::MapBuilderInterface> map_builder;
   int trajectory_id = 0;
 
-  // What it started from.
+  // The loaded map.
   int64_t loaded_nodes = 0;
   int64_t loaded_submaps = 0;
 
-  // What came out, with what was loaded.
+  // Contents of the map, including the loaded part.
   int64_t nodes = 0;
   int64_t submaps = 0;
   int64_t inter_constraints = 0;
   int64_t intra_constraints = 0;
-  // Of the inter constraints those between the recording and what was loaded.
+  // Inter-submap constraints between the recording and the loaded map.
   int64_t constraints_to_loaded = 0;
   // Verdicts of the robust optimisation problem in the last optimisation and
-  // what it took in all of them; `optimizations` is 0 without it.
+  // its cost in all of them; `optimizations` is 0 without it.
   optimization::SwitchedLoops switched_loops;
   // (local <- tracking) and (map <- tracking) at every scan that local SLAM
-  // matched. Where the configuration trims nodes (pure localisation) nothing is
-  // left to optimise in the end, and the global ones are the online ones.
+  // matched. If the configuration trims nodes (pure localisation), there is
+  // nothing to optimise at the end, and the global poses are the online ones.
   std::vector<StampedPose> local_scan_poses;
   std::vector<StampedPose> global_scan_poses;
-  // (map <- tracking) as it was known when the scan came, see online_poses.h.
+  // (map <- tracking) as published online, see online_poses.h.
   std::vector<StampedPose> online_scan_poses;
 
-  // In a loaded map: the first scan of which the place in it is known, from an
-  // optimisation with a loop to the map on. None when never, or without a map.
+  // In a loaded map: the first scan whose pose in it is known, after an
+  // optimisation with a loop to the map. None if there is none, or without a
+  // map.
   absl::optional<StampedPose> localized_at;
 
-  // What it took. CPU seconds count all threads.
+  // Resource use. CPU seconds include all threads.
   double wall_seconds = 0.;
   double cpu_seconds = 0.;
   LatencySummary latency;
@@ -112,29 +112,30 @@ struct SlamRun : FedReadings {
   int64_t peak_memory_bytes = 0;  // of the process so far
   int64_t loop_searches = 0;
   int64_t loops_found = 0;
-  // CPU seconds of closing loops, all stages but the optimisation, where the
-  // host's metrics tell; else of all threads but the feeding one.
+  // CPU seconds of loop closure, all stages except the optimisation, if the
+  // host's metrics include them; otherwise of all threads except the feeding
+  // one.
   double loop_search_cpu_seconds = 0.;
   bool loop_search_cpu_is_measured = false;
   LoopCpu loop_cpu;  // the same by stage
-  // The host's metrics at the end, less those at the start.
+  // The host's metrics, as difference between end and start.
   std::map<std::string, double> metrics;
 
-  // What our loop closure learnt of local SLAM's drift on this trajectory;
-  // without it, or without loops, what it assumes before (no cycles).
+  // Drift of local SLAM on this trajectory as estimated by our loop closure;
+  // without it, or without loops, the prior (no cycles).
   uncertainty::DriftEstimate drift;
-  // Why loop candidates were accepted or not, where our loop closure ran.
+  // Decisions on loop candidates; empty without our loop closure.
   std::vector<proto::LoopDecision> decisions;
-  // One a matched scan; empty with the stock local SLAM.
+  // One per matched scan; empty with stock's local SLAM.
   std::vector<proto::MatchRecord> matches;
 
   std::vector<std::string> warnings;
-  // What was odd about the recording and the configuration.
+  // Warnings about the recording and the configuration.
   std::vector<std::string> input_warnings;
 };
 
-// Errors: the source's own, a recording without scans or of which local SLAM
-// used none, IMU wanted but absent, a map to start from that cannot be read.
+// Errors: those of the source, a recording without scans or without scans used
+// by local SLAM, a required but missing IMU, an unreadable initial map.
 absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
                                 io::SensorSource* source,
                                 const SlamRunOptions& options);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A map to start from: to localise in it, or to go on mapping.
+// A map to start from: to localise in it, or to continue mapping.
 #ifndef CARTOGRAPHER_EXT_SLAM_STARTING_STATE_H_
 #define CARTOGRAPHER_EXT_SLAM_STARTING_STATE_H_
 
@@ -20,26 +20,25 @@ namespace cartographer_ext {
 namespace evaluation {
 
 struct StartingState {
-  std::string filename;  // .pbstream; empty: start from nothing
-  // Nothing of the map moves any more, and it is not searched against itself.
+  std::string filename;  // .pbstream; empty: no map
+  // The map is frozen, and not searched against itself.
   bool frozen = true;
-  // (map <- robot) at the first scan, where it is known; needs a file.
+  // (map <- robot) at the first scan, if known; needs a file.
   absl::optional<Pose2> initial_pose;
 };
 
 // "X,Y,DEGREES". The error quotes the text.
 absl::StatusOr<Pose2> ParsePose(const std::string& text);
 
-// Loads the file, which is checked before: the host would end the program over
-// a bad one. Returns the ids that the stored trajectories got, by their ids in
-// the file. Errors: those of io::ReadPbstream, a state without nodes.
+// Loads the file after checking it, because the host would terminate the
+// program on a bad one. Returns the new ids of the stored trajectories by their
+// ids in the file. Errors: those of io::ReadPbstream, a state without nodes.
 absl::StatusOr<std::map<int, int>> LoadStartingState(
     const StartingState& state,
     cartographer::mapping::MapBuilderInterface* map_builder);
 
-// Sets where a trajectory starts, in the form the host has for it: relative
-// to the first node of trajectory `to_trajectory_id`. An error where that has
-// no nodes.
+// Sets the initial pose of a trajectory in the host's form: relative to the
+// first node of trajectory `to_trajectory_id`. An error if that has no nodes.
 absl::Status SetInitialPose(
     const Pose2& initial_pose, int to_trajectory_id,
     const cartographer::mapping::PoseGraphInterface& pose_graph,

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the commands share: how flags are read, errors are reported and results
-// are written. Exit codes: 0 success, 1 bad input, 2 wrong usage; 3 where a
-// command judges maps and the verdict is not the one that was asked for.
+// Common parts of the commands: reading flags, reporting errors and writing
+// results. Exit codes: 0 success, 1 bad input, 2 wrong usage, 3 if a command
+// judges maps and the verdict is worse than required.
 //
 //   DEFINE_string(input_filename, "", "what to read");
 //   int main(int argc, char** argv) {
@@ -33,13 +33,12 @@ constexpr int kExitUsage = 2;
 constexpr int kExitVerdict = 3;
 
 // Sets the gflags of a command. `-flag value`, `-flag=value` with one or two
-// dashes, `-flag` and `-noflag` for booleans. One argument that is no flag is
-// the main input, where the command has one. Unknown flags, bad values and
-// other arguments end the program with exit code 2 and a hint; -help prints the
-// description and the command's own flags and ends it with 0, -version the
-// version. Starts the log,
-// which shows errors only unless -minloglevel is given. With `-json -` nothing
-// but the JSON of WriteJson reaches standard output.
+// dashes, `-flag` and `-noflag` for booleans. One argument that is not a flag
+// is the main input, if the command has one. Unknown flags, bad values and
+// other arguments exit with code 2 and a hint; -help prints the description and
+// the command's own flags and exits with 0, -version prints the version.
+// Initialises the log, which shows errors only unless -minloglevel is given.
+// With `-json -` only the JSON of WriteJson is written to standard output.
 class CommandLine {
  public:
   // `description` is what -help prints above the flags, `input_flag` the flag of
@@ -47,11 +46,11 @@ class CommandLine {
   explicit CommandLine(const std::string& description,
                        const std::string& input_flag = "",
                        const std::string& second_input_flag = "");
-  // Takes any number of inputs: those behind the first are more_inputs().
+  // Accepts any number of inputs: those after the first are more_inputs().
   void TakeMany() { takes_many_ = true; }
   void Parse(int argc, char** argv);
 
-  // Whether the main input stood there without its flag.
+  // Whether the main input was given without its flag.
   bool has_positional_input() const { return has_positional_input_; }
 
   const std::vector<std::string>& more_inputs() const { return more_inputs_; }
@@ -79,25 +78,25 @@ int UsageError(const std::string& message);
 // On standard error, a line each.
 void PrintNotes(const std::vector<std::string>& notes);
 
-// kExitSuccess, or prints the message and returns kExitBadInput; that also when
-// standard output did not take what was printed (full, closed). With
-// `verdict_fails` success becomes kExitVerdict.
+// kExitSuccess, or prints the message and returns kExitBadInput; also if
+// standard output could not be written (full, closed). With `verdict_fails`
+// success becomes kExitVerdict.
 int ExitCode(const absl::Status& status, bool verdict_fails = false);
 
-// The folders of a flag, comma separated. For an empty one the folder with our
-// Lua files that belongs to this program, wherever it is called from: that
-// above it (a build inside the sources, an installation), else that of the
-// sources it was built from, else configuration_files.
+// The folders of a flag, comma separated. If empty, the folder with our Lua
+// files that belongs to this program, independent of the working folder: the
+// one above it (a build inside the sources, an installation), otherwise that of
+// the sources it was built from, otherwise configuration_files.
 std::vector<std::string> ConfigurationDirectories(const std::string& flag);
 
 // The same for a program with this path.
 std::string ConfigurationDirectoryOf(const std::string& program);
 
-// Finds out at the start, rather than after an hour's work, that an output
-// cannot be written, or would replace an input or another output: one that is
-// among `inputs` or given by the flag of a main input, that two flags of the
-// command name, or that stands here twice. Links are followed. Empty names, "-",
-// devices and pipes are fine.
+// Checks at the start, rather than after an hour of work, that outputs can be
+// written and do not replace an input or another output: an error if one is
+// among `inputs` or the main input, is named by two flags of the command, or is
+// listed twice. Links are followed. Empty names, "-", devices and pipes are
+// allowed.
 absl::Status CheckWritable(const std::vector<std::string>& filenames,
                            const std::vector<std::string>& inputs = {});
 

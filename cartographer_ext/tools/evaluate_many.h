@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// cartographer_ext_evaluate over many maps, with the flags that only they have.
+// cartographer_ext_evaluate on many maps, with its additional flags.
 #ifndef CARTOGRAPHER_EXT_TOOLS_EVALUATE_MANY_H_
 #define CARTOGRAPHER_EXT_TOOLS_EVALUATE_MANY_H_
 
@@ -11,12 +11,12 @@
 namespace cartographer_ext {
 namespace tools {
 
-// What is wrong with the flags of many maps, or, for one map, that they are
-// given; else empty.
+// An error in the flags for many maps, or their use with one map; otherwise
+// empty.
 std::string WrongUsageOfMany(bool many);
 
-// Judges all maps that `inputs` name and writes what is asked for. Returns the
-// exit code. Takes the arguments of the program for MPI.
+// Judges all maps named by `inputs` and writes the requested outputs. Returns
+// the exit code. Takes the arguments of the program for MPI.
 int EvaluateMany(const std::vector<std::string>& inputs, int* argc,
                  char*** argv);
 

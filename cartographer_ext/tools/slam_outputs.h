@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What cartographer_ext_slam writes of a run, and the flags that name it.
+// The outputs of cartographer_ext_slam, and their flags.
 #ifndef CARTOGRAPHER_EXT_TOOLS_SLAM_OUTPUTS_H_
 #define CARTOGRAPHER_EXT_TOOLS_SLAM_OUTPUTS_H_
 
@@ -14,18 +14,18 @@
 namespace cartographer_ext {
 namespace tools {
 
-// With a stem, every output that has no name of its own is named after it.
+// With a stem, every output without an explicit name is named after it.
 void NameSlamOutputs(const std::string& stem);
 
-// Before the work: CheckWritable of all of them, those flags included that
-// slam_main.cc defines.
+// To be called at the start: CheckWritable for all of them, including the flags
+// of slam_main.cc.
 absl::Status CheckSlamOutputs();
 
-// The map and what lies beside it, trajectories, tables and pictures, each
-// where a flag names it; not the report.
+// Writes the map and its side files, trajectories, tables and pictures, if
+// named by a flag; not the report.
 absl::Status WriteSlamResults(const evaluation::SlamRun& run);
 
-// The files that a user looks for first.
+// Prints the names of the most important files.
 void PrintSlamOutputs(std::ostream& out);
 
 }  // namespace tools

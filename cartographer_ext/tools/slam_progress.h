@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How long a run will still take. Scans are fed faster than the back end works
-// them off, and their cost grows with the map, so the share of scans that are
-// fed says little. Counted are those that the back end is through with; their
-// number grows with the time as n ~ t^(2/3), and what follows the mapping takes
-// a share of what the mapping takes. Exponent and share are those of ACES.
+// Estimates the remaining time of a run. Scans are fed faster than the back end
+// processes them, and their cost grows with the map, so the share of fed scans
+// is a poor measure. Instead, scans processed by the back end are counted;
+// their number grows with time as n ~ t^(2/3), and the steps after mapping take
+// a fixed fraction of the mapping time. Exponent and fraction are those of
+// ACES.
 #ifndef CARTOGRAPHER_EXT_TOOLS_SLAM_PROGRESS_H_
 #define CARTOGRAPHER_EXT_TOOLS_SLAM_PROGRESS_H_
 
@@ -25,14 +26,15 @@ struct SlamWork {
   bool judges_map = false;      // for the report, at the end
 };
 
-// Of the whole run. 0 without scans.
+// Remaining seconds of the whole run. 0 without scans.
 double EstimateSecondsLeft(const SlamWork& work, double elapsed_seconds);
 
 // The progress line of the steps up to the last optimisation.
 class SlamProgressLine {
  public:
   explicit SlamProgressLine(const SlamWork& work);
-  // `last` is the last optimisation, which tells nothing until it is done.
+  // `last` is the last optimisation, which reports no progress until it is
+  // done.
   void Update(int64_t scans, int64_t queue_length, bool last);
 
  private:
@@ -41,7 +43,7 @@ class SlamProgressLine {
   std::unique_ptr<Progress> line_;
 };
 
-// A line that names a step without counts, until the next one or the end.
+// Shows a step without counts, until the next one or the end.
 std::unique_ptr<Progress> ShowStep(const char* name);
 
 }  // namespace tools

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// From which trials of a search can be computed how much a key matters? Objectives of parts of
-// the recordings cannot be held against those of the whole. Trials on whole
-// recordings are taken where there are enough; a search by halving may have
-// few, and these are its best, so that they differ little: then those of the
-// part of the recordings that most were tried on.
+// Selects the trials of a search from which the importance of keys is computed.
+// Objectives on parts of the recordings cannot be compared with those on the
+// whole. Trials on whole recordings are used if there are enough; a search by
+// halving may have few, which are its best and differ little: then the trials
+// on the most frequent part of the recordings are used.
 #ifndef CARTOGRAPHER_EXT_TUNING_COMPARABLE_TRIALS_H_
 #define CARTOGRAPHER_EXT_TUNING_COMPARABLE_TRIALS_H_
 
@@ -29,8 +29,8 @@ ComparableTrials SelectComparable(const std::vector<Trial>& trials);
 // "27 trials on the first 33 % of the recordings"
 std::string ToText(const ComparableTrials& trials);
 
-// The baseline becomes the result where the held-out recordings do not confirm
-// what was found.
+// Makes the baseline the result if the held-out recordings do not confirm the
+// gain.
 void KeepIfConfirmed(double least_gain, TuneResult* result);
 
 }  // namespace tuning

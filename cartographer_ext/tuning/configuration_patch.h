@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A configuration with some keys changed. The file of the user stays as it is;
+// A configuration with some keys changed. The file of the user is not changed;
 // a trial runs its code and then assigns to the global tables (POSE_GRAPH,
 // TRAJECTORY_BUILDER_2D, ...), which the returned table refers to.
 //
 // Keys are checked before the first trial: they must exist, must take the
-// values of their range, and must make a difference to 2D SLAM. Keys of our own
-// blocks (...cartographer_ext...) may be absent from the file; then they have
-// their default, but the block itself must be there.
+// values of their range, and must affect 2D SLAM. Keys of our own blocks
+// (...cartographer_ext...) may be absent from the file, in which case they have
+// their default, but the block itself must be present.
 #ifndef CARTOGRAPHER_EXT_TUNING_CONFIGURATION_PATCH_H_
 #define CARTOGRAPHER_EXT_TUNING_CONFIGURATION_PATCH_H_
 
@@ -33,19 +33,19 @@ class BaseConfiguration {
   const std::vector<std::string>& directories() const { return directories_; }
   const evaluation::SlamConfiguration& parsed() const { return parsed_; }
 
-  // The values that the configuration gives to the keys. Errors name the key
-  // and, where something like it exists, what may have been meant.
+  // The values of the keys in the configuration. Errors name the key and, if
+  // there is one, a similar existing key.
   absl::StatusOr<Point> Values(const std::vector<Parameter>& parameters) const;
 
-  // Tries the ends of each range and each choice. Errors name the key: it is
-  // of another type, the value is not allowed, or nothing changes with it.
+  // Tries the ends of each range and each choice. Errors name the key: it has a
+  // different type, the value is not allowed, or it has no effect.
   absl::Status CheckParameters(const std::vector<Parameter>& parameters) const;
 
   // Lua code of the configuration with { key: value } assigned, files to be
   // included first.
   std::string CodeWith(const nlohmann::json& assignment) const;
 
-  // Of all that runs depend on, as a short text.
+  // A short text that identifies everything the runs depend on.
   std::string Fingerprint() const;
 
  private:

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What has been run, on disk (line_journal.h): a line for each finished run. A
-// search that is started again with the same journal finds every run there
-// instead of doing it again; as the list of trials depends on results only, it
-// goes on as if nothing had happened.
+// The runs of a search, on disk (line_journal.h), one line per finished run. A
+// search that is restarted with the same journal reuses these runs; as the list
+// of trials depends only on results, it continues as if it had not been
+// interrupted.
 #ifndef CARTOGRAPHER_EXT_TUNING_JOURNAL_H_
 #define CARTOGRAPHER_EXT_TUNING_JOURNAL_H_
 
@@ -23,15 +23,15 @@ namespace tuning {
 
 // One configuration on one recording.
 struct RunRecord {
-  // What identifies it.
+  // Identification.
   nlohmann::json assignment;  // { key: value }
   std::string input;
   double fidelity = 1.;
 
-  // What came out.
+  // Result.
   bool ok = false;
-  // Ended from outside (out of memory, a scheduler): says nothing about the
-  // configuration, so that a search that goes on tries it again.
+  // Killed from outside (out of memory, a scheduler), independently of the
+  // configuration; a resumed search tries it again.
   bool killed = false;
   std::string message;                    // why not
   std::map<std::string, double> metrics;  // relations, ate, cpu_seconds, ...
@@ -39,7 +39,7 @@ struct RunRecord {
   double cpu_seconds = 0.;
 };
 
-// Fills in what came out from the answer of a worker.
+// Fills in the result from the answer of a worker.
 void TakeAnswer(const nlohmann::json& answer, RunRecord* record);
 
 // Identifies the run among all of a journal.
@@ -50,20 +50,20 @@ absl::StatusOr<RunRecord> RunFromJson(const nlohmann::json& json);
 
 class Journal {
  public:
-  // Opens or starts the journal. `fingerprint` identifies what the runs depend on
-  // besides their key; a journal of another fingerprint is an error. Errors name
-  // the file, and the line where there is one. An empty name gives a journal
-  // that is not kept.
+  // Opens or starts the journal. `fingerprint` identifies everything else that
+  // the runs depend on; a journal with a different fingerprint is an error.
+  // Errors name the file and, if applicable, the line. With an empty name the
+  // journal is kept in memory only.
   static absl::StatusOr<std::unique_ptr<Journal>> Open(
       const std::string& filename, const std::string& fingerprint);
 
   // The runs it held when it was opened, in the order of the file.
   const std::vector<RunRecord>& runs() const { return runs_; }
 
-  // Whether half a line was cut off its end.
+  // Whether an incomplete last line was removed.
   bool was_torn() const { return lines_->was_torn(); }
 
-  // On disk when it returns OK.
+  // On disk if it returns OK.
   absl::Status Append(const RunRecord& record);
 
  private:

@@ -32,7 +32,7 @@ namespace {
 
 enum Tag { kRequest = 1, kAnswer = 2, kCancel = 3, kEnd = 4 };
 
-// Receiving waits in a busy loop, so it is asked for now and then instead.
+// Receiving waits in a busy loop, so messages are polled instead.
 constexpr auto kPause = std::chrono::milliseconds(2);
 constexpr double kServeSeconds = 0.02;
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The same search on several machines: rank 0 of an MPI job keeps the journal
-// and hands out runs, all other ranks do them, each in a child process as
-// LocalWorkerPool does. Recordings and configurations have to be there under
-// the same paths on all machines. Nothing of MPI is started outside an MPI job.
+// and distributes runs, all other ranks execute them, each in a child process
+// as LocalWorkerPool does. Recordings and configurations must have the same
+// paths on all machines. MPI is not initialised outside an MPI job.
 #ifndef CARTOGRAPHER_EXT_TUNING_MPI_WORKER_POOL_H_
 #define CARTOGRAPHER_EXT_TUNING_MPI_WORKER_POOL_H_
 
@@ -17,9 +17,9 @@
 namespace cartographer_ext {
 namespace tuning {
 
-// Whether the program was started as part of an MPI job, by the environment.
-// Such a job of a program built without MPI would be the same search several
-// times over.
+// Whether the program was started as part of an MPI job, by the environment. In
+// a program built without MPI, such a job would repeat the same search several
+// times.
 bool IsMpiJob();
 
 // Whether the program was built with MPI.
@@ -30,7 +30,7 @@ bool HasMpi();
 class MpiSession {
  public:
   MpiSession(int* argc, char*** argv);
-  // On rank 0, informs the others that nothing more follows.
+  // On rank 0, notifies the others of the end.
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
@@ -38,7 +38,7 @@ class MpiSession {
   int rank() const { return rank_; }
   int size() const { return size_; }
 
-  // On all ranks but 0: does what rank 0 sends until that is over.
+  // On all ranks except 0: executes requests from rank 0 until the end.
   void Serve(double max_cpu_seconds, RunFunction run = &AnswerRequest);
 
  private:
@@ -50,8 +50,8 @@ class MpiSession {
 // On rank 0 of a job of at least two ranks; null otherwise.
 std::unique_ptr<WorkerPool> CreateMpiWorkerPool(const MpiSession& session);
 
-// That of the job under MPI, else `num_workers` processes of this machine (0: one
-// for each of its threads).
+// The pool of the MPI job, or otherwise `num_workers` processes on this machine
+// (0: one per hardware thread).
 std::unique_ptr<WorkerPool> CreateWorkerPool(const MpiSession& session,
                                              int num_workers,
                                              double max_cpu_seconds,

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The derivative-free optimisers of NLopt as a sampler. NLopt calls the
-// objective and waits; a sampler is asked for points and given results. Its algorithms being
-// deterministic, the one is made of the other by starting anew at every
-// question: the objectives given so far are replayed, and the first point beyond
-// them is the answer. The replay costs microseconds, a trial costs minutes.
+// objective and waits, whereas a sampler is asked for points and told results.
+// As the algorithms are deterministic, each request restarts the algorithm and
+// replays the objectives known so far; the first point beyond them is the next
+// request. The replay takes microseconds, a trial minutes.
 //
-// A failed trial counts as twice as far from the best as the worst one. When
-// the algorithm ends by itself the sampler is done.
+// A failed trial counts as twice as far from the best as the worst one. The
+// sampler is done when the algorithm terminates.
 #ifndef CARTOGRAPHER_EXT_TUNING_NLOPT_SAMPLER_H_
 #define CARTOGRAPHER_EXT_TUNING_NLOPT_SAMPLER_H_
 
@@ -31,7 +31,7 @@ class NloptSampler : public Sampler {
   NloptSampler(const std::vector<Parameter>& parameters,
                const std::string& method, uint64_t seed, const Point& start);
 
-  // One trial at a time: nothing until the last result is given.
+  // One trial at a time: empty until the last result is known.
   absl::optional<TrialRequest> Ask() override;
   void Tell(size_t index, absl::optional<double> objective) override;
   bool Done() const override { return done_; }

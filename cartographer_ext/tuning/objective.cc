@@ -34,8 +34,8 @@ absl::Status CheckWeights(const std::map<std::string, double>& weights) {
   return absl::OkStatus();
 }
 
-// 95 % quantile of Student's t with so many degrees of freedom, from 2 on; the
-// last one stands for all above.
+// 95 % quantiles of Student's t by degrees of freedom, from 2 on; the last one
+// is used for all above.
 double Quantile(const size_t degrees_of_freedom) {
   constexpr double kQuantiles[] = {2.920, 2.353, 2.132, 2.015, 1.943,
                                    1.895, 1.860, 1.833, 1.812};

@@ -1,30 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is to be made small. A run is measured by several numbers; the objective
-// is a weighted sum of some of them, put together over the recordings.
+// The objective of a search. A run has several metrics; the objective is a
+// weighted sum of some of them, aggregated over the recordings.
 //
 //   objective = "relations"
 //   objective = { relations = 1., cpu_seconds = 0.001 }
 //
-// | name                    | meaning                                        |
+// | name | meaning |
 // |-------------------------|------------------------------------------------|
-// | relations               | mean translational error of the relations, m   |
-// | relations_loop          | the same of those that close loops             |
-// | relations_median        | their median, m                                |
-// | relations_rotation      | mean rotational error, degrees                 |
-// | broken_fraction         | share of relations off by more than 0.5 m      |
-// | ate                     | root mean square distance to the reference, m  |
-// | rpe                     | relative error over a metre, m                 |
-// | precision_at_recall     | share of wrong loops where at least            |
-// |                         | `target_recall` of the revisits are closed,    |
-// |                         | else 1 + the missing share of that recall      |
-// | wall_seconds            | of the run                                     |
-// | cpu_seconds             | of the run, all threads                        |
-// | loop_search_cpu_seconds | of the loop search                             |
-// | self_consistency        | without truth: shares of nodes, rays and loop  |
-// |                         | cycles that contradict the map, and how much   |
-// |                         | walls thicken when seen again                  |
+// | relations | mean translational error of the relations, m | | relations_loop
+// | the same of those that close loops | | relations_median | their median, m |
+// | relations_rotation | mean rotational error, degrees | | broken_fraction |
+// share of relations off by more than 0.5 m | | ate | root mean square distance
+// to the reference, m | | rpe | relative error over a metre, m | |
+// precision_at_recall | share of wrong loops where at least | | |
+// `target_recall` of the revisits are closed, | | | else 1 + the missing share
+// of that recall | | wall_seconds | of the run | | cpu_seconds | of the run,
+// all threads | | loop_search_cpu_seconds | of the loop search | |
+// self_consistency        | no ground truth: shares of nodes, rays, loop   | |
+// | cycles that contradict the map, and how much | | | walls thicken when seen
+// again |
 //
 // Smaller is better for each.
 #ifndef CARTOGRAPHER_EXT_TUNING_OBJECTIVE_H_
@@ -54,11 +50,11 @@ struct Objective {
 
 std::vector<std::string> ObjectiveNames();
 
-// From a Lua value: a name, or a table of weights.
+// Parses a Lua value: a name, or a table of weights.
 absl::StatusOr<std::map<std::string, double>> ParseWeights(
     const nlohmann::json& value);
 
-// From a flag: "relations" or "relations:1,cpu_seconds:0.001".
+// Parses a flag: "relations" or "relations:1,cpu_seconds:0.001".
 absl::StatusOr<std::map<std::string, double>> ParseWeights(
     const std::string& text);
 
@@ -66,24 +62,23 @@ absl::StatusOr<std::map<std::string, double>> ParseWeights(
 absl::StatusOr<Objective::Aggregation> ParseAggregation(
     const std::string& name);
 
-// The weighted sum for one run. An error names the number that the run lacks
-// (relations without truth, for example) or that is not finite.
+// The weighted sum for one run. An error names a metric that is missing
+// (relations without ground truth, for example) or not finite.
 absl::StatusOr<double> EvaluateRun(
     const Objective& objective, const std::map<std::string, double>& metrics);
 
-// Over the recordings. The geometric mean treats a halved error alike on each,
-// whatever its size; it takes values of at least 1e-9.
+// Aggregates over the recordings. In the geometric mean, halving an error has
+// the same effect on each, regardless of its size; values are at least 1e-9.
 double Aggregate(const Objective& objective, const std::vector<double>& values);
 
 // 1 - precision where recall reaches the target, else 2 - (recall / target).
 double PrecisionAtRecall(double precision, double recall, double target);
 
-// Is what a search found better on recordings that it did not see?
-// Compares the objectives of the same held-out recordings, smaller being
-// better, by their relative gains 1 - after / before. From three recordings on
-// the mean gain has to differ from zero by a one-sided t-test at 5 %; with one
-// or two, which have no spread, each has to gain. Always the mean has to exceed
-// `least_gain`. Empty when what was found is better, else why not.
+// Tests whether a result is better on held-out recordings, by the relative
+// gains 1 - after / before of their objectives. With three or more recordings
+// the mean gain must be significantly above zero by a one-sided t-test at 5 %;
+// with one or two, each must improve. The mean must always exceed `least_gain`.
+// Empty if the result is better, otherwise the reason why not.
 std::string WhyNotBetter(const std::vector<double>& before,
                          const std::vector<double>& after, double least_gain);
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is searched: Lua keys with the values they may take. Every parameter is
-// a map from the unit interval, so that samplers need not know about units,
-// logarithms, integers or choices.
+// The search space: Lua keys with their allowed values. Every parameter is a
+// map from the unit interval, so samplers are independent of units, logarithms,
+// integers and choices.
 #ifndef CARTOGRAPHER_EXT_TUNING_PARAMETER_SPACE_H_
 #define CARTOGRAPHER_EXT_TUNING_PARAMETER_SPACE_H_
 
@@ -27,7 +27,7 @@ struct Parameter {
   // configuration and before the assignments, "" being none.
   std::string key;
   Kind kind = Kind::kReal;
-  // Both ends belong to the range.
+  // The range is inclusive.
   double low = 0.;
   double high = 1.;
   bool log_scale = false;
@@ -40,8 +40,8 @@ struct Parameter {
   // result can be read and written again without loss.
   Value FromUnit(double unit) const;
 
-  // Where the value lies, clamped to [0, 1]. A value that is no choice counts
-  // as the first.
+  // Position of the value, clamped to [0, 1]. A value that is not a choice
+  // counts as the first.
   double ToUnit(const Value& value) const;
 
   // Evenly spaced in the unit interval, both ends included, without repetition;
@@ -49,12 +49,12 @@ struct Parameter {
   std::vector<Value> GridValues() const;
 };
 
-// From an array of tables as the Lua file gives it:
+// Parses an array of tables from the Lua file:
 //   { key = "...", range = { 0.4, 0.8 }, scale = "log", integer = true,
 //     steps = 5 }
 //   { key = "...", choices = { true, false } }
 //   { include = "NAME", choices = { "", "front_end_default.lua" } }
-// Errors name the entry, its key and what is wrong.
+// Errors name the entry, its key and the problem.
 absl::StatusOr<std::vector<Parameter>> ParseParameters(
     const nlohmann::json& array);
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr char kBlockName[] = "cartographer_ext";
 
-// "-31.2 %"; empty when nothing can be said.
+// "-31.2 %"; empty if unknown.
 std::string Change(const double before, const double after) {
   if (!(std::abs(before) > 0.)) return "";
   return absl::StrFormat("%+.1f %%", 100. * (after / before - 1.));

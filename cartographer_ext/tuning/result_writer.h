@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a search found: as a Lua file that is a configuration, as a table for
-// people, as JSON for programs.
+// The result of a search as a Lua configuration file, as a table, and as JSON.
 #ifndef CARTOGRAPHER_EXT_TUNING_RESULT_WRITER_H_
 #define CARTOGRAPHER_EXT_TUNING_RESULT_WRITER_H_
 
@@ -15,10 +14,10 @@
 namespace cartographer_ext {
 namespace tuning {
 
-// How sure it is that a key is better changed: "high" when it was on every
+// Confidence that changing a key is better: "high" when it was on every
 // recording of at least three, "medium" when it was on every recording of two,
-// or on two thirds of more, "low" otherwise, "not measured" where pruning did
-// not get to it.
+// or on two thirds of more, "low" otherwise, "not measured" if pruning did not
+// reach it.
 std::string Confidence(const KeyResult& key, size_t num_inputs);
 
 // What the search was about.
@@ -26,15 +25,15 @@ struct ResultContext {
   std::string configuration;
   std::vector<std::string> directories;  // where it and its includes are
   std::string filename;                  // of the Lua file, without folders
-  std::string objective;  // "relations"
+  std::string objective;                 // "relations"
   std::vector<Parameter> parameters;
   std::vector<TuneInput> inputs;
   std::vector<TuneInput> holdout;
 };
 
 // A complete configuration: includes the one that the search started from and
-// sets the changed keys, each with what it was, what it gains and how sure that
-// is. What it includes has to be in the folders searched.
+// sets the changed keys, each with its old value, gain and confidence. The
+// included files must be in the folders searched.
 std::string ToLuaFile(const TuneResult& result, const ResultContext& context);
 
 std::string ToText(const TuneResult& result, const ResultContext& context);

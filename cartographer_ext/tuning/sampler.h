@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which configurations to try, and in which order. A sampler is asked for
-// trials and given their objectives. What it asks for depends on its seed and on
-// these objectives, never on when they arrive: any number of
+// Chooses the configurations to try. A sampler is asked for trials and told
+// their objectives (ask-and-tell interface). Its requests depend on its seed
+// and on these objectives, but not on the time of their arrival: any number of
 // workers gives the same list of trials.
 //
 // * Grid: all combinations of GridValues, the last parameter fastest.
 // * Random: independent draws, uniform in the unit cube.
 // * Successive halving (Jamieson and Talwalkar, AISTATS 2016), bracket after
 //   bracket: many draws are tried on the first part of each recording, the best
-//   third of them on a three times longer part, and so on up to the whole. What
-//   is bad early is given up early.
+//   third of them on a three times longer part, and so on up to the whole. Bad
+//   draws are abandoned early.
 // * NLopt, see nlopt_sampler.h.
 #ifndef CARTOGRAPHER_EXT_TUNING_SAMPLER_H_
 #define CARTOGRAPHER_EXT_TUNING_SAMPLER_H_
@@ -40,14 +40,14 @@ class Sampler {
  public:
   virtual ~Sampler() = default;
 
-  // The next trial. Nothing while results are needed first, or at the end.
+  // The next trial. Empty while results are needed first, or at the end.
   virtual absl::optional<TrialRequest> Ask() = 0;
 
-  // How trial `index` (counted from 0 in the order asked) went: the objective,
-  // smaller is better, or nothing when it failed.
+  // Adds the result of trial `index` (from 0, in the order of the requests):
+  // the objective, smaller is better, or nothing if it failed.
   virtual void Tell(size_t index, absl::optional<double> objective) = 0;
 
-  // Whether Ask will never give anything again.
+  // Whether there are no more trials.
   virtual bool Done() const = 0;
 };
 
@@ -59,7 +59,7 @@ class GridSampler : public Sampler {
   void Tell(size_t index, absl::optional<double> objective) override;
   bool Done() const override { return done_; }
 
-  // Of the whole grid; saturates.
+  // Number of points of the grid; saturates.
   int64_t size() const { return size_; }
 
  private:
@@ -86,8 +86,8 @@ class RandomSampler : public Sampler {
 // Never done.
 class HalvingSampler : public Sampler {
  public:
-  // The parts run are 1, 1/3, 1/9, ... as far as they are at least
-  // `min_fidelity`. A bracket starts with 3^(number of parts) draws.
+  // The parts are 1, 1/3, 1/9, ... down to at least `min_fidelity`. A bracket
+  // starts with 3^(number of parts) draws.
   HalvingSampler(const std::vector<Parameter>& parameters, uint64_t seed,
                  double min_fidelity);
 

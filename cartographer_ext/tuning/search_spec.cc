@@ -181,7 +181,7 @@ absl::StatusOr<TuneInput> ParseInput(const std::string& text) {
   if (!parts.second.empty()) {
     truths.push_back(parts.second);
   } else if (!input.is_world) {
-    // A world knows its own truth.
+    // A world has its own ground truth.
     const std::string stem = WithoutSuffixes(input.recording);
     for (const char* suffix : {".relations", ".tum"}) {
       if (FileSize(stem + suffix).ok()) truths.push_back(stem + suffix);

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which keys matter? Computed from the trials of a search, whatever sampler
-// chose them. Objectives are replaced by their ranks first, because a folded
-// map is off by a hundred times more than a good one and would dominate.
+// Importance of keys, computed from the trials of a search with any sampler.
+// Objectives are replaced by their ranks first, because the error of a folded
+// map is a hundred times that of a good one and would dominate.
 //
 // * effect: share of the variance of the ranks that the value of this key
 //   explains, by the means over quarters of its range (or its choices); the

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // One run of a search: a configuration on a recording (or a finished map), and
-// the numbers that come out.
+// its metrics.
 #ifndef CARTOGRAPHER_EXT_TUNING_TRIAL_RUN_H_
 #define CARTOGRAPHER_EXT_TUNING_TRIAL_RUN_H_
 
@@ -18,14 +18,14 @@ namespace cartographer_ext {
 namespace tuning {
 
 struct RunRequest {
-  // Lua code of the configuration, its name in messages, and where it includes
-  // from.
+  // Lua code of the configuration, its name in messages, and the folders for
+  // its includes.
   std::string code;
   std::string name;
   std::vector<std::string> directories;
   TuneInput input;
-  // The first part of the recording by time that is run, in (0, 1]. Of a
-  // finished map always all.
+  // Fraction of the recording by time that is run, in (0, 1]. Finished maps are
+  // always used as a whole.
   double fidelity = 1.;
   // Overrides that of the configuration unless empty.
   std::string odometry_source;
@@ -40,8 +40,8 @@ absl::StatusOr<RunRequest> RequestFromJson(const nlohmann::json& json);
 
 // Metrics by the names of objective.h, and besides them nodes, submaps, loops,
 // loop_precision, loop_recall, node_contradiction, ray_contradiction,
-// cycle_contradiction, wall_doubling. What cannot be known, for example
-// relations without ground truth, is skipped.
+// cycle_contradiction, wall_doubling. Metrics that are not available, for
+// example relations without ground truth, are omitted.
 absl::StatusOr<std::map<std::string, double>> RunTrial(
     const RunRequest& request);
 

@@ -25,8 +25,8 @@ constexpr double kWaitSeconds = 0.2;
 // Of the time of a search, what is left for pruning.
 constexpr double kShareForPruning = 0.2;
 constexpr double kHoldoutReserve = 1.3;  // times the run of the baseline
-// A space of few configurations is exhausted when so many draws in a row have
-// been tried before.
+// A small space is exhausted after this many consecutive draws that have been
+// tried before.
 constexpr int kMaxRepetitions = 200;
 
 double Now() {

@@ -3,8 +3,8 @@
 //
 // The search itself, in four steps:
 //
-// 1. The configuration as it is, on all recordings.
-// 2. Trials as the sampler asks for them, each on all recordings of the search,
+// 1. The initial configuration, on all recordings. 2. Trials as requested by
+// the sampler, each on all recordings of the search,
 //    several at a time, until the budget is used up. Only trials on whole
 //    recordings can become the best.
 // 3. Pruning: each key that the best trial changed is set back, one after the
@@ -12,12 +12,12 @@
 //    measured gain for every key.
 // 4. The result on the recordings held out, which nothing above has seen.
 //
-// With folds, steps 2 and 3 are done before for each part of the recordings
-// held out, and the result of each is tried on that part: what a user may
-// expect on a building that was not searched on.
+// With folds, steps 2 and 3 are first done with each part of the recordings
+// held out, and each result is evaluated on that part: an estimate of the gain
+// on an unseen building.
 //
-// Every run goes through the journal, so whatever was done before is not done
-// again.
+// Every run is recorded in the journal, and runs in the journal are not
+// repeated.
 #ifndef CARTOGRAPHER_EXT_TUNING_TUNER_H_
 #define CARTOGRAPHER_EXT_TUNING_TUNER_H_
 
@@ -48,10 +48,10 @@ struct TunerOptions {
   double budget_seconds = 0.;  // of everything; 0: no limit
   int folds = 0;               // fewer than 2: none
   bool prune = true;
-  // A key whose return to its old value makes the objective worse by less than
-  // this share goes back.
+  // A key is reset if its old value makes the objective worse by less than this
+  // share.
   double least_gain = 0.005;
-  // The best trial is one that is worse than the configuration as it is on no
+  // The best trial must not be worse than the initial configuration on any
   // recording of the search.
   bool no_input_worse = false;
   std::string odometry_source;
@@ -72,10 +72,9 @@ struct KeyResult {
   std::string key;
   Value before;
   Value after;
-  // How much worse the objective is without this change; absent when it was not
-  // measured.
+  // Deterioration of the objective without this change; absent if not measured.
   absl::optional<double> gain;
-  // On how many recordings it is worse.
+  // Number of recordings on which it is worse.
   int better_on = 0;
 };
 
@@ -93,10 +92,11 @@ struct TuneResult {
   // included.
   std::vector<Trial> trials;
   Trial best;  // after pruning; the baseline when nothing is better
-  // Of what the search found, also when it is not the result.
+  // Held-out result of the best trial, even if it is not the result of the
+  // search.
   absl::optional<Trial> best_holdout;
-  // Why what was better is not the result: the held-out recordings do not
-  // confirm it (WhyNotBetter). Empty when they do, or there are none.
+  // Why the best trial is not the result: the held-out recordings do not
+  // confirm it (WhyNotBetter). Empty if they do, or if there are none.
   std::string not_confirmed;
   std::vector<KeyResult> keys;  // that differ from the baseline
   std::vector<FoldResult> folds;
@@ -115,7 +115,7 @@ struct TunerProgress {
   const char* step = "";
 };
 
-// What is searched for.
+// Inputs and search space of the tuner.
 struct TuneProblem {
   BaseConfiguration configuration;
   std::vector<Parameter> parameters;
@@ -130,12 +130,11 @@ class Tuner {
   Tuner(TuneProblem problem, const TunerOptions& options, WorkerPool* pool,
         Journal* journal);
 
-  // Called now and then.
+  // Sets a function that is called occasionally.
   void SetProgressCallback(std::function<void(const TunerProgress&)> callback);
 
-  // Errors: the journal cannot be written, the configuration as it is fails on
-  // some recording (what is wrong with the best of configurations is wrong with
-  // all), no trial succeeded.
+  // Errors: the journal cannot be written, the initial configuration fails on
+  // some recording (then all trials would fail), no trial succeeded.
   absl::StatusOr<TuneResult> Run();
 
  private:
@@ -147,14 +146,14 @@ class Tuner {
 
   RunRecord Record(const Point& point, size_t input, double fidelity) const;
   nlohmann::json Request(const RunRecord& record, size_t input) const;
-  // Queues the runs that are not known yet.
+  // Queues the runs that are not in the journal.
   PendingTrial Queue(const Point& point, double fidelity,
                      const std::vector<size_t>& inputs);
   bool IsComplete(const PendingTrial& trial) const;
   void Complete(PendingTrial* trial) const;
-  // Starts queued runs and takes results for a while.
+  // Starts queued runs and collects results for a limited time.
   absl::Status Pump();
-  // Forgets what is queued and ends what is running.
+  // Clears the queue and stops the running ones.
   void Stop();
   // One configuration on whole recordings, waited for until the deadline.
   absl::StatusOr<absl::optional<Trial>> Evaluate(
@@ -170,7 +169,7 @@ class Tuner {
   };
   absl::StatusOr<SearchResult> Search(const std::vector<size_t>& inputs,
                                       double seconds);
-  // Whether a trial may be the result of a search that began with `baseline`.
+  // Whether a trial may be the result of a search that started from `baseline`.
   bool IsAllowed(const Trial& trial, const Trial& baseline) const;
   absl::Status RunSampler(const std::vector<size_t>& inputs, double deadline,
                           std::vector<Trial>* trials);
@@ -195,7 +194,7 @@ class Tuner {
     RunRecord record;
     size_t input = 0;
     bool finished = false;
-    int kills = 0;  // times that it was ended from outside
+    int kills = 0;  // number of times it was killed from outside
   };
   std::map<std::string, KnownRun> runs_;  // by RunKey
   std::deque<std::string> queue_;         // keys of runs to start

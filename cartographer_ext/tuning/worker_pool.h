@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where runs are done. Each has a process of its own: one that crashes, runs
-// out of memory or meets a failed check is a failed trial, not the end of the
-// search, and memory does not grow from run to run.
+// Executes runs, each in a separate process: a run that crashes, runs out of
+// memory or fails a check is a failed trial and does not stop the search, and
+// memory does not grow from run to run.
 #ifndef CARTOGRAPHER_EXT_TUNING_WORKER_POOL_H_
 #define CARTOGRAPHER_EXT_TUNING_WORKER_POOL_H_
 
@@ -34,31 +34,31 @@ class WorkerPool {
   virtual int num_workers() const = 0;
   virtual int num_running() const = 0;
 
-  // Requires num_running() < num_workers(). `id` comes back with the result.
+  // Requires num_running() < num_workers(). The result has the same `id`.
   virtual void Start(int id, const nlohmann::json& request) = 0;
 
-  // Some finished run; nothing after `timeout_seconds`.
+  // Returns a finished run, or nothing after `timeout_seconds`.
   virtual absl::optional<WorkerResult> Wait(double timeout_seconds) = 0;
 
-  // Ends what is running; no results of it come.
+  // Stops all running requests, without results.
   virtual void StopAll() = 0;
 };
 
-// Answers { "ok": ... } to a request; called in a process of its own.
+// Answers { "ok": ... } to a request; called in a separate process.
 using RunFunction = std::function<nlohmann::json(const nlohmann::json&)>;
 
-// Does the request as a run of trial_run.h.
+// Executes the request as a run of trial_run.h.
 nlohmann::json AnswerRequest(const nlohmann::json& request);
 
 // A failed answer.
 nlohmann::json Failure(const std::string& message);
 
-// Child processes of this one, which must have no other threads. They die with
-// it.
+// Child processes of this one, which must have no other threads. They are
+// terminated with it.
 class LocalWorkerPool : public WorkerPool {
  public:
-  // Runs that take more than `max_cpu_seconds` (0: no limit) of CPU time are
-  // ended and fail.
+  // Runs that exceed `max_cpu_seconds` (0: no limit) of CPU time are killed and
+  // fail.
   LocalWorkerPool(int num_workers, double max_cpu_seconds,
                   RunFunction run = &AnswerRequest);
   ~LocalWorkerPool() override;

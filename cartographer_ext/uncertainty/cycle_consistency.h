@@ -30,8 +30,10 @@
 namespace cartographer_ext {
 namespace uncertainty {
 
+// How the error of a cycle is tested, see above.
 enum class CycleTest { kChiSquare, kFixedBound };
 
+// Bounds of the test.
 struct CycleConsistencyOptions {
   CycleTest test = CycleTest::kChiSquare;
   double chi_square_bound = 11.345;  // chi^2, 3 degrees of freedom, 0.99
@@ -39,6 +41,7 @@ struct CycleConsistencyOptions {
   double rotation_bound = 0.1;       // radians, kFixedBound
 };
 
+// Result of the test of one cycle.
 struct CycleResult {
   Pose2 error;  // E above, identity for a perfect cycle
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of E, frame a_u

@@ -1,35 +1,34 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How much local SLAM drifts, estimated from cycles that loops close over short
-// stretches of its path.
+// Drift of local SLAM, estimated from cycles that loops close over short pieces
+// of its path.
 //
-// A cycle would close but for the errors of its path. With c the errors that
-// are constant along the run (CommonDrift), of which A are the effects,
+// Without errors of its path a cycle would close. With c the errors that are
+// constant along the run (CommonDrift) and A their effects,
 //
 //   E = -A c + noise,
 //   cov(noise) = C(f) = f_t^2 C_t + f_r^2 C_r + f_u^2 C_u + C_other,
 //
-// where C_t, C_r and C_u are what the prior of the noise says about
-// translation, rotation per metre and rotation while turning, and C_other is
-// the noise of the loops. Not known are c and the factors f. Some of the loops
-// are wrong, which says nothing about the drift, so the likelihood of a cycle
-// is that of a mixture with a uniform density:
+// where C_t, C_r and C_u are the prior covariances from translation, rotation
+// per metre and rotation while turning, and C_other is the noise of the loops.
+// The unknowns are c and the factors f. Some of the loops are wrong, so the
+// likelihood of a cycle is a mixture with a uniform density:
 //
 //   p(E | c, f, w) = (1 - w) N(E; -A c, C(f)) + w u.
 //
-// The share w of wrong cycles is not known either: of a blurred map most may be
-// wrong. A share assumed too small would have the noise explain them.
+// The share w of wrong cycles is unknown as well: in a blurred map most may be
+// wrong. Assuming too small a share would inflate the noise to explain them.
 //
 // Given f and w, c has a normal prior and is found by reweighted least squares,
-// where a cycle weighs what it is likely to be right. Given c, the posterior of
-// (ln f_t, ln f_r, ln f_u, w) is computed on a grid, with a normal prior around
-// zero that allows for a factor of ten within two standard deviations, and a
-// uniform one of w. Both alternate a fixed number of times, the grid of the
-// factors closing in on the posterior.
+// where the weight of a cycle is its probability of being right. Given c, the
+// posterior of (ln f_t, ln f_r, ln f_u, w) is computed on a grid, with a normal
+// prior around zero that allows for a factor of ten within two standard
+// deviations, and a uniform one of w. Both steps alternate a fixed number of
+// times, while the grid of the factors is narrowed to the posterior.
 //
-// The bound from above is a quantile of each factor: far above the mean while
-// few cycles are known, close to it later.
+// The upper bound is a quantile of each factor: far above the mean with few
+// cycles, close to it later.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_DRIFT_ESTIMATOR_H_
 #define CARTOGRAPHER_EXT_UNCERTAINTY_DRIFT_ESTIMATOR_H_
 
@@ -51,7 +50,7 @@ struct DriftCycle {
   CovarianceParts parts;  // of the error; loops are in `other`
 };
 
-// A stretch of the path of local SLAM, not corrected.
+// A piece of the path of local SLAM, not corrected.
 struct DriftStretch {
   Pose2 pose;
   CovarianceParts parts;
@@ -62,22 +61,24 @@ struct DriftStretch {
 DriftCycle CycleOfLoops(const UncertainPose& loop_u, const DriftStretch& path_b,
                         const UncertainPose& loop_v,
                         const DriftStretch& path_a);
-// That of one loop (a <- b) with the path (b <- a).
+// The cycle of one loop (a <- b) with the path (b <- a).
 DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path);
 
+// Priors of the estimation.
 struct DriftEstimatorOptions {
-  // Of the logarithm of a factor.
+  // Standard deviation of the logarithm of a factor.
   double prior_sigma = 1.15;  // > 0
-  // Of the errors that are constant along the run, > 0: robots whose wheels or
-  // laser were never calibrated.
+  // Standard deviations of the errors that are constant along the run, > 0, for
+  // uncalibrated wheels and lasers.
   double prior_heading = 0.002;  // radians per metre
   double prior_turning = 0.03;
   double prior_scale = 0.02;
   double outlier_density = 0.01;  // u, over 10 m by 10 m by 1 rad
   double upper_quantile = 0.9;    // in (0.5, 1)
-  size_t max_cycles = 400;        // oldest forgotten first, > 0
+  size_t max_cycles = 400;        // the oldest are dropped, > 0
 };
 
+// Result of the estimation.
 struct DriftFit {
   // Exponentials of the means of the logarithms.
   DriftFactors mean;
@@ -86,18 +87,20 @@ struct DriftFit {
   double wrong_share = 0.5;  // w, of the cycles
 };
 
+// Collects cycles of a trajectory and fits the drift, see above. Bounded by
+// `max_cycles`. Not thread-safe.
 class DriftEstimator {
  public:
   explicit DriftEstimator(const DriftEstimatorOptions& options);
 
   void Add(const DriftCycle& cycle);
   DriftFit Fit() const;
-  // Ever added.
+  // Number of cycles ever added.
   int num_cycles() const { return num_cycles_; }
 
  private:
   // Posterior of the logarithm of one factor on equidistant levels, each of
-  // which stands for its cell.
+  // which represents its cell.
   struct Marginal {
     double center = 0.;
     double step = 1.;
@@ -110,7 +113,7 @@ class DriftEstimator {
   };
 
   CommonDrift FitCommon(const DriftFactors& factors, double wrong_share) const;
-  // Of the levels in `grid`, which says where they are. Returns the mean of w.
+  // Updates the masses of the levels in `grid`. Returns the mean of w.
   double FitFactors(const CommonDrift& common,
                     std::array<Marginal, 3>* grid) const;
 

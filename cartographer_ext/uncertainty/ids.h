@@ -11,11 +11,13 @@
 namespace cartographer_ext {
 namespace uncertainty {
 
+// Ordered by trajectory and index, as SubmapId.
 struct NodeId {
   int trajectory_id = 0;
   int node_index = 0;
 };
 
+// A submap of a trajectory.
 struct SubmapId {
   int trajectory_id = 0;
   int submap_index = 0;
@@ -58,7 +60,7 @@ class VertexId {
   bool is_node() const { return is_node_; }
   bool is_submap() const { return !is_node_; }
   int trajectory_id() const { return trajectory_id_; }
-  // Of the node or submap within its trajectory.
+  // Index of the node or submap within its trajectory.
   int index() const { return index_; }
 
   bool IsNodeOf(const int trajectory_id) const {
@@ -67,8 +69,8 @@ class VertexId {
   bool IsSubmapOf(const int trajectory_id) const {
     return !is_node_ && trajectory_id_ == trajectory_id;
   }
-  // Whether both are nodes, or both submaps, of one trajectory: local SLAM
-  // knows the path from one to the other.
+  // Whether both are nodes, or both submaps, of one trajectory: local SLAM has
+  // the path from one to the other.
   bool InSequenceWith(const VertexId& other) const {
     return is_node_ == other.is_node_ && trajectory_id_ == other.trajectory_id_;
   }

@@ -5,15 +5,15 @@
 // along trajectories and over any number of accepted loops.
 //
 // The paths are those of a graph: its vertices are the ends of loops, its edges
-// the loops and the stretches of trajectory between them. The path chosen is
-// the one of least cost (PathUncertainty::PathCost), which adds up and
-// therefore suits Dijkstra's algorithm; the covariance is then composed along
-// it. A single path overestimates the uncertainty, since all paths together
-// know more.
+// the loops and the pieces of trajectory between them. The path with the lowest
+// cost is used (PathUncertainty::PathCost); the cost is additive, as Dijkstra's
+// algorithm requires. The covariance is then composed along this path. A single
+// path overestimates the uncertainty, since all paths together carry more
+// information.
 //
 // One search of the graph serves all queries from the same vertex, until the
-// next loop or the next change of what drift is assumed. A loop close to
-// another one at both ends adds no path and is not stored. Not thread-safe.
+// next loop or the next change of the drift. A loop close to another one at
+// both ends adds no path and is not stored. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 #define CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 
@@ -31,18 +31,18 @@
 namespace cartographer_ext {
 namespace uncertainty {
 
+// Relative poses over accepted loops, see above.
 class LeastUncertainPaths {
  public:
   // A loop both of whose ends are within `spacing` metres of those of a stored
-  // one, measured along the trajectory, is not stored. `paths` has to outlive
-  // this and to know the ends of the loops.
+  // one, measured along the trajectory, is not stored. `paths` must outlive
+  // this object and contain the ends of the loops.
   LeastUncertainPaths(double spacing, const PathUncertainty* paths);
 
   void Add(const LoopEdge& loop);
   void RemoveIf(const std::function<bool(const LoopEdge&)>& condition);
 
-  // (a <- b). Empty where no path connects them. Cheap for many b from the same
-  // a.
+  // (a <- b). Empty if no path connects them. Cheap for many b from the same a.
   absl::optional<UncertainPose> Between(const VertexId& a, const VertexId& b);
 
   size_t num_loops() const { return loops_.size(); }
@@ -50,7 +50,7 @@ class LeastUncertainPaths {
  private:
   struct Vertex {
     VertexId id;
-    std::vector<size_t> loops;  // that begin or end here
+    std::vector<size_t> loops;  // that start or end here
     // Neighbours along the trajectory, or kNone.
     size_t before;
     size_t after;
@@ -72,7 +72,7 @@ class LeastUncertainPaths {
   void BuildVertices();
   // The vertex with this id, or its neighbours along the trajectory.
   std::vector<size_t> Adjacent(const VertexId& id) const;
-  // The tree of `root`, searched for where it is not known.
+  // The tree of `root`, computed if necessary.
   Tree* TreeOf(const VertexId& root);
   // Dijkstra's algorithm from `tree->root`.
   void Search(Tree* tree) const;
@@ -84,7 +84,7 @@ class LeastUncertainPaths {
   std::map<VertexId, std::vector<VertexId>> ends_;  // from b to each a
   std::vector<Vertex> vertices_;
   std::map<VertexId, size_t> index_of_;
-  // What was built from the loops is valid.
+  // Whether the vertices are up to date with the loops.
   bool is_built_ = false;
   int drift_version_ = 0;  // of `paths_` when the trees were searched
   std::map<VertexId, Tree> trees_;

@@ -44,7 +44,7 @@ MatchInformation EstimateMatchInformation(
                        options.point_noise * options.point_noise / num_points;
   const Eigen::Vector3d rises = curvature.rises.cwiseMax(0.);
   const double largest = rises.maxCoeff();
-  Eigen::Vector3d information;  // per squared cell, whether believed or not
+  Eigen::Vector3d information;  // per squared cell, without weights
   for (int k = 0; k < 3; ++k) {
     const double turn = curvature.axes(2, k) * curvature.axes(2, k);
     const double floor = Floor(options, largest, turn);

@@ -1,34 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How much a matched scan knows about the pose of its node: the one estimator
-// of the information of a scan match, for local SLAM and for loop closure. It
-// starts from the curvature of the cost (scan_curvature.h), because the
-// Gauss-Newton Hessian is nearly as large along a blank wall as across it.
+// Information of a scan match about the pose of its node: the one estimator
+// used by local SLAM and by loop closure. It is based on the curvature of the
+// cost (scan_curvature.h), because the Gauss-Newton Hessian is nearly as large
+// along a blank wall as across it.
 //
-// A match errs along an axis of curvature e with the variance
+// The error of a match along an axis of curvature e has the variance
 //
 //   (a^2 + b^2 / n) / e   squared cells,   n points.
 //
 // This was found by matching simulated scans with submaps made from other
 // simulated scans at the true poses: the part a, which more points do not
 // reduce, comes from the map (cells, and the noise of the scans it is made of),
-// the part b from the points. The figures behind it and behind the floor are in
-// third_party_notes/paper_improved_graph_optimisation_2024.md, the test that
-// holds them is tests/scan_matching/dropin/covariance_honesty_test.cc.
+// the part b from the points. The measurements behind it and behind the floor
+// are in third_party_notes/paper_improved_graph_optimisation_2024.md;
+// tests/scan_matching/dropin/covariance_honesty_test.cc checks them.
 //
-// The floor is the curvature that blank walls, straight (translation) and round
-// (rotation), show along themselves: an axis below it counts as unobserved. All
-// curvatures grow with the contrast of the map, of which a young submap has
-// little, and so does the noise along a wall: the floor is a share of the
-// largest curvature.
+// The floor is the curvature along blank walls, straight (translation) and
+// round (rotation): an axis below it counts as degenerate. All curvatures grow
+// with the contrast of the map, which is low in a new submap, and so does the
+// noise along a wall, so the floor is a fraction of the largest curvature.
 //
 // The information of the match is
 //
 //   L = sum over k of  w_k e_k / (a^2 + b^2 / n)  b_k b_k^T
 //
-// over the axes b_k (as covectors of the pose), with w_k in [0, 1] the belief
-// in axis k: 0 up to the floor, 1 from `full_ratio` times the floor on.
+// over the axes b_k (as covectors of the pose), with w_k in [0, 1] the weight
+// of axis k: 0 up to the floor, 1 from `full_ratio` times the floor on.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_MATCH_INFORMATION_H_
 #define CARTOGRAPHER_EXT_UNCERTAINTY_MATCH_INFORMATION_H_
 
@@ -38,10 +37,12 @@
 namespace cartographer_ext {
 namespace uncertainty {
 
+// Floors and noise of a match, see above.
 struct MatchInformationOptions {
   // The floor of an axis: absolute (squared cost per squared cell), and as a
-  // share of the largest curvature for pure translation and pure rotation, in
-  // between by the squares of the axis; all >= 0, the larger counts.
+  // fraction of the largest curvature for pure translation and pure rotation,
+  // interpolated by the squares of the axis; all >= 0. The larger of the two
+  // applies.
   double floor = 0.001;
   double translation_floor = 0.05;
   double rotation_floor = 0.015;
@@ -57,19 +58,19 @@ struct MatchInformation {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d inverse_axes = Eigen::Matrix3d::Identity();
   Eigen::Vector3d curvature = Eigen::Vector3d::Zero();  // never negative
-  Eigen::Vector3d weights = Eigen::Vector3d::Zero();    // belief in each axis
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();    // of each axis
   Eigen::Vector3d variances = Eigen::Vector3d::Zero();  // cells^2, or infinity
   // L above, about (x, y, theta).
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   // From the rises instead of the curvatures (see ScanCurvature), without
-  // belief, and the floors in the same unit: for the analysis of degeneracy.
+  // weights, and the floors in the same unit: for the degeneracy analysis.
   Eigen::Matrix3d rise_information = Eigen::Matrix3d::Zero();
   double translation_floor = 0.;  // 1/m^2
   double rotation_floor = 0.;     // 1/rad^2
 };
 
-// How far information is believed: 0 up to the floor, 1 from `full_ratio` times
-// the floor on, in between 3 t^2 - 2 t^3 with t on a logarithmic scale.
+// Weight of an axis by its information: 0 up to the floor, 1 from `full_ratio`
+// times the floor on, in between 3 t^2 - 2 t^3 with t on a logarithmic scale.
 double Belief(double information, double floor, double full_ratio);
 
 // A match without points, or with numbers that are not finite, has no
@@ -78,7 +79,7 @@ MatchInformation EstimateMatchInformation(
     const MatchInformationOptions& options, const ScaledMotion& motion,
     const ScanCurvature& curvature, int num_points);
 
-// Nothing is observed.
+// The result of a match that observes nothing.
 MatchInformation NoMatchInformation();
 
 }  // namespace uncertainty

@@ -44,7 +44,7 @@ CovarianceParts StepCovariance(const PathNoiseOptions& options,
 }
 
 // Steps whose median is the ordinary one: enough to outlast a turn on the spot,
-// in which the robot hardly moves; fewer than the least tell nothing.
+// in which the robot hardly moves; fewer than the minimum are not used.
 constexpr size_t kMostStepsBefore = 31;
 constexpr size_t kFewestStepsBefore = 3;
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How uncertain local SLAM is about the path between two vertices of one
+// Uncertainty of local SLAM about the path between two vertices of one
 // trajectory, nodes or submaps. Their local poses give the relative pose; its
 // error is a random walk whose variance grows with the distance driven and the
 // angle turned. With X_k the local pose of vertex k and Q_k the covariance of
@@ -12,24 +12,22 @@
 //
 // so any pair of vertices costs the same, however far apart.
 //
-// Three errors are constant along a run (CommonDrift): a heading that drifts by
-// so many radians per metre, an error of the turns and one of the scale. With A
-// the sum of their effects on the steps, transported as above, they add
-// A P A^T, where P is their covariance. What they are known to be is taken out
-// of the relative pose: every step is corrected before the steps are put
-// together.
+// Three errors are constant along a run (CommonDrift): a heading drift in
+// radians per metre, a relative error of the rotations and one of the scale.
+// With A the sum of their effects on the steps, transported as above, they add
+// A P A^T, where P is their covariance. Their means are removed from the
+// relative pose: every step is corrected before the steps are composed.
 //
-// Where local SLAM moves farther from one node to the next than nodes are
-// apart, it may have been misled (a jump of the odometry, a gap in the data):
-// the excess of a step over the jump thresholds counts as its standard
-// deviation. Where nodes between two known ones have not been added yet, the
-// thresholds apply to each of the steps between them. Where the nodes before
-// were farther apart than the thresholds assume (a slow laser, a fast robot),
-// both thresholds are longer by as much.
+// A step of local SLAM that is longer than the usual distance between nodes may
+// be wrong (a jump of the odometry, a gap in the data): its excess over the
+// jump thresholds is added to its standard deviation. Where nodes between two
+// known ones have not been added yet, the thresholds apply to each of the steps
+// between them. If the preceding nodes were farther apart than the thresholds
+// assume (a slow laser, a fast robot), both thresholds are scaled accordingly.
 //
 // The sums are kept apart for the errors of translation, of rotation per metre
 // and of rotation while turning, so that each can be scaled for a trajectory
-// whose drift is learnt (drift_model.h).
+// whose drift is estimated (drift_model.h).
 //
 // Not thread-safe; vertices may be added in any order.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_PATH_UNCERTAINTY_H_
@@ -56,49 +54,49 @@ struct PathNoiseOptions {
   double translation_per_radian = 0.02;  // metres, >= 0
   double rotation_per_metre = 0.005;     // radians, >= 0
   double rotation_per_radian = 0.015;    // radians, >= 0
-  // Constant along the run.
+  // Standard deviations of the errors that are constant along the run.
   double heading_drift = 5e-4;  // radians per metre, >= 0
   double scale_error = 0.005;   // >= 0
-  // Steps between nodes up to these are no jumps, > 0. About twice of what the
-  // motion filter of the configurations lets pass between two nodes.
+  // Longer steps between nodes count as jumps, > 0. About twice the distance at
+  // which the motion filter of our configurations inserts nodes.
   double jump_threshold_metres = 0.5;
   double jump_threshold_radians = 0.4;
 };
 
-// By which the standard deviations of PathNoiseOptions are multiplied, > 0.
+// Factors on the standard deviations of PathNoiseOptions, > 0.
 struct DriftFactors {
   double translation = 1.;  // translation_per_*
   double rotation = 1.;     // rotation_per_metre
   double turning = 1.;      // rotation_per_radian
 };
 
-// Errors that are the same all along a run. A step of local SLAM of d metres
-// and a radians is in truth one of (1 + scale) d metres and
-// (1 + turning) a + heading d radians.
+// Errors that are constant along a run. A step of local SLAM of d metres and a
+// radians corresponds to a true step of (1 + scale) d metres and (1 + turning)
+// a + heading d radians.
 struct CommonDrift {
   // heading (radians per metre), turning, scale
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
-// That of the options: means of zero.
+// The prior of the options, with means of zero.
 CommonDrift PriorCommonDrift(const PathNoiseOptions& options);
 
-// `noise` with these standard deviations multiplied.
+// `noise` with its standard deviations multiplied by the factors.
 PathNoiseOptions Scaled(const PathNoiseOptions& noise,
                         const DriftFactors& factors);
 
-// Where the covariance of a relative pose comes from: with the factors f,
+// Components of the covariance of a relative pose. With the factors f it is
 //   C = f_translation^2 translation + f_rotation^2 rotation
 //       + f_turning^2 turning + common P common^T + other.
 struct CovarianceParts {
   Eigen::Matrix3d translation = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
-  // Effects of the errors of CommonDrift, one a column.
+  // Effects of the errors of CommonDrift, one per column.
   Eigen::Matrix3d common = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d other = Eigen::Matrix3d::Zero();  // jumps, loops
 
-  // Part by part.
+  // Component by component.
   CovarianceParts& operator+=(const CovarianceParts& parts);
   CovarianceParts& operator-=(const CovarianceParts& parts);
   Eigen::Matrix3d Total(const DriftFactors& factors,
@@ -109,44 +107,48 @@ struct CovarianceParts {
 CovarianceParts Transported(const CovarianceParts& parts,
                             const Eigen::Matrix3d& adjoint);
 
+// Paths within trajectories with their uncertainty, see above. Bounded by
+// `max_vertices` per trajectory.
 class PathUncertainty {
  public:
   // Keeps the newest `max_vertices` (> 0) nodes and as many submaps of each
   // trajectory.
   PathUncertainty(const PathNoiseOptions& options, int max_vertices);
 
-  // (local frame of the trajectory <- vertex). A vertex known already, or older
-  // than all that are kept of a full trajectory, changes nothing.
+  // (local frame of the trajectory <- vertex). A vertex that has been added
+  // before, or that is older than all that are kept of a full trajectory, is
+  // ignored.
   void Add(const VertexId& vertex, const Pose2& local_pose);
 
   // (u <- v). Empty for a node and a submap, between trajectories, and for
   // vertices that are not kept.
   absl::optional<UncertainPose> Between(const VertexId& u,
                                         const VertexId& v) const;
-  // The parts of its covariance for factors of one, empty as above.
+  // The components of its covariance for factors of one; empty as above.
   absl::optional<CovarianceParts> Parts(const VertexId& u,
                                         const VertexId& v) const;
-  // Of this trajectory; at first factors of one and the prior.
+  // Drift of a trajectory; initially factors of one and the prior.
   void SetDrift(int trajectory_id, const DriftFactors& factors,
                 const CommonDrift& common);
   DriftFactors Drift(int trajectory_id) const;
   CommonDrift Common(int trajectory_id) const;
-  // Grows with every change of the drift.
+  // Incremented with every change of the drift.
   int drift_version() const { return drift_version_; }
   // Metres driven between two vertices, empty as above.
   absl::optional<double> Travelled(const VertexId& u, const VertexId& v) const;
   // Uncertainty of the path between two vertices as one number, jumps included:
-  // the metres of straight driving that would be as uncertain. Adds up along
-  // the trajectory. Empty as above.
+  // the length in metres of a straight path with the same uncertainty. Additive
+  // along the trajectory. Empty as above.
   absl::optional<double> PathCost(const VertexId& u, const VertexId& v) const;
-  // The same of a relative pose with this covariance. Both as without factors.
+  // The same for a relative pose with this covariance. Both ignore the drift
+  // factors.
   double PathCostOf(const Eigen::Matrix3d& covariance) const;
   // (local frame <- vertex).
   absl::optional<Pose2> LocalPose(const VertexId& vertex) const;
 
-  // The node whose local position is nearest, the oldest of equals. A submap
-  // lies where its first node was, so this ties a submap to a node. Empty when
-  // the trajectory has no nodes.
+  // The node with the nearest local position, the oldest of equals. The origin
+  // of a submap is the pose of its first node, so this relates a submap to a
+  // node. Empty when the trajectory has no nodes.
   absl::optional<NodeId> Nearest(int trajectory_id,
                                  const Eigen::Vector2d& local_position) const;
   // The same among the nodes `first` to `last`, both included.
@@ -180,8 +182,8 @@ class PathUncertainty {
     CommonDrift common;
   };
 
-  // How much longer the steps before `position` were than the thresholds for
-  // jumps assume, at least 1.
+  // Ratio of the steps before `position` to the length that the jump thresholds
+  // assume, at least 1.
   double Stride(const std::deque<Entry>& entries, size_t position) const;
   // Computes the sums of `entry` from those of the entry before.
   void Accumulate(bool are_nodes, double stride, const Eigen::Vector3d& common,

@@ -1,29 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How fast the cost of a scan rises when the scan is moved off its match, and
-// along which motions it hardly rises.
+// Curvature of the cost of a scan around its match, and the motions along which
+// it is small.
 //
-// The Gauss-Newton Hessian, sum of grad c grad c^T, cannot tell a blank wall
-// from a structured one: the cells of a wall differ from each other by noise
-// and quantisation, each of these differences has a gradient along the wall,
-// and squares of them add up. Measured on simulated corridors, the Hessian
-// along a blank wall is 0.4 times that across it. The cost itself does not have
-// that flaw: moved along a blank wall by two cells, the scan costs as much as
-// before, for what one point loses another gains. So the curvature is measured
-// by second differences over a step of s cells,
+// The Gauss-Newton Hessian, sum of grad c grad c^T, does not distinguish a
+// blank wall from a structured one: the cells of a wall differ by noise and
+// quantisation, each of these differences has a gradient along the wall, and
+// their squares add up. Measured on simulated corridors, the Hessian along a
+// blank wall is 0.4 times that across it. The cost itself does not have this
+// problem: if the scan is moved along a blank wall by two cells, its cost does
+// not change, because the changes of individual points cancel. So the curvature
+// is measured by second differences over a step of s cells,
 //
 //   e(v) = (F(+s v) + F(-s v) - 2 F(0)) / s^2,   F = sum of c^2 / (2 n),
 //
 // which along that wall is 0.02 times that across it.
 //
-// Motions are scaled to make metres and radians comparable: the scan turns
-// about the centroid of its points, and all three unknowns are in cells that a
-// point moves (root mean square). That makes the noise of e the same for all
-// motions. Axes are found in three steps: the eigenvectors of the Hessian; the
-// second differences along and between them, which give a 3 x 3 matrix and its
-// eigenvectors; the second differences along these. Those between two axes are
-// taken along their diagonals,
+// Motions are scaled to make metres and radians comparable: the scan rotates
+// about the centroid of its points, and all three unknowns are measured by the
+// displacement of the points in cells (root mean square). This makes the noise
+// of e the same for all motions. Axes are found in three steps: the
+// eigenvectors of the Hessian; the second differences along and between them,
+// which give a 3 x 3 matrix and its eigenvectors; the second differences along
+// these. Those between two axes are taken along their diagonals,
 //
 //   e_kl = (F(u) + F(-u) - F(w) - F(-w)) / (2 s^2),
 //   u = s (v_k + v_l) / sqrt 2,   w = s (v_k - v_l) / sqrt 2,
@@ -65,13 +65,14 @@ class ScaledMotion {
   Eigen::Matrix3d from_pose_;
 };
 
+// Curvatures of the cost at a pose along three orthogonal axes.
 struct ScanCurvature {
-  // Ascending; squared cost per squared cell, mean over the points. Below zero
-  // where the match is not at a minimum.
+  // Ascending; squared cost per squared cell, mean over the points. Negative if
+  // the match is not at a minimum.
   Eigen::Vector3d values = Eigen::Vector3d::Zero();
-  // 2 (F(s v) - F(0)) / s^2 to the side where F rises more: the curvature at a
-  // minimum. Where a prior holds the scan on the slope beside the minimum the
-  // curvature may vanish, the rise does not; along a blank wall both do.
+  // 2 (F(s v) - F(0)) / s^2 towards the side where F rises more: the curvature
+  // at a minimum. If a prior holds the scan on the slope beside the minimum,
+  // the curvature may vanish but not the rise; along a blank wall both vanish.
   Eigen::Vector3d rises = Eigen::Vector3d::Zero();
   // Unit vectors of scaled motion, as columns.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();

@@ -4,9 +4,9 @@
 // Relative poses with covariance, and how errors propagate through their
 // composition.
 //
-// One frame convention holds everywhere. The estimate z of a relative pose
-// (a <- b) is off by an error e = (x, y, theta) that applies on its right, that
-// is, in the frame of its end b:
+// One frame convention holds everywhere. The error e = (x, y, theta) of an
+// estimate z of a relative pose (a <- b) applies on its right, that is, in the
+// frame of its end b:
 //
 //   truth = z Exp(e),   e ~ N(0, C)
 //
@@ -44,7 +44,8 @@ struct UncertainPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-// Of (a <- b): maps an error in frame b to the same error in frame a.
+// The adjoint of (a <- b): maps an error in frame b to the same error in frame
+// a.
 Eigen::Matrix3d Adjoint(const Pose2& pose);
 
 // (a <- c) = (a <- b)(b <- c) of poses with independent errors.
@@ -56,7 +57,8 @@ UncertainPose Invert(const UncertainPose& pose);
 // (a <- b) from (m <- a) and (m <- b) with independent errors.
 UncertainPose Between(const UncertainPose& a, const UncertainPose& b);
 
-// The inverse where `covariance` is finite and positive definite, else false.
+// Computes the inverse and returns true if `covariance` is finite and positive
+// definite; otherwise returns false.
 bool InvertCovariance(const Eigen::Matrix3d& covariance,
                       Eigen::Matrix3d* information);
 

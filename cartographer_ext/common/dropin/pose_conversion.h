@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Between Pose2 and the host's rigid transforms.
+// Conversion between Pose2 and the host's rigid transforms.
 #ifndef CARTOGRAPHER_EXT_COMMON_DROPIN_POSE_CONVERSION_H_
 #define CARTOGRAPHER_EXT_COMMON_DROPIN_POSE_CONVERSION_H_
 
@@ -18,8 +18,8 @@ inline Pose2 ToPose2(const cartographer::transform::Rigid2d& pose) {
                pose.normalized_angle());
 }
 
-// The heading as it is stored, any number of turns included: a matcher returns
-// its result on the same turn as the initial pose.
+// Keeps the heading as it is stored, without wrapping: a matcher returns its
+// result within half a turn of the initial pose.
 inline Pose2 ToUnwrappedPose2(const cartographer::transform::Rigid2d& pose) {
   return Pose2(pose.translation().x(), pose.translation().y(),
                pose.rotation().angle());

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Adds wrong loops to a pose graph, in the four manners in which both papers
+// Adds wrong loops to a pose graph, of the four types with which both papers
 // (after the Vertigo package) test robust back ends:
 //
 //   R    random: both ends anywhere
@@ -10,7 +10,7 @@
 //        j = 0 .. group - 1
 //   LG   local grouped
 //
-// Each outlier claims "the same place", whatever the true geometry:
+// Each outlier claims that both poses are at the same place:
 //
 //   x, y ~ N(0, 0.3 m),  theta ~ N(0, 10 deg)
 //

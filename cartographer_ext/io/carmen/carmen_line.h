@@ -63,9 +63,10 @@ struct CarmenLine {
   Pose2 robot_pose;           // (odometry <- robot)
 };
 
-// Beams of a FLASER line, which does not say: beam 0 points to -90 degrees.
-// n = 180, 360, ...: steps of 180/n; 181, 361, ...: steps of 180/(n-1);
-// n = 101, 201, 401: the 100 degree mode of SICK lasers, from -50 degrees.
+// Beam angles of a FLASER line, which does not contain them: beam 0 points to
+// -90 degrees. n = 180, 360, ...: steps of 180/n; 181, 361, ...: steps of
+// 180/(n-1); n = 101, 201, 401: the 100 degree mode of SICK lasers, from -50
+// degrees.
 void FrontLaserAngles(int n, double* angle_min, double* angle_increment);
 
 // Overwrites `line`, reusing its memory.

@@ -9,19 +9,19 @@
 // lasers are dropped, with a warning that counts them.
 //
 // Odometry, SensorSourceOptions::odometry_source. A laser line repeats the pose
-// of the odometry message before it under the later stamp of the scan: in ACES
-// and Intel that holds for every single scan. Such a pose is stale by up to one
-// message, so "auto" takes the ODOM lines, with their own stamps, if they cover
-// the run (from within two seconds, or 2 % of the run, of the first scan to the
-// same before the last one, and at least one for every five scans) and if the
-// stamps can pair them with the scans. Stamps that often go backwards, in over
-// 1 % of the messages, cannot: they were made on arrival. There, and where ODOM
-// lines are missing, "auto" takes the poses of the scan lines, which the
-// robot's own program paired. That is ODOM lines for ACES, poses of the scan
-// lines for Intel (3 % of its stamps go backwards) and CSAIL (no ODOM lines).
-// Measured by the relations less than 5 s apart, raw odometry, mean errors:
-// ACES 0.034 m from ODOM lines interpolated at the scan against 0.039 m from
-// scan lines; Intel 0.035 m against 0.024 m.
+// of the previous odometry message under the later stamp of the scan, for every
+// scan of ACES and Intel. Such a pose is stale by up to one message, so "auto"
+// takes the ODOM lines, with their own stamps, if they cover the run (from
+// within two seconds, or 2 % of the run, of the first scan to the same before
+// the last one, and at least one for every five scans) and if the stamps can
+// pair them with the scans. Stamps that often go backwards, in over 1 % of the
+// messages, cannot: they were made on arrival. There, and where ODOM lines are
+// missing, "auto" takes the poses of the scan lines, which the robot's own
+// program paired. That is ODOM lines for ACES, poses of the scan lines for
+// Intel (3 % of its stamps go backwards) and CSAIL (no ODOM lines). Measured by
+// the relations less than 5 s apart, raw odometry, mean errors: ACES 0.034 m
+// from ODOM lines interpolated at the scan against 0.039 m from scan lines;
+// Intel 0.035 m against 0.024 m.
 //
 // Laser pose (robot <- laser): from the two poses of the scan lines, if these
 // differ by the same transform in 99 % of the scans; else from the parameters
@@ -32,9 +32,9 @@
 // No return. The largest reading of the log is a code for "no return" if it
 // occurs more than four times as often as all readings up to half a metre below
 // it together, or if it is one of the reserved values of SICK lasers (8.183 to
-// 8.191 m, 16.375 to 16.383 m, 32.759 to 32.767 m, 81.83 to 81.91 m);
-// range_max is then just below. Otherwise it is 80 m, or the maximum range of a
-// ROBOTLASER1 line. Readings stay as they are.
+// 8.191 m, 16.375 to 16.383 m, 32.759 to 32.767 m, 81.83 to 81.91 m); range_max
+// is then just below. Otherwise it is 80 m, or the maximum range of a
+// ROBOTLASER1 line. Readings are not changed.
 #ifndef CARTOGRAPHER_EXT_IO_CARMEN_CARMEN_READER_H_
 #define CARTOGRAPHER_EXT_IO_CARMEN_CARMEN_READER_H_
 

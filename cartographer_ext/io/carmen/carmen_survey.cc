@@ -26,7 +26,7 @@ constexpr size_t kMaxReorderWindow = 1 << 16;
 constexpr double kOffsetTolerance = 0.02;  // metres, radians
 constexpr double kMaxOffset = 5.;          // metres
 
-// Of all messages; clocks that step now and then stay below it.
+// Share of all messages; clocks that occasionally step stay below it.
 constexpr double kMaxBackwardShare = 0.01;
 
 // Messages with a gap of this length on both sides do not belong to the log,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The first pass over a CARMEN log: everything that has to be known about the
-// whole before the first event can be delivered.
+// The first pass over a CARMEN log: collects everything about the whole log
+// that is needed before the first event can be delivered.
 #ifndef CARTOGRAPHER_EXT_IO_CARMEN_CARMEN_SURVEY_H_
 #define CARTOGRAPHER_EXT_IO_CARMEN_CARMEN_SURVEY_H_
 

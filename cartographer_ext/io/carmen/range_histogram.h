@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// From which reading on a laser says "no return", where its log does not tell.
+// Estimates the reading with which a laser reports "no return", if the log does
+// not define it.
 #ifndef CARTOGRAPHER_EXT_IO_CARMEN_RANGE_HISTOGRAM_H_
 #define CARTOGRAPHER_EXT_IO_CARMEN_RANGE_HISTOGRAM_H_
 

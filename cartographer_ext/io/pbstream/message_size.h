@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How much memory a serialized protobuf message will take once it is parsed.
-// Two bytes can become an object of a hundred, so the size of the bytes tells
-// little.
+// Estimates the memory of a serialized protobuf message once it is parsed. Two
+// bytes can become an object of a hundred, so the serialized size is not a
+// bound.
 #ifndef CARTOGRAPHER_EXT_IO_PBSTREAM_MESSAGE_SIZE_H_
 #define CARTOGRAPHER_EXT_IO_PBSTREAM_MESSAGE_SIZE_H_
 

@@ -39,7 +39,7 @@ bool TakeVarint(absl::string_view* bytes, uint64_t* value) {
 // SerializedData is a union of messages, so a record is the number of one
 // field, a size, and that message. Taking this apart by hand lets us know the
 // kind before anything is allocated, and refuses records with several messages,
-// which nobody writes.
+// which is never written.
 bool OpenEnvelope(absl::string_view record, int* field_number,
                   absl::string_view* message) {
   uint64_t tag, size;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Reads whole Cartographer states (.pbstream, format versions 1 and 2, 2D) from
-// files that nobody vouches for. The host's own loader ends the program when
-// something is wrong with a file; whatever passes here, it takes.
+// untrusted files. The host's own loader aborts if something is wrong with a
+// file; it accepts every file that passes these checks.
 #ifndef CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_READER_H_
 #define CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_READER_H_
 
@@ -19,9 +19,9 @@
 namespace cartographer_ext {
 namespace io {
 
-// The records of a state by kind, each in the order of the file. Loops that are
-// withdrawn, and what marks them so (common/withdrawn_loops.h), are skipped:
-// nobody sees them, and a state that is written again is without them.
+// The records of a state by kind, each in the order of the file. Withdrawn
+// loops and their marks (common/withdrawn_loops.h) are skipped, so they have no
+// effect and are not in a state that is written again.
 struct Pbstream {
   cartographer::mapping::proto::SerializationHeader header;
   cartographer::mapping::proto::PoseGraph pose_graph;
@@ -34,38 +34,38 @@ struct Pbstream {
   std::vector<cartographer::mapping::proto::FixedFramePoseData>
       fixed_frame_pose_data;
   std::vector<cartographer::mapping::proto::LandmarkData> landmark_data;
-  // Records of kinds we do not know. They are skipped.
+  // Number of records of unknown kinds, which are skipped.
   int64_t num_unknown_records = 0;
   // Constraints skipped as withdrawn, with the marks.
   int64_t num_withdrawn_constraints = 0;
 };
 
-// What a file may claim of memory. A record may expand to `max_expansion` times
-// its size, or to the given floor where that is more: grids of unknown cells
-// compress very well (up to 110 times), nothing else does. Maps of buildings
-// expand 1 to 8 times in all and take up to 30 times their size once parsed.
+// Memory limits for a file. A record may expand to `max_expansion` times its
+// size, or to the given floor if that is more: grids of unknown cells compress
+// very well (up to 110 times), but nothing else does. Maps of buildings expand
+// 1 to 8 times in total and take up to 30 times their size once parsed.
 struct PbstreamLimits {
   int64_t max_file_size = int64_t{1} << 32;    // bytes
   int64_t max_record_size = int64_t{1} << 30;  // bytes, expanded
   int64_t max_expansion = 64;
   int64_t record_floor = int64_t{1} << 20;         // bytes
   int64_t submap_record_floor = int64_t{1} << 24;  // bytes
-  // Of all records of one file together: expanded bytes, then memory of the
-  // parsed messages, each in proportion to the file.
+  // For all records of one file together: expanded bytes, then memory of the
+  // parsed messages, each relative to the size of the file.
   int64_t total_floor = int64_t{1} << 24;  // bytes
   int64_t max_total_expansion = 32;
   int64_t memory_floor = int64_t{1} << 26;  // bytes
   int64_t max_memory_expansion = 40;
-  // Known cells of all grids, in proportion to the file. The search for loops
-  // needs some hundred bytes for each. Submaps of fifteen maps of robots have
-  // at most 2.6 in a byte.
+  // Known cells of all grids, relative to the size of the file. The loop search
+  // needs some hundred bytes for each. The submaps of fifteen robot maps have
+  // at most 2.6 per byte.
   int64_t known_cells_floor = 1500000;
   int64_t max_known_cells_expansion = 8;
 };
 
 struct PbstreamReaderOptions {
   PbstreamLimits limits;
-  // Refuse contents that FindPbstreamProblems complains about.
+  // Reject contents with problems found by FindPbstreamProblems.
   bool validate = true;
 };
 

@@ -19,7 +19,7 @@ namespace io {
 // The first 8 bytes of every file.
 absl::string_view PbstreamMagic();
 
-// How large a record may become.
+// Limit of the expanded size of a record.
 class ContentLimit {
  public:
   virtual ~ContentLimit() = default;
@@ -30,15 +30,16 @@ class ContentLimit {
 };
 
 // Expands exactly one gzip member. DataLoss for broken, incomplete or surplus
-// data; ResourceExhausted when it is larger than `limit` allows, of which it
-// never holds more than 64 KiB too much.
+// data; ResourceExhausted when it is larger than `limit` allows, which it never
+// exceeds by more than 64 KiB.
 absl::StatusOr<std::string> ExpandGzipMember(absl::string_view compressed,
                                              const ContentLimit& limit);
 
-// Walks over the records of a file in memory.
+// Iterates over the records of a file in memory.
 class PbstreamRecords {
  public:
-  // `content` must stay. Check status() first: the magic number may be wrong.
+  // `content` must remain valid. Check status() first: the magic number may be
+  // wrong.
   PbstreamRecords(absl::string_view content, std::string name);
 
   const absl::Status& status() const { return status_; }

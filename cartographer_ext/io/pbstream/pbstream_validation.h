@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether the records of a state fit together: what they refer to exists, grids
-// have as many cells as they say, poses are poses.
+// Checks the consistency of the records of a state: references exist, grids
+// have the declared number of cells, poses are valid.
 #ifndef CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_VALIDATION_H_
 #define CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_VALIDATION_H_
 
@@ -14,13 +14,13 @@
 namespace cartographer_ext {
 namespace io {
 
-// One sentence a problem, in the order of the records; empty when all is well.
-// At most `max_problems`.
+// One sentence per problem, in the order of the records; empty if there are
+// none. At most `max_problems`.
 //
 // Checked: as many trajectories as options; ids are unique and not negative,
 // indices and stamps of a trajectory grow; every record belongs to a trajectory
 // of the pose graph, every submap and node has a global pose, constraints refer
-// to submaps and nodes that are there; poses are finite with unit quaternions;
+// to existing submaps and nodes; poses are finite with unit quaternions;
 // weights are finite and not negative; grids have limits that fit their cells
 // and cells of 15 bits; point clouds can be unpacked; readings of a sensor are
 // in order of time.

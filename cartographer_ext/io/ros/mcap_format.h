@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The MCAP container, version 0, as its published specification has it:
+// The MCAP container, version 0, according to its published specification:
 //
 //   magic, records, magic;  record: opcode (uint8), length (uint64), content
 //
 // Little endian; strings and byte arrays have a uint32 length in front (the
 // records of a chunk a uint64). Messages belong to channels (topic, encoding)
-// and channels to schemas (message type); they stand at the top level or,
-// usually, in chunks, which may be compressed. All else (indexes, summary,
-// attachments) is for random access, which reading from the beginning to the
-// end does without.
+// and channels to schemas (message type); they are at the top level or,
+// usually, in chunks, which may be compressed. Everything else (indexes,
+// summary, attachments) is for random access and not needed for sequential
+// reading.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_MCAP_FORMAT_H_
 #define CARTOGRAPHER_EXT_IO_ROS_MCAP_FORMAT_H_
 
@@ -77,9 +77,9 @@ class McapFields {
   bool ok_ = true;
 };
 
-// The records of a chunk: `compression` is "", "lz4" (frames) or "zstd".
-// Memory grows with what really comes out, up to `size`, and at most to 1 GiB.
-// Errors do not name the file.
+// The records of a chunk: `compression` is "", "lz4" (frames) or "zstd". Memory
+// grows with the actual output, up to `size`, and at most to 1 GiB. Errors do
+// not name the file.
 absl::StatusOr<std::string> McapDecompress(absl::string_view compression,
                                            absl::string_view data,
                                            uint64_t size);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // MCAP files of ROS 2 (schemas "ros2msg" or "ros2idl", messages in CDR), read
-// from the beginning to the end without their index. A file that was cut off,
-// as by a recorder that was killed, is read as far as it is whole, with a
-// warning; damage before the end is an error.
+// from the beginning to the end without their index. A truncated file, as from
+// a killed recorder, is read up to the truncation, with a warning; damage
+// before the end is an error.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_MCAP_READER_H_
 #define CARTOGRAPHER_EXT_IO_ROS_MCAP_READER_H_
 

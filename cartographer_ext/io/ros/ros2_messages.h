@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The messages that we write, in CDR (see ros_messages.h for the encoding), and
-// their definitions as MCAP files carry them.
+// their definitions for MCAP files.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_ROS2_MESSAGES_H_
 #define CARTOGRAPHER_EXT_IO_ROS_ROS2_MESSAGES_H_
 
@@ -25,11 +25,14 @@ TimeNs FirstBeamTime(const LaserScan& scan);
 
 // A MultiEchoLaserScan for a scan with echoes, else a LaserScan.
 std::string EncodeLaserScan(const LaserScan& scan, const std::string& frame);
-std::string EncodeOdometry(const OdometryReading& reading, double linear_velocity, double angular_velocity,
-                           const std::string& frame, const std::string& child_frame);
+std::string EncodeOdometry(const OdometryReading& reading,
+                           double linear_velocity, double angular_velocity,
+                           const std::string& frame,
+                           const std::string& child_frame);
 std::string EncodeImu(const ImuReading& reading, const std::string& frame);
 // One transform, (parent <- child).
-std::string EncodeTransform(TimeNs time, const std::string& parent, const std::string& child, const Pose2& pose);
+std::string EncodeTransform(TimeNs time, const std::string& parent,
+                            const std::string& child, const Pose2& pose);
 
 // "ros2msg": the definition of the type and of all types in it. Empty for other
 // types than those above.

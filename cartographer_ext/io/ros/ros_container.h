@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A file or folder of recorded ROS messages, whatever its format: ROS 1 bag,
-// MCAP, rosbag2 database. It knows nothing of what is in the messages; that is
-// OpenRosRecording's part.
+// A file or folder of recorded ROS messages, in any format: ROS 1 bag, MCAP,
+// rosbag2 database. Independent of the content of the messages, which
+// OpenRosRecording decodes.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_ROS_CONTAINER_H_
 #define CARTOGRAPHER_EXT_IO_ROS_ROS_CONTAINER_H_
 
@@ -41,16 +41,16 @@ class RosContainer {
   // False at the end. Errors name the file.
   virtual absl::StatusOr<bool> Next(RosMessage* message) = 0;
 
-  // What was wrong with the file and could be lived with. Complete once all of
-  // it was read. They name the file.
+  // Tolerated problems of the file. Complete after reading all of it. They name
+  // the file.
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
-// The type of a topic as ChooseTopics knows it: "sensor_msgs/msg/LaserScan" has
+// The type of a topic as used by ChooseTopics: "sensor_msgs/msg/LaserScan" has
 // the fields of the ROS 1 type "sensor_msgs/LaserScan" and gets its checksum.
 RosTopicType TypeOfRos2(const std::string& name);
 
-// A recording out of a container. Errors and warnings name `filename`.
+// Opens the recording in a container. Errors and warnings name `filename`.
 absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosRecording(
     const std::string& filename, std::unique_ptr<RosContainer> container,
     const SensorSourceOptions& options);

@@ -117,7 +117,7 @@ void AddScanTiming(const std::string& topic, const RosEvent& decoded,
                    ScanTiming* const timing) {
   const LaserScan& scan = absl::get<LaserScan>(decoded.event);
   const double sweep = SweepSeconds(scan);
-  // Points tell nothing about where a turning laser sees nothing.
+  // Points do not show directions without returns of a rotating laser.
   const double field_of_view =
       scan.ranges.empty() ? 2. * kPi
                           : std::abs(scan.angle_increment) *

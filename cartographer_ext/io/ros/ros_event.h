@@ -30,8 +30,8 @@ struct RosEvent {
 // Turns messages of the chosen topics into events.
 class RosEventDecoder {
  public:
-  // Both have to outlive the decoder; scans of sensors that `timing` finds
-  // impossible are taken as measured at once.
+  // Both must outlive the decoder; scans of sensors whose `timing` is
+  // implausible are treated as instantaneous.
   RosEventDecoder(RosEncoding encoding, const ChosenTopics* topics,
                   const ScanTiming* timing)
       : encoding_(encoding), topics_(*topics), timing_(*timing) {}
@@ -50,7 +50,7 @@ class RosEventDecoder {
   const ScanTiming& timing_;
 };
 
-// Adds what a decoded scan says about the times of its beams.
+// Adds the beam times of a decoded scan.
 void AddScanTiming(const std::string& topic, const RosEvent& decoded,
                    ScanTiming* timing);
 

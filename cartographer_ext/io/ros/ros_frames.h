@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The tree of coordinate frames of a ROS recording, as far as it does not move:
-// where the sensors sit on the robot.
+// The tree of coordinate frames of a ROS recording, as far as it is static: the
+// poses of the sensors on the robot.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_ROS_FRAMES_H_
 #define CARTOGRAPHER_EXT_IO_ROS_ROS_FRAMES_H_
 

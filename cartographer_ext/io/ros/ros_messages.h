@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Decoding of the serialized ROS 1 and ROS 2 messages we read. It is our own
-// because the generated code believes the array lengths it finds and would ask
-// for gigabytes where a file is damaged; here every length is checked against
-// what is left of the message.
+// Decoding of the serialized ROS 1 and ROS 2 messages we read. We use our own
+// decoder because generated code trusts array lengths and would allocate
+// gigabytes for a damaged file; here every length is checked against the
+// remaining size of the message.
 //
 // ROS 1: fields one after another, little endian; strings and arrays with a
 // uint32 length in front; a stamp is two uint32, seconds and nanoseconds.
@@ -25,7 +25,7 @@
 namespace cartographer_ext {
 namespace io {
 
-// What bags call the types, and the checksums of their definitions.
+// Names of the types in bags, and the checksums of their definitions.
 struct RosType {
   const char* name;
   const char* md5sum;
@@ -67,8 +67,8 @@ struct RosPointCloud {
 // From the first beam or point of a scan to the last.
 double SweepSeconds(const LaserScan& scan);
 
-// All return false for messages that are too short, too long, or hold numbers
-// that make no sense (poses that are not finite, no beams or more than
+// All return false for messages that are too short, too long, or have invalid
+// values (poses that are not finite, no beams or more than
 // CarmenLine::kMaxReadings, beams over more than a full turn).
 
 // `scan->time` becomes the time of the last beam.

@@ -20,7 +20,7 @@ namespace io {
 absl::StatusOr<std::unique_ptr<RosContainer>> OpenDb3(
     const std::string& filename);
 
-// A folder without such files is an error that says what was looked for.
+// A folder without such files is an error that names the expected files.
 absl::StatusOr<std::unique_ptr<RosContainer>> OpenRosbag2Folder(
     const std::string& folder);
 

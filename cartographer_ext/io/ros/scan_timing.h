@@ -15,8 +15,8 @@
 namespace cartographer_ext {
 namespace io {
 
-// Whether the times of beams within a scan can be right, from how often scans
-// come. A driver may leave them out, or fill them in in another unit.
+// Checks the plausibility of the beam times of a scan against the scan rate. A
+// driver may omit them, or use a wrong unit.
 class ScanTiming {
  public:
   // A scan on `topic` from the sensor `frame`: time of its first beam, seconds
@@ -24,13 +24,14 @@ class ScanTiming {
   void Add(const std::string& topic, const std::string& frame, TimeNs begin,
            double sweep, double field_of_view);
 
-  // Decides for every sensor; before, nothing is impossible.
+  // Decides for every sensor; before, all are plausible.
   void Judge();
   // Whether sweeps of this sensor take longer than the time between its scans.
   bool IsImpossible(const std::string& topic, const std::string& frame) const;
   bool AnyImpossible() const;
-  // About sensors with impossible times of beams, and about those without any
-  // that turn so slowly that a moving robot smears their scans.
+  // Warnings about sensors with implausible beam times, and about sensors
+  // without beam times that rotate so slowly that the motion of the robot
+  // distorts their scans.
   std::vector<std::string> Warnings() const;
 
  private:

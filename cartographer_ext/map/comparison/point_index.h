@@ -18,7 +18,7 @@ namespace evaluation {
 
 class PointIndex {
  public:
-  // `radius` in metres, positive. `points` must outlive this.
+  // `radius` in metres, positive. `points` must outlive this object.
   PointIndex(const std::vector<Eigen::Vector2d>& points, const double radius)
       : points_(points), radius_(radius) {
     for (size_t i = 0; i < points.size(); ++i) {
@@ -27,8 +27,8 @@ class PointIndex {
     }
   }
 
-  // Index of the nearest point, the first of equally near ones; -1 where none
-  // lies within the radius.
+  // Index of the nearest point, the first of equally near ones; -1 if there is
+  // none within the radius.
   int Nearest(const Eigen::Vector2d& place) const {
     int nearest = -1;
     double best = radius_ * radius_;

@@ -11,11 +11,11 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// The constraints of a graph as CSV with a head line, one a line in their
-// order: ids, kind (intra, inter), stamp of the node in seconds, relative pose,
-// weights, residual against the optimised poses in metres and radians, and 1
-// for a loop that the optimisation has switched off. With `loops` also the
-// verdict of truth and the errors against it.
+// The constraints of a graph as CSV with a header line, one per line: ids, kind
+// (intra, inter), stamp of the node in seconds, relative pose, weights,
+// residual against the optimised poses in metres and radians, and 1 for a loop
+// disabled by the optimisation. With `loops` also the verdict by ground truth
+// and the errors against it.
 std::string ConstraintTable(const MapGraph& graph, const LoopStatistics* loops);
 
 // The loop constraints alone, as decisions: "accepted" or "switched_off".

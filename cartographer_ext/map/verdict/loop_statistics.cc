@@ -13,7 +13,7 @@ namespace cartographer_ext {
 namespace evaluation {
 namespace {
 
-// A stretch of time in which the robot is where it was before.
+// A piece of time in which the robot is where it was before.
 struct Revisit {
   io::TimeNs begin = 0;
   io::TimeNs end = 0;
@@ -94,7 +94,7 @@ bool Resolvable(const MapGraph& graph, const GraphConstraint& constraint) {
          graph.nodes.count(constraint.node_id) > 0;
 }
 
-// Merges stamps (sorted) into stretches.
+// Merges stamps (sorted) into pieces.
 std::vector<Revisit> MergeRevisits(const std::vector<io::TimeNs>& times,
                                    const io::TimeNs longest_break) {
   std::vector<Revisit> revisits;

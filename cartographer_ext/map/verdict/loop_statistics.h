@@ -1,23 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Are the loops of a map right? Each loop constraint says where a node lies in
-// a submap. Truth says where one place of a recording lies from another: a
+// Correctness of the loops of a map. Each loop constraint gives the pose of a
+// node in a submap. Ground truth gives relative poses of the recording: a
 // reference trajectory for any two stamps, reference relations for a few pairs
-// of them. A constraint is brought to such a pair through the local trajectory,
-// which is good over the few metres that lie between:
+// of them. A constraint is related to such a pair through the local trajectory,
+// which is accurate over the few metres in between:
 //
 //   place a in the submap    submap_local^-1 * local(t_a)
 //   place b from the node    node_local^-1 * local(t_b)
 //   loop says (a <- b)       (place a)^-1 * relative_pose * (place b)
 //
-// and that is compared with the truth (a <- b).
+// and that is compared with ground truth (a <- b).
 //
-// Precision is the share of right loops among those that truth can judge.
+// Precision is the share of right loops among those covered by ground truth.
 // Recall counts revisits, not loops, because one revisit gives dozens of loops
-// that are the same piece of evidence: a revisit is a stretch of the run that
-// truth places near an earlier one (more than a minute before), and it counts
-// as closed when one right loop leads from it to the earlier time.
+// that are the same piece of evidence: a revisit is a piece of the run that is
+// near an earlier one (more than a minute before) by ground truth, and it is
+// closed if one right loop connects it to the earlier time.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_LOOP_STATISTICS_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_LOOP_STATISTICS_H_
 
@@ -32,16 +32,16 @@ namespace cartographer_ext {
 namespace evaluation {
 
 struct LoopStatisticsOptions {
-  // A loop this near the truth is right.
+  // A loop with at most this error is right.
   double correct_translation = 0.5;         // metres
   double correct_rotation = DegToRad(10.);  // radians
   io::TimeNs loop_time_gap = 60LL * 1000000000LL;
-  // Reference trajectory: earlier poses this near make a revisit.
+  // Reference trajectory: earlier poses within this distance make a revisit.
   double revisit_distance = 2.;  // metres
-  // Reference relations: how far their stamps may lie from the node and from
-  // the time span of the submap.
+  // Reference relations: largest distance of their stamps from the node and
+  // from the time span of the submap.
   io::TimeNs bridge = 3LL * 1000000000LL;
-  // Stretches of a revisit with shorter breaks are one revisit.
+  // Pieces with shorter breaks are one revisit.
   io::TimeNs revisit_break = 10LL * 1000000000LL;
   io::TimeNs stamp_tolerance = 1000000;
 };
@@ -51,7 +51,7 @@ enum class LoopVerdict { kUnknown, kCorrect, kWrong };
 struct LoopJudgement {
   size_t constraint = 0;  // index into MapGraph::constraints
   LoopVerdict verdict = LoopVerdict::kUnknown;
-  // Against truth; zero where unknown.
+  // Errors against ground truth; zero if unknown.
   double translation_error = 0.;  // metres
   double rotation_error = 0.;     // radians
   // Of the optimised graph.
@@ -61,21 +61,21 @@ struct LoopJudgement {
 
 struct LoopStatistics {
   int64_t accepted = 0;
-  // Candidates that were found and not accepted, from the decision records;
-  // absent where there are none.
+  // Number of matched candidates that were not accepted, from the decision
+  // records; absent without records.
   absl::optional<int64_t> rejected;
   int64_t judged = 0;
   int64_t correct = 0;
   int64_t revisits = 0;
   int64_t revisits_closed = 0;
-  absl::optional<double> precision;  // absent when nothing could be judged
-  absl::optional<double> recall;     // absent when there is no revisit
+  absl::optional<double> precision;  // absent if nothing could be judged
+  absl::optional<double> recall;     // absent if there is no revisit
   Statistics residual_translation;   // metres
   Statistics residual_rotation_degrees;
   std::vector<LoopJudgement> loops;  // in the order of the constraints
 };
 
-// Without truth: counts and residuals.
+// Without ground truth: counts and residuals.
 LoopStatistics ComputeLoopStatistics(const MapGraph& graph);
 
 LoopStatistics ComputeLoopStatistics(const MapGraph& graph,

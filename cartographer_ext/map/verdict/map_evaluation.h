@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Judges one map by all that is at hand: relations, a reference trajectory, its
-// own loops, its own contents. The same for the map of a file and for those
-// that runs over it leave.
+// Evaluates a map by all available data: relations, a reference trajectory, its
+// loops, its contents. Used for stored maps and for the results of re-runs.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_MAP_EVALUATION_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_MAP_EVALUATION_H_
 
@@ -23,7 +22,7 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// What is known of the truth; names are for messages.
+// The available ground truth; names are for messages.
 struct GroundTruth {
   absl::optional<std::vector<Relation>> relations;
   std::string relations_name;
@@ -32,7 +31,7 @@ struct GroundTruth {
 };
 
 struct MapEvaluationOptions {
-  int trajectory_id = 0;  // which one is held against the truth
+  int trajectory_id = 0;  // the one compared with ground truth
   RelationsMetricOptions relations;
   TrajectoryMetricsOptions trajectory;
   LoopStatisticsOptions loops;
@@ -42,13 +41,14 @@ struct MapEvaluationOptions {
 struct MapToEvaluate {
   // Any may be null, but not both of the first two.
   const MapGraph* graph = nullptr;
-  const Trajectory* scans = nullptr;  // a pose at every scan; goes before nodes
+  const Trajectory* scans =
+      nullptr;  // a pose at every scan; takes precedence over nodes
   const MapContents* contents = nullptr;  // for self-consistency; with `graph`
   const std::map<int, Trajectory>* odometry = nullptr;
 };
 
-// Errors name the file of the truth: nothing of it lies within the trajectory;
-// or the trajectory has no nodes.
+// Errors: the ground truth does not overlap with the trajectory (names its
+// file), or the trajectory has no nodes.
 absl::StatusOr<Evaluation> EvaluateMap(const MapToEvaluate& map,
                                        const GroundTruth& truth,
                                        const MapEvaluationOptions& options);

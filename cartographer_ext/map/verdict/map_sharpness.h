@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How crisp the walls of a map are, from the returns of all scans laid over
-// each other, without any truth:
+// Sharpness of the walls of a map, from the returns of all scans, without
+// ground truth:
 //
 // * mean map entropy (Droeschel et al., Razlaw et al., "Evaluation of
 //   registration methods for sparse 3D laser scans", 2015): the mean over all
@@ -11,9 +11,9 @@
 // * wall thickness: where these returns lie along a line, twice the standard
 //   deviation across it, which is the root of the smaller eigenvalue of S.
 //
-// Both depend on the place (bushes are thicker than walls). The same thickness
-// from returns of one visit only reflects the place and the laser; what
-// the map adds on top is the doubling of walls by visits that do not agree.
+// Both depend on the place (bushes are thicker than walls). The thickness from
+// returns of a single visit reflects the place and the laser; additional
+// thickness in the map is the doubling of walls by inconsistent visits.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_MAP_SHARPNESS_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_MAP_SHARPNESS_H_
 
@@ -27,13 +27,13 @@ namespace evaluation {
 struct SharpnessOptions {
   double radius = 0.3;  // metres
   int min_neighbours = 10;
-  // Nodes this near in the sequence are one visit.
+  // Nodes this close in the sequence are one visit.
   int visit_nodes = 40;
-  // Of all returns so many are looked at, evenly.
+  // Number of returns that are evaluated, evenly sampled.
   int64_t max_samples = 20000;
-  // Of all returns so many are kept as neighbours, evenly.
+  // Number of returns kept as neighbours, evenly sampled.
   int64_t max_points = 400000;
-  // A line: the larger eigenvalue is so many times the smaller.
+  // Minimum ratio of the eigenvalues of a line.
   double min_elongation = 4.;
 };
 
@@ -42,10 +42,10 @@ struct Sharpness {
   double mean_entropy = 0.;  // nats
   // Twice the standard deviation across walls, metres.
   Statistics wall_thickness;
-  // The same of single visits, at the places that have been visited again.
+  // The same for single visits, at the places with several visits.
   Statistics single_visit_thickness;
   Statistics revisited_thickness;  // at the same places, all visits
-  // Mean of the ratio of the two; 1 where nothing was visited twice.
+  // Mean ratio of the two; 1 if no place was visited twice.
   double doubling = 1.;
 };
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Three accounts of how the robot went from one node to the next: the finished
-// map, local SLAM, and the wheels where there is odometry. Map against local
-// SLAM is what the optimisation has bent; local SLAM against the wheels is
-// where one of the two went wrong, by slip or by a scan matched wrongly.
+// Motion of the robot from one node to the next by three sources: the finished
+// map, local SLAM, and the wheels if there is odometry. Map against local SLAM
+// shows distortion by the optimisation; local SLAM against the wheels shows
+// errors of one of the two, by slip or by a wrongly matched scan.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_MOTION_DISAGREEMENT_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_MOTION_DISAGREEMENT_H_
 
@@ -19,7 +19,7 @@
 namespace cartographer_ext {
 namespace evaluation {
 
-// From the node before to this one.
+// The motion from the previous node to this one.
 struct MotionStep {
   GraphId node_id;
   io::TimeNs time = 0;
@@ -28,7 +28,7 @@ struct MotionStep {
   // Map against local SLAM.
   double bend_translation = 0.;  // metres
   double bend_rotation = 0.;     // radians
-  // Local SLAM against the wheels, where these say something.
+  // Local SLAM against the wheels, if there is odometry.
   bool has_odometry = false;
   double odometry_translation = 0.;
   double odometry_rotation = 0.;

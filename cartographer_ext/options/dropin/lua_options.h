@@ -16,11 +16,11 @@ namespace options {
 // Key of our table in the stock table it extends.
 constexpr char kExtensionKey[] = "cartographer_ext";
 
-// False, and nothing read, where `stock` has no such sub-table. Else sets the
-// defaults, then reads every key present. An unknown key, a value of the wrong
-// type and a value out of range are fatal, with a message that names the full
-// key (`stock_path` is the Lua name of the stock table, such as
-// "POSE_GRAPH.constraint_builder"), the value and what is allowed.
+// Returns false without reading anything if `stock` has no such sub-table.
+// Otherwise sets the defaults, then reads every key present. An unknown key, a
+// value of the wrong type and a value out of range are fatal, with a message
+// that names the full key (`stock_path` is the Lua name of the stock table,
+// such as "POSE_GRAPH.constraint_builder"), the value and the allowed ones.
 bool ReadExtension(const std::string& stock_path,
                    cartographer::common::LuaParameterDictionary* stock,
                    google::protobuf::Message* options);

@@ -10,11 +10,11 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
-// What is left of the budget of a search.
+// The remaining budget of a search.
 class BudgetMeter {
  public:
   explicit BudgetMeter(const SearchBudget& budget);
-  // False when nothing is left.
+  // Returns false if the budget is used up.
   bool Spend(int64_t candidates);
   bool used_up() const { return used_up_; }
 

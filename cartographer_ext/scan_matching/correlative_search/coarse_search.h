@@ -19,6 +19,7 @@ namespace scan_matching {
 // Bounds are stored after each part of the scan but the last.
 constexpr int kNumPartialSums = RotatedScans::kNumParts - 1;
 
+// Neighbouring rotations and 8 x 8 offsets with an upper bound of their scores.
 struct CoarseNode {
   int32_t sum;    // bound, in steps of CoarseMaxima
   int32_t group;  // of rotations
@@ -27,17 +28,18 @@ struct CoarseNode {
   uint16_t partial_sums[kNumPartialSums];
 };
 
+// Computes the coarse nodes of a scan. Not thread-safe.
 class CoarseSearch {
  public:
-  // Only nodes with poses whose sum may exceed `threshold` are of interest.
-  // `grid` and `scans` must outlive this.
+  // Nodes whose poses cannot exceed the sum `threshold` are dropped. `grid` and
+  // `scans` must outlive this object.
   CoarseSearch(const PreparedGrid& grid, RotatedScans* scans, int threshold);
 
   CoarseSearch(const CoarseSearch&) = delete;
   CoarseSearch& operator=(const CoarseSearch&) = delete;
 
-  // The nodes, largest bounds first, equal ones in the order of scoring. False
-  // where there are too many.
+  // Computes the nodes, largest bounds first, equal ones in the order of
+  // scoring. Returns false if there are too many.
   bool Score(SearchStatistics* statistics, std::vector<CoarseNode>* nodes);
 
   // Upper bound, as a sum of values from 0 to 255, of a sum in coarse steps.

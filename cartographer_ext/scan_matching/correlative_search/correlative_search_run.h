@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The state of one search of FastCorrelativeSearch2D; see there for the method.
-// Scores are compared as sums over the points of values from 0 to 255.
+// The state of one search of FastCorrelativeSearch2D, which describes the
+// method. Scores are compared as sums over the points of values from 0 to 255.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_CORRELATIVE_SEARCH_CORRELATIVE_SEARCH_RUN_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_CORRELATIVE_SEARCH_CORRELATIVE_SEARCH_RUN_H_
 
@@ -21,6 +21,7 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// A search that can be interrupted and resumed. Not thread-safe.
 class CorrelativeSearchRun {
  public:
   // Computes the coarse bounds. `grid` must outlive this.
@@ -28,12 +29,12 @@ class CorrelativeSearchRun {
                        const Pose2& initial, const SearchWindow& window,
                        float min_score);
 
-  // No pose scores more, and a pose that scores so much exists once done.
+  // No pose scores more; once done, a pose with this score exists.
   float UpperBound() const;
-  // Nothing is left that could be better than what was found.
+  // Whether no remaining pose can be better than the best one found.
   bool done() const;
-  // Goes on until done, until the upper bound is below `score`, or until the
-  // meter is used up.
+  // Continues until done, until the upper bound is below `score`, or until the
+  // budget is used up.
   void Run(float score, BudgetMeter* meter);
   // After the last `Run`.
   SearchResult Result();
@@ -54,7 +55,7 @@ class CorrelativeSearchRun {
   int CoarseBound() const;
   int BlockBound() const;
   int BestBound() const;
-  // The smallest sum that is of interest.
+  // The smallest sum that is relevant.
   int Needed() const;
   void OpenCoarse(const CoarseNode& node);
   static uint64_t KeyOf(int sum, size_t index);
@@ -64,9 +65,9 @@ class CorrelativeSearchRun {
   const PreparedGrid& grid_;
   RotatedScans scans_;
   bool complete_ = true;
-  int threshold_ = 0;  // only larger sums are of interest
+  int threshold_ = 0;  // only larger sums are relevant
   int best_sum_ = -1;
-  // With the best sum; when there are too many of them, only the first few.
+  // Poses with the best sum; only the first few if there are many.
   std::vector<DiscretePose> best_;
   bool too_many_equal_ = false;
 

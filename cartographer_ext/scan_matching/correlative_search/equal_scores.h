@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which of several poses with the same, best score a search returns: that which
-// Cartographer's depth-first branch and bound meets first. It starts from all
+// Selects among several poses with the same best score the one that
+// Cartographer's depth-first branch and bound finds first. It starts from all
 // squares of 2^(depth - 1) x 2^(depth - 1) offsets, counted from the smallest
 // offsets of each rotation, the highest bound first; each square is divided
 // into four, again the highest bound first. Squares with equal bounds keep the
@@ -18,16 +18,18 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// A rotation and an offset in cells.
 struct DiscretePose {
   int rotation = 0;
   int x = 0;
   int y = 0;
 };
 
+// Resolves ties, see above. Not thread-safe.
 class EqualScores {
  public:
-  // All arguments must outlive this. `cells` has squares of one cell, `blocks`
-  // of kBlockSize.
+  // All arguments must outlive this object. `cells` has squares of one cell,
+  // `blocks` of kBlockSize.
   EqualScores(const RectangleMaxima& cells, const RectangleMaxima& blocks,
               int depth, RotatedScans* scans);
 
@@ -35,7 +37,7 @@ class EqualScores {
   DiscretePose First(const std::vector<DiscretePose>& poses) const;
 
   // The first of all poses with a sum of `sum` or more; at least one exists.
-  // For when there are too many to list them.
+  // Used if there are too many to list.
   DiscretePose FirstOfAll(int sum) const;
 
  private:

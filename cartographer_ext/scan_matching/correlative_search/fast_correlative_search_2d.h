@@ -5,14 +5,14 @@
 // optimum as Cartographer's branch-and-bound matcher [Olson 2009; Hess et al.
 // 2016, section V], bit for bit, several times faster.
 //
-// What is searched. A pose is a rotation out of 2 n + 1 equidistant ones and an
-// offset of whole cells. It scores the mean, over the points, of the 8-bit
-// values of the cells they fall into (0 outside the grid), mapped from [0, 255]
-// to [min_score, max_score]. The best pose is wanted if it scores more than a
-// given minimum. Sums of values are integers, so nothing depends on the order
+// Problem. A pose is one of 2 n + 1 equidistant rotations and an offset of
+// whole cells. Its score is the mean, over the points, of the 8-bit values of
+// the cells they fall into (0 outside the grid), mapped from [0, 255] to
+// [min_score, max_score]. The search returns the best pose if its score exceeds
+// a given minimum. Sums of values are integers, so nothing depends on the order
 // of summation or on the instruction set.
 //
-// How. Three kinds of nodes, each with an upper bound of all poses below it:
+// Method. Three kinds of nodes, each with an upper bound of all poses below it:
 //  * coarse: neighbouring rotations x 8 x 8 offsets. For a point the bound is
 //    the largest value of all cells it can meet: between two rotations it moves
 //    by less than one cell, in proportion to its range and across its ray, so
@@ -22,14 +22,14 @@
 //    rounded up, so that eight points fit one byte.
 //  * block: one rotation x 8 x 8 offsets.
 //  * pose: the 64 poses of a block are scored together, as eight neighbouring
-//    cells are eight neighbouring bytes; ended early when the rest of the block
+//    cells are eight neighbouring bytes; abandoned when the rest of the block
 //    cannot reach the best pose so far.
-// The node with the largest bound comes next, until no bound exceeds the best
-// score. Where nothing is above the minimum, the coarse bounds sometimes say so
-// alone, and no node is opened ("rejected early").
+// The node with the largest bound is opened next, until no bound exceeds the
+// best score. If no pose is above the minimum, the coarse bounds alone often
+// prove it, and no node is opened ("rejected early").
 //
-// Ties: of poses with equal sums the one is returned that Cartographer's
-// depth-first search meets first, see equal_scores.h.
+// Ties: of several poses with equal sums, the search returns the one that
+// Cartographer's depth-first search finds first, see equal_scores.h.
 //
 // Objects are immutable after construction; all methods may be used by several
 // threads at once. Only `max_seconds` makes a result depend on time.
@@ -67,15 +67,17 @@ struct SearchWindow {
   double angular = 0.;  // radians
 };
 
+// Window and details of the search.
 struct FastCorrelativeSearchOptions {
   SearchWindow window = {7., DegToRad(30.)};
-  // Of Cartographer's search; decides only between poses of equal score.
+  // Depth of Cartographer's search; only affects the choice between poses of
+  // equal score.
   int branch_and_bound_depth = 7;
-  // Null means the fastest of this machine. All give the same results.
+  // Null: the fastest on this machine. All give the same results.
   const SearchKernels* kernels = nullptr;
 };
 
-// Zero means without limit.
+// Limits of a search; zero: no limit.
 struct SearchBudget {
   // Nodes and poses scored after the coarse bounds; deterministic.
   int64_t max_candidates = 0;
@@ -84,6 +86,7 @@ struct SearchBudget {
   double max_seconds = 0.;
 };
 
+// Counts of nodes, for tests and benchmarks.
 struct SearchStatistics {
   int64_t num_poses = 0;        // in the window
   int64_t coarse_scored = 0;    // coarse nodes
@@ -97,25 +100,28 @@ struct SearchStatistics {
   void Add(const SearchStatistics& other);
 };
 
+// The best pose of one search.
 struct SearchResult {
-  // A pose above the minimum was found. When the search is not complete, it is
-  // the best so far.
+  // Whether a pose above the minimum was found; if the search is not complete,
+  // it is the best so far.
   bool found = false;
-  // False when the budget was used up (or the window is absurdly large) first.
+  // False if the budget was used up, or if the window is too large.
   bool complete = true;
   float score = 0.f;
   Pose2 pose;  // (grid <- cloud); the angle is not wrapped
-  // No pose of the window scores more; equals `score` when found and complete.
+  // No pose of the window has a higher score; equals `score` if found and
+  // complete.
   float upper_bound = 0.f;
   SearchStatistics statistics;
 };
 
 struct PreparedGrid;
 
+// The search in one grid, see above. Thread-safe.
 class FastCorrelativeSearch2D {
  public:
-  // A grid whose sizes do not fit its values, or without cells, makes a search
-  // that never finds anything.
+  // With an empty grid, or if its dimensions do not match its values, no search
+  // finds a pose.
   FastCorrelativeSearch2D(SearchGrid2D grid,
                           const FastCorrelativeSearchOptions& options);
   ~FastCorrelativeSearch2D();
@@ -125,11 +131,11 @@ class FastCorrelativeSearch2D {
   // Searches the window of the options around `initial` (grid <- cloud).
   SearchResult Match(const Pose2& initial, const PlanarCloud& cloud,
                      float min_score) const;
-  // Another window. Negative or NaN half sizes count as zero.
+  // The same with a different window. Negative or NaN half sizes count as zero.
   SearchResult Match(const Pose2& initial, const PlanarCloud& cloud,
                      const SearchWindow& window, float min_score,
                      const SearchBudget& budget) const;
-  // Every rotation and every offset that leaves a point in the grid.
+  // Searches every rotation and every offset that keeps a point in the grid.
   SearchResult MatchFullSubmap(const PlanarCloud& cloud, float min_score,
                                const SearchBudget& budget) const;
 
@@ -144,27 +150,29 @@ class FastCorrelativeSearch2D {
   std::unique_ptr<const PreparedGrid> grid_;
 };
 
-// One of several places where a scan may belong. Pointees must outlive the
+// One of several submaps in which a scan is searched. Pointees must outlive the
 // search.
 struct SearchTask {
   const FastCorrelativeSearch2D* grid = nullptr;
   const PlanarCloud* cloud = nullptr;
-  bool full_submap = false;  // `initial` and `window` do not matter then
+  bool full_submap = false;  // then `initial` and `window` are ignored
   Pose2 initial;
   SearchWindow window;
   float min_score = 0.f;
 };
 
+// The result of one of several tasks.
 struct SearchTaskResult {
   size_t task = 0;  // index
   SearchResult result;
 };
 
-// The results of the `num_best` tasks whose best poses score highest, best
-// first (of equals the earlier task first); fewer when fewer exceed their
-// minimum. All tasks share one queue, so that a worse place is
-// abandoned as soon as its bound shows it. With a budget, which is for all
-// tasks together, results may be incomplete. `total`, if any, gets the sums.
+// Returns the results of the `num_best` tasks with the highest scores, best
+// first (of equals the earlier task first); fewer if fewer exceed their
+// minimum. All tasks share one queue, so that a worse task is abandoned as soon
+// as its bound shows it. The budget applies to all tasks together; if it is
+// used up, results may be incomplete. `total`, unless null, receives the summed
+// statistics.
 std::vector<SearchTaskResult> MatchBestFew(const std::vector<SearchTask>& tasks,
                                            int num_best,
                                            const SearchBudget& budget,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A grid as the correlative search needs it: maxima over blocks of cells, from
+// A grid prepared for the correlative search: maxima over blocks of cells, from
 // which upper bounds of scores follow.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_CORRELATIVE_SEARCH_PREPARED_GRID_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_CORRELATIVE_SEARCH_PREPARED_GRID_H_
@@ -21,18 +21,20 @@ namespace scan_matching {
 // Width of the margin of zeros around the cells.
 constexpr int kGridMargin = kBlockSize - 1;
 
-// How far, in cells, points may move within a coarse node to either side of
-// where they are in its middle rotation. A point moves across its ray, so that
-// one on an axis of the grid needs room along the other axis only.
+// Maximum displacement of a point within a coarse node, in cells, to either
+// side of its position in the middle rotation. A point moves perpendicular to
+// its ray, so a point on one axis of the grid needs room along the other axis
+// only.
 struct Reach {
   int x;
   int y;
 };
 constexpr int kNumReaches = 5;
-// Each point uses the first that suffices; the last is for all points.
+// Each point uses the first that is sufficient; the last is sufficient for all.
 constexpr Reach kReaches[kNumReaches] = {
     {1, 1}, {1, 4}, {4, 1}, {2, 2}, {4, 4}};
 
+// Search structures of one grid. Immutable after construction.
 struct PreparedGrid {
   PreparedGrid(const SearchGrid2D& grid, int depth,
                const SearchKernels& search_kernels);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Finds the best pose of a scan in a small window of a grid that changes with
-// every scan, so that nothing can be prepared: the same optimum as
+// every scan, so no structures can be prepared: the same optimum as
 // Cartographer's real-time correlative matcher, bit for bit.
 //
 // A pose scores the mean probability of the cells that the points fall into,
@@ -38,28 +38,31 @@ class ProbabilityView {
 
   virtual ~ProbabilityView() = default;
   virtual GridGeometry Geometry() const = 0;
-  // Outside this rectangle of cells all have the smallest probability. Both
-  // ends belong to it; empty when max < min.
+  // All cells outside this rectangle have the smallest probability. Bounds are
+  // inclusive; empty if max < min.
   virtual OffsetBounds Known() const = 0;
-  // Writes those of cells (x_begin, y) to (x_end - 1, y), which are known, in
-  // 256 steps, rounded up (within 1e-3 of a step).
+  // Writes the probabilities of cells (x_begin, y) to (x_end - 1, y), which
+  // must be in Known(), in 256 steps, rounded up (within 1e-3 of a step).
   virtual void CopyRow(int y, int x_begin, int x_end,
                        uint8_t* values) const = 0;
-  // Of any cell.
+  // Probability of any cell.
   virtual float Probability(int x, int y) const = 0;
 };
 
+// Half widths of the window and weights of the difference from the initial
+// pose.
 struct RealTimeSearchOptions {
   SearchWindow window = {0.1, DegToRad(20.)};
   double translation_delta_cost_weight = 0.1;
   double rotation_delta_cost_weight = 0.1;
-  // Null means the fastest of this machine. All give the same results.
+  // Null: the fastest on this machine. All give the same results.
   const SearchKernels* kernels = nullptr;
 };
 
+// The best pose in the window.
 struct RealTimeSearchResult {
-  // False, with the initial pose, when the window is absurdly large or the
-  // initial pose not finite.
+  // False, with the initial pose, if the window is too large or the initial
+  // pose is not finite.
   bool complete = true;
   float score = 0.f;
   Pose2 pose;  // (grid <- cloud); the angle is not wrapped
@@ -67,7 +70,7 @@ struct RealTimeSearchResult {
   int64_t poses_scored = 0;
 };
 
-// An empty cloud leaves the initial pose and scores 0.
+// An empty cloud gives the initial pose and a score of 0.
 RealTimeSearchResult SearchInRealTime(const RealTimeSearchOptions& options,
                                       const ProbabilityView& grid,
                                       const Pose2& initial,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The poses a correlative matcher tries, and the cells a scan falls into, with
-// exactly the arithmetic of Cartographer's matchers:
+// The poses that a correlative matcher evaluates, and the cells of a scan at
+// each of them, with exactly the arithmetic of Cartographer's matchers:
 //
 //  * The angular step moves the farthest point by a little less than a cell,
 //    0.999 acos(1 - resolution^2 / (2 range^2)) with range >= 3 resolution;
@@ -35,7 +35,7 @@ struct PlanarCloud {
   bool empty() const { return x.empty(); }
 };
 
-// Where a grid lies. The centre of cell (ix, iy) is at
+// Position of a grid. The centre of cell (ix, iy) is at
 //   x = max_x - resolution * (iy + 0.5),  y = max_y - resolution * (ix + 0.5).
 struct GridGeometry {
   int num_x = 0;
@@ -45,7 +45,7 @@ struct GridGeometry {
   double max_y = 0.;
 };
 
-// Of offsets in cells; both ends belong to it.
+// Range of offsets in cells, inclusive.
 struct OffsetBounds {
   int min_x;
   int max_x;
@@ -65,11 +65,12 @@ struct RotatedScan {
   OffsetBounds offsets = {0, 0, 0, 0};
 };
 
+// The rotations of a scan with its cells, computed on demand. Not thread-safe.
 class RotatedScans {
  public:
-  // Points are stored in another order: every fourth point, starting with the
-  // first, then with the second, the third and the fourth. These parts of a
-  // scan resemble each other, so that one shows whether a pose is promising.
+  // Points are reordered: every fourth point, starting with the first, then
+  // with the second, the third and the fourth. These parts are representative
+  // of the whole scan, so one of them shows whether a pose is promising.
   static constexpr int kNumParts = 4;
 
   // Half sizes in metres and radians; `initial` is (grid <- cloud). The cloud
@@ -82,30 +83,30 @@ class RotatedScans {
                const SearchKernels& kernels,
                RangeOf range_of = RangeOf::kCloud);
 
-  // False when the window is too large to be searched: more than 2^24
-  // rotations, or offsets of more than 10^8 cells, or 2^31 cells in total.
+  // False if the window is too large to be searched: more than 2^24 rotations,
+  // or offsets of more than 10^8 cells, or 2^31 cells in total.
   bool valid() const { return valid_; }
 
   int num_points() const { return static_cast<int>(turned_x_.size()); }
   int num_rotations() const { return static_cast<int>(angles_.size()); }
   double angular_step() const { return angular_step_; }
-  // To either side, before the grid's size is considered.
+  // Half width of the window in cells, before it is limited by the grid.
   int linear_cells() const { return linear_cells_; }
 
   // Part `part` consists of points PartBegin(part) to PartBegin(part + 1) - 1.
   int PartBegin(const int part) const { return part_begin_[part]; }
 
-  // Where the cloud's point i is stored.
+  // Index at which point i of the cloud is stored.
   int PlaceOf(const int i) const {
     return first_of_turn_[i % kNumParts] + i / kNumParts;
   }
 
-  // How many cells the point may move from a rotation to the next, at most.
+  // Maximum displacement of the point from one rotation to the next, in cells.
   double CellsPerStep(int point) const;
-  // Of that, what rounding may add between any two rotations.
+  // Part of that displacement that is due to rounding.
   double RoundingCells() const;
 
-  // Of the initial pose, in fractions of cells.
+  // Position of the initial pose, in fractions of cells.
   double SensorCellX() const {
     return (geometry_.max_y - initial_.y) / geometry_.resolution - 0.5;
   }
@@ -122,7 +123,7 @@ class RotatedScans {
   // The same as FindCells with bounds; computed once.
   const RotatedScan& Get(int rotation);
 
-  // What `offsets` are for points in these cells.
+  // The valid offsets for points in these cells.
   OffsetBounds BoundsFor(const OffsetBounds& cells) const;
 
   // (grid <- cloud); the angle is not wrapped.

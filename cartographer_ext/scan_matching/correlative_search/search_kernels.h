@@ -29,6 +29,7 @@ struct CellFrame {
   double resolution = 1.;
 };
 
+// Function pointers of one instruction set.
 struct SearchKernels {
   const char* name;
 
@@ -52,8 +53,8 @@ struct SearchKernels {
                     const int32_t* x, const int32_t* y, int shift_x,
                     int shift_y, int count);
 
-  // Writes stride * row + column of the same ones to `places`, which must have
-  // room for count + 8, and returns how many there are.
+  // Writes stride * row + column of the same points to `places`, which must
+  // have room for count + 8, and returns their number.
   int (*find_places)(int num_x, int num_y, int stride, const int32_t* x,
                      const int32_t* y, int shift_x, int shift_y, int count,
                      int32_t* places);
@@ -67,16 +68,16 @@ struct SearchKernels {
   int (*add_squares)(const uint8_t* cells, int stride, const int32_t* offsets,
                      int count, uint16_t* sums);
 
-  // bytes[i] = min(255, max(0, scale * (largest - values[i])) + 0.999), cut off
-  // to a whole number, for i < count. NaN becomes 0.
+  // bytes[i] = min(255, max(0, scale * (largest - values[i])) + 0.999),
+  // truncated to an integer, for i < count. NaN becomes 0.
   void (*round_up)(const float* values, float largest, float scale, int count,
                    uint8_t* bytes);
 };
 
-// The fastest set of this machine.
+// The fastest set that this machine supports.
 const SearchKernels& BestSearchKernels();
 
-// All that this machine has, the plain C++ one first. For tests.
+// All sets that this machine supports, the plain C++ one first. For tests.
 std::vector<const SearchKernels*> AllSearchKernels();
 
 }  // namespace scan_matching

@@ -18,6 +18,7 @@ namespace plain {
 // Added by `round_up` before cutting off the fraction.
 constexpr float kAlmostOne = 0.999f;
 
+// Plain C++ versions of the kernels of the same names in search_kernels.h.
 void FindCells(const CellFrame& frame, const float* point_x,
                const float* point_y, int count, int32_t* x, int32_t* y);
 int SumValues(const uint8_t* values, int num_x, int num_y, const int32_t* x,

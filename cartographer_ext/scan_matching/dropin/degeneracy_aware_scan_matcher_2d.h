@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // CeresScanMatcher2D for options with our block: the same cost on probability
-// grids, minimised by a solver made for three unknowns; directions that the
-// scan does not observe are taken from the prediction (scan_information.h). A
-// TSDF goes to the stock matcher.
+// grids, minimised by a dedicated solver for three unknowns; along directions
+// that the scan does not observe the result follows the prediction
+// (scan_information.h). A TSDF goes to the stock matcher.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_DEGENERACY_AWARE_SCAN_MATCHER_2D_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_DEGENERACY_AWARE_SCAN_MATCHER_2D_H_
 
@@ -23,9 +23,9 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
-// May be used by several threads at once. Never fails: with no points, nothing
-// known in the grid, or numbers that are not finite, the result is the
-// prediction.
+// May be used by several threads at once. Never fails: without points, without
+// known cells in the grid, or with values that are not finite, the result is
+// the prediction.
 class DegeneracyAwareScanMatcher2D {
  public:
   // The weights of `options` must be positive, as the stock matcher requires.
@@ -40,7 +40,8 @@ class DegeneracyAwareScanMatcher2D {
   // As the stock matcher: poses are (grid <- cloud), `pose_estimate` may be one
   // of the inputs, `summary` (may be null) gets costs, iterations and
   // termination. The prediction is `target_translation` with the angle of
-  // `initial_pose_estimate`; the weights of the options are its confidence.
+  // `initial_pose_estimate`; its confidence is given by the weights of the
+  // options.
   void Match(const Eigen::Vector2d& target_translation,
              const cartographer::transform::Rigid2d& initial_pose_estimate,
              const cartographer::sensor::PointCloud& point_cloud,

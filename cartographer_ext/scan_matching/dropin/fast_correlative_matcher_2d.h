@@ -23,6 +23,7 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// The host's options as those of the search.
 inline FastCorrelativeSearchOptions ToSearchOptions(
     const cartographer::mapping::scan_matching::proto::
         FastCorrelativeScanMatcherOptions2D& options) {
@@ -53,7 +54,7 @@ inline SearchGrid2D ToSearchGrid(const cartographer::mapping::Grid2D& grid) {
     CopyCosts(grid, 0, y, result.num_x, costs.data());
     for (int x = 0; x != result.num_x; ++x) {
       const float score = 1.f - std::abs(costs[x]);
-      // Rounds like lround: the sum is exact, and below 0 nothing is left.
+      // Rounds like lround: the sum is exact and not negative.
       const double step =
           static_cast<double>((score - result.min_score) * steps_per_score);
       *value++ = static_cast<uint8_t>(
@@ -63,6 +64,7 @@ inline SearchGrid2D ToSearchGrid(const cartographer::mapping::Grid2D& grid) {
   return result;
 }
 
+// The x and y of the host's point cloud, metres.
 inline PlanarCloud ToPlanarCloud(
     const cartographer::sensor::PointCloud& point_cloud) {
   PlanarCloud result;
@@ -106,8 +108,8 @@ class FastCorrelativeMatcher2D {
                   score, pose_estimate);
   }
 
-  // With a window of its own (half sizes in metres and radians), a budget, and
-  // statistics.
+  // The same with a given window (half sizes in metres and radians), a budget,
+  // and statistics.
   SearchResult Match(const Rigid2d& initial_pose_estimate,
                      const PointCloud& point_cloud, const SearchWindow& window,
                      const float min_score, const SearchBudget& budget) const {
@@ -121,7 +123,7 @@ class FastCorrelativeMatcher2D {
                                    budget);
   }
 
-  // For SearchTask.
+  // The search object, for SearchTask.
   const FastCorrelativeSearch2D& search() const { return search_; }
   size_t MemoryBytes() const { return search_.MemoryBytes(); }
 

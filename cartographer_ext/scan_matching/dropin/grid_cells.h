@@ -13,6 +13,7 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// The `Cells` of OccupiedSpaceCost for a grid of the host.
 class GridCells {
  public:
   // The grid must outlive it.

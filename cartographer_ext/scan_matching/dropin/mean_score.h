@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How well a scan fits a grid of the host at a pose: the mean probability under
-// its points, in [0, 1]; in a TSDF one minus the mean distance in parts of the
+// Score of a scan in a grid of the host at a pose: the mean probability under
+// its points, in [0, 1]; in a TSDF one minus the mean distance divided by the
 // truncation distance. `pose` is (frame of the grid <- cloud). Zero without
 // points.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_MEAN_SCORE_H_
@@ -18,6 +18,7 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// The score, see above.
 inline double MeanScore(const Pose2& pose,
                         const cartographer::sensor::PointCloud& cloud,
                         const cartographer::mapping::Grid2D& grid) {

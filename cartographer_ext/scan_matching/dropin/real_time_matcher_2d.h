@@ -23,6 +23,7 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// View of the host's probability grid for SearchInRealTime.
 class ProbabilityGridView : public ProbabilityView {
  public:
   // The grid must outlive this.
@@ -70,7 +71,7 @@ class ProbabilityGridView : public ProbabilityView {
   const cartographer::mapping::ProbabilityGrid& grid_;
 };
 
-// May be used by several threads at once.
+// Real-time correlative matcher. May be used by several threads at once.
 class RealTimeMatcher2D {
  public:
   using Rigid2d = cartographer::transform::Rigid2d;
@@ -89,8 +90,8 @@ class RealTimeMatcher2D {
   }
 
   // As the host's matcher: poses are (local frame of the submap <- node);
-  // returns the score. A TSDF goes to the host's matcher; an empty cloud leaves
-  // the initial pose and scores 0.
+  // returns the score. A TSDF is matched by the host's matcher; an empty cloud
+  // gives the initial pose and a score of 0.
   double Match(const Rigid2d& initial_pose_estimate,
                const cartographer::sensor::PointCloud& point_cloud,
                const cartographer::mapping::Grid2D& grid,

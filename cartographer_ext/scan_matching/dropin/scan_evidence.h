@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How much more likely a scan is at one pose in a grid than at another: the
-// difference of its log-likelihoods, natural logarithm,
+// Evidence of a scan for one pose in a grid against another: the difference of
+// its log-likelihoods (natural logarithm),
 //
 //   L = sum over patches of  mean over the points in the patch of  ln p,
 //
-// where p is the probability of the cell under the point. Points that are close
-// together lie on one surface and are right or wrong together: a patch, a
-// square of the scan, counts once however many beams fall into it. A cell that
-// has not been seen yet may hold anything; it speaks neither for nor against a
-// pose (p = 0.5), otherwise scans would be drawn back from new places to known
-// walls.
+// where p is the probability of the cell under the point. Neighbouring points
+// lie on one surface and are not independent: a patch, a square cell of the
+// scan, counts once regardless of the number of beams in it. An unknown cell is
+// evidence neither for nor against a pose (p = 0.5); otherwise scans of new
+// places would be pulled back to known walls.
 #ifndef CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_SCAN_EVIDENCE_H_
 #define CARTOGRAPHER_EXT_SCAN_MATCHING_DROPIN_SCAN_EVIDENCE_H_
 
@@ -34,7 +33,7 @@ class PoseEvidence {
                const cartographer::mapping::Grid2D& grid);
 
   // L(pose) - L(`other`). Zero without points. Infinite in a TSDF, whose
-  // distances are not probabilities: there matches are beyond doubt.
+  // distances are not probabilities: there the match is always trusted.
   double Against(const Pose2& other) const;
 
  private:

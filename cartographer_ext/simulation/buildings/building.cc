@@ -112,7 +112,7 @@ absl::Status Attempt(const BuildingOptions& options, const int attempt,
   const std::string& kind = BuildingNames()[static_cast<size_t>(options.kind)];
   world.name = absl::StrCat(kind, "_", options.seed);
   world.robot = options.robot;
-  world.robot.jitter = 0.;  // people keep out of the way of one drive
+  world.robot.jitter = 0.;  // people avoid the path of one drive
   world.segments = plan.segments;
   world.discs = plan.discs;
   RouteOptions route_options;

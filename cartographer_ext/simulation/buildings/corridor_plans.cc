@@ -29,8 +29,8 @@ namespace {
 
 constexpr double kHalfWall = 0.06;
 constexpr double kOuterWall = 0.25;
-constexpr double kDoor = 1.1;        // metres wide
-constexpr double kInFront = 0.9;     // from the door to the first node inside
+constexpr double kDoor = 1.1;         // metres wide
+constexpr double kInFront = 0.9;      // from the door to the first node inside
 constexpr double kClosedDoor = 0.08;  // how far a closed door is set back
 
 struct Style {
@@ -49,7 +49,7 @@ struct Style {
 
 struct Corridor {
   double y = 0.;
-  std::map<double, int> nodes;  // by x
+  std::map<double, int> nodes;                // by x
   std::vector<std::pair<double, int>> stops;  // (x, node), in rooms
 };
 
@@ -176,9 +176,8 @@ class CorridorBuilder {
     const double front = doors_above ? box.max().y() : box.min().y();
     const double x0 = box.min().x(), x1 = box.max().x();
     const double spare = x1 - x0 - 4. * kHalfWall - kDoor - 0.3;
-    const double door =
-        x0 + 2. * kHalfWall + 0.15 +
-        spare * (style_.alike ? 0.2 : random_->Uniform(0., 1.));
+    const double door = x0 + 2. * kHalfWall + 0.15 +
+                        spare * (style_.alike ? 0.2 : random_->Uniform(0., 1.));
     const bool open = spare > 0.3 && random_->Uniform() < style_.open_share;
     const bool glass = open && random_->Uniform() < style_.glass_share;
     const Surface wall = glass ? Pane() : Surface();
@@ -192,8 +191,8 @@ class CorridorBuilder {
       return;
     }
     const double inner = front + inwards * 2. * kHalfWall;
-    const double back = (doors_above ? box.min().y() : box.max().y()) -
-                        inwards * back_wall;
+    const double back =
+        (doors_above ? box.min().y() : box.max().y()) - inwards * back_wall;
     const double left = x0 + kHalfWall, right = x1 - kHalfWall;
     AddLine({left, inner}, {left, back}, Surface(), plan_);
     AddLine({right, inner}, {right, back}, Surface(), plan_);
@@ -204,9 +203,9 @@ class CorridorBuilder {
       AddLine({door + kDoor, front}, {door + kDoor, inner}, Surface(), plan_);
     }
     AddBackWall(left, right, back, doors_above, back_wall == kOuterWall);
-    AddRoomLanes(MakeBox(left, std::min(inner, back), right,
-                         std::max(inner, back)),
-                 door + 0.5 * kDoor, doors_above, corridor);
+    AddRoomLanes(
+        MakeBox(left, std::min(inner, back), right, std::max(inner, back)),
+        door + 0.5 * kDoor, doors_above, corridor);
   }
 
   void AddBackWall(const double left, const double right, const double y,
@@ -286,8 +285,8 @@ class CorridorBuilder {
     }
   }
 
-  // Every k-th room along the way: east on the first corridor, back on the other
-  // or, where there is one only, on the same.
+  // Every k-th room along the route: east on the first corridor, back on the
+  // other or, where there is one only, on the same.
   void MakeRound() {
     std::vector<std::pair<double, int>> east = corridors_.front().stops;
     std::vector<std::pair<double, int>> west;
@@ -349,8 +348,8 @@ void SetWalks(const double corridor_width, FloorPlan* plan) {
 void PlanOffice(Random* random, FloorPlan* plan) {
   Style style;
   style.ring = random->Uniform() < 0.6;
-  style.width = style.ring ? random->Uniform(24., 42.)
-                           : random->Uniform(24., 50.);
+  style.width =
+      style.ring ? random->Uniform(24., 42.) : random->Uniform(24., 50.);
   style.corridor_width = random->Uniform(1.8, 2.8);
   style.room_width = random->Uniform(3.6, 5.5);
   style.room_spread = random->Uniform(0.1, 0.45);

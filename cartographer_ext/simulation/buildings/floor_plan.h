@@ -3,7 +3,7 @@
 //
 // A floor plan under construction: walls and furniture, and the lanes on which
 // a robot gets everywhere. Lanes are a graph of straight lines; whatever is
-// placed later keeps its distance from them, as people leave the ways of a
+// placed later keeps its distance from them, as people leave the lanes of a
 // building free. Metres, world frame.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_FLOOR_PLAN_H_
 #define CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_FLOOR_PLAN_H_

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Things that stand in a plan: what a horizontal laser sees of them, a hand's
-// breadth above the floor.
+// Furniture and other objects in a plan, as seen by a horizontal laser ten
+// centimetres above the floor.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_FURNITURE_H_
 #define CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_FURNITURE_H_
 
@@ -22,12 +22,12 @@ struct Piece {
   std::vector<Disc> discs;
 };
 
-Piece Desk();                            // four legs and a chair
+Piece Desk();                                // four legs and a chair
 Piece Cupboard(double width, double depth);  // a closed box
-Piece Table(int chairs);                 // a central foot, chairs round it
+Piece Table(int chairs);                     // a central foot, chairs round it
 Piece Bed();
-Piece RoundThing(double radius);         // a bin, a plant, a column, a tree
-Piece ParkedCar();                       // the body between the wheels' tops
+Piece RoundThing(double radius);  // a bin, a plant, a column, a tree
+Piece ParkedCar();                // the body between the wheels' tops
 // Posts at the corners of each bay, pallets in a share of the places.
 Piece Rack(int bays, double depth, double filled, Random* random);
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// People who walk to and fro beside the lanes, and who make way: only those are
-// kept whose walk never touches the robot on its drive.
+// People who walk back and forth beside the lanes; only those whose walk never
+// touches the robot on its drive are kept.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_PEOPLE_H_
 #define CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_PEOPLE_H_
 

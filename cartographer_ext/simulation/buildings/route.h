@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The drive through a plan: shortest paths along its lanes from stop to stop of
-// the round (Dijkstra 1959), several laps of it, and at the end the beginning
-// once more, so that even a laser that looks forward only meets known places.
+// the round (Dijkstra 1959), several laps of it, and at the end the start of
+// the route again, so that even a forward-looking laser revisits places.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_ROUTE_H_
 #define CARTOGRAPHER_EXT_SIMULATION_BUILDINGS_ROUTE_H_
 

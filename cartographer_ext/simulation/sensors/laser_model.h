@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A scanning laser: exact ranges to the plan and the moving obstacles, then
-// what a real one does to them, in this order:
+// A scanning laser: exact ranges to the plan and the moving obstacles, then the
+// errors of a real laser, in this order:
 //   nearer than min_range, farther than sqrt(reflectivity) max_range: no echo
 //   with probability `dropout`: no echo
 //   with probability `outlier`: an echo anywhere before the surface
 //   noise: N(0, noise^2 + (proportional_noise range)^2)
 //   rounded to the resolution.
 // A scan is taken in one instant unless `sweep` is set; then beam i is measured
-// i / (beams - 1) * sweep after the first, from where the robot is by then, and
-// the scan bears the stamp of its last beam.
+// i / (beams - 1) * sweep after the first, from the pose of the robot at that
+// time, and the scan has the stamp of its last beam.
 #ifndef CARTOGRAPHER_EXT_SIMULATION_SENSORS_LASER_MODEL_H_
 #define CARTOGRAPHER_EXT_SIMULATION_SENSORS_LASER_MODEL_H_
 
@@ -29,7 +29,7 @@ namespace simulation {
 
 class LaserModel {
  public:
-  // Everything pointed to must outlive the model.
+  // All pointees must outlive the model.
   LaserModel(const LaserSettings& settings, const RayCaster* plan,
              const ObstacleMotion* obstacles, uint64_t seed);
 

@@ -24,12 +24,12 @@ const std::vector<std::string>& RobotPresetNames();
 // good, fair, poor, none
 const std::vector<std::string>& OdometryPresetNames();
 
-// Errors of the three list the names there are.
+// Errors of the three list the valid names.
 
 // The laser by that name, mounted at the robot's origin.
 absl::StatusOr<LaserSettings> LaserPreset(const std::string& name);
 
-// The robot by that name with its encoders, which do not err yet.
+// The robot by that name with its encoders, without errors.
 struct RobotPresetSettings {
   RobotSettings robot;
   OdometrySettings odometry;

@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // ROS 1 bags (format 2.0; chunks plain, bz2 or lz4) as a SensorSource. They are
-// read from the beginning to the end; the index is not used, so that bags
-// without one (of a recorder that was killed) or with a wrong one are read, too,
-// with a warning. The rest holds for ROS 2 recordings as well.
+// read from the beginning to the end; the index is not used, so bags without
+// one (from a killed recorder) or with a wrong one are read as well, with a
+// warning. The rest holds for ROS 2 recordings as well.
 //
 // Topics. Scans: sensor_msgs/LaserScan, MultiEchoLaserScan, or PointCloud2 of a
 // laser that measures in one plane; nav_msgs/Odometry and sensor_msgs/Imu. They
-// are named by the options, with or without the first slash; else the only one
-// of the type or the first by name is taken, with a warning (LaserScan before
-// MultiEchoLaserScan before PointCloud2). Several scan topics, separated by
-// commas, are read together. Without odometry messages the transforms between
-// "odom" (REP 105) and its child are the odometry, if they change. A scan topic
-// is needed, the others are not. Errors about topics list all topics of the
-// recording with their types.
+// are named by the options, with or without the first slash; otherwise the only
+// one of the type or the first by name is used, with a warning (LaserScan
+// before MultiEchoLaserScan before PointCloud2). Several scan topics, separated
+// by commas, are read together. Without odometry messages the transforms
+// between "odom" (REP 105) and its child are the odometry, if they change. A
+// scan topic is needed, the others are not. Errors about topics list all topics
+// of the recording with their types.
 //
 // Frames. Sensor poses come from the transforms on topics of type
 // tf2_msgs/TFMessage (/tf_static, /tf), as far as they do not move; a frame

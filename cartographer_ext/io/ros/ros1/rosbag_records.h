@@ -6,7 +6,7 @@
 // where a header is a list of
 //   field length (uint32), name '=' value
 // Little endian. The field "op" is the kind. Messages and, before the first one
-// of each, connections stand in chunks; indexes, for random access, follow the
+// of each, connections are in chunks; indexes, for random access, follow the
 // chunks and end the file.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_ROS1_ROSBAG_RECORDS_H_
 #define CARTOGRAPHER_EXT_IO_ROS_ROS1_ROSBAG_RECORDS_H_
@@ -34,9 +34,9 @@ enum RosbagOp : uint8_t {
 // Header fields by name; values stay where they were read from.
 class RosbagFields {
  public:
-  // False where the bytes are no list of fields.
+  // False if the bytes are not a list of fields.
   bool Parse(absl::string_view header);
-  // Empty where there is no such field.
+  // Empty if there is no such field.
   absl::string_view Text(absl::string_view name) const;
   // False unless the field is there and has the size of T.
   template <typename T>
@@ -57,7 +57,7 @@ struct RosbagRecord {
   absl::string_view data;
 };
 
-// Takes a record off the front; false where there is no sound one.
+// Takes a record from the front; false if there is no valid one.
 bool TakeRosbagRecord(absl::string_view* rest, RosbagRecord* record);
 
 // Whether the bytes end within the record at their front, as those of a bag

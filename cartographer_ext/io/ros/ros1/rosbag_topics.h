@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which topics of a bag to read.
+// Chooses the topics of a bag to read.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_ROS1_ROSBAG_TOPICS_H_
 #define CARTOGRAPHER_EXT_IO_ROS_ROS1_ROSBAG_TOPICS_H_
 
@@ -28,10 +28,10 @@ enum class RosScanType { kLaserScan, kMultiEchoLaserScan, kPointCloud2 };
 
 struct ChosenTopics {
   std::map<std::string, RosScanType> scans;  // by topic
-  std::string odometry;  // empty: none
-  // Without such messages: the transforms may tell it.
+  std::string odometry;                      // empty: none
+  // Without such messages, odometry may come from the transforms.
   bool odometry_from_transforms = false;
-  std::string imu;       // empty: none
+  std::string imu;  // empty: none
   std::set<std::string> transforms;
   std::vector<std::string> warnings;
 };

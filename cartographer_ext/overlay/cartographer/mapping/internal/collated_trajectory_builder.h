@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Stands in front of Cartographer's header of the same path. The class found
-// there becomes StockCollatedTrajectoryBuilder; the class of the original name
-// drops readings that would end the program, where the options have our block
-// of local SLAM.
+// Comes before Cartographer's header of the same path. The class found there
+// becomes StockCollatedTrajectoryBuilder; the class of the original name drops
+// readings that would terminate the program, if the options have our block of
+// local SLAM.
 #pragma GCC system_header
 
 #include "cartographer_ext/swaps.h"
@@ -31,10 +31,10 @@ namespace cartographer {
 namespace mapping {
 
 // Robots do send odometry and IMU readings twice, or with a stamp before the
-// last one; the stock collator and pose graph end the program over them. With
-// our block of local SLAM a reading that is not later than the one before of
-// the same sensor is dropped: one warning for each sensor, and a count at the
-// end.
+// last one; the stock collator and pose graph terminate the program in this
+// case. With our block of local SLAM a reading that is not later than the
+// previous one of the same sensor is dropped, with one warning per sensor and a
+// count at the end.
 class CollatedTrajectoryBuilder : public StockCollatedTrajectoryBuilder {
  public:
   using SensorId = StockCollatedTrajectoryBuilder::SensorId;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Comes before Cartographer's header of the same path: the factories
-// found there get the prefix Stock, and those of the original names also know
+// Comes before Cartographer's header of the same path: the factories found
+// there get the prefix Stock, and those of the original names also support
 // constraints with a full information matrix.
 #pragma GCC system_header
 
