@@ -122,7 +122,7 @@ absl::StatusOr<LocalizationMetrics> ComputeLocalizationMetrics(
     const std::vector<PosePair>& pairs, const LocalizationOptions& options) {
   if (pairs.size() < 2) {
     return absl::InvalidArgumentError(
-        absl::StrCat("only ", pairs.size(), " poses have a true one"));
+        absl::StrCat("only ", pairs.size(), " poses have a ground truth pose"));
   }
   LocalizationMetrics metrics;
   metrics.num_scans = static_cast<int64_t>(pairs.size());

@@ -69,7 +69,7 @@ TEST(SectionLoopsTest, WhatBecameOfTheLoops) {
   const std::string& html = page.str();
   EXPECT_THAT(html, HasSubstr("<h2 id=\"comparison\">"));
   EXPECT_THAT(html, HasSubstr("2 of 3 (66.7 %)"));
-  EXPECT_THAT(html, HasSubstr("2 to 5 cm"));
+  EXPECT_THAT(html, HasSubstr("2 within 5 cm"));
   // Verdicts of the records.
   EXPECT_THAT(html, HasSubstr("accepted: confirmed by subset"));
   EXPECT_THAT(html, HasSubstr("rejected: low temporal score"));

@@ -52,7 +52,7 @@ TEST(LoopComparisonTest, TellsWhyLoopsAreMissing) {
                   LoopAbsence::kPresent, LoopAbsence::kNeighbourInstead,
                   LoopAbsence::kOtherVisit, LoopAbsence::kTooFar));
   EXPECT_THAT(ExplainMissing(comparison),
-              testing::HasSubstr("1 too far apart"));
+              testing::HasSubstr("1 beyond the distance limit"));
 }
 
 TEST(LoopComparisonTest, FatesSayMoreThanPlaces) {

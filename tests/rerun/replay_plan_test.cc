@@ -184,7 +184,7 @@ TEST(ReplayPlanTest, OlderSubmapsAreRefused) {
   const auto plan = MakeReplayPlan(graph);
   ASSERT_FALSE(plan.ok());
   EXPECT_THAT(std::string(plan.status().message()),
-              HasSubstr("node (0, 11) was inserted into a submap older"));
+              HasSubstr("node (0, 11) was inserted into an older submap"));
 }
 
 TEST(ReplayPlanTest, WithoutConstraintsEverythingIsInOnePlaceholder) {

@@ -44,7 +44,7 @@ TEST(RerunConfigurationTest, StockIsAssumedAndWeightsAreTheMaps) {
   EXPECT_EQ(configuration->stock.matcher_translation_weight(), 7.);
   EXPECT_EQ(configuration->stock.matcher_rotation_weight(), 8.);
   EXPECT_THAT(configuration->assumptions,
-              Contains(HasSubstr("stock's defaults (stock.lua) are assumed")));
+              Contains(HasSubstr("the defaults (stock.lua) are assumed")));
 }
 
 TEST(RerunConfigurationTest, VariousWeightsAreLeftAlone) {
