@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
 namespace uncertainty {
@@ -14,12 +15,11 @@ std::string ToText(const std::map<int, DriftEstimate>& drifts) {
     const DriftEstimate& estimate = drift->second;
     if (estimate.num_cycles == 0) continue;
     constexpr double kMetres = 10.;
-    constexpr double kDegrees = 180. / M_PI;
     return absl::StrFormat(
         "local SLAM of trajectory %d drifts by %.3f m and %.2f deg (standard "
         "deviations) in %.0f m, estimated from %d cycles",
         drift->first, estimate.mean.translation_per_metre * std::sqrt(kMetres),
-        estimate.mean.rotation_per_metre * std::sqrt(kMetres) * kDegrees,
+        RadToDeg(estimate.mean.rotation_per_metre * std::sqrt(kMetres)),
         kMetres, estimate.num_cycles);
   }
   return "";

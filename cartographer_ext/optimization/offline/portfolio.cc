@@ -14,6 +14,7 @@
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -156,23 +157,7 @@ double Portfolio::FullWork() {
 bool Portfolio::CanKeepAllLoops() { return FullWork() <= kAffordableWork; }
 
 double Portfolio::WorkOf(const std::vector<double>& weights) const {
-  std::vector<std::pair<int, int>> pairs;
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    const WhitenedEdge& edge = edges_[i];
-    if (weights[i] > 0. && edge.from > 0 && edge.to > 0) {
-      pairs.push_back({edge.from - 1, edge.to - 1});
-    }
-  }
-  double work = 0.;
-  if (graph_.poses.size() > 1) {
-    BlockLdlt factor;
-    factor.Analyze(graph_.poses.size() - 1, pairs, {});
-    for (int c = 0; c != factor.size(); ++c) {
-      const double rows = factor.start(c + 1) - factor.start(c);
-      work += 27. * (0.5 * rows * rows + rows + 1.);
-    }
-  }
-  return work;
+  return FactorWork(edges_, weights, graph_.poses.size());
 }
 
 int Portfolio::CountRejected() const {
