@@ -49,7 +49,7 @@ struct LimitScore {
   int undecidable = 0;
   int missed = 0;  // the right map would have cost less
   // Runs with less than kBelowLimit of the outliers from which on no estimator
-  // can tell.
+  // can decide.
   int below = 0, below_successes = 0;
   double below_precision = 1.;  // mean
 };
