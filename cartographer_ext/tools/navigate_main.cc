@@ -47,6 +47,10 @@ DEFINE_int32(obstacles, 0, "Things put in the robot's path.");
 DEFINE_int32(crossings, 0, "People who cross its path suddenly.");
 DEFINE_int32(doors, 0,
              "Passages on its path that close; every goal stays reachable.");
+DEFINE_bool(attentive_people, true,
+            "The people of the world stop rather than walk into a robot that "
+            "they see; otherwise they walk on whatever is there. Those who "
+            "cross suddenly never look.");
 DEFINE_string(configuration_directory, "configuration_files",
               "Where Lua files are searched, comma separated.");
 DEFINE_string(configuration_basename, "localization.lua",
@@ -108,6 +112,7 @@ absl::StatusOr<navigation::NavigationRunOptions> ReadOptions() {
   options.obstacles = FLAGS_obstacles;
   options.crossings = FLAGS_crossings;
   options.doors = FLAGS_doors;
+  options.people.attentive = FLAGS_attentive_people;
   options.max_seconds = FLAGS_max_seconds;
   options.record_frames = !FLAGS_animation_filename.empty();
   options.keep_readings = !FLAGS_other_configuration_basename.empty();

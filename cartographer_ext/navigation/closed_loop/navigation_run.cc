@@ -17,6 +17,7 @@
 #include "cartographer_ext/navigation/closed_loop/navigator_input.h"
 #include "cartographer_ext/navigation/closed_loop/online_localizer.h"
 #include "cartographer_ext/navigation/closed_loop/true_plan.h"
+#include "cartographer_ext/navigation/closed_loop/walkers.h"
 #include "cartographer_ext/simulation/obstacle_motion.h"
 #include "cartographer_ext/simulation/seeds.h"
 #include "cartographer_ext/simulation/sensors/laser_model.h"
@@ -62,8 +63,9 @@ class ClosedLoop {
         costmap_(costmap),
         run_(run),
         plan_(world.segments, world.discs),
-        people_(world.obstacles, options.seed),
-        laser_(world.laser, &plan_, &people_, options.seed),
+        motion_(world.obstacles, options.seed),
+        people_(&motion_, &plan_, world.robot.radius, options.people),
+        laser_(world.laser, &plan_, &motion_, options.seed),
         navigator_options_(MakeNavigatorOptions(world)),
         robot_(world, navigator_options_.robot, LiveRobotOptions(), world.start,
                options.seed),
@@ -93,7 +95,8 @@ class ClosedLoop {
   const Costmap* const costmap_;
   NavigationRun* const run_;
   const simulation::RayCaster plan_;
-  const simulation::ObstacleMotion people_;
+  const simulation::ObstacleMotion motion_;
+  Walkers people_;
   simulation::LaserModel laser_;
   const NavigatorOptions navigator_options_;
   LiveRobot robot_;
@@ -128,7 +131,7 @@ std::vector<Disc> ClosedLoop::Everything() const {
 }
 
 std::vector<Disc> ClosedLoop::People() const {
-  std::vector<Disc> discs = people_.At(robot_.time());
+  std::vector<Disc> discs = people_.At();
   discs.insert(discs.end(), disturbances_.moving().begin(),
                disturbances_.moving().end());
   return discs;
@@ -364,6 +367,7 @@ absl::Status ClosedLoop::Run(
   const int64_t last = std::llround(options_.max_seconds / kStep);
   for (int64_t tick = 1; tick <= last && !navigator_->finished(); ++tick) {
     robot_.Advance(kStep);
+    people_.Advance(kStep, robot_.pose(), robot_.velocity());
     disturbances_.Update(robot_.time(), robot_.pose().translation());
     if (tick % 2 == 0) CheckContacts();
     if (tick % odometry_every == odometry_phase) SenseOdometry();
@@ -383,6 +387,7 @@ absl::Status ClosedLoop::Run(
   run_->moving_collisions = contacts_.moving_collisions();
   run_->unseen_collisions = contacts_.unseen_collisions();
   run_->run_into = contacts_.run_into();
+  run_->people_waited_seconds = people_.waited_seconds();
   run_->least_clearance = contacts_.least_clearance();
   run_->contacts = contacts_.contacts();
   for (Contact& contact : run_->contacts) {

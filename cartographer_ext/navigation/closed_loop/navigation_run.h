@@ -26,6 +26,7 @@
 #include "cartographer_ext/navigation/closed_loop/disturbances.h"
 #include "cartographer_ext/navigation/closed_loop/live_robot.h"
 #include "cartographer_ext/navigation/closed_loop/localization_error.h"
+#include "cartographer_ext/navigation/closed_loop/walkers.h"
 #include "cartographer_ext/navigation/navigator.h"
 #include "cartographer_ext/simulation/world.h"
 
@@ -41,6 +42,8 @@ struct NavigationRunOptions {
   int obstacles = 0;
   int crossings = 0;
   int doors = 0;
+  // People of the world. Those who cross suddenly never look.
+  WalkerOptions people;
   double max_seconds = 1800.;  // of simulated time
   // Of the operator's guess where the robot starts.
   double start_sigma = 0.1;           // metres
@@ -80,6 +83,8 @@ struct NavigationRun {
   int moving_collisions = 0;    // with the robot moving
   int unseen_collisions = 0;    // of these, with somebody not seen of late
   int run_into = 0;             // with the robot standing still
+  // Somebody waited for the robot, summed over everybody.
+  double people_waited_seconds = 0.;
   double least_clearance = 0.;  // metres, to stationary things
   std::vector<Disturbance> disturbances;
   std::vector<LocalizationError> localization;

@@ -41,6 +41,7 @@ nlohmann::ordered_json ToJson(const NavigationRun& run) {
                         {"moving", run.moving_collisions},
                         {"moving_unseen", run.unseen_collisions},
                         {"run_into_standing_still", run.run_into}};
+  json["people_waited_seconds"] = run.people_waited_seconds;
   json["path_ratio"] = run.path_ratio;
   json["travelled_metres"] = run.travelled;
   json["shortest_metres"] = run.shortest;
