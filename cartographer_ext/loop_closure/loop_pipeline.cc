@@ -26,6 +26,7 @@ LoopPipeline::LoopPipeline(const LoopOptions& options,
                            const ConstraintWeights& stock_weights)
     : options_(options),
       stock_weights_(stock_weights),
+      typical_step_(0.5 * options.path_noise.jump_threshold_metres),
       history_(options.temporal.max_history_nodes),
       paths_(options.path_noise, options.temporal.max_history_nodes),
       drift_(options.path_noise, &paths_),
@@ -35,6 +36,7 @@ LoopPipeline::LoopPipeline(const LoopOptions& options,
 bool LoopPipeline::AddNode(const int trajectory_id, HistoryNode node) {
   paths_.Add(uncertainty::NodeId{trajectory_id, node.node_index},
              node.local_pose);
+  typical_step_.Add(trajectory_id, node.node_index, node.local_pose);
   return history_.Add(trajectory_id, std::move(node));
 }
 
@@ -73,7 +75,14 @@ void LoopPipeline::Process(LoopCandidate candidate) {
   candidate.views.clear();
 
   // Information of the constraint: Omega (C eq. 8-11).
-  WeighConstraint(options_, stock_weights_, &candidate);
+  ConstraintWeights weights = stock_weights_;
+  if (options_.information.enabled) {
+    const double factor =
+        typical_step_.WeightFactor(candidate.node.trajectory_id);
+    weights.translation *= factor;
+    weights.rotation *= factor;
+  }
+  WeighConstraint(options_, weights, &candidate);
 
   // How much local SLAM drifts, whether or not this one turns out right.
   if (!candidate.is_inter_trajectory()) {
@@ -211,6 +220,7 @@ void LoopPipeline::DeleteTrajectory(const int trajectory_id) {
   history_.DeleteTrajectory(trajectory_id);
   drift_.DeleteTrajectory(trajectory_id);
   paths_.DeleteTrajectory(trajectory_id);
+  typical_step_.DeleteTrajectory(trajectory_id);
 }
 
 }  // namespace loop_closure

@@ -35,6 +35,7 @@
 #include "cartographer_ext/loop_closure/consensus/drift_learner.h"
 #include "cartographer_ext/loop_closure/consensus/loop_consensus.h"
 #include "cartographer_ext/loop_closure/information/constraint_information.h"
+#include "cartographer_ext/loop_closure/information/typical_step.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/verification/node_history.h"
@@ -110,6 +111,7 @@ class LoopPipeline {
 
   const LoopOptions options_;
   const ConstraintWeights stock_weights_;
+  TypicalStep typical_step_;
   NodeHistory history_;
   // Paths between nodes and between submaps.
   uncertainty::PathUncertainty paths_;

@@ -20,8 +20,8 @@ namespace {
 // usual they are.
 CovarianceParts StepCovariance(const PathNoiseOptions& options,
                                const bool are_nodes,
-                               const double num_thresholds, const double metres,
-                               const double radians) {
+                               const JumpThresholds& thresholds,
+                               const double metres, const double radians) {
   const auto diagonal = [](const double translation, const double rotation) {
     return Eigen::Matrix3d(
         Eigen::Vector3d(translation, translation, rotation).asDiagonal());
@@ -34,19 +34,21 @@ CovarianceParts StepCovariance(const PathNoiseOptions& options,
   parts.rotation = diagonal(0., Squared(options.rotation_per_metre) * metres);
   parts.turning = diagonal(0., Squared(options.rotation_per_radian) * radians);
   if (are_nodes) {
-    parts.other = diagonal(
-        Squared(std::max(
-            0., metres - num_thresholds * options.jump_threshold_metres)),
-        Squared(std::max(
-            0., radians - num_thresholds * options.jump_threshold_radians)));
+    parts.other = diagonal(Squared(std::max(0., metres - thresholds.metres)),
+                           Squared(std::max(0., radians - thresholds.radians)));
   }
   return parts;
 }
 
-// Steps whose median is the ordinary one: enough to outlast a turn on the spot,
-// in which the robot hardly moves; fewer than the minimum are not used.
+// Preceding steps that determine what is ordinary: enough to outlast a turn on
+// the spot, in which the robot hardly moves; fewer than the minimum are not
+// used.
 constexpr size_t kMostStepsBefore = 31;
 constexpr size_t kFewestStepsBefore = 3;
+// One step in ten may be a jump; up to 1.5 times the largest of the others is
+// ordinary.
+constexpr size_t kJumpsOneIn = 10;
+constexpr double kOrdinary = 1.5;
 
 // Keeps costs finite where driving is configured to be exact.
 constexpr double kMinNoise = 1e-4;
@@ -135,6 +137,10 @@ void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose) {
   const size_t offset = static_cast<size_t>(place - entries.begin());
   entries.insert(place, entry);
   sequence.num_valid = std::min(sequence.num_valid, offset);
+  if (entries.size() <= kFewestStepsBefore + 2) {
+    // The thresholds of the first steps depend on those that follow.
+    sequence.num_valid = std::min(sequence.num_valid, size_t{1});
+  }
   if (entries.size() > max_vertices_) {
     // Differences of sums do not need the oldest ones. Without any valid sum
     // the first entry that remains starts from zero.
@@ -143,22 +149,43 @@ void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose) {
   }
 }
 
-double PathUncertainty::Stride(const std::deque<Entry>& entries,
-                               const size_t position) const {
+JumpThresholds PathUncertainty::Thresholds(const std::deque<Entry>& entries,
+                                           const size_t position) const {
+  JumpThresholds thresholds;
+  thresholds.metres = options_.jump_threshold_metres;
+  thresholds.radians = options_.jump_threshold_radians;
+  // The first steps are compared with those that follow.
+  const bool at_beginning = position <= kFewestStepsBefore;
   const size_t first =
       position > kMostStepsBefore ? position - kMostStepsBefore : 1;
-  if (position < first + kFewestStepsBefore) return 1.;
-  std::vector<double> steps;
-  for (size_t i = first; i < position; ++i) {
-    steps.push_back((entries[i].travelled - entries[i - 1].travelled) /
-                    (entries[i].index - entries[i - 1].index));
+  const size_t end = at_beginning
+                         ? std::min(entries.size(), kFewestStepsBefore + 2)
+                         : position;
+  std::vector<double> metres;
+  std::vector<double> radians;
+  for (size_t i = first; i < end; ++i) {
+    if (i == position) continue;
+    const Pose2 step = cartographer_ext::Between(entries[i - 1].local_pose,
+                                                 entries[i].local_pose);
+    const double num_steps = entries[i].index - entries[i - 1].index;
+    metres.push_back(step.translation().norm() / num_steps);
+    radians.push_back(std::abs(step.theta) / num_steps);
   }
-  const auto median = steps.begin() + steps.size() / 2;
-  std::nth_element(steps.begin(), median, steps.end());
-  return std::max(1., 2. * *median / options_.jump_threshold_metres);
+  if (metres.size() < kFewestStepsBefore) return thresholds;
+  std::sort(metres.begin(), metres.end());
+  std::sort(radians.begin(), radians.end());
+  const double stride =
+      std::max(1., 2. * metres[metres.size() / 2] / thresholds.metres);
+  const size_t large = metres.size() - 1 - metres.size() / kJumpsOneIn;
+  thresholds.metres =
+      std::max(stride * thresholds.metres, kOrdinary * metres[large]);
+  thresholds.radians =
+      std::max(stride * thresholds.radians, kOrdinary * radians[large]);
+  return thresholds;
 }
 
-void PathUncertainty::Accumulate(const bool are_nodes, const double stride,
+void PathUncertainty::Accumulate(const bool are_nodes,
+                                 JumpThresholds thresholds,
                                  const Eigen::Vector3d& common,
                                  const Entry& before,
                                  Entry* const entry) const {
@@ -168,9 +195,10 @@ void PathUncertainty::Accumulate(const bool are_nodes, const double stride,
   const Pose2 corrected((1. + common.z()) * step.x, (1. + common.z()) * step.y,
                         (1. + common.y()) * step.theta + common.x() * metres);
   entry->corrected = before.corrected * corrected;
+  thresholds.metres *= entry->index - before.index;
+  thresholds.radians *= entry->index - before.index;
   const CovarianceParts step_parts = StepCovariance(
-      options_, are_nodes, stride * (entry->index - before.index), metres,
-      std::abs(step.theta));
+      options_, are_nodes, thresholds, metres, std::abs(step.theta));
   entry->travelled = before.travelled + metres;
   entry->cost = before.cost + PathCostOf(step_parts.Total(
                                   DriftFactors(), Eigen::Matrix3d::Zero()));
@@ -199,8 +227,8 @@ const PathUncertainty::Entry* PathUncertainty::Find(
       entry.sum = CovarianceParts();
       entry.corrected = entry.local_pose;
       if (sequence.num_valid == 0) continue;
-      Accumulate(vertex.is_node(), Stride(entries, sequence.num_valid), common,
-                 entries[sequence.num_valid - 1], &entry);
+      Accumulate(vertex.is_node(), Thresholds(entries, sequence.num_valid),
+                 common, entries[sequence.num_valid - 1], &entry);
     }
   }
   const auto place = LowerBound(entries, vertex.index());

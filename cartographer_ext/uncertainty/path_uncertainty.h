@@ -23,7 +23,8 @@
 // jump thresholds is added to its standard deviation. Where nodes between two
 // known ones have not been added yet, the thresholds apply to each of the steps
 // between them. If the preceding nodes were farther apart than the thresholds
-// assume (a slow laser, a fast robot), both thresholds are scaled accordingly.
+// assume (a slow laser, a fast robot), both thresholds are scaled accordingly, and
+// a step that is ordinary among those nodes, in metres or in radians, is no jump.
 //
 // The sums are kept apart for the errors of translation, of rotation per metre
 // and of rotation while turning, so that each can be scaled for a trajectory
@@ -107,6 +108,12 @@ struct CovarianceParts {
 CovarianceParts Transported(const CovarianceParts& parts,
                             const Eigen::Matrix3d& adjoint);
 
+// Largest step between two consecutive nodes that is no jump.
+struct JumpThresholds {
+  double metres = 0.;
+  double radians = 0.;
+};
+
 // Paths within trajectories with their uncertainty, see above. Bounded by
 // `max_vertices` per trajectory.
 class PathUncertainty {
@@ -182,12 +189,14 @@ class PathUncertainty {
     CommonDrift common;
   };
 
-  // Ratio of the steps before `position` to the length that the jump thresholds
-  // assume, at least 1.
-  double Stride(const std::deque<Entry>& entries, size_t position) const;
+  // For the step to the entry at `position`, from the steps before it.
+  JumpThresholds Thresholds(const std::deque<Entry>& entries,
+                            size_t position) const;
   // Computes the sums of `entry` from those of the entry before.
-  void Accumulate(bool are_nodes, double stride, const Eigen::Vector3d& common,
-                  const Entry& before, Entry* entry) const;
+  // `thresholds`: for one step between consecutive nodes.
+  void Accumulate(bool are_nodes, JumpThresholds thresholds,
+                  const Eigen::Vector3d& common, const Entry& before,
+                  Entry* entry) const;
   const Entry* Find(const VertexId& vertex) const;
   // Of the path from the older to the newer entry, frame of the newer.
   CovarianceParts PartsBetween(const Entry& from, const Entry& to) const;

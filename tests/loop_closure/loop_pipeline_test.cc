@@ -120,11 +120,12 @@ TEST_F(LoopPipelineTest, ConfirmedLoopsGoThroughAllStages) {
                 0.5 * (0.7 + decision.temporal().score()), 1e-12);
     EXPECT_LT(decision.innovation().chi_square(), 1e-6);
     EXPECT_EQ(decision.subset().support(), 1);
+    // Nodes are twice as far apart as dense ones.
     EXPECT_NEAR(outcome.weights->translation,
-                1000. * std::pow(decision.fusion().final_score() / 0.6, 0.6),
+                4000. * std::pow(decision.fusion().final_score() / 0.6, 0.6),
                 1e-6);
     EXPECT_NEAR(outcome.weights->rotation,
-                2000. * std::pow(decision.fusion().final_score() / 0.6, 0.75),
+                8000. * std::pow(decision.fusion().final_score() / 0.6, 0.75),
                 1e-6);
   }
   EXPECT_EQ(Record(outcomes[0]).candidate(), 0);

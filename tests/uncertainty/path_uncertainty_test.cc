@@ -181,13 +181,57 @@ TEST(PathUncertaintyTest, NodesThatAreAlwaysFarApartAreNoJumps) {
     paths.Add(Key(i), Pose2(i, 0., i % 2 == 0 ? 0. : 0.5));
   }
   EXPECT_TRUE(paths.Between(Key(4), Key(20))->covariance.isZero(1e-12));
-  // The first ones are compared with the thresholds as they are.
-  EXPECT_NEAR(paths.Between(Key(0), Key(1))->covariance(0, 0), 0.25, 1e-12);
+  EXPECT_TRUE(paths.Between(Key(0), Key(1))->covariance.isZero(1e-12));
   // Both thresholds are four times as long: twice the median step of 1 m.
   paths.Add(Key(21), Pose2(25., 0., 2.));
   const auto jump = paths.Between(Key(20), Key(21));
   EXPECT_NEAR(jump->covariance(0, 0), 3. * 3., 1e-12);
   EXPECT_NEAR(jump->covariance(2, 2), 0.4 * 0.4, 1e-12);
+}
+
+// A scan per metre or half radian: in a room, where the robot rotates more than
+// it drives, the median step is short, and steps of a metre or half a radian are
+// still ordinary.
+TEST(PathUncertaintyTest, LongStepsAmongShortOnesAreNoJumps) {
+  PathNoiseOptions options = RandomWalk();
+  options.translation_per_metre = 0.;
+  options.rotation_per_metre = 0.;
+  options.translation_per_radian = 0.;
+  options.rotation_per_radian = 0.;
+  options.jump_threshold_metres = 0.5;
+  options.jump_threshold_radians = 0.4;
+  PathUncertainty paths(options, 100);
+  double x = 0.;
+  double theta = 0.;
+  paths.Add(Key(0), Pose2(x, 0., theta));
+  for (int i = 1; i <= 60; ++i) {
+    i % 4 == 0 ? x += 1. : theta += i % 4 == 2 ? 0.55 : 0.1;
+    paths.Add(Key(i), Pose2(x, 0., theta));
+  }
+  // The first steps have too few others to be compared with.
+  EXPECT_TRUE(paths.Between(Key(4), Key(60))->covariance.isZero(1e-12));
+  // A step more than one and a half times as long is a jump.
+  paths.Add(Key(61), Pose2(x + 2., 0., theta + 1.));
+  const auto jump = paths.Between(Key(60), Key(61));
+  EXPECT_NEAR(jump->covariance(0, 0), 0.5 * 0.5, 1e-12);
+  EXPECT_NEAR(jump->covariance(2, 2), 0.175 * 0.175, 1e-12);
+}
+
+// No step is part of its own threshold.
+TEST(PathUncertaintyTest, TheFirstStepsAreJudgedByThoseAfterThem) {
+  PathNoiseOptions options = RandomWalk();
+  options.translation_per_metre = 0.;
+  options.rotation_per_metre = 0.;
+  options.jump_threshold_metres = 0.5;
+  PathUncertainty paths(options, 100);
+  paths.Add(Key(0), Pose2(0., 0., 0.));
+  paths.Add(Key(1), Pose2(5., 0., 0.));
+  EXPECT_NEAR(paths.Between(Key(0), Key(1))->covariance(0, 0), 4.5 * 4.5,
+              1e-12);
+  for (int i = 2; i <= 4; ++i) paths.Add(Key(i), Pose2(4. + i, 0., 0.));
+  // Twice the median of one metre.
+  EXPECT_NEAR(paths.Between(Key(0), Key(1))->covariance(0, 0), 3. * 3., 1e-12);
+  EXPECT_TRUE(paths.Between(Key(1), Key(4))->covariance.isZero(1e-12));
 }
 
 TEST(PathUncertaintyTest, AnOrdinaryStepIsTheMedianWhicheverOrderNodesCome) {
