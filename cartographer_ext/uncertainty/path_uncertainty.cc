@@ -14,12 +14,8 @@ namespace cartographer_ext {
 namespace uncertainty {
 namespace {
 
-// Covariance of one step, in the frame of its end. Only steps between nodes can
-// be jumps; submaps are as far apart as their size. `num_thresholds`: the steps
-// from node to node, with those that are not known, times how much longer than
-// usual they are.
+// Covariance of one step, in the frame of its end.
 CovarianceParts StepCovariance(const PathNoiseOptions& options,
-                               const bool are_nodes,
                                const JumpThresholds& thresholds,
                                const double metres, const double radians) {
   const auto diagonal = [](const double translation, const double rotation) {
@@ -33,10 +29,8 @@ CovarianceParts StepCovariance(const PathNoiseOptions& options,
                0.);
   parts.rotation = diagonal(0., Squared(options.rotation_per_metre) * metres);
   parts.turning = diagonal(0., Squared(options.rotation_per_radian) * radians);
-  if (are_nodes) {
-    parts.other = diagonal(Squared(std::max(0., metres - thresholds.metres)),
-                           Squared(std::max(0., radians - thresholds.radians)));
-  }
+  parts.other = diagonal(Squared(std::max(0., metres - thresholds.metres)),
+                         Squared(std::max(0., radians - thresholds.radians)));
   return parts;
 }
 
@@ -45,6 +39,8 @@ CovarianceParts StepCovariance(const PathNoiseOptions& options,
 // used.
 constexpr size_t kMostStepsBefore = 31;
 constexpr size_t kFewestStepsBefore = 3;
+// The first steps are compared with those that follow, among so many vertices.
+constexpr size_t kFirstVertices = kFewestStepsBefore + 2;
 // One step in ten may be a jump; up to 1.5 times the largest of the others is
 // ordinary.
 constexpr size_t kJumpsOneIn = 10;
@@ -137,8 +133,7 @@ void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose) {
   const size_t offset = static_cast<size_t>(place - entries.begin());
   entries.insert(place, entry);
   sequence.num_valid = std::min(sequence.num_valid, offset);
-  if (entries.size() <= kFewestStepsBefore + 2) {
-    // The thresholds of the first steps depend on those that follow.
+  if (entries.size() <= kFirstVertices) {
     sequence.num_valid = std::min(sequence.num_valid, size_t{1});
   }
   if (entries.size() > max_vertices_) {
@@ -154,22 +149,18 @@ JumpThresholds PathUncertainty::Thresholds(const std::deque<Entry>& entries,
   JumpThresholds thresholds;
   thresholds.metres = options_.jump_threshold_metres;
   thresholds.radians = options_.jump_threshold_radians;
-  // The first steps are compared with those that follow.
   const bool at_beginning = position <= kFewestStepsBefore;
   const size_t first =
       position > kMostStepsBefore ? position - kMostStepsBefore : 1;
-  const size_t end = at_beginning
-                         ? std::min(entries.size(), kFewestStepsBefore + 2)
-                         : position;
+  const size_t end =
+      at_beginning ? std::min(entries.size(), kFirstVertices) : position;
   std::vector<double> metres;
   std::vector<double> radians;
   for (size_t i = first; i < end; ++i) {
     if (i == position) continue;
-    const Pose2 step = cartographer_ext::Between(entries[i - 1].local_pose,
-                                                 entries[i].local_pose);
     const double num_steps = entries[i].index - entries[i - 1].index;
-    metres.push_back(step.translation().norm() / num_steps);
-    radians.push_back(std::abs(step.theta) / num_steps);
+    metres.push_back(entries[i].step.translation().norm() / num_steps);
+    radians.push_back(std::abs(entries[i].step.theta) / num_steps);
   }
   if (metres.size() < kFewestStepsBefore) return thresholds;
   std::sort(metres.begin(), metres.end());
@@ -184,21 +175,19 @@ JumpThresholds PathUncertainty::Thresholds(const std::deque<Entry>& entries,
   return thresholds;
 }
 
-void PathUncertainty::Accumulate(const bool are_nodes,
-                                 JumpThresholds thresholds,
+void PathUncertainty::Accumulate(JumpThresholds thresholds,
                                  const Eigen::Vector3d& common,
                                  const Entry& before,
                                  Entry* const entry) const {
-  const Pose2 step =
-      cartographer_ext::Between(before.local_pose, entry->local_pose);
+  const Pose2& step = entry->step;
   const double metres = step.translation().norm();
   const Pose2 corrected((1. + common.z()) * step.x, (1. + common.z()) * step.y,
                         (1. + common.y()) * step.theta + common.x() * metres);
   entry->corrected = before.corrected * corrected;
   thresholds.metres *= entry->index - before.index;
   thresholds.radians *= entry->index - before.index;
-  const CovarianceParts step_parts = StepCovariance(
-      options_, are_nodes, thresholds, metres, std::abs(step.theta));
+  const CovarianceParts step_parts =
+      StepCovariance(options_, thresholds, metres, std::abs(step.theta));
   entry->travelled = before.travelled + metres;
   entry->cost = before.cost + PathCostOf(step_parts.Total(
                                   DriftFactors(), Eigen::Matrix3d::Zero()));
@@ -220,6 +209,11 @@ const PathUncertainty::Entry* PathUncertainty::Find(
   std::deque<Entry>& entries = sequence.entries;
   if (sequence.num_valid < entries.size()) {
     const Eigen::Vector3d common = Common(vertex.trajectory_id()).mean;
+    for (size_t i = std::max(sequence.num_valid, size_t{1}); i < entries.size();
+         ++i) {
+      entries[i].step = cartographer_ext::Between(entries[i - 1].local_pose,
+                                                  entries[i].local_pose);
+    }
     for (; sequence.num_valid < entries.size(); ++sequence.num_valid) {
       Entry& entry = entries[sequence.num_valid];
       entry.travelled = 0.;
@@ -227,7 +221,10 @@ const PathUncertainty::Entry* PathUncertainty::Find(
       entry.sum = CovarianceParts();
       entry.corrected = entry.local_pose;
       if (sequence.num_valid == 0) continue;
-      Accumulate(vertex.is_node(), Thresholds(entries, sequence.num_valid),
+      // Submaps are as far apart as their size, so none of their steps is a
+      // jump.
+      Accumulate(vertex.is_node() ? Thresholds(entries, sequence.num_valid)
+                                  : JumpThresholds(),
                  common, entries[sequence.num_valid - 1], &entry);
     }
   }

@@ -36,6 +36,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -108,10 +109,10 @@ struct CovarianceParts {
 CovarianceParts Transported(const CovarianceParts& parts,
                             const Eigen::Matrix3d& adjoint);
 
-// Largest step between two consecutive nodes that is no jump.
+// Largest step between two consecutive vertices that is no jump.
 struct JumpThresholds {
-  double metres = 0.;
-  double radians = 0.;
+  double metres = std::numeric_limits<double>::infinity();
+  double radians = std::numeric_limits<double>::infinity();
 };
 
 // Paths within trajectories with their uncertainty, see above. Bounded by
@@ -169,6 +170,7 @@ class PathUncertainty {
   struct Entry {
     int index;
     Pose2 local_pose;
+    Pose2 step;             // from the entry before, frame of that entry
     double travelled = 0.;  // prefix sum, metres
     double cost = 0.;       // prefix sum, metres
     Pose2 corrected;        // of corrected steps, from that of the first entry
@@ -193,10 +195,9 @@ class PathUncertainty {
   JumpThresholds Thresholds(const std::deque<Entry>& entries,
                             size_t position) const;
   // Computes the sums of `entry` from those of the entry before.
-  // `thresholds`: for one step between consecutive nodes.
-  void Accumulate(bool are_nodes, JumpThresholds thresholds,
-                  const Eigen::Vector3d& common, const Entry& before,
-                  Entry* entry) const;
+  // `thresholds`: for one step between consecutive vertices.
+  void Accumulate(JumpThresholds thresholds, const Eigen::Vector3d& common,
+                  const Entry& before, Entry* entry) const;
   const Entry* Find(const VertexId& vertex) const;
   // Of the path from the older to the newer entry, frame of the newer.
   CovarianceParts PartsBetween(const Entry& from, const Entry& to) const;

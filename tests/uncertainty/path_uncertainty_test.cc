@@ -23,6 +23,18 @@ PathNoiseOptions Noise() {
   return options;
 }
 
+// Steps are certain up to these thresholds.
+PathNoiseOptions OnlyJumps() {
+  PathNoiseOptions options = RandomWalk();
+  options.translation_per_metre = 0.;
+  options.rotation_per_metre = 0.;
+  options.translation_per_radian = 0.;
+  options.rotation_per_radian = 0.;
+  options.jump_threshold_metres = 0.5;
+  options.jump_threshold_radians = 0.4;
+  return options;
+}
+
 NodeId Key(int index) { return NodeId{0, index}; }
 
 TEST(PathUncertaintyTest, StraightPathByHand) {
@@ -134,14 +146,7 @@ TEST(PathUncertaintyTest, DriftAndScaleAreConstantAlongTheRun) {
 }
 
 TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
-  PathNoiseOptions options = RandomWalk();
-  options.translation_per_metre = 0.;
-  options.rotation_per_metre = 0.;
-  options.translation_per_radian = 0.;
-  options.rotation_per_radian = 0.;
-  options.jump_threshold_metres = 0.5;
-  options.jump_threshold_radians = 0.4;
-  PathUncertainty paths(options, 100);
+  PathUncertainty paths(OnlyJumps(), 100);
   paths.Add(Key(0), Pose2(0., 0., 0.));
   paths.Add(Key(1), Pose2(0.5, 0., 0.4));
   paths.Add(Key(2), Pose2(1.8, 0., 0.9));
@@ -153,13 +158,7 @@ TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
 }
 
 TEST(PathUncertaintyTest, NodesThatAreStillMissingAreNoJump) {
-  PathNoiseOptions options = Noise();
-  options.translation_per_metre = 0.;
-  options.rotation_per_metre = 0.;
-  options.rotation_per_radian = 0.;
-  options.jump_threshold_metres = 0.5;
-  options.jump_threshold_radians = 0.4;
-  PathUncertainty paths(options, 100);
+  PathUncertainty paths(OnlyJumps(), 100);
   paths.Add(Key(0), Pose2(0., 0., 0.));
   paths.Add(Key(10), Pose2(5., 0., 1.));
   EXPECT_TRUE(paths.Between(Key(0), Key(10))->covariance.isZero(1e-12));
@@ -169,14 +168,7 @@ TEST(PathUncertaintyTest, NodesThatAreStillMissingAreNoJump) {
 
 // A slow laser on a fast robot: nodes are a metre and half a radian apart.
 TEST(PathUncertaintyTest, NodesThatAreAlwaysFarApartAreNoJumps) {
-  PathNoiseOptions options = RandomWalk();
-  options.translation_per_metre = 0.;
-  options.rotation_per_metre = 0.;
-  options.translation_per_radian = 0.;
-  options.rotation_per_radian = 0.;
-  options.jump_threshold_metres = 0.5;
-  options.jump_threshold_radians = 0.4;
-  PathUncertainty paths(options, 100);
+  PathUncertainty paths(OnlyJumps(), 100);
   for (int i = 0; i <= 20; ++i) {
     paths.Add(Key(i), Pose2(i, 0., i % 2 == 0 ? 0. : 0.5));
   }
@@ -193,14 +185,7 @@ TEST(PathUncertaintyTest, NodesThatAreAlwaysFarApartAreNoJumps) {
 // it drives, the median step is short, and steps of a metre or half a radian are
 // still ordinary.
 TEST(PathUncertaintyTest, LongStepsAmongShortOnesAreNoJumps) {
-  PathNoiseOptions options = RandomWalk();
-  options.translation_per_metre = 0.;
-  options.rotation_per_metre = 0.;
-  options.translation_per_radian = 0.;
-  options.rotation_per_radian = 0.;
-  options.jump_threshold_metres = 0.5;
-  options.jump_threshold_radians = 0.4;
-  PathUncertainty paths(options, 100);
+  PathUncertainty paths(OnlyJumps(), 100);
   double x = 0.;
   double theta = 0.;
   paths.Add(Key(0), Pose2(x, 0., theta));
@@ -219,11 +204,7 @@ TEST(PathUncertaintyTest, LongStepsAmongShortOnesAreNoJumps) {
 
 // No step is part of its own threshold.
 TEST(PathUncertaintyTest, TheFirstStepsAreJudgedByThoseAfterThem) {
-  PathNoiseOptions options = RandomWalk();
-  options.translation_per_metre = 0.;
-  options.rotation_per_metre = 0.;
-  options.jump_threshold_metres = 0.5;
-  PathUncertainty paths(options, 100);
+  PathUncertainty paths(OnlyJumps(), 100);
   paths.Add(Key(0), Pose2(0., 0., 0.));
   paths.Add(Key(1), Pose2(5., 0., 0.));
   EXPECT_NEAR(paths.Between(Key(0), Key(1))->covariance(0, 0), 4.5 * 4.5,

@@ -80,10 +80,10 @@ void Walkers::Advance(const double seconds, const Pose2& robot,
     }
     walker.pace += (walker.wanted_pace - walker.pace) *
                    std::min(1., seconds / options_.relaxation_seconds);
-    const bool stands = walker.wanted_pace == 0. && walker.pace < kStanding;
-    if (stands) walker.pace = 0.;
+    const bool stationary = walker.wanted_pace == 0. && walker.pace < kStanding;
+    if (stationary) walker.pace = 0.;
     if (walker.wanted_pace == 0.) waited_seconds_ += seconds;
-    walker.standing = stands ? walker.standing + seconds : 0.;
+    walker.standing = stationary ? walker.standing + seconds : 0.;
     if (walker.standing >= options_.patience_seconds) {
       walker.direction = -walker.direction;
       walker.standing = 0.;

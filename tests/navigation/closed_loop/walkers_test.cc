@@ -77,7 +77,7 @@ TEST_F(WalkersTest, TheAttentiveKeepTheirLoopWhereNobodyIs) {
   EXPECT_EQ(walkers.waited_seconds(), 0.);
 }
 
-TEST_F(WalkersTest, StopBeforeARobotThatStandsAndTurnRound) {
+TEST_F(WalkersTest, StopBeforeAStationaryRobotAndTurnRound) {
   Walkers walkers = Make(true);
   const Pose2 robot(3., 0., 0.);
   EXPECT_GT(LeastGap(robot, {}, 5., &walkers), 0.1);
