@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
-#include <limits>
 
 #include "glog/logging.h"
 
@@ -15,25 +14,45 @@ namespace {
 
 constexpr int kDx[8] = {1, -1, 0, 0, 1, 1, -1, -1};
 constexpr int kDy[8] = {0, 0, 1, -1, 1, -1, 1, -1};
-// Costs of cells that cannot be entered, of the start and of what is not
-// reached: no cost is less than a wall's.
+// A node is (g << kWeightBits | weight). That of a cell which cannot be entered
+// is 0, so that no cost is less; g of one that is not reached is the greatest.
+constexpr uint32_t kWeightBits = 7;
+constexpr uint32_t kWeightMask = (1u << kWeightBits) - 1;
 constexpr uint32_t kWall = 0;
-constexpr uint32_t kStart = 1;
-constexpr uint32_t kUnreached = std::numeric_limits<uint32_t>::max();
+constexpr uint32_t kUnreached = ~kWeightMask;
+constexpr uint32_t kStart = 1;  // g of the start
+static_assert(kMaxWeight <= kWeightMask, "a weight must fit into a node");
+static_assert(GridSearch::kMaxCost + kStart + kDiagonalStep * kMaxWeight <
+                  kUnreached >> kWeightBits,
+              "a cost must fit into a node");
 // A step raises f by at most kDiagonalStep (kMaxWeight + kMinWeight) = 476.
 constexpr uint32_t kNumBuckets = 512;
 static_assert(kDiagonalStep * (kMaxWeight + kMinWeight) < kNumBuckets,
               "the ring of buckets must be longer than any step");
 constexpr int kMaxSide = 65534;  // two coordinates make one entry
+constexpr size_t kAhead = 8;     // entries between prefetching and expanding
 
+// Written without a maximum, whose branch would be mispredicted: with the sum
+// s and the difference d of dx and dy, 2 max = s + d and 2 min = s - d.
 uint32_t Heuristic(const int x, const int y, const Cell& goal) {
-  const uint32_t dx = std::abs(x - goal.x), dy = std::abs(y - goal.y);
-  return kMinWeight * (kStraightStep * std::max(dx, dy) +
-                       (kDiagonalStep - kStraightStep) * std::min(dx, dy));
+  const int dx = std::abs(x - goal.x), dy = std::abs(y - goal.y);
+  const uint32_t sum = dx + dy, difference = std::abs(dx - dy);
+  static_assert(kMinWeight % 2 == 0, "half of it is an integer");
+  return kMinWeight / 2 *
+         (kDiagonalStep * sum +
+          (2 * kStraightStep - kDiagonalStep) * difference);
 }
 
 uint32_t Entry(const int x, const int y) {
   return static_cast<uint32_t>(y) << 16 | static_cast<uint32_t>(x);
+}
+
+void Prefetch(const uint32_t* const address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#else
+  static_cast<void>(address);
+#endif
 }
 
 }  // namespace
@@ -42,17 +61,36 @@ void GridSearch::Reset(const WeightGrid& grid) {
   const size_t width = grid.width, height = grid.height;
   CHECK_EQ(grid.weights.size(), width * height);
   CHECK_LE(std::max(grid.width, grid.height), kMaxSide);
-  stride_ = grid.width + 2;
-  cost_.assign(stride_ * (height + 2), kWall);
+  band_ = (width + 2) * kBand;
+  nodes_.assign((height + 2 + kBand - 1) / kBand * band_, kWall);
   for (size_t y = 0; y != height; ++y) {
     const uint8_t* const weights = grid.weights.data() + y * width;
-    uint32_t* const costs = cost_.data() + Index(0, y);
+    uint32_t* const nodes = nodes_.data() + Index(0, y);
     for (size_t x = 0; x != width; ++x) {
-      costs[x] = weights[x] == kBlocked ? kWall : kUnreached;
+      nodes[x * kBand] =
+          weights[x] == kBlocked ? kWall : kUnreached | weights[x];
     }
   }
   buckets_.resize(kNumBuckets);
   for (auto& bucket : buckets_) bucket.clear();
+}
+
+std::ptrdiff_t GridSearch::StepUp(const int y) const {
+  return static_cast<size_t>(y + 2) % kBand == 0 ? band_ - kBand + 1 : 1;
+}
+
+std::ptrdiff_t GridSearch::StepDown(const int y) const {
+  return -StepUp(y - 1);
+}
+
+void GridSearch::PrefetchAround(const uint32_t entry) const {
+  const int y = entry >> 16;
+  const uint32_t* const node = nodes_.data() + Index(entry & 0xffff, y);
+  const std::ptrdiff_t right = kBand, up = StepUp(y), down = StepDown(y);
+  Prefetch(node + up + right);
+  Prefetch(node + up - right);
+  Prefetch(node + down + right);
+  Prefetch(node + down - right);
 }
 
 GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
@@ -63,20 +101,13 @@ GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
     return path;
   }
   Reset(grid);
-  // Of the neighbours in the padded costs and in the weights.
-  std::ptrdiff_t offsets[8], weight_offsets[8];
-  for (int step = 0; step != 8; ++step) {
-    offsets[step] =
-        kDy[step] * static_cast<std::ptrdiff_t>(stride_) + kDx[step];
-    weight_offsets[step] =
-        kDy[step] * static_cast<std::ptrdiff_t>(grid.width) + kDx[step];
-  }
-  cost_[Index(start.x, start.y)] = kStart;
+  nodes_[Index(start.x, start.y)] = kStart << kWeightBits | grid.at(start);
+  auto* const buckets = buckets_.data();
   uint32_t key = kStart + Heuristic(start.x, start.y, goal);
-  buckets_[key % kNumBuckets].push_back(Entry(start.x, start.y));
+  buckets[key % kNumBuckets].push_back(Entry(start.x, start.y));
   int64_t open = 1;
   while (open > 0) {
-    auto& bucket = buckets_[key % kNumBuckets];
+    auto& bucket = buckets[key % kNumBuckets];
     if (bucket.empty()) {
       ++key;
       continue;
@@ -84,9 +115,10 @@ GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
     const uint32_t entry = bucket.back();
     bucket.pop_back();
     --open;
+    if (bucket.size() >= kAhead) PrefetchAround(*(bucket.end() - kAhead));
     const int x = entry & 0xffff, y = entry >> 16;
-    uint32_t* const here = cost_.data() + Index(x, y);
-    const uint32_t cost = *here;
+    uint32_t* const here = nodes_.data() + Index(x, y);
+    const uint32_t cost = *here >> kWeightBits;
     // It was found again, nearer to the start, and is expanded already.
     if (cost + Heuristic(x, y, goal) != key) continue;
     ++path.expanded;
@@ -94,53 +126,59 @@ GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
       path.found = true;
       break;
     }
-    // Stops rather than wraps around on absurdly long paths.
-    if (cost > kUnreached / 2) continue;
-    const uint8_t* const weights =
-        grid.weights.data() + static_cast<size_t>(y) * grid.width + x;
-    const auto relax = [&](const int step, const uint32_t length) {
-      uint32_t& next = here[offsets[step]];
-      // Walls and cells that are expanded end here.
-      if (next <= cost + kMinWeight * length) return;
-      const uint32_t next_cost = cost + weights[weight_offsets[step]] * length;
-      if (next_cost >= next) return;
-      next = next_cost;
-      const int next_x = x + kDx[step], next_y = y + kDy[step];
-      buckets_[(next_cost + Heuristic(next_x, next_y, goal)) % kNumBuckets]
-          .push_back(Entry(next_x, next_y));
+    if (cost > kMaxCost) continue;
+    const std::ptrdiff_t right = kBand, left = -right;
+    const std::ptrdiff_t up = StepUp(y), down = StepDown(y);
+    const uint32_t base = cost << kWeightBits;
+    const auto relax = [&](const std::ptrdiff_t offset, const int dx,
+                           const int dy) {
+      uint32_t& next = here[offset];
+      const uint32_t weight = next & kWeightMask;
+      const uint32_t length =
+          dx == 0 || dy == 0 ? kStraightStep : kDiagonalStep;
+      const uint32_t node = base + weight * (length << kWeightBits | 1);
+      // Walls and cells that are expanded end here, too.
+      if (node >= next) return;
+      next = node;
+      const uint32_t next_key =
+          (node >> kWeightBits) + Heuristic(x + dx, y + dy, goal);
+      buckets[next_key % kNumBuckets].push_back(Entry(x + dx, y + dy));
       ++open;
     };
-    // Whether the straight neighbours can be entered: right, left, up, down.
-    const bool right = here[offsets[0]] != kWall;
-    const bool left = here[offsets[1]] != kWall;
-    const bool up = here[offsets[2]] != kWall;
-    const bool down = here[offsets[3]] != kWall;
-    for (int step = 0; step != 4; ++step) relax(step, kStraightStep);
-    if (right && up) relax(4, kDiagonalStep);
-    if (right && down) relax(5, kDiagonalStep);
-    if (left && up) relax(6, kDiagonalStep);
-    if (left && down) relax(7, kDiagonalStep);
+    relax(right, 1, 0);
+    relax(left, -1, 0);
+    relax(up, 0, 1);
+    relax(down, 0, -1);
+    const bool right_free = here[right] != kWall;
+    const bool left_free = here[left] != kWall;
+    const bool up_free = here[up] != kWall;
+    const bool down_free = here[down] != kWall;
+    if (right_free && up_free) relax(right + up, 1, 1);
+    if (right_free && down_free) relax(right + down, 1, -1);
+    if (left_free && up_free) relax(left + up, -1, 1);
+    if (left_free && down_free) relax(left + down, -1, -1);
   }
   if (!path.found) return path;
-  path.cost = cost_[Index(goal.x, goal.y)] - kStart;
-  path.cells = PathTo(grid, goal, start);
+  path.cost = (nodes_[Index(goal.x, goal.y)] >> kWeightBits) - kStart;
+  path.cells = PathTo(goal, start);
   return path;
 }
 
-std::vector<Cell> GridSearch::PathTo(const WeightGrid& grid, const Cell& goal,
+std::vector<Cell> GridSearch::PathTo(const Cell& goal,
                                      const Cell& start) const {
   std::vector<Cell> cells = {goal};
   while (cells.back() != start) {
     const Cell to = cells.back();
-    const uint32_t cost = cost_[Index(to.x, to.y)];
+    const uint32_t node = nodes_[Index(to.x, to.y)];
     for (int step = 0; step != 8; ++step) {
       const Cell from{to.x - kDx[step], to.y - kDy[step]};
-      const uint32_t before = cost_[Index(from.x, from.y)];
+      const uint32_t before = nodes_[Index(from.x, from.y)];
       const uint32_t length = step < 4 ? kStraightStep : kDiagonalStep;
-      if (before == kWall || before == kUnreached ||
-          before + grid.at(to) * length != cost ||
-          cost_[Index(from.x, to.y)] == kWall ||
-          cost_[Index(to.x, from.y)] == kWall) {
+      if (before == kWall || before >= kUnreached ||
+          (before >> kWeightBits) + (node & kWeightMask) * length !=
+              node >> kWeightBits ||
+          nodes_[Index(from.x, to.y)] == kWall ||
+          nodes_[Index(to.x, from.y)] == kWall) {
         continue;
       }
       cells.push_back(from);

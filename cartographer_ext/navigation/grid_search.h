@@ -14,6 +14,13 @@
 // out, which among equal f prefers the deeper cell. Diagonal steps past the
 // corner of a blocked cell are not made.
 //
+// On large maps most of the time would go into waiting for memory and into
+// mispredicted branches. A node therefore holds cost and weight of its cell in
+// 32 bits and eight rows are interleaved, so that the neighbours of a cell lie
+// in two or three cache lines of few pages; nodes are prefetched a few entries
+// before they are expanded; and one comparison decides about a neighbour,
+// whether it is a wall, expanded, open or new.
+//
 // A library such as Boost.Graph keeps a heap and property maps for this, an
 // order of magnitude slower on maps of 16 million cells.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_GRID_SEARCH_H_
@@ -58,22 +65,31 @@ struct GridPath {
 
 class GridSearch {
  public:
-  // Not found where start or goal is blocked or outside, or where no path
-  // joins them. Memory is kept for the next search.
+  // Cells that cost more to reach are not left: 84 km of free cells of 5 cm.
+  static constexpr uint32_t kMaxCost = (1u << 25) - 1024;
+
+  // Not found where start or goal is blocked or outside, or where no path of at
+  // most kMaxCost joins them. Memory is kept for the next search.
   GridPath Search(const WeightGrid& grid, const Cell& start, const Cell& goal);
 
  private:
   void Reset(const WeightGrid& grid);
   size_t Index(const int x, const int y) const {
-    return (static_cast<size_t>(y) + 1) * stride_ + x + 1;
+    const size_t row = static_cast<size_t>(y) + 1;
+    return row / kBand * band_ + (x + 1) * kBand + row % kBand;
   }
+  // From the node of a cell in row y to those above and below.
+  std::ptrdiff_t StepUp(int y) const;
+  std::ptrdiff_t StepDown(int y) const;
+  // The corners of a cell lie in the same cache lines as all its neighbours.
+  void PrefetchAround(uint32_t entry) const;
   // Goes back from the goal to neighbours from which the costs agree.
-  std::vector<Cell> PathTo(const WeightGrid& grid, const Cell& goal,
-                           const Cell& start) const;
+  std::vector<Cell> PathTo(const Cell& goal, const Cell& start) const;
 
-  // g, from the start, with a border of blocked cells.
-  std::vector<uint32_t> cost_;
-  size_t stride_ = 0;                           // of a row of costs
+  static constexpr size_t kBand = 8;  // rows that are interleaved
+  // Of each cell g, from the start, and the weight, with a border of walls.
+  std::vector<uint32_t> nodes_;
+  size_t band_ = 0;                             // nodes of kBand rows
   std::vector<std::vector<uint32_t>> buckets_;  // x and y, 16 bits each
 };
 

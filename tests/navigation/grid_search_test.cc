@@ -148,6 +148,36 @@ TEST(GridSearchTest, ExpandsNoCellOfALargeMapTwice) {
   EXPECT_LE(path.expanded, 4000 * 4000);
 }
 
+// Costs far beyond those of any costmap end a search instead of wrapping around.
+TEST(GridSearchTest, GivesUpPathsOfAbsurdCost) {
+  WeightGrid grid;
+  grid.width = 501;
+  const auto cost = [&](const int height) {
+    // Passages of one cell and the highest weight, joined at alternate ends.
+    grid.height = height;
+    grid.weights.assign(grid.width * height, kMaxWeight);
+    for (int y = 1; y < height; y += 2) {
+      for (int x = 0; x != grid.width; ++x) {
+        if (x != (y % 4 == 1 ? grid.width - 1 : 0)) {
+          grid.weights[y * grid.width + x] = kBlocked;
+        }
+      }
+    }
+    const GridPath path = GridSearch().Search(
+        grid, {0, 0}, {height % 4 == 1 ? grid.width - 1 : 0, height - 1});
+    return path.found ? path.cost : kNone;
+  };
+  // Straight steps only: 502 for each passage and its end but for the first.
+  const auto expected = [](const int height) {
+    return kStraightStep * kMaxWeight *
+           (501u * (height + 1) / 2 - 1 + height / 2);
+  };
+  ASSERT_LT(expected(401), GridSearch::kMaxCost);
+  EXPECT_EQ(cost(401), expected(401));
+  ASSERT_GT(expected(501), GridSearch::kMaxCost);
+  EXPECT_EQ(cost(501), kNone);
+}
+
 }  // namespace
 }  // namespace navigation
 }  // namespace cartographer_ext
