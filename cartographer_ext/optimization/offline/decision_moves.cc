@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "Eigen/Cholesky"
+#include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
 #include "glog/logging.h"
@@ -20,6 +23,8 @@ namespace {
 constexpr double kNear = 100.;
 // Relative decrease of the cost that counts.
 constexpr double kProgress = 1e-9;
+// The same for a move after which all others are tried again.
+constexpr double kLargeProgress = 1e-6;
 
 struct Flip {
   int edge = 0;
@@ -103,6 +108,66 @@ bool SolveForced(const std::vector<int>& group, const double gate,
   for (const int i : group) (*edges)[i].is_loop = true;
   if (!started) return false;
   solver->Solve(robust, poses);
+  PolishTruncated(gate, kFullPolishRounds, solver, poses, nullptr);
+  return true;
+}
+
+// A group with loops in force.
+struct GroupInForce {
+  int turn = 0;   // among the groups with as many
+  int loops = 0;  // in force
+  int group = 0;
+};
+
+// Groups that may be released, in the order of trials.
+std::vector<GroupInForce> ReleasableGroups(const LoopSupport& support,
+                                           const std::vector<double>& weights) {
+  std::vector<GroupInForce> result;
+  std::map<int, int> groups_of_size;
+  int all = 0;
+  for (size_t g = 0; g != support.groups.size(); ++g) {
+    GroupInForce entry;
+    entry.group = g;
+    for (const int i : support.groups[g]) entry.loops += weights[i] > 0.;
+    all += entry.loops;
+    if (entry.loops == 0) continue;
+    entry.turn = groups_of_size[entry.loops]++;
+    result.push_back(entry);
+  }
+  result.erase(std::remove_if(result.begin(), result.end(),
+                              [all](const GroupInForce& entry) {
+                                return 2 * entry.loops > all;
+                              }),
+               result.end());
+  std::sort(result.begin(), result.end(),
+            [](const GroupInForce& a, const GroupInForce& b) {
+              return std::tie(a.turn, a.loops, a.group) <
+                     std::tie(b.turn, b.loops, b.group);
+            });
+  return result;
+}
+
+// Grows the map on, without `released` if not null and what has no more loops in
+// force; false where nothing is determined.
+bool Regrow(const LoopSupport& support, const double gate,
+            const std::vector<GroupInForce>& groups,
+            const GroupInForce* const released, RobustSolver* const solver,
+            std::vector<Pose2>* const poses) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  std::vector<double> weights = DecideLoops(edges, *poses, gate);
+  std::vector<bool> banned(edges.size(), false);
+  if (released != nullptr) {
+    for (const GroupInForce& other : groups) {
+      if (other.loops > released->loops) continue;
+      for (const int i : support.groups[other.group]) weights[i] = 0.;
+    }
+    for (const int i : support.groups[released->group]) banned[i] = true;
+  }
+  GrowthOptions growth;
+  growth.gate = gate;
+  if (!ContinueGrowth(support, growth, banned, solver, poses, &weights)) {
+    return false;
+  }
   PolishTruncated(gate, kFullPolishRounds, solver, poses, nullptr);
   return true;
 }
@@ -195,6 +260,51 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
     // What failed before may succeed now.
     std::fill(tried.begin(), tried.end(), false);
     tried[best] = true;
+  }
+  return kept;
+}
+
+int RegrowGroups(const LoopSupport& support, const RegrowOptions& options,
+                 RobustSolver* const solver, std::vector<Pose2>* const poses,
+                 std::vector<Alternative>* const alternatives) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  double cost = TruncatedCost(edges, *poses, options.gate);
+  int kept = 0, trials = 0;
+  std::set<int> tried;
+  const auto is_better = [&](const std::vector<GroupInForce>& groups,
+                             const GroupInForce* const released) {
+    std::vector<Pose2> moved = *poses;
+    if (!Regrow(support, options.gate, groups, released, solver, &moved)) {
+      return false;
+    }
+    const double moved_cost = TruncatedCost(edges, moved, options.gate);
+    const bool better = moved_cost < cost * (1. - kLargeProgress);
+    if (better) std::swap(moved, *poses);
+    if (alternatives != nullptr && std::abs(moved_cost - cost) < options.gate) {
+      alternatives->push_back({std::max(cost, moved_cost), moved});
+    }
+    if (better) cost = moved_cost;
+    return better;
+  };
+  for (bool progress = true; progress && trials < options.max_trials;) {
+    const std::vector<GroupInForce> groups =
+        ReleasableGroups(support, DecideLoops(edges, *poses, options.gate));
+    ++trials;
+    progress = is_better(groups, nullptr);
+    int failures = 0;
+    for (const GroupInForce& released : groups) {
+      if (progress || trials >= options.max_trials ||
+          failures >= options.max_failures) {
+        break;
+      }
+      if (!tried.insert(released.group).second) continue;
+      ++failures;
+      ++trials;
+      progress = is_better(groups, &released);
+      // What failed before may succeed now.
+      if (progress) tried = {released.group};
+    }
+    kept += progress;
   }
   return kept;
 }

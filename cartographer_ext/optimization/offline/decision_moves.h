@@ -15,6 +15,13 @@
 //                that fails from the poses as they are, a chordal relaxation of
 //                what is in force then is the start: a folded ring does not
 //                unfold by descent.
+//   RegrowGroups the map is grown on by the rejected loops that its uncertainty
+//                allows (loop_growth.h), however far off they are. Then again
+//                without one group in force and without what has no more loops
+//                in force than it: the group stays out, the others may come
+//                back. This is how wrong loops are replaced that agree with each
+//                other and keep several right ones out, none of which alone
+//                lowers the cost.
 //
 // A move is kept only if it lowers the truncated cost of the graph.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_
@@ -62,6 +69,19 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
                 std::vector<WhitenedEdge>* edges, RobustSolver* solver,
                 std::vector<Pose2>* poses,
                 std::vector<Alternative>* alternatives);
+
+// Limits of RegrowGroups.
+struct RegrowOptions {
+  double gate = kChi2Gate;
+  int max_trials = 40;
+  int max_failures = 5;  // in succession
+};
+
+// The same by growth. Odometry must reach all poses. Groups of each size in
+// force take turns; one with more than half of all loops in force is kept.
+int RegrowGroups(const LoopSupport& support, const RegrowOptions& options,
+                 RobustSolver* solver, std::vector<Pose2>* poses,
+                 std::vector<Alternative>* alternatives);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

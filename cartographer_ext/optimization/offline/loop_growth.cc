@@ -45,15 +45,12 @@ class Growth {
         poses_(*poses),
         weights_(*weights) {}
 
-  bool Run() {
-    weights_.assign(edges_.size(), 1.);
+  // Loops that are banned stay out.
+  bool Run(std::vector<bool> banned) {
+    banned_ = std::move(banned);
     for (size_t i = 0; i != edges_.size(); ++i) {
-      if (edges_[i].is_loop) {
-        weights_[i] = 0.;
-        open_.push_back(i);
-      }
+      if (edges_[i].is_loop) open_.push_back(i);
     }
-    banned_.assign(edges_.size(), false);
     cost_ = SolveInForce(weights_, &solver_, &poses_).final_cost;
     for (int round = 0; round != options_.max_rounds; ++round) {
       const std::vector<int> chosen = Choose();
@@ -229,7 +226,21 @@ double ChanceToFit(const WhitenedEdge& edge, const double log_area,
 bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,
                RobustSolver* const solver, std::vector<Pose2>* const poses,
                std::vector<double>* const weights) {
-  return Growth(support, options, solver, poses, weights).Run();
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  weights->assign(edges.size(), 1.);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (edges[i].is_loop) (*weights)[i] = 0.;
+  }
+  return ContinueGrowth(support, options,
+                        std::vector<bool>(edges.size(), false), solver, poses,
+                        weights);
+}
+
+bool ContinueGrowth(const LoopSupport& support, const GrowthOptions& options,
+                    const std::vector<bool>& banned, RobustSolver* const solver,
+                    std::vector<Pose2>* const poses,
+                    std::vector<double>* const weights) {
+  return Growth(support, options, solver, poses, weights).Run(banned);
 }
 
 }  // namespace optimization

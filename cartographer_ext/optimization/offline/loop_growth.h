@@ -79,6 +79,13 @@ bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,
                RobustSolver* solver, std::vector<Pose2>* poses,
                std::vector<double>* weights);
 
+// The same from a map: `poses` with the loops in force that have weight 1.
+// Those that are `banned`, one flag per edge, stay out. The loops that come in
+// may contradict some in force, which are not released.
+bool ContinueGrowth(const LoopSupport& support, const GrowthOptions& options,
+                    const std::vector<bool>& banned, RobustSolver* solver,
+                    std::vector<Pose2>* poses, std::vector<double>* weights);
+
 }  // namespace optimization
 }  // namespace cartographer_ext
 

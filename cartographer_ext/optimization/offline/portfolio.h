@@ -19,7 +19,8 @@
 //           the kernels disagree: growth by groups of loops (loop_growth.h), a
 //           spanning tree over the loops in force, groups forced in one by one
 //           (decision_moves.h), in turn with chordal relaxations of what is in
-//           force, as long as that finds loops.
+//           force, as long as that finds loops; then growth from the best
+//           map, with and without the groups that it relies on.
 //
 // From the best of these, non-convexity is graduated once more, with the loops
 // near the map only: that finds what many decisions at once would gain, and

@@ -133,6 +133,11 @@ void Portfolio::RunGroups() {
     Graduate(kFar);
     if (best().cost > before - kChi2Gate) break;
   }
+  std::vector<Pose2> poses = best().poses;
+  if (RegrowGroups(support(), RegrowOptions(), &solver_, &poses,
+                   &alternatives_) > 0) {
+    Add(absl::StrCat(best().name, ", regrown"), std::move(poses));
+  }
 }
 
 }  // namespace optimization

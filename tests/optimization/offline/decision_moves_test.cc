@@ -125,6 +125,81 @@ TEST(DecisionMovesTest, AChordalRelaxationUnfoldsARing) {
   EXPECT_GE(unfolded, 3);
 }
 
+// Out and back along a line, with loops between the two ways: four right ones, and
+// then three wrong ones that agree with each other on another line.
+std::vector<PoseGraphEdge> MakeThereAndBack(std::vector<Pose2>* const poses) {
+  constexpr int kPoses = 60;
+  std::vector<Pose2> truth = {Pose2()};
+  std::vector<PoseGraphEdge> edges;
+  for (int i = 0; i + 1 != kPoses; ++i) {
+    PoseGraphEdge edge;
+    edge.from = i;
+    edge.to = i + 1;
+    edge.measurement =
+        i == kPoses / 2 - 1 ? Pose2(0., 0., kPi) : Pose2(1., 0., 0.);
+    edge.information = Eigen::Vector3d(400., 400., 1. / 0.04).asDiagonal();
+    edges.push_back(edge);
+    truth.push_back(truth.back() * edge.measurement);
+  }
+  const auto add_loop = [&](const int from, const double aside) {
+    PoseGraphEdge edge;
+    edge.from = from;
+    edge.to = kPoses - 1 - from;
+    edge.is_loop = true;
+    edge.measurement =
+        Between(truth[from], Pose2(0., aside, 0.) * truth[edge.to]);
+    edge.information = Eigen::Vector3d(100., 100., 400.).asDiagonal();
+    edges.push_back(edge);
+  };
+  for (const int from : {2, 8, 14, 20}) add_loop(from, 0.);
+  for (const int from : {5, 11, 17}) add_loop(from, 8.);
+  *poses = truth;
+  return edges;
+}
+
+TEST(DecisionMovesTest, RegrowthReplacesWrongLoopsThatAgree) {
+  PoseGraph graph;
+  graph.edges = MakeThereAndBack(&graph.poses);
+  std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  const size_t first_wrong = edges.size() - 3;
+  RobustSolver solver(edges);
+  SolverOptions wrong;
+  wrong.edge_weights.assign(edges.size(), 1.);
+  for (size_t i = 0; i != first_wrong; ++i) {
+    if (edges[i].is_loop) wrong.edge_weights[i] = 0.;
+  }
+  std::vector<Pose2> start = graph.poses;
+  solver.Solve(wrong, &start);
+  PolishTruncated(kChi2Gate, 30, &solver, &start, nullptr);
+  const double cost = TruncatedCost(edges, start);
+  // Each loop by itself.
+  LoopSupportOptions options;
+  options.window = 0;
+  const LoopSupport support = FindLoopSupport(graph, options);
+  ASSERT_EQ(support.groups.size(), 7u);
+  std::vector<Pose2> poses = start;
+  EXPECT_EQ(FlipLoops(FlipOptions(), &solver, &poses), 0);
+  EXPECT_EQ(
+      ForceGroups(support, ForceOptions(), &edges, &solver, &poses, nullptr),
+      0);
+  poses = start;
+  std::vector<Alternative> alternatives;
+  EXPECT_GT(
+      RegrowGroups(support, RegrowOptions(), &solver, &poses, &alternatives),
+      0);
+  EXPECT_LT(TruncatedCost(edges, poses), cost - 0.9 * kChi2Gate);
+  EXPECT_LT(AbsoluteTrajectoryError(poses, graph.poses), 0.05);
+  // The wrong set costs one gate more than the right one.
+  for (const Alternative& alternative : alternatives) {
+    EXPECT_GE(alternative.cost, TruncatedCost(edges, poses));
+  }
+  // Nothing is left to do.
+  const std::vector<Pose2> best = poses;
+  EXPECT_EQ(RegrowGroups(support, RegrowOptions(), &solver, &poses, nullptr),
+            0);
+  EXPECT_EQ(TruncatedCost(edges, poses), TruncatedCost(edges, best));
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext
