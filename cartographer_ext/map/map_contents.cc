@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer_ext/map/host_types.h"
@@ -17,27 +19,35 @@ constexpr float kOccupiedFrom = 0.6f;
 constexpr float kFreeUpTo = 0.4f;
 constexpr float kUnknownProbability = 0.1f;
 
-// Spreads marked cells to all within `radius` cells (a square, in two passes).
-std::vector<bool> Dilate(const std::vector<bool>& marked, const int num_x,
-                         const int num_y, const int radius) {
-  std::vector<bool> rows(marked.size(), false), result(marked.size(), false);
+// Rows or columns to the nearest marked cell, whichever are more (chessboard
+// distance), at most `kFar`.
+constexpr int kFar = std::numeric_limits<uint8_t>::max();
+std::vector<uint8_t> DistancesTo(const std::vector<bool>& marked,
+                                 const int num_x, const int num_y) {
+  // With a border, so that every cell has all neighbours.
+  const ptrdiff_t width = num_x + 2;
+  std::vector<uint8_t> padded(width * (num_y + 2), kFar);
+  const auto lower = [](uint8_t* const cell, const ptrdiff_t row,
+                        const ptrdiff_t column) {
+    const int nearest = std::min(std::min(cell[column], cell[row]),
+                                 std::min(cell[row - 1], cell[row + 1]));
+    *cell = static_cast<uint8_t>(std::min<int>(*cell, nearest + 1));
+  };
   for (int y = 0; y < num_y; ++y) {
-    int last = -radius - 1;
-    for (int x = 0; x < num_x + radius; ++x) {
-      if (x < num_x && marked[y * num_x + x]) last = x;
-      const int at = x - radius;
-      if (at >= 0 && last >= at - radius) rows[y * num_x + at] = true;
+    uint8_t* const row = &padded[(y + 1) * width + 1];
+    for (int x = 0; x < num_x; ++x) {
+      if (marked[static_cast<size_t>(y) * num_x + x]) row[x] = 0;
+      lower(row + x, -width, -1);
     }
   }
-  for (int x = 0; x < num_x; ++x) {
-    int last = -radius - 1;
-    for (int y = 0; y < num_y + radius; ++y) {
-      if (y < num_y && rows[y * num_x + x]) last = y;
-      const int at = y - radius;
-      if (at >= 0 && last >= at - radius) result[at * num_x + x] = true;
-    }
+  std::vector<uint8_t> distances(marked.size());
+  for (int y = num_y - 1; y >= 0; --y) {
+    uint8_t* const row = &padded[(y + 1) * width + 1];
+    for (int x = num_x - 1; x >= 0; --x) lower(row + x, width, 1);
+    std::copy(row, row + num_x,
+              distances.begin() + static_cast<ptrdiff_t>(y) * num_x);
   }
-  return result;
+  return distances;
 }
 
 }  // namespace
@@ -64,36 +74,24 @@ SubmapCells::SubmapCells(const cartographer::mapping::proto::Grid2D& grid,
     }
   }
   // A little more, so that half a cell is rounded up whatever its rounding.
-  const int radius =
-      std::max(0, static_cast<int>(std::lround(margin / resolution_ + 1e-6)));
-  near_occupied_ = Dilate(occupied, num_x_, num_y_, radius);
-  const std::vector<bool> near_not_free =
-      Dilate(not_free, num_x_, num_y_, radius);
+  radius_ = static_cast<int>(
+      std::lround(std::min(std::max(0., margin / resolution_ + 1e-6),
+                           static_cast<double>(kFar - 1))));
+  to_occupied_ = DistancesTo(occupied, num_x_, num_y_);
+  const std::vector<uint8_t> to_not_free =
+      DistancesTo(not_free, num_x_, num_y_);
   for (size_t i = 0; i < cells_.size(); ++i) {
     if (occupied[i]) {
       cells_[i] = CellEvidence::kOccupied;
-    } else if (!near_not_free[i]) {
+    } else if (to_not_free[i] > radius_) {
       cells_[i] = CellEvidence::kFree;
     }
   }
 }
 
-// Cell ix runs against the y axis, iy against the x axis.
-int SubmapCells::Offset(const Eigen::Vector2d& point) const {
-  const double x = (max_.y() - point.y()) / resolution_;
-  const double y = (max_.x() - point.x()) / resolution_;
-  if (!(x >= 0.) || !(y >= 0.) || !(x < num_x_) || !(y < num_y_)) return -1;
-  return static_cast<int>(y) * num_x_ + static_cast<int>(x);
-}
-
-CellEvidence SubmapCells::At(const Eigen::Vector2d& point) const {
-  const int offset = Offset(point);
-  return offset < 0 ? CellEvidence::kUnsure : cells_[offset];
-}
-
 bool SubmapCells::NearOccupied(const Eigen::Vector2d& point) const {
-  const int offset = Offset(point);
-  return offset >= 0 && near_occupied_[offset];
+  const int offset = Offset(Cell(point));
+  return offset >= 0 && to_occupied_[offset] <= radius_;
 }
 
 double SubmapCells::Score(const std::vector<Eigen::Vector2d>& points,
@@ -101,7 +99,7 @@ double SubmapCells::Score(const std::vector<Eigen::Vector2d>& points,
   if (points.empty()) return 0.;
   double sum = 0.;
   for (const Eigen::Vector2d& point : points) {
-    const int offset = Offset(local_from_node * point);
+    const int offset = Offset(Cell(local_from_node * point));
     sum += offset < 0 ? kUnknownProbability : probabilities_[offset] / 255.;
   }
   return sum / static_cast<double>(points.size());

@@ -7,6 +7,7 @@
 #ifndef CARTOGRAPHER_EXT_MAP_MAP_CONTENTS_H_
 #define CARTOGRAPHER_EXT_MAP_MAP_CONTENTS_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -22,6 +23,14 @@ namespace evaluation {
 // next to unknown cells, are unsure.
 enum class CellEvidence : uint8_t { kUnsure, kFree, kOccupied };
 
+// A cell on a ray.
+struct CellView {
+  CellEvidence evidence = CellEvidence::kUnsure;
+  // So many steps of one cell from the point, in any direction, do not end in
+  // an occupied cell.
+  int clear_steps = 0;
+};
+
 // The grid of one submap.
 class SubmapCells {
  public:
@@ -33,7 +42,28 @@ class SubmapCells {
   int num_x() const { return num_x_; }
   int num_y() const { return num_y_; }
   // `point`: in the local frame of the trajectory, metres.
-  CellEvidence At(const Eigen::Vector2d& point) const;
+  CellEvidence At(const Eigen::Vector2d& point) const {
+    const int offset = Offset(Cell(point));
+    return offset < 0 ? CellEvidence::kUnsure : cells_[offset];
+  }
+  // The same, and how far it is to the next wall.
+  CellView View(const Eigen::Vector2d& point) const {
+    CellView view;
+    const Eigen::Vector2d cell = Cell(point);
+    const int offset = Offset(cell);
+    double distance = 0.;
+    if (offset >= 0) {
+      view.evidence = cells_[offset];
+      distance = to_occupied_[offset];
+    } else if (cell.allFinite()) {
+      distance = std::min(
+          (cell - Eigen::Vector2d(num_x_, num_y_)).cwiseMax(-cell).maxCoeff(),
+          1e6);
+    }
+    // Rounding may move a cell by one.
+    view.clear_steps = std::max(0, static_cast<int>(distance) - 2);
+    return view;
+  }
   // Occupied, or within the margin of an occupied cell.
   bool NearOccupied(const Eigen::Vector2d& point) const;
   // Mean probability of occupancy under the points, as the loop search scores a
@@ -48,13 +78,25 @@ class SubmapCells {
   Eigen::Vector2d max_corner() const { return max_; }
 
  private:
-  int Offset(const Eigen::Vector2d& point) const;  // -1 outside
+  // Continuous indices of a point. Cell ix runs against the y axis, iy against
+  // the x axis.
+  Eigen::Vector2d Cell(const Eigen::Vector2d& point) const {
+    return Eigen::Vector2d((max_.y() - point.y()) / resolution_,
+                           (max_.x() - point.x()) / resolution_);
+  }
+  // -1 outside.
+  int Offset(const Eigen::Vector2d& cell) const {
+    const double x = cell.x(), y = cell.y();
+    if (!(x >= 0.) || !(y >= 0.) || !(x < num_x_) || !(y < num_y_)) return -1;
+    return static_cast<int>(y) * num_x_ + static_cast<int>(x);
+  }
 
   double resolution_;
   Eigen::Vector2d max_;
   int num_x_, num_y_;
   std::vector<CellEvidence> cells_;
-  std::vector<bool> near_occupied_;
+  int radius_;                          // the margin, cells
+  std::vector<uint8_t> to_occupied_;    // distance, cells
   std::vector<uint8_t> probabilities_;  // of 255
 };
 

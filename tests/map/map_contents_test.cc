@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/map/map_contents.h"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "cartographer/mapping/trajectory_node.h"
@@ -75,6 +77,36 @@ TEST(MapContentsTest, WithoutMarginEveryCellStandsForItself) {
   const SubmapCells cells(grid, 0.);
   EXPECT_EQ(cells.At({1.75, 2.75}), CellEvidence::kFree);
   EXPECT_FALSE(cells.NearOccupied({1.75, 2.75}));
+}
+
+// In grids with some occupied cells, a walk of clear steps from anywhere never
+// ends in one of them, and most steps are clear in the middle of an empty grid.
+TEST(MapContentsTest, ClearStepsMeetNoWall) {
+  std::mt19937 random(7);
+  const auto uniform = [&](const double from, const double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  int skipped = 0;
+  for (int round = 0; round < 300; ++round) {
+    Grid2D grid = FreeGrid();
+    for (int i = round % 4; i > 0; --i) {
+      Set(static_cast<int>(uniform(0., 6.)), static_cast<int>(uniform(0., 10.)),
+          1, &grid);
+    }
+    const SubmapCells cells(grid, 0.1);
+    const Eigen::Vector2d from(uniform(0., 3.), uniform(1.5, 4.));
+    const double angle = uniform(-kPi, kPi);
+    const Eigen::Vector2d step(0.1 * std::cos(angle), 0.1 * std::sin(angle));
+    const CellView view = cells.View(from);
+    EXPECT_EQ(view.evidence, cells.At(from));
+    for (int i = 1; i <= std::min(view.clear_steps, 100); ++i) {
+      EXPECT_NE(cells.At(from + i * step), CellEvidence::kOccupied);
+      ++skipped;
+    }
+  }
+  EXPECT_GT(skipped, 1000);
+  const SubmapCells cells(FreeGrid(), 0.1);
+  EXPECT_EQ(cells.View({std::nan(""), 2.5}).clear_steps, 0);
 }
 
 TEST(MapContentsTest, ScoresAreMeansOfProbabilities) {

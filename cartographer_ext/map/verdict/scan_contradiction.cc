@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <set>
 
@@ -58,13 +59,15 @@ bool CrossesWall(const SubmapCells& cells, const Eigen::Vector2d& from,
   if (!(length > step)) return false;
   const Eigen::Vector2d direction = (to - from).normalized();
   bool in_wall = false;
-  for (double travelled = step; travelled < length; travelled += step) {
-    const CellEvidence evidence = cells.At(from + travelled * direction);
-    if (evidence == CellEvidence::kOccupied) in_wall = true;
+  for (int64_t i = 1;; ++i) {
+    const double travelled = static_cast<double>(i) * step;
+    if (!(travelled < length)) return false;
+    const CellView cell = cells.View(from + travelled * direction);
+    if (cell.evidence == CellEvidence::kOccupied) in_wall = true;
     // Free space behind it: not just a graze along the wall.
-    if (in_wall && evidence == CellEvidence::kFree) return true;
+    if (in_wall && cell.evidence == CellEvidence::kFree) return true;
+    if (!in_wall) i += cell.clear_steps;
   }
-  return false;
 }
 
 ScanConflict HoldAgainst(const std::vector<Eigen::Vector2d>& scan,
