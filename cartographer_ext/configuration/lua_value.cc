@@ -256,10 +256,13 @@ absl::StatusOr<std::string> ReadFromDirectories(
     std::ifstream stream(absl::StrCat(directory, "/", basename),
                          std::ios::binary);
     if (!stream) continue;
-    std::string content(kMaxFileSize + 1, '\0');
-    stream.read(&content[0], static_cast<std::streamsize>(content.size()));
+    std::string content;
+    char block[1 << 14];
+    while (content.size() <= kMaxFileSize && stream) {
+      stream.read(block, sizeof(block));
+      content.append(block, static_cast<size_t>(stream.gcount()));
+    }
     if (stream.bad()) continue;
-    content.resize(static_cast<size_t>(stream.gcount()));
     if (content.size() <= kMaxFileSize) return content;
     return absl::InvalidArgumentError(absl::StrCat(
         directory, "/", basename, " has more than ", kMaxFileSize >> 20,

@@ -3,6 +3,8 @@
 #include "cartographer_ext/configuration/lua_value.h"
 
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -43,6 +45,27 @@ TEST(LuaValueTest, IncludesFromTheFirstDirectoryThatHasTheFile) {
   EXPECT_EQ((*value)[0], 1);
   EXPECT_EQ((*value)[1], "yes");
   EXPECT_EQ((*value)[2], "ONE = 1");
+}
+
+// Files are read whole up to 16 MB, and refused beyond.
+TEST(LuaValueTest, FilesAreReadUpToALimit) {
+  const test::Folder folder;
+  const std::string text = std::string(50000, 'x') + "end";
+  folder.Write("long.lua", text);
+  const auto read = ReadFromDirectories("long.lua", {folder.path()});
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_EQ(*read, text);
+  folder.Write("largest.lua", std::string(16 << 20, ' '));
+  EXPECT_TRUE(ReadFromDirectories("largest.lua", {folder.path()}).ok());
+  folder.Write("larger.lua", std::string((16 << 20) + 1, ' '));
+  EXPECT_THAT(std::string(ReadFromDirectories("larger.lua", {folder.path()})
+                              .status()
+                              .message()),
+              HasSubstr("more than 16 MB"));
+  // A folder of that name is none of the files.
+  EXPECT_THAT(
+      std::string(ReadFromDirectories(".", {folder.path()}).status().message()),
+      HasSubstr("cannot find or read"));
 }
 
 std::string ErrorOf(const std::string& code,
