@@ -38,6 +38,11 @@ TEST(NavigateMainTest, BadInputIsExitCodeOne) {
       {"-pbstream_filename", "/no/such.pbstream", "-world_filename", world});
   EXPECT_EQ(no_map.exit_code, 1);
   EXPECT_THAT(no_map.error, HasSubstr("such.pbstream"));
+  const CommandResult no_plan_map =
+      RunCommand("navigate", {"-pbstream_filename", "x", "-world_filename",
+                              world, "-map_filename", "/no/such.yaml"});
+  EXPECT_EQ(no_plan_map.exit_code, 1);
+  EXPECT_THAT(no_plan_map.error, HasSubstr("such.yaml"));
   const CommandResult no_world = RunCommand(
       "navigate",
       {"-pbstream_filename", "x", "-world_filename", "/no/such.world"});
