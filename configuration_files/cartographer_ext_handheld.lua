@@ -10,5 +10,7 @@ options.use_odometry = false
 -- No other node publishes odom.
 options.provide_odom_frame = true
 options.published_frame = "base_link"
+-- The pose of the robot itself can be extrapolated to the present.
+options.use_pose_extrapolator = true
 
 return options

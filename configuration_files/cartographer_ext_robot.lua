@@ -18,6 +18,10 @@ options = {
   odom_frame = "odom",
   provide_odom_frame = false,
   publish_frame_projected_to_2d = true,
+  -- With true, the default, the node combines the pose extrapolated to the
+  -- present with the odometry at the last scan, so that odom in map is off by
+  -- what the robot has moved since. With false it has the time of that scan.
+  use_pose_extrapolator = false,
   use_odometry = true,
   use_nav_sat = false,
   use_landmarks = false,
