@@ -91,6 +91,43 @@ std::vector<Flip> PromisingFlips(const FlipOptions& options,
   return result;
 }
 
+// The map of lowest truncated cost so far.
+class LowestCost {
+ public:
+  // A map is taken over if its cost is lower by the share `progress`. What is
+  // offered or replaced is an alternative if it costs less than a gate more.
+  // `edges` and `poses` must outlive this; `alternatives` may be null.
+  LowestCost(const std::vector<WhitenedEdge>& edges, const double gate,
+             const double progress, std::vector<Pose2>* const poses,
+             std::vector<Alternative>* const alternatives)
+      : edges_(edges),
+        gate_(gate),
+        progress_(progress),
+        poses_(*poses),
+        alternatives_(alternatives),
+        cost_(TruncatedCost(edges, *poses, gate)) {}
+
+  // Whether the map was taken over.
+  bool Offer(std::vector<Pose2> moved) {
+    const double moved_cost = TruncatedCost(edges_, moved, gate_);
+    const bool better = moved_cost < cost_ * (1. - progress_);
+    if (better) std::swap(moved, poses_);
+    if (alternatives_ != nullptr && std::abs(moved_cost - cost_) < gate_) {
+      alternatives_->push_back({std::max(cost_, moved_cost), std::move(moved)});
+    }
+    if (better) cost_ = moved_cost;
+    return better;
+  }
+
+ private:
+  const std::vector<WhitenedEdge>& edges_;
+  const double gate_;
+  const double progress_;
+  std::vector<Pose2>& poses_;
+  std::vector<Alternative>* const alternatives_;
+  double cost_;
+};
+
 // Puts a group in force, releases it and polishes. With `relax` from a chordal
 // relaxation of what is in force then; false where there is none.
 bool SolveForced(const std::vector<int>& group, const double gate,
@@ -148,14 +185,12 @@ std::vector<GroupInForce> ReleasableGroups(const LoopSupport& support,
 }
 
 // Grows the map on, without `released` if not null and what has no more loops in
-// force; false where nothing is determined.
+// force; false where nothing is determined. `weights`: the loops in force.
 bool Regrow(const LoopSupport& support, const double gate,
             const std::vector<GroupInForce>& groups,
-            const GroupInForce* const released, RobustSolver* const solver,
-            std::vector<Pose2>* const poses) {
-  const std::vector<WhitenedEdge>& edges = solver->edges();
-  std::vector<double> weights = DecideLoops(edges, *poses, gate);
-  std::vector<bool> banned(edges.size(), false);
+            const GroupInForce* const released, std::vector<double> weights,
+            RobustSolver* const solver, std::vector<Pose2>* const poses) {
+  std::vector<bool> banned(weights.size(), false);
   if (released != nullptr) {
     for (const GroupInForce& other : groups) {
       if (other.loops > released->loops) continue;
@@ -179,7 +214,7 @@ int FlipLoops(const FlipOptions& options, RobustSolver* const solver,
   const std::vector<WhitenedEdge>& edges = solver->edges();
   int kept = 0, trials = 0;
   std::set<int> tried;
-  double cost = TruncatedCost(edges, *poses, options.gate);
+  LowestCost lowest(edges, options.gate, kProgress, poses, nullptr);
   for (bool progress = true; progress && trials < options.max_trials;) {
     progress = false;
     const std::vector<double> chi2 = Chi2OfEdges(edges, *poses);
@@ -197,10 +232,7 @@ int FlipLoops(const FlipOptions& options, RobustSolver* const solver,
       solver->Solve(solve, &flipped);
       PolishTruncated(options.gate, kFullPolishRounds, solver, &flipped,
                       nullptr);
-      const double flipped_cost = TruncatedCost(edges, flipped, options.gate);
-      if (flipped_cost < cost * (1. - kProgress)) {
-        cost = flipped_cost;
-        *poses = std::move(flipped);
+      if (lowest.Offer(std::move(flipped))) {
         ++kept;
         progress = true;
         break;
@@ -215,7 +247,7 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
                 RobustSolver* const solver, std::vector<Pose2>* const poses,
                 std::vector<Alternative>* const alternatives) {
   CHECK_EQ(&solver->edges(), edges);
-  double cost = TruncatedCost(*edges, *poses, options.gate);
+  LowestCost lowest(*edges, options.gate, kProgress, poses, alternatives);
   int kept = 0, trials = 0;
   std::vector<bool> tried(support.groups.size(), false);
   while (trials < options.max_trials) {
@@ -246,14 +278,7 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
                        &moved)) {
         break;
       }
-      const double moved_cost = TruncatedCost(*edges, moved, options.gate);
-      better = moved_cost < cost * (1. - kProgress);
-      if (better) std::swap(moved, *poses);
-      if (alternatives != nullptr &&
-          std::abs(moved_cost - cost) < options.gate) {
-        alternatives->push_back({std::max(cost, moved_cost), moved});
-      }
-      if (better) cost = moved_cost;
+      better = lowest.Offer(std::move(moved));
     }
     if (!better) continue;
     ++kept;
@@ -268,29 +293,21 @@ int RegrowGroups(const LoopSupport& support, const RegrowOptions& options,
                  RobustSolver* const solver, std::vector<Pose2>* const poses,
                  std::vector<Alternative>* const alternatives) {
   const std::vector<WhitenedEdge>& edges = solver->edges();
-  double cost = TruncatedCost(edges, *poses, options.gate);
+  LowestCost lowest(edges, options.gate, kLargeProgress, poses, alternatives);
   int kept = 0, trials = 0;
   std::set<int> tried;
-  const auto is_better = [&](const std::vector<GroupInForce>& groups,
-                             const GroupInForce* const released) {
-    std::vector<Pose2> moved = *poses;
-    if (!Regrow(support, options.gate, groups, released, solver, &moved)) {
-      return false;
-    }
-    const double moved_cost = TruncatedCost(edges, moved, options.gate);
-    const bool better = moved_cost < cost * (1. - kLargeProgress);
-    if (better) std::swap(moved, *poses);
-    if (alternatives != nullptr && std::abs(moved_cost - cost) < options.gate) {
-      alternatives->push_back({std::max(cost, moved_cost), moved});
-    }
-    if (better) cost = moved_cost;
-    return better;
-  };
   for (bool progress = true; progress && trials < options.max_trials;) {
-    const std::vector<GroupInForce> groups =
-        ReleasableGroups(support, DecideLoops(edges, *poses, options.gate));
+    const std::vector<double> weights =
+        DecideLoops(edges, *poses, options.gate);
+    const std::vector<GroupInForce> groups = ReleasableGroups(support, weights);
+    const auto is_better = [&](const GroupInForce* const released) {
+      std::vector<Pose2> moved = *poses;
+      return Regrow(support, options.gate, groups, released, weights, solver,
+                    &moved) &&
+             lowest.Offer(std::move(moved));
+    };
     ++trials;
-    progress = is_better(groups, nullptr);
+    progress = is_better(nullptr);
     int failures = 0;
     for (const GroupInForce& released : groups) {
       if (progress || trials >= options.max_trials ||
@@ -300,7 +317,7 @@ int RegrowGroups(const LoopSupport& support, const RegrowOptions& options,
       if (!tried.insert(released.group).second) continue;
       ++failures;
       ++trials;
-      progress = is_better(groups, &released);
+      progress = is_better(&released);
       // What failed before may succeed now.
       if (progress) tried = {released.group};
     }

@@ -125,8 +125,8 @@ TEST(DecisionMovesTest, AChordalRelaxationUnfoldsARing) {
   EXPECT_GE(unfolded, 3);
 }
 
-// Out and back along a line, with loops between the two ways: four right ones, and
-// then three wrong ones that agree with each other on another line.
+// There and back on one line, with loops between the two passes: four right
+// ones, and three wrong ones that agree with each other on another line.
 std::vector<PoseGraphEdge> MakeThereAndBack(std::vector<Pose2>* const poses) {
   constexpr int kPoses = 60;
   std::vector<Pose2> truth = {Pose2()};
