@@ -3,12 +3,24 @@
 #include "cartographer_ext/navigation/local_obstacles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "cartographer_ext/navigation/distance_transform.h"
 
 namespace cartographer_ext {
 namespace navigation {
+namespace {
+
+constexpr double kWiderReach = 1.;     // metres
+constexpr double kWiderStride = 0.05;  // metres
+constexpr int kWiderDirections = 24;
+constexpr double kMuchRoom = 0.8;   // metres of clearance: more is no better
+constexpr double kWiderGain = 0.1;  // metres of clearance, at least
+constexpr double kNearer = 0.002;   // metres: less is rounding
+constexpr double kPricePerMetre = 0.1;  // metres of clearance
+
+}  // namespace
 
 LocalObstacles::LocalObstacles(const Costmap& costmap,
                                const ObstacleLayer* const layer,
@@ -55,6 +67,33 @@ double LocalObstacles::Clearance(const Footprint& footprint,
     clearance = std::min(clearance, Distance(pose * part.center) - part.radius);
   }
   return clearance;
+}
+
+absl::optional<WiderPlace> LocalObstacles::FindWiderPlace(
+    const Footprint& footprint, const double margin, const Pose2& pose) const {
+  const double now = Clearance(footprint, pose);
+  absl::optional<WiderPlace> best;
+  double best_score = std::min(now, kMuchRoom) + kWiderGain;
+  for (int i = 0; i != kWiderDirections; ++i) {
+    const double angle = 2. * kPi * i / kWiderDirections;
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    double before = now;
+    for (double length = kWiderStride; length <= kWiderReach + 1e-6;
+         length += kWiderStride) {
+      const Eigen::Vector2d place = pose.translation() + length * direction;
+      const double clearance =
+          Clearance(footprint, Pose2(place.x(), place.y(), angle));
+      if (clearance < std::min(margin, before - kNearer)) break;
+      before = clearance;
+      const double score =
+          std::min(clearance, kMuchRoom) - kPricePerMetre * length;
+      if (score > best_score) {
+        best_score = score;
+        best = WiderPlace{place, clearance};
+      }
+    }
+  }
+  return best;
 }
 
 }  // namespace navigation

@@ -10,12 +10,19 @@
 #include <vector>
 
 #include "Eigen/Core"
+#include "absl/types/optional.h"
 #include "cartographer_ext/navigation/costmap.h"
 #include "cartographer_ext/navigation/footprint.h"
 #include "cartographer_ext/navigation/obstacle_layer.h"
 
 namespace cartographer_ext {
 namespace navigation {
+
+// A place near the robot with more room around it.
+struct WiderPlace {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // map frame
+  double clearance = 0.;  // metres from the outline there
+};
 
 class LocalObstacles {
  public:
@@ -43,6 +50,14 @@ class LocalObstacles {
   // Metres from the outline at `pose` (map <- robot) to the nearest obstacle;
   // negative inside.
   double Clearance(const Footprint& footprint, const Pose2& pose) const;
+
+  // The place with the most room that a round robot reaches on a straight line
+  // of a metre or less, staying `margin` metres off everything or, where it is
+  // nearer already, coming no nearer. Nothing where no place has clearly more
+  // room than the present one, `pose` (map <- robot).
+  absl::optional<WiderPlace> FindWiderPlace(const Footprint& footprint,
+                                            double margin,
+                                            const Pose2& pose) const;
 
  private:
   const GridGeometry* geometry_;

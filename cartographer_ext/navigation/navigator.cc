@@ -22,23 +22,18 @@ constexpr double kSlowSpeed = 0.1;  // m/s: slow enough to turn on the spot
 constexpr double kBendSpeed = 0.3;  // m/s, at least, where the path bends
 constexpr double kAhead = 0.3;      // radians: near enough to drive at a goal
 constexpr double kStandingSpeed = 0.02;  // m/s, measured
+constexpr double kStandingTurn = 0.1;    // rad/s
 constexpr double kLookahead = 0.5;       // metres, and what one second covers
 constexpr double kPathAhead = 3.;        // metres of path the window looks at
-constexpr double kProgress = 0.25;       // metres
 constexpr double kReplanSeconds = 0.3;  // soonest after a failure while driving
-constexpr double kBackUpSpeed = 0.1;    // m/s
-constexpr double kBackUpSeconds = 3.;
-constexpr double kTurnSeconds = 10.;  // once round at 0.8 rad/s
-constexpr double kWaitSeconds = 5.;
 constexpr double kKeepPathDistance = 0.4;  // metres
 // Metres of free path that a new path has to be shorter by, or what costs as
 // much: about what turning round and back again takes.
 constexpr double kKeepPathMetres = 3.;
+constexpr double kNearby = 1.5;  // metres: somebody there may be in the way
 constexpr double kPersonMargin = 0.2;   // metres around what moves
 constexpr double kTrailLength = 1.;     // metres
 constexpr double kTrailSpacing = 0.05;  // metres
-constexpr double kTrailWidth = 0.1;     // metres: so far it is still free
-constexpr double kForgetRadius = 3.;    // metres
 
 bool IsFinite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) &&
@@ -50,10 +45,11 @@ double BearingError(const Pose2& pose, const Eigen::Vector2d& target) {
   return NormalizeAngle(std::atan2(direction.y(), direction.x()) - pose.theta);
 }
 
-bool IsAtAny(const std::vector<MovingDisc>& discs,
-             const Eigen::Vector2d& point) {
+// Whether a point is in one of the discs or so near to one.
+bool IsAtAny(const std::vector<MovingDisc>& discs, const Eigen::Vector2d& point,
+             const double margin) {
   for (const MovingDisc& disc : discs) {
-    if ((point - disc.position).norm() < disc.radius + kPersonMargin) {
+    if ((point - disc.position).norm() < disc.radius + margin) {
       return true;
     }
   }
@@ -106,12 +102,15 @@ void Navigator::AddScan(const NavigatorScan& scan) {
   in_map.laser = scan.map_from_robot * scan.laser;
   std::vector<MovingObstacles::Echo> unexplained;
   const std::vector<MovingDisc> people = moving_.Moving(scan.time);
+  if (IsAtAny(people, scan.map_from_robot.translation(), kNearby)) {
+    somebody_near_ = scan.time;
+  }
   for (const Eigen::Vector2d& echo : scan.echoes) {
     if (!echo.allFinite()) continue;
     const Eigen::Vector2d point = scan.map_from_robot * echo;
     // What moves is for the dynamic window: a path around it would be wrong a
     // moment later.
-    (IsAtAny(people, point) ? in_map.free_ends : in_map.echoes)
+    (IsAtAny(people, point, kPersonMargin) ? in_map.free_ends : in_map.echoes)
         .push_back(point);
     if ((point - in_map.laser).norm() <= options_.obstacles.range &&
         !layer_.IsWall(point)) {
@@ -168,6 +167,9 @@ void Navigator::FinishGoal(const bool reached, const std::string& reason,
   planned_ = -1e9;
   has_progress_ = false;
   recovery_count_ = 0;
+  detour_.reset();
+  detours_ = 0;
+  blocked_seconds_ = 0.;
 }
 
 bool Navigator::KeepsPath(const Plan& plan,
@@ -177,15 +179,6 @@ bool Navigator::KeepsPath(const Plan& plan,
       tracker_.PointsAhead(std::numeric_limits<double>::infinity());
   if ((rest.front() - place).norm() > kKeepPathDistance) return false;
   return planner_.Cost(rest) <= planner_.Cost(plan.points) + kKeepPathMetres;
-}
-
-bool Navigator::CameFromBehind(const Pose2& pose) const {
-  const Eigen::Vector2d behind =
-      pose * Eigen::Vector2d(-kBackUpSpeed * kBackUpSeconds, 0.);
-  for (const Eigen::Vector2d& place : trail_) {
-    if ((place - behind).norm() <= kTrailWidth) return true;
-  }
-  return false;
 }
 
 bool Navigator::FollowsPlan(const NavigatorStep& step) {
@@ -212,82 +205,6 @@ bool Navigator::FollowsPlan(const NavigatorStep& step) {
     return false;
   }
   return true;
-}
-
-void Navigator::WatchProgress(const NavigatorStep& step) {
-  const Eigen::Vector2d place = step.map_from_robot.translation();
-  if (!has_progress_ || (step.time >= recovery_end_ &&
-                         (place - progress_place_).norm() > kProgress)) {
-    has_progress_ = true;
-    progress_place_ = place;
-    progress_time_ = trying_since_ = step.time;
-    recovery_count_ = 0;
-    return;
-  }
-  const double idle = step.time - progress_time_;
-  // What a recovery moves is no progress.
-  if (step.time < recovery_end_) progress_place_ = place;
-  if (idle > options_.give_up_seconds) {
-    FinishGoal(false,
-               absl::StrFormat("no progress for %.0f s: %s", idle, message_),
-               step.time);
-    return;
-  }
-  // Each recovery is given time to show what it was good for.
-  if (step.time < recovery_end_ || waits_for_somebody_) {
-    trying_since_ = step.time;
-  }
-  if (step.time - trying_since_ < options_.stuck_seconds) return;
-  recovery_ = static_cast<Recovery>(recovery_count_ % 4);
-  ++recovery_count_;
-  ++recoveries_;
-  recovery_begin_ = trying_since_ = step.time;
-  switch (recovery_) {
-    case Recovery::kTurn:
-      looked_ = step.time;
-      recovery_end_ = step.time + kTurnSeconds;
-      break;
-    case Recovery::kForget:
-      layer_.Clear(place, kForgetRadius, looked_);
-      planned_ = -1e9;
-      break;
-    case Recovery::kBackUp:
-      recovery_end_ = step.time + kBackUpSeconds;
-      break;
-    case Recovery::kWait:
-      recovery_end_ = step.time + kWaitSeconds;
-      break;
-  }
-}
-
-Velocity Navigator::Recover(const NavigatorStep& step) {
-  state_ = DriveState::kRecovering;
-  planned_ = -1e9;  // a new path afterwards
-  if (recovery_ == Recovery::kWait) {
-    message_ = "no progress: waiting";
-    return Velocity();
-  }
-  DynamicWindowInput input;
-  const LocalObstacles obstacles(*costmap_, &layer_, {},
-                                 step.map_from_robot.translation(),
-                                 options_.window_half_width);
-  input.pose = step.map_from_robot;
-  input.current = step.velocity;
-  input.target = input.pose.translation();
-  input.obstacles = &obstacles;
-  input.moving = moving_.Moving(step.time);
-  Velocity wish;
-  if (recovery_ == Recovery::kTurn) {
-    message_ = "no progress: turning";
-    wish.angular = options_.robot.max_turn_rate;
-  } else if (step.time == recovery_begin_ && !CameFromBehind(input.pose)) {
-    recovery_end_ = step.time;
-    return Velocity();
-  } else {
-    message_ = "no progress: backing up";
-    wish.linear = -std::min(kBackUpSpeed, options_.robot.max_reverse_speed);
-  }
-  return Admit(input, Reach(step.velocity, wish));
 }
 
 void Navigator::SayWhyBraking(const DynamicWindowInput& input) {
@@ -361,13 +278,18 @@ bool Navigator::IsAtGoal(const NavigatorStep& step) const {
          std::abs(BearingError(step.map_from_robot, goals_[goal_])) > kAhead;
 }
 
-Velocity Navigator::Follow(const NavigatorStep& step) {
+std::vector<Eigen::Vector2d> Navigator::MapEchoes(
+    const NavigatorStep& step) const {
   std::vector<Eigen::Vector2d> echoes;
   echoes.reserve(echoes_now_.size());
   for (const Eigen::Vector2d& echo : echoes_now_) {
     echoes.push_back(step.map_from_robot * echo);
   }
-  const LocalObstacles obstacles(*costmap_, &layer_, echoes,
+  return echoes;
+}
+
+Velocity Navigator::Follow(const NavigatorStep& step) {
+  const LocalObstacles obstacles(*costmap_, &layer_, MapEchoes(step),
                                  step.map_from_robot.translation(),
                                  options_.window_half_width);
   DynamicWindowInput input = WindowInput(step, &obstacles);
@@ -435,11 +357,25 @@ Velocity Navigator::Step(const NavigatorStep& step) {
   Velocity command;
   if (step.time < recovery_end_ && recovery_count_ > 0) {
     command = Recover(step);
+  } else if (GivesWay(step)) {
+    command = GiveWay(step);
   } else if (FollowsPlan(step)) {
     tracker_.Advance(step.map_from_robot.translation());
     command = Follow(step);
   }
-  return LimitSpeed(echoes_now_, options_.robot, options_.stop_margin, command);
+  if (IsTouched(step)) {
+    message_ = "waiting: somebody touches the robot";
+    command = Velocity();
+  }
+  command =
+      LimitSpeed(echoes_now_, options_.robot, options_.stop_margin, command);
+  const double elapsed = std::min(step.time - stepped_, 1.);
+  stepped_ = step.time;
+  if (!detour_.has_value() && std::abs(command.linear) < kStandingSpeed &&
+      std::abs(command.angular) < kStandingTurn) {
+    blocked_seconds_ += elapsed;
+  }
+  return command;
 }
 
 }  // namespace navigation

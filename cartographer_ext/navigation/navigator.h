@@ -10,7 +10,9 @@
 // does not know its place or sees nothing, and says why. Where it makes no
 // progress it recovers: it turns once round and looks, forgets obstacles that it
 // has not seen since, backs up the way it came, waits, and at last gives the
-// goal up. Plain types only, deterministic.
+// goal up. Where it and somebody who walks there wait for each other it goes to
+// a wider place near by and lets them pass; touched, it stands still. Plain
+// types only, deterministic.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_
 
@@ -19,6 +21,7 @@
 #include <vector>
 
 #include "Eigen/Core"
+#include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/navigation/costmap.h"
 #include "cartographer_ext/navigation/dynamic_window.h"
@@ -110,6 +113,8 @@ class Navigator {
   const Plan& plan() const { return plan_; }
   int plans() const { return plans_; }
   int recoveries() const { return recoveries_; }
+  // How often it went to a wider place so as to let somebody pass.
+  int times_given_way() const { return times_given_way_; }
 
  private:
   enum class Recovery { kTurn, kForget, kBackUp, kWait };
@@ -129,6 +134,16 @@ class Navigator {
   // Starts or ends a recovery where there was no progress.
   void WatchProgress(const NavigatorStep& step);
   Velocity Recover(const NavigatorStep& step);
+  // Metres from the outline to the nearest echo that no wall explains.
+  double NearestStranger(const NavigatorStep& step) const;
+  // Whether something that is not a wall touches the robot, which then stands.
+  bool IsTouched(const NavigatorStep& step);
+  // Whether the robot goes, or is to go, to a wider place so as to let somebody
+  // pass; and the command that leads there.
+  bool GivesWay(const NavigatorStep& step);
+  Velocity GiveWay(const NavigatorStep& step);
+  // The echoes of now in the map frame.
+  std::vector<Eigen::Vector2d> MapEchoes(const NavigatorStep& step) const;
   Velocity Follow(const NavigatorStep& step);
   Velocity Approach(const NavigatorStep& step, const DynamicWindowInput& input);
   // Whether the robot is as near to its goal as it gets without turning.
@@ -166,6 +181,7 @@ class Navigator {
   std::string message_;
   int plans_ = 0;
   int recoveries_ = 0;
+  int times_given_way_ = 0;
   // Progress: where and when the robot last came nearer to the goal.
   Eigen::Vector2d progress_place_ = Eigen::Vector2d::Zero();
   double progress_time_ = 0.;
@@ -176,6 +192,20 @@ class Navigator {
   double looked_ = 0.;  // when the last look around began
   Recovery recovery_ = Recovery::kForget;
   int recovery_count_ = 0;  // since the last progress
+  // To where others can pass.
+  struct Detour {
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();  // map frame
+    bool backwards = false;
+    bool arrived = false;
+    double end = 0.;  // when it is over
+  };
+  absl::optional<Detour> detour_;
+  int detours_ = 0;  // since the last progress
+  // Of standing where it should drive, since the last progress.
+  double blocked_seconds_ = 0.;
+  double stepped_ = 0.;          // time of the last step
+  double somebody_near_ = -1e9;  // when somebody last moved near the robot
+  double touched_since_ = 0.;
 };
 
 }  // namespace navigation

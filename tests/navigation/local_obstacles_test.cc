@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "gtest/gtest.h"
 #include "tests/navigation/test_maps.h"
@@ -63,6 +64,59 @@ TEST(LocalObstaclesTest, ClearanceIsThatOfTheNearestPart) {
   footprint.parts = {{{0., 0.}, 0.2}, {{0.5, 0.}, 0.2}};
   EXPECT_NEAR(local.Clearance(footprint, Pose2(3., 3., 0.)), 0.3, 0.05);
   EXPECT_NEAR(local.Clearance(footprint, Pose2(3., 3., kPi)), 0.8, 0.05);
+}
+
+TEST(LocalObstaclesTest, FindsTheWiderPlaceBesideSomebody) {
+  // A corridor of 2.4 m; somebody stands at the left of the robot.
+  const Costmap costmap = MakeCostmap(RoomMap(12., 2.6));
+  const Footprint disc = Footprint::Disc(0.25);
+  const double margin = 0.05;
+  std::vector<Eigen::Vector2d> person;
+  for (double angle = 0.; angle < 2. * kPi; angle += 0.2) {
+    person.emplace_back(6. + 0.2 * std::cos(angle),
+                        2.17 + 0.2 * std::sin(angle));
+  }
+  const Pose2 pose(6., 1.7, 0.);
+  const LocalObstacles local(costmap, nullptr, person, pose.translation(), 2.5);
+  const auto place = local.FindWiderPlace(disc, margin, pose);
+  ASSERT_TRUE(place.has_value());
+  EXPECT_GT(place->clearance, 0.5);
+  EXPECT_LT(place->position.y(), 1.3);
+  EXPECT_LE((place->position - pose.translation()).norm(), 1.001);
+  EXPECT_NEAR(place->clearance,
+              local.Clearance(
+                  disc, Pose2(place->position.x(), place->position.y(), 0.)),
+              1e-9);
+  // The way there comes nearer to nothing that is too near.
+  double before = local.Clearance(disc, pose);
+  for (double share = 0.05; share <= 1.; share += 0.05) {
+    const Eigen::Vector2d p =
+        pose.translation() + share * (place->position - pose.translation());
+    const double clearance = local.Clearance(disc, Pose2(p.x(), p.y(), 0.));
+    EXPECT_GT(clearance, std::min(margin, before - 0.005)) << share;
+    before = clearance;
+  }
+}
+
+TEST(LocalObstaclesTest, FindsNoWiderPlaceInTheWidest) {
+  const Costmap costmap = MakeCostmap(RoomMap(12., 2.6));
+  const LocalObstacles local(costmap, nullptr, {}, {6., 1.3}, 2.5);
+  EXPECT_FALSE(
+      local.FindWiderPlace(Footprint::Disc(0.25), 0.05, Pose2(6., 1.3, 0.))
+          .has_value());
+  // Nor through what is in between: a niche with room behind a wall.
+  io::OccupancyMap map = RoomMap(12., 6.);
+  FillBox(5., 2., 5.3, 4., 1.f, &map);
+  FillBox(6.1, 2., 6.4, 4., 1.f, &map);
+  FillBox(5., 2., 6.4, 2.3, 1.f, &map);
+  FillBox(5., 3.7, 6.4, 4., 1.f, &map);
+  const Costmap niche = MakeCostmap(map);
+  const Pose2 inside(5.72, 3., 0.);
+  const LocalObstacles walled(niche, nullptr, {}, inside.translation(), 2.5);
+  const auto place = walled.FindWiderPlace(Footprint::Disc(0.25), 0.05, inside);
+  if (place.has_value()) {
+    EXPECT_LT((place->position - inside.translation()).norm(), 0.5);
+  }
 }
 
 TEST(FootprintTest, DistanceIsThatOfTheNearestPart) {

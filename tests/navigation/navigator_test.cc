@@ -157,6 +157,42 @@ TEST(NavigatorTest, BacksUpOnlyTheWayItCame) {
   EXPECT_LT(moved, 0.15);
 }
 
+TEST(NavigatorTest, GivesWayToSomebodyWhoWaits) {
+  // Somebody of radius 0.2 m comes along the wall of a corridor, stops before
+  // the robot, on its goal, and walks on as soon as there is room beside it.
+  const io::OccupancyMap map = RoomMap(12., 2.6);
+  Loop loop(map, map, Pose2(5.8, 0.6, 0.), {{6.6, 0.6}, {10., 1.3}});
+  Eigen::Vector2d person(9., 0.45);
+  double least_gap = std::numeric_limits<double>::infinity();
+  for (int i = 0; i != 1200 && !loop.navigator_->finished(); ++i) {
+    loop.world_ = map;
+    FillBox(person.x() - 0.18, person.y() - 0.18, person.x() + 0.18,
+            person.y() + 0.18, 1.f, &loop.world_);
+    const Velocity command = loop.Step();
+    const Eigen::Vector2d to_robot = loop.pose_.translation() - person;
+    const double gap = to_robot.norm() - 0.2 - 0.25;
+    if (command.linear != 0.) least_gap = std::min(least_gap, gap);
+    const bool blocked = to_robot.x() < 0. && std::abs(to_robot.y()) < 0.6;
+    if (person.x() > 2. && (!blocked || gap > 0.2)) person.x() -= 0.07;
+  }
+  ASSERT_TRUE(loop.navigator_->finished());
+  for (const GoalResult& result : loop.navigator_->results()) {
+    EXPECT_TRUE(result.reached) << result.reason;
+  }
+  EXPECT_LT(loop.time_, 60.);
+  EXPECT_EQ(loop.navigator_->times_given_way(), 1);
+  EXPECT_EQ(loop.navigator_->recoveries(), 0);
+  EXPECT_GT(least_gap, 0.);
+}
+
+TEST(NavigatorTest, DoesNotGiveWayWhereNobodyIs) {
+  const io::OccupancyMap map = RoomMap(12., 2.6);
+  Loop loop(map, map, Pose2(6., 0.85, kPi), {{10., 1.3}, {2., 1.3}});
+  for (int i = 0; i != 900 && !loop.navigator_->finished(); ++i) loop.Step();
+  EXPECT_TRUE(loop.navigator_->finished());
+  EXPECT_EQ(loop.navigator_->times_given_way(), 0);
+}
+
 class NavigatorStopTest : public testing::Test {
  protected:
   NavigatorStopTest()
@@ -235,6 +271,31 @@ TEST_F(NavigatorStopTest, BeforeAnEchoInItsWay) {
   loop_.navigator_->AddScan(scan);
   const Velocity command = loop_.StepWithoutScan();
   EXPECT_EQ(command.linear, 0.);
+}
+
+TEST(NavigatorTest, StandsStillWhileItIsTouched) {
+  // It would have to turn round; somebody leans on it.
+  const io::OccupancyMap map = RoomMap(8., 6.);
+  Loop loop(map, map, Pose2(4., 3., 0.), {{1., 3.}});
+  const auto step = [&loop] {
+    NavigatorScan scan = loop.MakeScan();
+    for (double bearing = 1.2; bearing < 1.8; bearing += 0.05) {
+      scan.echoes.emplace_back(0.255 * std::cos(bearing),
+                               0.255 * std::sin(bearing));
+    }
+    loop.navigator_->AddScan(scan);
+    return loop.StepWithoutScan();
+  };
+  for (int i = 0; i != 150; ++i) {
+    const Velocity command = step();
+    EXPECT_EQ(command.linear, 0.);
+    EXPECT_EQ(command.angular, 0.);
+  }
+  EXPECT_NE(loop.navigator_->message().find("touches"), std::string::npos);
+  // What never goes is not waited for: turning brings the outline no nearer.
+  double turned = 0.;
+  for (int i = 0; i != 250; ++i) turned += std::abs(step().angular);
+  EXPECT_GT(turned, 0.);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 using simulation::Disc;
 
-// Slower is standing still.
+// Slower is standing still: the last 10 and 33 ms of a stop.
 constexpr double kMovingSpeed = 0.01;  // m/s
 constexpr double kMovingTurn = 0.05;   // rad/s
 // From 0.9 m/s at 1 m/s^2, after 0.3 s of reaction.
@@ -57,6 +57,7 @@ void ContactCounter::Record(const LiveRobot& robot, const bool with_moving,
   contact.place = robot.pose().translation();
   contact.with_moving = with_moving;
   contact.speed = robot.velocity().linear;
+  contact.turn_rate = robot.velocity().angular;
   contact.unseen_seconds = unseen_seconds;
   contacts_.push_back(contact);
 }

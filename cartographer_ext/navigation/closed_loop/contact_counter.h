@@ -21,7 +21,8 @@ struct Contact {
   double time = 0.;       // when it began, or when the robot moved in it
   Eigen::Vector2d place;  // of the robot
   bool with_moving = false;
-  double speed = 0.;  // of the robot, m/s
+  double speed = 0.;      // of the robot, m/s
+  double turn_rate = 0.;  // of the robot, rad/s
   // Of what moves: seconds since an echo came from it; infinite for never.
   double unseen_seconds = 0.;
 };

@@ -382,6 +382,7 @@ absl::Status ClosedLoop::Run(
   run_->goals = navigator_->results();
   run_->plans = navigator_->plans();
   run_->recoveries = navigator_->recoveries();
+  run_->times_given_way = navigator_->times_given_way();
   run_->disturbances = disturbances_.all();
   run_->static_collisions = contacts_.static_collisions();
   run_->moving_collisions = contacts_.moving_collisions();

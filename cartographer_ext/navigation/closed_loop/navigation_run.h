@@ -80,9 +80,9 @@ struct NavigationRun {
   double shortest = 0.;   // of the goals that were reached
   double path_ratio = 0.;
   int static_collisions = 0;
-  int moving_collisions = 0;    // with the robot moving
-  int unseen_collisions = 0;    // of these, with somebody not seen of late
-  int run_into = 0;             // with the robot standing still
+  int moving_collisions = 0;  // with the robot moving
+  int unseen_collisions = 0;  // of these, with somebody not seen of late
+  int run_into = 0;           // with the robot standing still
   // Somebody waited for the robot, summed over everybody.
   double people_waited_seconds = 0.;
   double least_clearance = 0.;  // metres, to stationary things
@@ -92,6 +92,7 @@ struct NavigationRun {
   int lost_cycles = 0;
   int plans = 0;
   int recoveries = 0;
+  int times_given_way = 0;
   int late_optimizations = 0;
   std::vector<double> cycle_seconds;  // CPU of the navigator, each cycle
   double planning_cpu_seconds = 0.;

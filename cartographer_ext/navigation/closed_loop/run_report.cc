@@ -62,6 +62,7 @@ nlohmann::ordered_json ToJson(const NavigationRun& run) {
   json["least_clearance"] = run.least_clearance;
   json["plans"] = run.plans;
   json["recoveries"] = run.recoveries;
+  json["times_given_way"] = run.times_given_way;
   json["each_goal"] = nlohmann::ordered_json::array();
   for (size_t i = 0; i != run.goals.size(); ++i) {
     const GoalResult& goal = run.goals[i];
@@ -80,7 +81,8 @@ nlohmann::ordered_json ToJson(const NavigationRun& run) {
          {"x", contact.place.x()},
          {"y", contact.place.y()},
          {"with", contact.with_moving ? "moving" : "static"},
-         {"speed", contact.speed}});
+         {"speed", contact.speed},
+         {"turn_rate", contact.turn_rate}});
     if (contact.with_moving && std::isfinite(contact.unseen_seconds)) {
       json["contacts"].back()["unseen_seconds"] = contact.unseen_seconds;
     }

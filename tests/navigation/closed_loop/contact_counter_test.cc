@@ -62,6 +62,21 @@ TEST_F(ContactCounterTest, ARobotThatStandsIsRunInto) {
   EXPECT_EQ(counter_.moving_collisions(), 2);
 }
 
+TEST_F(ContactCounterTest, ARobotThatTurnsInAContactMoves) {
+  // Its outline passes over the person at 12.5 mm/s or more.
+  const std::vector<Disc> person = {{Eigen::Vector2d(0.3, 0.), 0.2}};
+  robot_.Command({0., 0.04});
+  Drive(0.5, {}, person);
+  EXPECT_EQ(counter_.moving_collisions(), 0);
+  EXPECT_EQ(counter_.run_into(), 1);
+  robot_.Command({0., 0.3});
+  Drive(0.5, {}, person);
+  EXPECT_EQ(counter_.moving_collisions(), 1);
+  EXPECT_EQ(counter_.run_into(), 0);
+  ASSERT_EQ(counter_.contacts().size(), 1u);
+  EXPECT_GT(counter_.contacts()[0].turn_rate, 0.05);
+}
+
 TEST_F(ContactCounterTest, TellsWhetherSomebodyWasSeen) {
   robot_.Command({0.1, 0.});
   Drive(0.5, {}, {});
