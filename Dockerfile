@@ -9,7 +9,7 @@
 FROM debian:12 AS source
 WORKDIR /cartographer_ext
 COPY scripts/install_dependencies scripts/
-RUN scripts/install_dependencies && apt-get install -y --no-install-recommends dpkg-dev file
+RUN scripts/install_dependencies
 COPY . .
 
 FROM source AS build
