@@ -3,6 +3,7 @@
 // LINK: experiments
 //
 // cartographer_ext_optimize: solves a pose graph whose loops may be wrong.
+#include <algorithm>
 #include <iostream>
 #include <numeric>
 #include <string>
@@ -195,9 +196,11 @@ nlohmann::ordered_json NoiseReport(const optimization::OptimizeResult& result) {
   return json;
 }
 
-// Sets of loops that explain the graph as well as those in force.
+// Sets of loops that explain the graph as well as those in force and move the
+// map, or do not.
 nlohmann::ordered_json RivalReport(const optimization::PoseGraph& graph,
-                                   const optimization::OptimizeResult& result) {
+                                   const optimization::OptimizeResult& result,
+                                   const bool moves_map) {
   const auto ends = [&](const std::vector<int>& edges) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const int i : edges) {
@@ -208,13 +211,38 @@ nlohmann::ordered_json RivalReport(const optimization::PoseGraph& graph,
     return json;
   };
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const optimization::RivalSets& rival : result.undecidable) {
+  for (const optimization::RivalSets& rival : result.rivals) {
+    if (rival.moves_map != moves_map) continue;
     json.push_back({{"cost_difference", rival.cost_difference},
                     {"largest_shift", rival.largest_shift},
+                    {"deviation", rival.deviation},
                     {"only_in_force", ends(rival.only_in_force)},
                     {"only_in_rival", ends(rival.only_in_rival)}});
   }
   return json;
+}
+
+// Says how far apart the maps are between which the data do not decide.
+void PrintRivals(const std::vector<optimization::RivalSets>& rivals) {
+  for (const bool moves_map : {true, false}) {
+    int count = 0;
+    double shift = 0., deviation = 0.;
+    for (const optimization::RivalSets& rival : rivals) {
+      if (rival.moves_map != moves_map) continue;
+      ++count;
+      shift = std::max(shift, rival.largest_shift);
+      deviation = std::max(deviation, rival.deviation);
+    }
+    if (count == 0) continue;
+    std::cout << absl::StrFormat(
+        moves_map
+            ? "undecidable: %d other sets of loops explain the graph equally "
+              "well and move poses by up to %.3g m (%.2g standard deviations)\n"
+            : "%d other sets of loops explain the graph equally well and leave "
+              "each pose where it is, within its uncertainty (at most %.3g m, "
+              "%.2g standard deviations)\n",
+        count, shift, deviation);
+  }
 }
 
 nlohmann::ordered_json Report(const optimization::PoseGraph& graph,
@@ -239,7 +267,8 @@ nlohmann::ordered_json Report(const optimization::PoseGraph& graph,
   if (!result.member.empty()) {
     json["member"] = result.member;
     json["chi2"]["truncated_of_member"] = result.member_truncated_chi2;
-    json["undecidable"] = RivalReport(graph, result);
+    json["undecidable"] = RivalReport(graph, result, true);
+    json["same_map"] = RivalReport(graph, result, false);
   }
   json["noise_scale"] = NoiseReport(result);
   const std::vector<double>& steps = result.step_seconds;
@@ -307,12 +336,7 @@ absl::Status Run() {
   }
   if (!status.ok()) return status;
   if (FLAGS_json != "-") {
-    if (!result->undecidable.empty()) {
-      std::cout << absl::StrFormat(
-          "undecidable: %d other sets of loops explain the graph equally "
-          "well\n",
-          result->undecidable.size());
-    }
+    PrintRivals(result->rivals);
     std::cout << absl::StrFormat(
         "%s: %d poses, %d of %d loops in force, truncated chi2 %.1f, %d "
         "iterations, %.3f s\n",

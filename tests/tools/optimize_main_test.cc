@@ -118,6 +118,7 @@ TEST(OptimizeMainTest, ChainsOdometryWhereThereAreNoVertices) {
     EXPECT_LT(json["noise_scale"][key], 2.) << key;
   }
   EXPECT_TRUE(json["undecidable"].is_array());
+  EXPECT_TRUE(json["same_map"].is_array());
   const auto output = io::ReadG2o(folder / "out.g2o");
   ASSERT_TRUE(output.ok());
   EXPECT_NEAR(output->vertices.at(40).x, 0., 0.5);

@@ -219,9 +219,8 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
   for (const Portfolio::Member& member : portfolio->members()) {
     alternatives.push_back({member.cost, member.poses});
   }
-  result.undecidable =
-      FindRivalSets(portfolio->edges(), portfolio->best().poses,
-                    portfolio->best().cost, alternatives, RivalOptions());
+  result.rivals = FindRivalSets(result.poses, alternatives, RivalOptions(),
+                                portfolio->solver());
   return result;
 }
 

@@ -58,7 +58,7 @@ struct AutoResult {
   double applied_loop_scale = 1.;
   // Estimate with regard to the given information matrices.
   NoiseScale noise;
-  std::vector<RivalSets> undecidable;
+  std::vector<RivalSets> rivals;
 };
 
 // Runs `auto` on a valid graph.

@@ -97,7 +97,7 @@ void RunAuto(const PoseGraph& graph, const OptimizeOptions& options,
   result->member = found.member;
   result->member_truncated_chi2 = found.member_cost;
   result->noise = found.noise;
-  result->undecidable = std::move(found.undecidable);
+  result->rivals = std::move(found.rivals);
   result->applied_odometry_scale = found.applied_odometry_scale;
   result->applied_loop_scale = found.applied_loop_scale;
 }

@@ -81,7 +81,9 @@ struct OptimizeResult {
   NoiseScale noise;
   double applied_odometry_scale = 1.;
   double applied_loop_scale = 1.;
-  std::vector<RivalSets> undecidable;  // auto
+  // auto: sets of loops that explain the graph about as well; where one of them
+  // moves the map, the graph is undecidable.
+  std::vector<RivalSets> rivals;
 };
 
 // Names accepted as OptimizeOptions::method.

@@ -3,14 +3,19 @@
 #include "cartographer_ext/optimization/offline/rival_sets.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
+#include "Eigen/Cholesky"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 
 namespace cartographer_ext {
 namespace optimization {
 namespace {
+
+constexpr size_t kMaxSample = 50;
 
 std::vector<bool> LoopsInForce(const std::vector<WhitenedEdge>& edges,
                                const std::vector<Pose2>& poses,
@@ -33,12 +38,54 @@ double LargestShift(const std::vector<Pose2>& a, const std::vector<Pose2>& b) {
   return result;
 }
 
+// By how many of its standard deviations a pose of `theirs` is off `ours`, at
+// most.
+double Deviation(const std::vector<Pose2>& ours,
+                 const std::vector<Pose2>& theirs,
+                 const std::vector<bool>& in_force,
+                 RobustSolver* const solver) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  std::vector<double> weights(edges.size());
+  for (size_t i = 0; i != edges.size(); ++i) {
+    weights[i] = !edges[i].is_loop || in_force[i] ? 1. : 0.;
+  }
+  Eigen::VectorXd rhs;
+  const BlockLdlt* const factor = solver->Factor(ours, weights, &rhs);
+  if (factor == nullptr) return std::numeric_limits<double>::infinity();
+  const Pose2 motion = ours[0] * theirs[0].Inverse();
+  const auto shift = [&](const size_t i) -> Eigen::Vector2d {
+    return (motion * theirs[i]).translation() - ours[i].translation();
+  };
+  std::vector<size_t> sample;
+  const size_t count = std::min(kMaxSample, ours.size() - 1);
+  for (size_t k = 1; k <= count; ++k) {
+    sample.push_back(k * (ours.size() - 1) / count);
+  }
+  size_t largest = 1;
+  for (size_t i = 1; i != ours.size(); ++i) {
+    if (shift(i).norm() > shift(largest).norm()) largest = i;
+  }
+  sample.push_back(largest);
+  double result = 0.;
+  BlockLdlt::Columns columns;
+  for (const size_t i : sample) {
+    columns.setZero(rhs.size(), 3);
+    columns.middleRows<3>(3 * i - 3).setIdentity();
+    factor->Solve(&columns);
+    const Eigen::Matrix2d covariance = columns.block<2, 2>(3 * i - 3, 0);
+    result = std::max(result, shift(i).dot(covariance.llt().solve(shift(i))));
+  }
+  return std::sqrt(result);
+}
+
 }  // namespace
 
 std::vector<RivalSets> FindRivalSets(
-    const std::vector<WhitenedEdge>& edges, const std::vector<Pose2>& poses,
-    const double cost, const std::vector<Alternative>& alternatives,
-    const RivalOptions& options) {
+    const std::vector<Pose2>& poses,
+    const std::vector<Alternative>& alternatives, const RivalOptions& options,
+    RobustSolver* const solver) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  const double cost = TruncatedCost(edges, poses, options.gate);
   const std::vector<bool> ours = LoopsInForce(edges, poses, options.gate);
   const int num_ours = std::count(ours.begin(), ours.end(), true);
   const int min_loops = num_ours < 10 * options.min_loops
@@ -62,11 +109,18 @@ std::vector<RivalSets> FindRivalSets(
     }
     rival.cost_difference = alternative.cost - cost;
     rival.largest_shift = LargestShift(poses, alternative.poses);
+    if (rival.largest_shift > 0.) {
+      rival.deviation = Deviation(poses, alternative.poses, ours, solver);
+    }
+    rival.moves_map = rival.largest_shift > options.same_place &&
+                      rival.deviation > options.same_deviation;
     result.push_back(std::move(rival));
   }
   std::stable_sort(result.begin(), result.end(),
                    [](const RivalSets& a, const RivalSets& b) {
-                     return a.cost_difference < b.cost_difference;
+                     return a.moves_map != b.moves_map
+                                ? a.moves_map
+                                : a.cost_difference < b.cost_difference;
                    });
   if (result.size() > options.max_rivals) result.resize(options.max_rivals);
   return result;

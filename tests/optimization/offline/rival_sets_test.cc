@@ -11,13 +11,14 @@ namespace {
 
 using ::testing::ElementsAre;
 
-// A chain of eleven poses and two pairs of loops that contradict each other.
+// A chain of eleven poses whose ends some loops see in place, and two pairs of
+// loops that contradict each other: these are moved aside by `side` metres.
 struct Rivals {
   std::vector<WhitenedEdge> edges;
   std::vector<Pose2> left, right;
 };
 
-Rivals MakeRivals() {
+Rivals MakeRivals(const double side, const int in_place) {
   std::vector<PoseGraphEdge> list;
   std::vector<Pose2> poses = {Pose2()};
   const auto add = [&](const int from, const int to, const Pose2& measurement,
@@ -34,15 +35,19 @@ Rivals MakeRivals() {
     add(i, i + 1, Pose2(1., 0., 0.), 25., false);
     poses.push_back(poses.back() * Pose2(1., 0., 0.));
   }
-  for (const double side : {1., -1.}) {
-    add(0, 10, Pose2(10., side, 0.), 400., true);
-    add(1, 9, Pose2(8., 0.8 * side, 0.), 400., true);
+  for (const double aside : {side, -side}) {
+    add(0, 10, Pose2(10., aside, 0.), 400., true);
+    add(1, 9, Pose2(8., 0.8 * aside, 0.), 400., true);
+  }
+  for (int k = 0; k != in_place; ++k) {
+    add(0, 10, Pose2(10., 0., 0.), 400., true);
+    add(1, 9, Pose2(8., 0., 0.), 400., true);
   }
   Rivals result;
   result.edges = Whiten(list);
   for (const bool left : {true, false}) {
     SolverOptions options;
-    options.edge_weights.assign(14, 1.);
+    options.edge_weights.assign(list.size(), 1.);
     options.edge_weights[left ? 12 : 10] = 0.;
     options.edge_weights[left ? 13 : 11] = 0.;
     std::vector<Pose2> solved = poses;
@@ -52,26 +57,56 @@ Rivals MakeRivals() {
   return result;
 }
 
+std::vector<RivalSets> Find(const Rivals& rivals,
+                            const RivalOptions& options = RivalOptions()) {
+  RobustSolver solver(rivals.edges);
+  const double left = TruncatedCost(rivals.edges, rivals.left);
+  const double right = TruncatedCost(rivals.edges, rivals.right);
+  return FindRivalSets(
+      rivals.left,
+      {{left, rivals.left}, {right, rivals.right}, {right, rivals.right}},
+      options, &solver);
+}
+
 TEST(RivalSetsTest, FindsTheOtherSet) {
-  const Rivals rivals = MakeRivals();
-  const double cost = TruncatedCost(rivals.edges, rivals.left);
-  const double other = TruncatedCost(rivals.edges, rivals.right);
-  const std::vector<RivalSets> found = FindRivalSets(
-      rivals.edges, rivals.left, cost,
-      {{cost, rivals.left}, {other, rivals.right}, {other, rivals.right}},
-      RivalOptions());
+  const std::vector<RivalSets> found = Find(MakeRivals(1., 0));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_THAT(found[0].only_in_force, ElementsAre(10, 11));
   EXPECT_THAT(found[0].only_in_rival, ElementsAre(12, 13));
   EXPECT_NEAR(found[0].cost_difference, 0., 1e-3);
   EXPECT_GT(found[0].largest_shift, 0.2);
+  EXPECT_GT(found[0].deviation, 10.);
+  EXPECT_TRUE(found[0].moves_map);
+}
+
+TEST(RivalSetsTest, LoopsNearTheGateLeaveTheMapWhereItIs) {
+  RivalOptions options;
+  options.min_loops = 1;
+  options.same_place = 0.001;
+  const std::vector<RivalSets> found = Find(MakeRivals(0.166, 25), options);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].only_in_force, ElementsAre(10));
+  EXPECT_GT(found[0].largest_shift, options.same_place);
+  EXPECT_LT(found[0].deviation, options.same_deviation);
+  EXPECT_FALSE(found[0].moves_map);
+}
+
+// Well known poses that move by millimetres are no other map, either.
+TEST(RivalSetsTest, MillimetresAreNoOtherMap) {
+  RivalOptions options;
+  options.same_place = 10.;
+  const std::vector<RivalSets> found = Find(MakeRivals(1., 0), options);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_FALSE(found[0].moves_map);
 }
 
 TEST(RivalSetsTest, DearerSetsAreNoRivals) {
-  const Rivals rivals = MakeRivals();
-  EXPECT_TRUE(FindRivalSets(rivals.edges, rivals.left, 10.,
-                            {{10. + 1.1 * kChi2Gate, rivals.right}},
-                            RivalOptions())
+  const Rivals rivals = MakeRivals(1., 0);
+  RobustSolver solver(rivals.edges);
+  const double cost = TruncatedCost(rivals.edges, rivals.left);
+  EXPECT_TRUE(FindRivalSets(rivals.left,
+                            {{cost + 1.1 * kChi2Gate, rivals.right}},
+                            RivalOptions(), &solver)
                   .empty());
 }
 
