@@ -59,6 +59,17 @@ const Portfolio::Member& LikeliestMember(const Portfolio& portfolio,
   return *result;
 }
 
+// What the result may cost more than the best member, to be nearer to the
+// adapted gate: what separates that from the best single solver. That is known
+// only where all have taken part; otherwise one that has not may reach the
+// lowest. On a graph that is too large for that, few do.
+double Slack(const Portfolio& portfolio) {
+  const double to_solvers =
+      std::max(0., portfolio.lowest_of_solvers() - portfolio.best().cost);
+  if (portfolio.ran_all_solvers()) return to_solvers;
+  return portfolio.Size() > kMaxGrowthWork ? 0.5 * to_solvers : 0.;
+}
+
 // Steps 3 and 4 of the header.
 void Decide(const AutoOptions& options, Portfolio* const portfolio,
             AutoResult* const result) {
@@ -73,12 +84,11 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
   const double gate =
       options.adaptive_gate ? AdaptiveGate(edges, best.poses) : kChi2Gate;
   const double limit = best.cost + kUnfolded * kChi2Gate;
-  // What any solver reaches is known only where all have taken part.
-  const double known = portfolio->ran_all_solvers()
-                           ? std::max(best.cost, portfolio->lowest_of_solvers())
-                           : best.cost;
-  const Portfolio::Member& likeliest =
-      LikeliestMember(*portfolio, known * (1. + kSameOptimum));
+  const double slack = Slack(*portfolio);
+  const double most = best.cost * (1. + kSameOptimum) + slack;
+  const Portfolio::Member& likeliest = LikeliestMember(
+      *portfolio,
+      portfolio->ran_all_solvers() ? most : best.cost * (1. + kSameOptimum));
   double lowest = std::numeric_limits<double>::infinity();
   std::vector<double> polished;
   for (const Portfolio::Member& member : portfolio->members()) {
@@ -104,13 +114,6 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
   if (!options.adaptive_gate) return;
   count(PolishAdapted(kFullPolishRounds, &solver, &result->poses,
                       &result->weights));
-  // Half way to what a solver alone reaches, to stay below others, too.
-  const double enough =
-      best.cost +
-      0.5 * std::max(0., portfolio->lowest_of_solvers() - best.cost);
-  const double most =
-      gate == kChi2Gate ? std::max(enough, likeliest.cost * (1. + kSameOptimum))
-                        : enough;
   if (!options.lowest_cost || TruncatedCost(edges, result->poses) <= most) {
     return;
   }
@@ -166,6 +169,7 @@ std::unique_ptr<Portfolio> SearchWithNoise(const PoseGraph& graph,
   } else {
     result->Continue(known);
   }
+  result->AddSolversOf(last);
   return result;
 }
 

@@ -16,9 +16,10 @@
 //      to the scale of the accepted loops, where the matrices claim too little;
 //      the lowest cost truncated there is taken. Where they do not, that of
 //      the members of (4) which the odds of a wrong loop favour;
-//   4. where that costs more than half of what separates the lowest truncated
-//      cost from the best single solver, the lowest is taken, brought near to
-//      (3) (polish_near.h);
+//   4. where that costs more than the best single solver, the lowest is taken,
+//      brought near to (3) as far as it costs no more (polish_near.h). Where not
+//      every solver has taken part, the limit is the lowest truncated cost, and
+//      for large graphs half way from that to the solvers that have;
 //   5. rejected loops just beyond the gate are accepted where there are no more
 //      of them than the gate rejects right ones.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_AUTO_SEARCH_H_

@@ -78,7 +78,7 @@ Portfolio::Portfolio(const PoseGraph& graph, const PortfolioOptions& options)
   for (const WhitenedEdge& edge : edges_) num_loops_ += edge.is_loop;
 }
 
-double Portfolio::PosesTimesLoops() const {
+double Portfolio::Size() const {
   return static_cast<double>(graph_.poses.size()) * num_loops_;
 }
 
@@ -108,6 +108,7 @@ void Portfolio::NoteSolver(const std::vector<Pose2>& poses) {
   if (!starts_alone_) return;
   lowest_of_solvers_ =
       std::min(lowest_of_solvers_, TruncatedCost(edges_, poses));
+  results_of_solvers_.push_back(poses);
 }
 
 void Portfolio::AddKernel(const std::string& start_name, const KernelType type,
@@ -205,12 +206,16 @@ bool Portfolio::IsSettled(const size_t first) {
   for (size_t i = first; i != first + kQuickKernels; ++i) {
     highest = std::max(highest, members_[i].cost);
   }
-  if (highest > best().cost * (1. + kSame) + kNearlySame * kChi2Gate) {
+  const auto same_cost = [&] {
+    return highest <= best().cost * (1. + kSame) + kNearlySame * kChi2Gate;
+  };
+  if (!same_cost()) {
     if (!DecideAlike(first)) return false;
     Graduate(kNear);
   }
   Improve();
-  return RejectedContradict();
+  // What softer kernels have found may be another map than that agreed on.
+  return (same_cost() || DecideAlike(first)) && RejectedContradict();
 }
 
 double Portfolio::FitsByChance() const {
@@ -235,6 +240,15 @@ bool Portfolio::FindsLostGroup() {
   // Less is a matter of loops near the gate.
   return AddForced(best().name, force) &&
          best().cost < before - kNearlySame * kChi2Gate;
+}
+
+bool Portfolio::GncFindsAnother() {
+  if (continued_ || FullWork() > kLittleWork) return false;
+  const double before = best().cost;
+  AddGnc("", graph_.poses);
+  ran_gnc_ = true;
+  if (best().cost < before * (1. - kSame)) Improve();
+  return best().cost < before - kNearlySame * kChi2Gate;
 }
 
 bool Portfolio::AddForced(const std::string& start_name,
@@ -350,14 +364,15 @@ bool Portfolio::SettleBySupport() {
 }
 
 void Portfolio::Run() {
-  const double size = PosesTimesLoops();
+  const double size = Size();
   // What else there is would take minutes on a large graph.
   if (graph_.poses.size() > kLargeGraph && AddCertain()) return;
   const bool large = size > options_.large_search;
   if (large && SettleBySupport()) return;
   bool settled = IsSettled(RunQuick());
   if (settled) {
-    settled = size > kMaxGrowthWork ? !ReplayIsLower() : !FindsLostGroup();
+    settled = size > kMaxGrowthWork ? !ReplayIsLower()
+                                    : !FindsLostGroup() && !GncFindsAnother();
   }
   if (settled && (continued_ || size > kMaxGrowthWork ||
                   (size > kSmallGraph && FitsByChance() < kFewByChance))) {

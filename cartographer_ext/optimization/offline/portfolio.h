@@ -10,8 +10,10 @@
 //           loops are wrong. Where these agree up to decisions near the gate,
 //           no single decision can be improved, the rejected loops contradict
 //           the map beyond its uncertainty and none of the largest groups of
-//           them is right (as long as these can be tried), the search of a
-//           large graph ends here: other starts end in the same optimum.
+//           them is right (as long as these can be tried), nor graduated
+//           non-convexity finds another map (where that costs little), the
+//           search of a large graph ends here: other starts end in the same
+//           optimum.
 //   Starts  chained odometry, chordal relaxation, a spanning tree of short
 //           paths and an incremental replay (R-iSAM) as starts of the same
 //           kernels; graduated non-convexity.
@@ -82,6 +84,10 @@ class Portfolio {
   // Solves the best member with softer kernels, changes single decisions if
   // that lowers its cost, and solves to convergence.
   void Improve();
+  // Takes over what the solvers of a search with other information matrices
+  // have found by themselves: what costs less here than the best member becomes
+  // one, and lowest_of_solvers() is that of both.
+  void AddSolversOf(const Portfolio& other);
 
   const std::vector<Member>& members() const { return members_; }
   const Member& best() const { return members_[best_]; }
@@ -90,7 +96,8 @@ class Portfolio {
   // The lowest truncated cost of a solver before any polish, from a start that
   // it would have alone.
   double lowest_of_solvers() const { return lowest_of_solvers_; }
-  // Whether every solver has run from every initial guess.
+  // Whether every solver has run from every initial guess, in the other search
+  // of AddSolversOf(), too.
   bool ran_all_solvers() const { return ran_all_solvers_; }
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
   RobustSolver* solver() { return &solver_; }
@@ -99,6 +106,8 @@ class Portfolio {
   const LoopSupport& support();
   // Whether solutions with all loops in the equations are affordable.
   bool CanKeepAllLoops();
+  // Poses times loops.
+  double Size() const;
 
  private:
   // Poses of a graph on which each solution counts.
@@ -119,6 +128,9 @@ class Portfolio {
   // Whether one of the largest groups of rejected loops that agree with each
   // other, forced in, leads to a map that costs less.
   bool FindsLostGroup();
+  // Whether graduated non-convexity, where it costs little, ends on another map
+  // that costs less.
+  bool GncFindsAnother();
   // Whether more loops that agree with each other are rejected than wrong ones
   // agree by chance.
   bool RejectsAGroup();
@@ -129,7 +141,6 @@ class Portfolio {
   bool RejectedContradict();
   void RunStarts(bool with_full_kernels);
   void RunGroups();
-  double PosesTimesLoops() const;
   FlipOptions flip_options() const;
   void Count(const SolverSummary& summary);
   // A solver's own result.
@@ -180,6 +191,7 @@ class Portfolio {
   std::vector<Member> members_;
   size_t best_ = 0;
   double lowest_of_solvers_;
+  std::vector<std::vector<Pose2>> results_of_solvers_;
   std::vector<Alternative> alternatives_;
   absl::optional<double> full_work_;
   absl::optional<LoopSupport> support_;
@@ -187,6 +199,7 @@ class Portfolio {
   bool converged_ = true;
   bool continued_ = false;
   bool ran_full_kernels_ = false;
+  bool ran_gnc_ = false;  // from the given poses
   bool ran_all_solvers_ = false;
   bool replayed_ = false;
   bool starts_alone_ = true;  // from starts that no search has found

@@ -40,12 +40,22 @@ bool AreChained(const std::vector<WhitenedEdge>& edges,
 
 }  // namespace
 
+void Portfolio::AddSolversOf(const Portfolio& other) {
+  for (const std::vector<Pose2>& poses : other.results_of_solvers_) {
+    const double cost = TruncatedCost(edges_, poses);
+    lowest_of_solvers_ = std::min(lowest_of_solvers_, cost);
+    if (cost < best().cost) Add("noise", poses);
+    results_of_solvers_.push_back(poses);
+  }
+  ran_all_solvers_ = ran_all_solvers_ && other.ran_all_solvers_;
+}
+
 bool Portfolio::AddReplay(ReplayResult* const replay) {
   if (!Replay(graph_, options_.smoother, replay).ok()) return false;
   replayed_ = true;
   NoteSolver(replay->poses);
   Add("r_isam", replay->poses);
-  if (PosesTimesLoops() <= kMaxRepeatedWork && ReadmitGroups(graph_, replay)) {
+  if (Size() <= kMaxRepeatedWork && ReadmitGroups(graph_, replay)) {
     NoteSolver(replay->poses);
     Add("r_isam, readmitted", replay->poses);
   }
@@ -92,7 +102,7 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
   const bool same = AreChained(edges_, graph_.poses);
   if (!same) AddKernels("odometry, ", chained, with_full_kernels);
   if (!CanKeepAllLoops()) return;
-  AddGnc("", graph_.poses);
+  if (!ran_gnc_) AddGnc("", graph_.poses);
   if (!same) AddGnc("odometry, ", chained);
   if (continued_) return;
   std::vector<Pose2> chordal = chained;
@@ -105,8 +115,7 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
   AddKernels("tree of all, ", tree, with_full_kernels);
   AddGnc("tree of all, ", tree);
   // R-iSAM alone readmits groups in larger graphs than here.
-  ran_all_solvers_ = PosesTimesLoops() <= kMaxRepeatedWork ||
-                     PosesTimesLoops() > kMaxGrowthWork;
+  ran_all_solvers_ = Size() <= kMaxRepeatedWork || Size() > kMaxGrowthWork;
 }
 
 void Portfolio::RunGroups() {
@@ -127,7 +136,7 @@ void Portfolio::RunGroups() {
       if (CanKeepAllLoops()) AddGnc("relaxed, ", poses);
     }
     ForceOptions force;
-    force.relax = PosesTimesLoops() <= kMaxRepeatedWork;
+    force.relax = Size() <= kMaxRepeatedWork;
     AddForced(best().name, force);
     Graduate(kNear);
     Graduate(kFar);

@@ -150,6 +150,28 @@ TEST(PortfolioTest, ContinuesInAnotherMetric) {
 
 // A robot that walks straight on for thousands of poses, and loops to another
 // that does the same: what bends both has hardly any curvature.
+TEST(PortfolioTest, TakesOverWhatSolversFoundWithOtherNoise) {
+  test::GridWorld world = test::MakeGridWorld(120, 5, 2);
+  OutlierOptions outliers;
+  outliers.count = 20;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  Portfolio first(world.graph, PortfolioOptions());
+  first.Run();
+  EXPECT_TRUE(first.ran_all_solvers());
+  const PoseGraph scaled = WithNoiseScale(world.graph, 1., 2.);
+  Portfolio second(scaled, PortfolioOptions());
+  second.Add("given", scaled.poses);
+  second.AddSolversOf(first);
+  double dcs = 1e300;
+  for (const Portfolio::Member& member : first.members()) {
+    if (member.name == "dcs") dcs = TruncatedCost(second.edges(), member.poses);
+  }
+  EXPECT_LE(second.lowest_of_solvers(), dcs * 1.01);
+  EXPECT_LE(second.best().cost, second.lowest_of_solvers());
+  // Not with the noise of the second.
+  EXPECT_FALSE(second.ran_all_solvers());
+}
+
 TEST(PortfolioTest, SolvesFlatValleysToTheEnd) {
   constexpr int kLength = 1200;
   Random random(1);
