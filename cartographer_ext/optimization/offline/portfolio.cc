@@ -42,10 +42,6 @@ constexpr double kNearlyAll = 0.98;
 // map that these contradict, which may be folded.
 constexpr int kMaxTrialsOnLargeGraph = 4;
 constexpr int kMaxTrialsOfSettled = 3;
-// Share of rejected loops from which kernels that agree are asked whether a
-// replay, which does not start from the same poses, ends lower: where more loops
-// are wrong than right, a rough start may fold them all in the same way.
-constexpr double kMostlyWrong = 0.6;
 // A graph of fewer poses times loops is searched from all starts in any case.
 constexpr double kSmallGraph = 2.5e5;
 // Multiplications of one factorisation that are worth it while the search is
@@ -214,8 +210,10 @@ bool Portfolio::IsSettled(const size_t first) {
     Graduate(kNear);
   }
   Improve();
-  // What softer kernels have found may be another map than that agreed on.
-  return (same_cost() || DecideAlike(first)) && RejectedContradict();
+  // What softer kernels have found may be another map than that agreed on, and
+  // where most loops are wrong, one of many.
+  return (!MostAreRejected() || same_cost() || DecideAlike(first)) &&
+         RejectedContradict();
 }
 
 double Portfolio::FitsByChance() const {
@@ -275,8 +273,7 @@ bool Portfolio::RejectsAGroup() {
 
 bool Portfolio::ReplayIsLower() {
   if (continued_ || replayed_) return false;
-  const bool asked = CountRejected() > kMostlyWrong * num_loops_;
-  if (!asked && !RejectsAGroup()) return false;
+  if (!MostAreRejected() && !RejectsAGroup()) return false;
   const double before = best().cost;
   ReplayResult replay;
   if (!AddReplay(&replay)) return false;

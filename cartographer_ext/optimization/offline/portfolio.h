@@ -115,6 +115,11 @@ class Portfolio {
   // Gates up to which loops count where non-convexity is graduated from a map.
   static constexpr double kNear = 10.;
   static constexpr double kFar = 100.;
+  // Share of rejected loops from which kernels that agree are doubted, and asked
+  // whether a replay, which does not start from the same poses, ends lower:
+  // where more loops are wrong than right, a rough start may fold them all in
+  // the same way.
+  static constexpr double kMostlyWrong = 0.6;
 
   // Returns the first of the members that have to agree.
   size_t RunQuick();
@@ -182,6 +187,9 @@ class Portfolio {
   double WorkOf(const std::vector<double>& weights) const;
   double FullWork();
   int CountRejected() const;
+  bool MostAreRejected() const {
+    return CountRejected() > kMostlyWrong * num_loops_;
+  }
 
   const PoseGraph& graph_;
   const PortfolioOptions options_;
