@@ -30,6 +30,9 @@ constexpr double kKeepPathDistance = 0.4;  // metres
 // Metres of free path that a new path has to be shorter by, or what costs as
 // much: about what turning round and back again takes.
 constexpr double kKeepPathMetres = 3.;
+constexpr double kLongDetour = 5.;             // metres more than expected
+constexpr double kDetourLookSeconds = 10.;     // what is seen then is kept
+constexpr double kDetourMemorySeconds = 600.;  // of what made it necessary
 constexpr double kNearby = 1.5;  // metres: somebody there may be in the way
 constexpr double kPersonMargin = 0.2;   // metres around what moves
 constexpr double kTrailLength = 1.;     // metres
@@ -189,6 +192,16 @@ bool Navigator::FollowsPlan(const NavigatorStep& step) {
     Plan plan = planner_.MakePlan(place, goals_[goal_], &layer_);
     ++plans_;
     planned_ = step.time;
+    if (!plan.found()) {
+      layer_.LetGo();
+    } else if (plan_.found() &&
+               plan.length > tracker_.Remaining() + kLongDetour) {
+      detour_seen_ = step.time;
+    }
+    if (step.time - detour_seen_ <= kDetourLookSeconds) {
+      layer_.Keep(place, options_.obstacles.range,
+                  step.time + kDetourMemorySeconds);
+    }
     if (KeepsPath(plan, place)) return true;
     plan_ = std::move(plan);
     tracker_ = plan_.found() ? PathTracker(plan_.points) : PathTracker();

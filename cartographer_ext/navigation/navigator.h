@@ -174,6 +174,8 @@ class Navigator {
   Plan plan_;
   PathTracker tracker_;
   double planned_ = -1e9;  // when
+  // When a path became so much longer that the obstacle is to be remembered.
+  double detour_seen_ = -1e9;
   bool turning_ = false;
   std::deque<Eigen::Vector2d> trail_;  // the last metre, newest last
 

@@ -23,7 +23,8 @@ ObstacleLayer::ObstacleLayer(const Costmap* const costmap,
       options_(options),
       times_(costmap->geometry().size(), kNoMark),
       first_times_(costmap->geometry().size(), kNoMark),
-      past_times_(costmap->geometry().size(), kNoMark) {
+      past_times_(costmap->geometry().size(), kNoMark),
+      kept_until_(costmap->geometry().size(), 0.f) {
   CHECK_GT(options.range, 0.);
   CHECK_GT(options.max_marks, 0);
   const double resolution = costmap->geometry().resolution();
@@ -84,6 +85,7 @@ void ObstacleLayer::ClearBeam(const Eigen::Vector2d& laser,
               if (std::isnan(times_[index])) return true;
               past_times_[index] = times_[index];
               times_[index] = kNoMark;
+              kept_until_[index] = 0.f;
               return true;
             });
 }
@@ -127,9 +129,26 @@ void ObstacleLayer::Clear(const Eigen::Vector2d& center, const double radius,
     if ((geometry.Center(cell) - center).norm() <= radius &&
         times_[geometry.Index(cell)] < since) {
       times_[geometry.Index(cell)] = kNoMark;
+      kept_until_[geometry.Index(cell)] = 0.f;
     }
   }
   Compact(-std::numeric_limits<double>::infinity());
+}
+
+void ObstacleLayer::Keep(const Eigen::Vector2d& center, const double radius,
+                         const double until) {
+  const GridGeometry& geometry = costmap_->geometry();
+  for (const Cell& cell : marks_) {
+    if (IsSettled(cell) && (geometry.Center(cell) - center).norm() <= radius) {
+      kept_until_[geometry.Index(cell)] = static_cast<float>(until);
+    }
+  }
+}
+
+void ObstacleLayer::LetGo() {
+  for (const Cell& cell : marks_) {
+    kept_until_[costmap_->geometry().Index(cell)] = 0.f;
+  }
 }
 
 void ObstacleLayer::Compact(const double now) {
@@ -141,7 +160,10 @@ void ObstacleLayer::Compact(const double now) {
   const auto forget = [&](const Cell& cell) {
     float& time = times_[geometry.Index(cell)];
     if (std::isnan(time)) return true;
-    if (time >= (IsSettled(cell) ? oldest : oldest_unsettled)) return false;
+    if (time >= (IsSettled(cell) ? oldest : oldest_unsettled) ||
+        kept_until_[geometry.Index(cell)] > now) {
+      return false;
+    }
     time = kNoMark;
     return true;
   };

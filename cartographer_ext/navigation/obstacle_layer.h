@@ -56,6 +56,13 @@ class ObstacleLayer {
   // since a time.
   void Clear(const Eigen::Vector2d& center, double radius, double since);
 
+  // Keeps the settled marks within `radius` metres until then, in seconds, if no
+  // beam clears them: what made the robot take a long way round is there, too,
+  // when that takes more than the memory of other marks.
+  void Keep(const Eigen::Vector2d& center, double radius, double until);
+  // Marks that are kept are forgotten like all others again.
+  void LetGo();
+
   bool IsMarked(const Cell& cell) const;
   // Seconds since the oldest mark in the cell of a point or beside it was made;
   // 0 where there is none.
@@ -89,6 +96,7 @@ class ObstacleLayer {
   std::vector<float> times_;        // of the last mark of each cell; NaN: none
   std::vector<float> first_times_;  // since when it is marked
   std::vector<float> past_times_;   // of the last mark that was cleared
+  std::vector<float> kept_until_;   // 0: as long as others
   std::vector<Cell> marks_;
   std::vector<StampedWeight> stamp_;  // of one mark on the weights around it
 };

@@ -20,8 +20,10 @@ namespace {
 class Loop {
  public:
   Loop(const io::OccupancyMap& map, const io::OccupancyMap& world,
-       const Pose2& start, const std::vector<Eigen::Vector2d>& goals)
+       const Pose2& start, const std::vector<Eigen::Vector2d>& goals,
+       const double memory_seconds = ObstacleLayerOptions().memory_seconds)
       : world_(world), costmap_(MakeCostmap(map)), pose_(start) {
+    options_.obstacles.memory_seconds = memory_seconds;
     navigator_ = absl::make_unique<Navigator>(&costmap_, options_, goals);
   }
 
@@ -139,6 +141,25 @@ TEST(NavigatorTest, WaitsAndGivesUpBehindAClosedDoor) {
   EXPECT_NE(loop.navigator_->results()[0].reason.find("no progress"),
             std::string::npos);
   EXPECT_GT(loop.navigator_->recoveries(), 2);
+}
+
+TEST(NavigatorTest, RemembersAClosedDoorOnALongWayRound) {
+  // The near one of two doors is closed, and the way to the other one takes
+  // longer than marks out of sight are remembered.
+  io::OccupancyMap map = RoomMap(8., 14.);
+  FillBox(4., 0., 4.1, 14., 1.f, &map);
+  FillBox(4., 1., 4.1, 2.2, 0.f, &map);
+  FillBox(4., 12., 4.1, 13.2, 0.f, &map);
+  // No view of the near door on the way.
+  FillBox(2.7, 3., 4.1, 3.1, 1.f, &map);
+  io::OccupancyMap world = map;
+  FillBox(4., 1., 4.1, 2.2, 1.f, &world);
+  Loop loop(map, world, Pose2(1.5, 1.6, 0.), {{6.5, 1.6}}, 5.);
+  for (int i = 0; i != 1200 && !loop.navigator_->finished(); ++i) loop.Step();
+  ASSERT_TRUE(loop.navigator_->finished());
+  EXPECT_TRUE(loop.navigator_->results()[0].reached)
+      << loop.navigator_->results()[0].reason;
+  EXPECT_LT(loop.time_, 80.);
 }
 
 TEST(NavigatorTest, BacksUpOnlyTheWayItCame) {

@@ -69,6 +69,35 @@ TEST_F(ObstacleLayerTest, ForgetsAfterAWhile) {
   EXPECT_TRUE(layer.marks().empty());
 }
 
+TEST_F(ObstacleLayerTest, KeepsWhatItIsToldTo) {
+  ObstacleLayerOptions options;
+  options.memory_seconds = 10.;
+  ObstacleLayer layer(&costmap_, options);
+  const std::vector<Eigen::Vector2d> echoes = {{4., 3.}, {4., 4.5}, {8., 1.}};
+  layer.Update(Scan(-1.2, echoes));
+  layer.Update(Scan(0., echoes));
+  layer.Keep({4., 3.}, 2., 40.);
+  layer.Update(Scan(30., {}));
+  EXPECT_TRUE(layer.IsMarked(At(4., 3.)));
+  EXPECT_TRUE(layer.IsMarked(At(4., 4.5)));
+  EXPECT_FALSE(layer.IsMarked(At(8., 1.)));  // too far away
+  // Beams clear it all the same.
+  layer.Update(Scan(31., {{6., 3.}}));
+  EXPECT_FALSE(layer.IsMarked(At(4., 3.)));
+  EXPECT_TRUE(layer.IsMarked(At(4., 4.5)));
+  layer.LetGo();
+  layer.Update(Scan(32., {}));
+  EXPECT_FALSE(layer.IsMarked(At(4., 4.5)));
+  // Until then and no longer.
+  layer.Update(Scan(33., {{4., 4.5}}));
+  layer.Update(Scan(34.2, {{4., 4.5}}));
+  layer.Keep({4., 4.}, 2., 50.);
+  layer.Update(Scan(49.9, {}));
+  EXPECT_TRUE(layer.IsMarked(At(4., 4.5)));
+  layer.Update(Scan(50.1, {}));
+  EXPECT_FALSE(layer.IsMarked(At(4., 4.5)));
+}
+
 TEST_F(ObstacleLayerTest, NoPathIsPlannedAroundWhatPassesBy) {
   ObstacleLayer layer(&costmap_, ObstacleLayerOptions());
   for (int i = 0; i != 20; ++i) {
