@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far the poses that a node publishes while it localises lie from the run that made the map, of the same recording.
 
-localised.py BAG CPU_SECONDS MAP.tum TF.bag: each transform map -> odom of TF.bag with odom -> base_link at its time, against the
-pose of MAP.tum at that time. The median is over all of them, those before the robot has found its place as well; it has found
+localised.py BAG AS CPU_SECONDS MAP.tum TF.bag: each transform map -> odom of TF.bag with odom -> base_link at its time, against
+the pose of MAP.tum at that time. The median is over all of them, those before the robot has found its place as well; it has found
 it where it is within 0.5 m for the first time, and the largest error is that from there on. Exits with 1 if the median is
 beyond 0.05 m, or if less than half of the run has published poses.
 """
@@ -42,7 +42,7 @@ def at(poses, times, time):
     return x0 + share * (x1 - x0), y0 + share * (y1 - y0)
 
 
-bag, cpu, map_path, tf_path = sys.argv[1:]
+bag, label, cpu, map_path, tf_path = sys.argv[1:]
 mapped = read(map_path)
 odom_in_map, robot_in_odom = transforms(tf_path)
 map_times, odom_times = [pose[0] for pose in mapped], [pose[0] for pose in robot_in_odom]
@@ -60,7 +60,7 @@ if first is None:
     sys.exit('localised.py: the robot was never found (%d poses)' % len(errors))
 median = sorted(error for _, error in errors)[len(errors) // 2]
 print('%-24s %-8s %10.4f %10s %8.1f median of %d published poses; found after %.1f s, then at most %.3f m'
-      % (bag, 'located', median, '', float(cpu.split()[-1]), len(errors), errors[first][0] - map_times[0],
+      % (bag, label, median, '', float(cpu.split()[-1]), len(errors), errors[first][0] - map_times[0],
          max(error for _, error in errors[first:])))
 covered = (errors[-1][0] - errors[0][0]) / (map_times[-1] - map_times[0])
 if covered < 0.5:
