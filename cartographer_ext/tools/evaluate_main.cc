@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 // LINK: collection
-// SOURCES: evaluate_many.cc
+// SOURCES: evaluate_many.cc job.cc
 //
 // cartographer_ext_evaluate: how good is a map?
 #include <iostream>

@@ -8,7 +8,7 @@
 #include "cartographer_ext/collection/collection_run.h"
 #include "cartographer_ext/collection/map_files.h"
 #include "cartographer_ext/tools/command_line.h"
-#include "cartographer_ext/tuning/mpi_worker_pool.h"
+#include "cartographer_ext/tools/job.h"
 #include "gflags/gflags.h"
 
 DECLARE_string(trajectory_filename);
@@ -45,24 +45,24 @@ namespace cartographer_ext {
 namespace tools {
 namespace {
 
-absl::Status RunMany(const std::vector<std::string>& maps,
-                     const tuning::MpiSession& session, bool* const fails) {
+absl::Status RunMany(const std::vector<std::string>& maps, const Job& job,
+                     bool* const fails) {
   collection::CollectionFiles files;
   files.overview = FLAGS_report_filename;
   files.reports_directory = FLAGS_reports_directory;
   files.csv = FLAGS_csv_filename;
   files.json_lines = FLAGS_json_lines_filename;
-  files.journal = FLAGS_journal_filename;
+  files.journal = job.JournalOr(FLAGS_journal_filename);
   files.baseline = FLAGS_baseline;
   std::vector<std::string> inputs = maps;
   inputs.push_back(files.baseline);
   const absl::Status writable = CheckWritable(
       {files.overview, files.csv, files.json_lines, FLAGS_json}, inputs);
   if (!writable.ok()) return writable;
-  const auto pool = tuning::CreateWorkerPool(session, FLAGS_workers,
-                                             FLAGS_max_map_cpu_seconds,
-                                             &collection::AnswerMapRequest);
-  const auto result = collection::RunCollection(maps, files, pool.get());
+  const auto pool = job.CreatePool(FLAGS_workers, FLAGS_max_map_cpu_seconds,
+                                   &collection::AnswerMapRequest);
+  if (!pool.ok()) return pool.status();
+  const auto result = collection::RunCollection(maps, files, pool->get());
   if (!result.ok()) return result.status();
   *fails = collection::FailsOn(*result, FLAGS_fail_on);
   if (FLAGS_json != "-") std::cout << collection::ToText(*result);
@@ -111,18 +111,17 @@ std::string WrongUsageOfMany(const bool many) {
 
 int EvaluateMany(const std::vector<std::string>& inputs, int* const argc,
                  char*** const argv) {
-  if (tuning::IsMpiJob() && !tuning::HasMpi()) {
-    return UsageError("built without MPI: mpirun would repeat the same work");
-  }
-  tuning::MpiSession session(argc, argv);
-  if (session.rank() > 0) {
-    session.Serve(FLAGS_max_map_cpu_seconds, &collection::AnswerMapRequest);
-    return kExitSuccess;
+  const std::string wrong = Job::WrongUsage();
+  if (!wrong.empty()) return UsageError(wrong);
+  const Job job(argc, argv);
+  if (job.is_worker()) {
+    return ExitCode(job.Serve(FLAGS_workers, FLAGS_max_map_cpu_seconds,
+                              &collection::AnswerMapRequest));
   }
   const auto maps = collection::FindMaps(inputs);
   if (!maps.ok()) return ExitCode(maps.status());
   bool fails = false;
-  const absl::Status status = RunMany(*maps, session, &fails);
+  const absl::Status status = RunMany(*maps, job, &fails);
   return ExitCode(status, fails);
 }
 

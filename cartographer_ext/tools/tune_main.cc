@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 // LINK: tuning
+// SOURCES: job.cc
 //
 // cartographer_ext_tune: a configuration that suits the recordings.
 #include <algorithm>
@@ -19,9 +20,9 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/tools/command_line.h"
+#include "cartographer_ext/tools/job.h"
 #include "cartographer_ext/tuning/configuration_patch.h"
 #include "cartographer_ext/tuning/journal.h"
-#include "cartographer_ext/tuning/mpi_worker_pool.h"
 #include "cartographer_ext/tuning/result_writer.h"
 #include "cartographer_ext/tuning/search_spec.h"
 #include "cartographer_ext/tuning/sensitivity_plot.h"
@@ -67,8 +68,8 @@ DEFINE_bool(prune, true,
             "At the end reset each changed key in turn, keep those that "
             "improve the result, and report their gain.");
 DEFINE_int32(workers, 0,
-             "Number of parallel runs; 0: one per processor. Under mpirun the "
-             "other ranks are the workers.");
+             "Number of parallel runs of this process; 0: one per processor. "
+             "Under mpirun the other ranks are the workers.");
 DEFINE_int32(threads, 1, "Background threads of each run.");
 DEFINE_double(max_run_cpu_seconds, 3600.,
               "Limit of the CPU time of a run, beyond which it is killed and "
@@ -96,6 +97,8 @@ constexpr char kDescription[] =
       -inputs=aces.clf,csail.clf -holdout=intel.clf -budget_minutes=30
       -journal_filename=tune.jsonl -output_filename=tuned.lua
   mpirun -n 9 cartographer_ext_tune ...        (the same on eight workers)
+  cartographer_ext_tune ... -job_folder=/shared/tune -job_task=K
+      (task K of a job array; task 0 writes the results)
 
 An interrupted search resumes with the same journal. The list of trials depends
 on -seed and -max_trials, not on the number of workers.)";
@@ -213,7 +216,7 @@ std::string BestAndBudget(const tuning::TunerProgress& state) {
   return text;
 }
 
-absl::Status Run(const tuning::MpiSession& session) {
+absl::Status Run(const tools::Job& job) {
   const absl::Status writable = tools::CheckWritable(
       {FLAGS_output_filename, FLAGS_picture_filename, FLAGS_json});
   if (!writable.ok()) return writable;
@@ -234,23 +237,25 @@ absl::Status Run(const tuning::MpiSession& session) {
     return absl::InvalidArgumentError(
         absl::StrCat(FLAGS_search_filename, ": ", checked.message()));
   }
+  const std::string journal_filename = job.JournalOr(FLAGS_journal_filename);
   const auto journal = tuning::Journal::Open(
-      FLAGS_journal_filename,
+      journal_filename,
       absl::StrCat(configuration->Fingerprint(), "|", FLAGS_odometry_source,
                    setup->spec.objective.Wants("self_consistency")
                        ? "|self_consistency"
                        : ""));
   if (!journal.ok()) return journal.status();
   if ((*journal)->was_torn()) {
-    std::cerr << tools::ProgramName() << ": " << FLAGS_journal_filename
+    std::cerr << tools::ProgramName() << ": " << journal_filename
               << ": the last line is incomplete and is dropped\n";
   }
 
-  const std::unique_ptr<tuning::WorkerPool> pool = tuning::CreateWorkerPool(
-      session, FLAGS_workers, FLAGS_max_run_cpu_seconds);
+  const auto pool = job.CreatePool(FLAGS_workers, FLAGS_max_run_cpu_seconds,
+                                   &tuning::AnswerRequest);
+  if (!pool.ok()) return pool.status();
   tuning::Tuner tuner({*configuration, setup->spec.parameters,
                        setup->spec.objective, setup->inputs, setup->holdout},
-                      setup->options, pool.get(), journal->get());
+                      setup->options, pool->get(), journal->get());
   Progress progress("Trial", FLAGS_max_trials);
   tuner.SetProgressCallback([&progress](const tuning::TunerProgress& state) {
     progress.Update(state.trials,
@@ -308,14 +313,12 @@ int main(int argc, char** argv) {
   tools::CommandLine(kDescription).Parse(argc, argv);
   const int usage = CheckUsage();
   if (usage != tools::kExitSuccess) return usage;
-  if (tuning::IsMpiJob() && !tuning::HasMpi()) {
-    return tools::UsageError(
-        "built without MPI: mpirun would repeat the same search");
+  const std::string wrong = tools::Job::WrongUsage();
+  if (!wrong.empty()) return tools::UsageError(wrong);
+  const tools::Job job(&argc, &argv);
+  if (job.is_worker()) {
+    return tools::ExitCode(job.Serve(FLAGS_workers, FLAGS_max_run_cpu_seconds,
+                                     &tuning::AnswerRequest));
   }
-  tuning::MpiSession session(&argc, &argv);
-  if (session.rank() > 0) {
-    session.Serve(FLAGS_max_run_cpu_seconds);
-    return tools::kExitSuccess;
-  }
-  return tools::ExitCode(Run(session));
+  return tools::ExitCode(Run(job));
 }

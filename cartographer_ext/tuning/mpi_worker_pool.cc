@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/mpi_worker_pool.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <string>
@@ -182,20 +181,6 @@ std::unique_ptr<WorkerPool> CreateMpiWorkerPool(const MpiSession& /*session*/) {
 }
 
 #endif
-
-std::unique_ptr<WorkerPool> CreateWorkerPool(const MpiSession& session,
-                                             const int num_workers,
-                                             const double max_cpu_seconds,
-                                             RunFunction run) {
-  auto pool = CreateMpiWorkerPool(session);
-  if (pool != nullptr) return pool;
-  const int workers =
-      num_workers > 0
-          ? num_workers
-          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return std::unique_ptr<WorkerPool>(
-      new LocalWorkerPool(workers, max_cpu_seconds, std::move(run)));
-}
 
 }  // namespace tuning
 }  // namespace cartographer_ext

@@ -50,13 +50,6 @@ class MpiSession {
 // On rank 0 of a job of at least two ranks; null otherwise.
 std::unique_ptr<WorkerPool> CreateMpiWorkerPool(const MpiSession& session);
 
-// The pool of the MPI job, or otherwise `num_workers` processes on this machine
-// (0: one per hardware thread).
-std::unique_ptr<WorkerPool> CreateWorkerPool(const MpiSession& session,
-                                             int num_workers,
-                                             double max_cpu_seconds,
-                                             RunFunction run = &AnswerRequest);
-
 }  // namespace tuning
 }  // namespace cartographer_ext
 

@@ -76,6 +76,27 @@ TEST_F(EvaluateManyTest, DamagedMapsStopNoOtherAndWorkersChangeNoByte) {
   EXPECT_EQ(json["maps"][0]["filename"], folder_ / "maps/a.pbstream");
 }
 
+TEST_F(EvaluateManyTest, AJobArrayWritesTheSame) {
+  const CommandResult alone =
+      Evaluate({"-workers", "1", "-json_lines_filename", folder_ / "1.jsonl"});
+  ASSERT_EQ(alone.exit_code, 0) << alone.error;
+  const TemporaryFolder job;
+  std::vector<CommandResult> results(2);
+  std::thread other([&]() {
+    results[1] = Evaluate(
+        {"-workers", "1", "-job_folder", job.path(), "-job_task", "1"});
+  });
+  results[0] =
+      Evaluate({"-workers", "1", "-job_folder", job.path(), "-job_task", "0",
+                "-json_lines_filename", folder_ / "2.jsonl"});
+  other.join();
+  for (const CommandResult& result : results) {
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+  }
+  EXPECT_TRUE(ReadFile(folder_ / "1.jsonl") == ReadFile(folder_ / "2.jsonl"));
+  EXPECT_FALSE(ReadFile(job / "journal.jsonl").empty());
+}
+
 TEST_F(EvaluateManyTest, ReportsBaselineAndExitCodes) {
   const CommandResult first = Evaluate(
       {"-reports_directory", folder_ / "reports", "-report_filename",

@@ -173,6 +173,49 @@ TEST_F(TuneMainTest, MpiFindsTheSame) {
   EXPECT_EQ(Signature(alone.out), Signature(ReadFile(folder_ / "mpi.json")));
 }
 
+TEST_F(TuneMainTest, AJobArrayFindsTheSame) {
+  const CommandResult alone =
+      RunCommand("tune", Arguments({"-workers", "1", "-json", "-"}));
+  ASSERT_EQ(alone.exit_code, 0) << alone.error;
+  const TemporaryFolder job;
+  std::vector<std::thread> tasks;
+  std::vector<CommandResult> results(3);
+  for (int task = 2; task >= 0; --task) {
+    tasks.emplace_back([&, task]() {
+      results[task] = RunCommand(
+          "tune",
+          Arguments({"-workers", "1", "-json", folder_ / "json", "-job_folder",
+                     job.path(), "-job_task", std::to_string(task)}));
+    });
+  }
+  for (std::thread& task : tasks) task.join();
+  for (const CommandResult& result : results) {
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+  }
+  EXPECT_EQ(Signature(alone.out), Signature(ReadFile(folder_ / "json")));
+  // Only task 0 speaks.
+  EXPECT_THAT(results[0].out, HasSubstr("Objective"));
+  EXPECT_THAT(results[1].out, testing::IsEmpty());
+  EXPECT_THAT(Runs(ReadFile(job / "journal.jsonl")),
+              testing::Not(testing::IsEmpty()));
+}
+
+TEST_F(TuneMainTest, FlagsOfAJobArrayBelongTogether) {
+  for (const std::vector<std::string>& flags :
+       std::vector<std::vector<std::string>>{{"-job_folder", folder_.path()},
+                                             {"-job_task", "1"}}) {
+    const CommandResult result = RunCommand("tune", Arguments(flags));
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.error, HasSubstr("belong together"));
+  }
+  for (const std::string task : {"0", "1"}) {
+    const CommandResult result = RunCommand(
+        "tune", Arguments({"-job_folder", folder_ / "no", "-job_task", task}));
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr(folder_ / "no"));
+  }
+}
+
 TEST_F(TuneMainTest, AKilledSearchGoesOn) {
   const auto arguments =
       Arguments({"-workers", "2", "-journal_filename", folder_ / "journal",
