@@ -27,6 +27,8 @@ using cartographer::mapping::Submap2D;
 using cartographer::mapping::TrajectoryNode;
 using cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D;
 using cartographer::mapping::proto::PoseGraph;
+using cartographer::sensor::OdometryData;
+using cartographer::sensor::PointCloud;
 using cartographer::transform::Rigid3d;
 using evaluation::GraphId;
 
@@ -44,9 +46,19 @@ GraphId IdOf(const cartographer::mapping::proto::Node& node) {
   return {node.node_id().trajectory_id(), node.node_id().node_index()};
 }
 
-Rigid3d Gravity(const cartographer::mapping::proto::Node& node) {
+// (gravity aligned <- planar tracking frame): the rotation about the vertical
+// axis of the gravity alignment.
+Rigid3d AlignedFromPlanar(const TrajectoryNode::Data& node) {
   return Rigid3d::Rotation(
-      cartographer::transform::ToEigen(node.node_data().gravity_alignment()));
+      Eigen::AngleAxisd(cartographer::transform::GetYaw(node.gravity_alignment),
+                        Eigen::Vector3d::UnitZ()));
+}
+
+// The cloud of a node in its planar tracking frame.
+PointCloud PlanarCloud(const TrajectoryNode::Data& node) {
+  return cartographer::sensor::TransformPointCloud(
+      node.filtered_gravity_aligned_point_cloud,
+      AlignedFromPlanar(node).inverse().cast<float>());
 }
 
 // Submaps of one trajectory in the order in which they were begun.
@@ -65,23 +77,26 @@ struct NewSubmaps {
 // Local SLAM of one trajectory, node by node.
 class NodeMapper {
  public:
+  // `odometry` is fed to the front end if the matching asks for it.
   NodeMapper(const LocalTrajectoryBuilderOptions2D& options,
-             const NodeMatching matching)
+             const NodeMatching matching, std::vector<OdometryData> odometry)
       : matching_(matching),
+        odometry_(std::move(odometry)),
         builder_(options, {kSensor}),
         active_submaps_(options.submaps_options()) {}
 
-  // The pose of the node (local <- gravity aligned) and, in `inserted`, the
-  // indices of its submaps.
+  // The pose of the node (local <- planar tracking frame) and, in `inserted`,
+  // the indices of its submaps.
   Pose2 Add(const TrajectoryNode::Data& node, const Pose2& chain,
             std::vector<int>* const inserted) {
     // Without a match, the chain alone.
     const Pose2 predicted =
         has_pose_ ? pose_ * Between(last_chain_, chain) : Pose2();
-    if (matching_ == NodeMatching::kFrontEnd) {
-      AddByFrontEnd(node, chain, predicted);
-    } else {
+    if (matching_ == NodeMatching::kNone) {
       AddByChain(node, predicted);
+    } else {
+      AddOdometry(node.time, chain);
+      AddByFrontEnd(node, predicted);
     }
     has_pose_ = true;
     last_chain_ = chain;
@@ -94,13 +109,23 @@ class NodeMapper {
   }
 
  private:
-  void AddByFrontEnd(const TrajectoryNode::Data& node, const Pose2& chain,
-                     const Pose2& predicted) {
-    builder_.AddOdometryData({node.time, evaluation::ToHostPose(chain)});
+  void AddOdometry(const cartographer::common::Time time, const Pose2& chain) {
+    if (matching_ == NodeMatching::kFrontEnd) {
+      builder_.AddOdometryData({time, evaluation::ToHostPose(chain)});
+      return;
+    }
+    for (; next_odometry_ < odometry_.size() &&
+           odometry_[next_odometry_].time <= time;
+         ++next_odometry_) {
+      builder_.AddOdometryData(odometry_[next_odometry_]);
+    }
+  }
+
+  void AddByFrontEnd(const TrajectoryNode::Data& node, const Pose2& predicted) {
     cartographer::sensor::TimedPointCloudData scan;
     scan.time = node.time;
     scan.origin = Eigen::Vector3f::Zero();
-    for (const auto& point : node.filtered_gravity_aligned_point_cloud) {
+    for (const auto& point : PlanarCloud(node)) {
       scan.ranges.push_back({point.position, 0.f});
     }
     pose_ = predicted;
@@ -112,7 +137,7 @@ class NodeMapper {
   }
 
   void AddByChain(const TrajectoryNode::Data& node, const Pose2& predicted) {
-    const auto& cloud = node.filtered_gravity_aligned_point_cloud;
+    const PointCloud cloud = PlanarCloud(node);
     pose_ = predicted;
     if (cloud.empty()) return;
     cartographer::sensor::RangeData range_data{
@@ -130,6 +155,8 @@ class NodeMapper {
   }
 
   const NodeMatching matching_;
+  const std::vector<OdometryData> odometry_;  // by time
+  size_t next_odometry_ = 0;
   LocalTrajectoryBuilder2D builder_;
   cartographer::mapping::ActiveSubmaps2D active_submaps_;
   NewSubmaps submaps_;
@@ -174,6 +201,23 @@ Weights InsertionWeights(const PoseGraph& graph) {
   return weights;
 }
 
+// The readings of the map by trajectory, in their order of time.
+std::map<int, std::vector<OdometryData>> OdometryReadings(
+    const io::Pbstream& pbstream) {
+  std::map<int, std::vector<OdometryData>> readings;
+  for (const auto& record : pbstream.odometry_data) {
+    readings[record.trajectory_id()].push_back(
+        cartographer::sensor::FromProto(record.odometry_data()));
+  }
+  for (auto& entry : readings) {
+    std::stable_sort(entry.second.begin(), entry.second.end(),
+                     [](const OdometryData& a, const OdometryData& b) {
+                       return a.time < b.time;
+                     });
+  }
+  return readings;
+}
+
 void StoreSubmaps(const std::map<int, NodeMapper>& mappers,
                   io::Pbstream* const pbstream) {
   pbstream->submaps.clear();
@@ -201,22 +245,15 @@ MotionChain LocalChain(const io::Pbstream& pbstream) {
   MotionChain chain;
   for (const auto& node : pbstream.nodes) {
     chain[IdOf(node)] = evaluation::ToPlanarPose(
-        cartographer::transform::ToRigid3(node.node_data().local_pose()) *
-        Gravity(node).inverse());
+        cartographer::transform::ToRigid3(node.node_data().local_pose()));
   }
   return chain;
 }
 
-MotionChain GlobalChain(const io::Pbstream& pbstream,
-                        const evaluation::MapGraph& graph) {
-  MotionChain chain = LocalChain(pbstream);
-  for (auto& entry : chain) {
-    const auto node = graph.nodes.find(entry.first);
-    if (node == graph.nodes.end()) continue;
-    // The frames of a node differ by a rotation that stays the same.
-    const Pose2 tracking_from_gravity =
-        Between(node->second.local_pose, entry.second);
-    entry.second = node->second.global_pose * tracking_from_gravity;
+MotionChain GlobalChain(const evaluation::MapGraph& graph) {
+  MotionChain chain;
+  for (const auto& node : graph.nodes) {
+    chain[node.first] = node.second.global_pose;
   }
   return chain;
 }
@@ -315,15 +352,18 @@ absl::StatusOr<io::Pbstream> RerunLocalSlam(
   io::Pbstream result = pbstream;
   const Weights weights = InsertionWeights(pbstream.pose_graph);
   result.pose_graph.clear_constraint();
+  auto odometry = OdometryReadings(pbstream);
   std::map<int, NodeMapper> mappers;
   std::map<GraphId, Rigid3d> local_poses;
   for (auto& record : result.nodes) {
     const GraphId id = IdOf(record);
-    NodeMapper& mapper = mappers
-                             .emplace(std::piecewise_construct,
-                                      std::forward_as_tuple(id.trajectory_id),
-                                      std::forward_as_tuple(options, matching))
-                             .first->second;
+    if (mappers.count(id.trajectory_id) == 0) {
+      mappers.emplace(
+          std::piecewise_construct, std::forward_as_tuple(id.trajectory_id),
+          std::forward_as_tuple(options, matching,
+                                std::move(odometry[id.trajectory_id])));
+    }
+    NodeMapper& mapper = mappers.at(id.trajectory_id);
     const auto data = cartographer::mapping::FromProto(record.node_data());
     std::vector<int> inserted;
     const Pose2 pose = mapper.Add(data, chain.at(id), &inserted);
@@ -332,7 +372,9 @@ absl::StatusOr<io::Pbstream> RerunLocalSlam(
           absl::StrCat("the first node ", evaluation::ToString(id),
                        " has no cloud, so local SLAM cannot be re-run"));
     }
-    const Rigid3d local = evaluation::ToHostPose(pose) * Gravity(record);
+    const Rigid3d local = evaluation::ToHostPose(pose) *
+                          AlignedFromPlanar(data).inverse() *
+                          Rigid3d::Rotation(data.gravity_alignment);
     local_poses[id] = local;
     *record.mutable_node_data()->mutable_local_pose() =
         cartographer::transform::ToProto(local);

@@ -4,9 +4,15 @@
 // Re-runs local SLAM from a stored map alone. A map contains the filtered
 // clouds of the nodes, about one every 0.2 m: few, but enough to match each
 // node against a running submap, as local SLAM does with every scan. The motion
-// between two nodes comes from a chain of poses: the local poses of the map,
-// its odometry, or the optimised poses of an earlier repair. The chain is the
-// prediction, the match corrects it, and new submaps are built from the clouds.
+// between two nodes is predicted from the odometry readings of the map, with
+// which the front end calibrates itself as on the robot, or from a chain of
+// poses: the local poses of the map, its odometry, or the optimised poses of an
+// earlier repair. The match corrects the prediction, and new submaps are built
+// from the clouds.
+//
+// The clouds of a map are gravity aligned, and in Cartographer that includes
+// the rotation about the vertical axis since the start. All poses here are of
+// the planar tracking frame, into which the clouds are turned back first.
 //
 // Known limits: rays are cast from the tracking frame, because a map does not
 // store the position of its sensor; clouds are filtered, so grids are sparser
@@ -27,19 +33,20 @@ namespace repair {
 
 // How the pose of a node in the running submap is determined.
 enum class NodeMatching {
-  kFrontEnd,  // as local SLAM does, with search where the chain is uncertain
-  kNone,      // by the motion of the chain: submaps are only rebuilt
+  kFrontEnd,          // as local SLAM does; the chain stands for the odometry
+  kRecordedOdometry,  // as local SLAM does, with the odometry readings of the
+                      // map; the chain is for nodes that cannot be matched
+  kNone,              // by the motion of the chain: submaps are only rebuilt
 };
 
-// Poses of the gravity-aligned frames of the nodes, planar, in any frame: only
-// the motion from one node of a trajectory to the next is used.
+// Poses of the tracking frame at the nodes, planar, in any frame: only the
+// motion from one node of a trajectory to the next is used.
 using MotionChain = std::map<evaluation::GraphId, Pose2>;
 
 // By the stored local poses.
 MotionChain LocalChain(const io::Pbstream& pbstream);
 // By the optimised poses of `graph`.
-MotionChain GlobalChain(const io::Pbstream& pbstream,
-                        const evaluation::MapGraph& graph);
+MotionChain GlobalChain(const evaluation::MapGraph& graph);
 // By the odometry; LocalChain where there are no readings. Empty if no
 // trajectory has odometry for half of its nodes.
 MotionChain OdometryChain(const io::Pbstream& pbstream);

@@ -204,6 +204,7 @@ class Repairer {
     step.reason =
         step.kept ? absl::StrCat("the map is better: ", ToText(version.quality))
                   : absl::StrCat(why_not, " (", ToText(version.quality), ")");
+    LOG(INFO) << (step.kept ? "kept: " : "dropped: ") << step.reason;
     if (step.kept) {
       result_.after = version;
       best_is_local_ = is_local_;
@@ -365,11 +366,11 @@ class Repairer {
     const MotionChain mixed = MixedChain(*original_);
     const MotionChain wheels = OdometryChain(*original_);
     const std::string name = "local SLAM re-run";
+    RerunAlong(absl::StrCat(name, " with the recorded odometry"), wheels,
+               NodeMatching::kRecordedOdometry);
     RerunAlong(absl::StrCat(name, ", with odometry where the two differ"),
                mixed, NodeMatching::kFrontEnd);
     RerunAlong(name, stored, NodeMatching::kFrontEnd);
-    RerunAlong(absl::StrCat(name, " along the odometry"), wheels,
-               NodeMatching::kFrontEnd);
     if (is_sound() || best_base_ == nullptr) return;
     CloseLoops(absl::StrCat(best_name_, ", "), best_base_, false);
   }
@@ -379,7 +380,7 @@ class Repairer {
     if (!options_.local) return;
     for (int i = 0; i < options_.max_rounds && !done(); ++i) {
       const PbstreamPointer before = result_.after.pbstream;
-      const MotionChain best = GlobalChain(*original_, result_.after.graph);
+      const MotionChain best = GlobalChain(result_.after.graph);
       RerunAlong("submaps rebuilt along the best map so far", best,
                  NodeMatching::kNone);
       if (before == result_.after.pbstream) break;

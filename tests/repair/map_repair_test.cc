@@ -126,64 +126,6 @@ TEST_F(MapRepairTest, AnyNumberOfThreadsGivesTheSameBytes) {
   EXPECT_EQ(bytes[0], bytes[1]);
 }
 
-TEST_F(MapRepairTest, LocalSlamRunsAgainFromTheClouds) {
-  const auto slam = test::RoomConfiguration();
-  const auto& stored =
-      slam.trajectory_builder_options.trajectory_builder_2d_options();
-  const evaluation::MapGraph before = evaluation::MakeMapGraph(*room_);
-  for (const NodeMatching matching :
-       {NodeMatching::kFrontEnd, NodeMatching::kNone}) {
-    const auto rerun = RerunLocalSlam(*room_, LocalChain(*room_), matching,
-                                      OptionsForClouds(stored, stored));
-    ASSERT_TRUE(rerun.ok()) << rerun.status();
-    EXPECT_TRUE(io::FindPbstreamProblems(*rerun).empty());
-    const evaluation::MapGraph after = evaluation::MakeMapGraph(*rerun);
-    ASSERT_EQ(after.nodes.size(), before.nodes.size());
-    EXPECT_EQ(after.num_loops(), 0);
-    EXPECT_GE(after.submaps.size() + 1, before.submaps.size());
-    const Pose2 start = after.nodes.begin()->second.local_pose *
-                        before.nodes.begin()->second.local_pose.Inverse();
-    for (const auto& node : before.nodes) {
-      const Pose2 error = Between(start * node.second.local_pose,
-                                  after.nodes.at(node.first).local_pose);
-      EXPECT_LT(error.translation().norm(), 0.25);
-    }
-  }
-}
-
-TEST_F(MapRepairTest, TheWheelsReplaceALostTurn) {
-  // Local SLAM turns half a radian too far before one node.
-  io::Pbstream lost = *room_;
-  const size_t node = lost.nodes.size() / 2;
-  const MotionChain right = LocalChain(lost);
-  const auto id = [&](const size_t i) {
-    return evaluation::GraphId{0, lost.nodes[i].node_id().node_index()};
-  };
-  const Pose2 pivot = right.at(id(node));
-  const Pose2 turn = pivot * Pose2(0., 0., 0.5) * pivot.Inverse();
-  for (size_t i = node; i < lost.nodes.size(); ++i) {
-    const Pose2 pose = turn * right.at(id(i));
-    auto* const proto = lost.nodes[i].mutable_node_data();
-    *proto->mutable_local_pose() = cartographer::transform::ToProto(
-        cartographer::transform::Embed3D(cartographer::transform::Rigid2d(
-            Eigen::Vector2d(pose.x, pose.y), pose.theta)));
-  }
-  const MotionChain mixed = MixedChain(lost);
-  ASSERT_FALSE(mixed.empty());
-  // The room's odometry is exact.
-  const auto graph = evaluation::MakeMapGraph(lost);
-  const auto truth = [&](const size_t i) {
-    return test::RoomSource::TruePose(static_cast<int>(
-        (graph.nodes.at(id(i)).time - test::RoomSource::kStart) /
-        test::RoomSource::kStep));
-  };
-  const Pose2 error =
-      Between(Between(truth(node - 1), truth(node)),
-              Between(mixed.at(id(node - 1)), mixed.at(id(node))));
-  EXPECT_LT(std::abs(error.theta), 1e-3);
-  EXPECT_LT(error.translation().norm(), 1e-3);
-}
-
 TEST_F(MapRepairTest, AMapWithoutNodesIsRefused) {
   io::Pbstream empty = *room_;
   empty.nodes.clear();

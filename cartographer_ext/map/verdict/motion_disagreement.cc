@@ -27,10 +27,50 @@ std::map<int, Trajectory> ReadOdometry(const io::Pbstream& pbstream) {
   return result;
 }
 
+namespace {
+
+// Fills in lasting_rotation of steps [begin, end), all of one trajectory and
+// with odometry; `rotations` are their signed differences in rotation.
+void FillLastingRotation(const std::vector<double>& rotations,
+                         const size_t begin, const size_t end,
+                         std::vector<MotionStep>* const steps) {
+  const auto window = static_cast<io::TimeNs>(kLastingSeconds * 1e9);
+  // The steps [first, last) lie within the window around step i.
+  size_t first = begin, last = begin;
+  double sum = 0.;
+  for (size_t i = begin; i != end; ++i) {
+    const io::TimeNs time = (*steps)[i].time;
+    while (last != end && (last <= i || (*steps)[last].time <= time + window)) {
+      sum += rotations[last++];
+    }
+    while (first < i && (*steps)[first].time < time - window) {
+      sum -= rotations[first++];
+    }
+    (*steps)[i].lasting_rotation = std::abs(sum);
+  }
+}
+
+void FillLastingRotations(const std::vector<double>& rotations,
+                          std::vector<MotionStep>* const steps) {
+  size_t begin = 0;
+  for (size_t i = 0; i <= steps->size(); ++i) {
+    if (i != steps->size() && (*steps)[i].has_odometry &&
+        (*steps)[i].node_id.trajectory_id ==
+            (*steps)[begin].node_id.trajectory_id) {
+      continue;
+    }
+    FillLastingRotation(rotations, begin, i, steps);
+    begin = i != steps->size() && (*steps)[i].has_odometry ? i : i + 1;
+  }
+}
+
+}  // namespace
+
 MotionDisagreement CompareMotions(const MapGraph& graph,
                                   const std::map<int, Trajectory>& odometry) {
   MotionDisagreement result;
   std::vector<double> bends, bend_rotations, errors, rotations;
+  std::vector<double> signed_rotations;  // of each step
   for (auto it = graph.nodes.begin(); it != graph.nodes.end(); ++it) {
     const auto next = std::next(it);
     if (next == graph.nodes.end() ||
@@ -49,6 +89,7 @@ MotionDisagreement CompareMotions(const MapGraph& graph,
     step.bend_rotation = std::abs(bend.theta);
     bends.push_back(step.bend_translation);
     bend_rotations.push_back(RadToDeg(step.bend_rotation));
+    signed_rotations.push_back(0.);
     const auto readings = odometry.find(it->first.trajectory_id);
     if (readings != odometry.end()) {
       const auto from = readings->second.Lookup(it->second.time, 0);
@@ -59,12 +100,14 @@ MotionDisagreement CompareMotions(const MapGraph& graph,
         step.has_odometry = true;
         step.odometry_translation = difference.translation().norm();
         step.odometry_rotation = std::abs(difference.theta);
+        signed_rotations.back() = difference.theta;
         errors.push_back(step.odometry_translation);
         rotations.push_back(RadToDeg(step.odometry_rotation));
       }
     }
     result.steps.push_back(step);
   }
+  FillLastingRotations(signed_rotations, &result.steps);
   result.bend_translation = ComputeStatistics(std::move(bends));
   result.bend_rotation_degrees = ComputeStatistics(std::move(bend_rotations));
   result.odometry_translation = ComputeStatistics(std::move(errors));

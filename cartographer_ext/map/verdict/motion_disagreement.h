@@ -19,6 +19,8 @@
 namespace cartographer_ext {
 namespace evaluation {
 
+constexpr double kLastingSeconds = 5.;
+
 // The motion from the previous node to this one.
 struct MotionStep {
   GraphId node_id;
@@ -32,6 +34,10 @@ struct MotionStep {
   bool has_odometry = false;
   double odometry_translation = 0.;
   double odometry_rotation = 0.;
+  // What of that rotation is left between two nodes kLastingSeconds before and
+  // after the step. Odometry that is late, or freezes and then catches up,
+  // differs from step to step and not in the end.
+  double lasting_rotation = 0.;
 };
 
 struct MotionDisagreement {

@@ -170,7 +170,8 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
                      return a.num_nodes * a.fraction > b.num_nodes * b.fraction;
                    });
   for (const MotionStep& step : result.motion.steps) {
-    if (step.has_odometry && step.odometry_rotation > options.wrong_turn) {
+    if (step.has_odometry && step.odometry_rotation > options.wrong_turn &&
+        step.lasting_rotation > 0.5 * step.odometry_rotation) {
       result.wrong_turns.push_back(step);
     }
   }

@@ -14,7 +14,8 @@
 //   the walls of a submap of another time. People, doors and furniture do not
 //   reach that.
 // * wrong turns: from one node to the next local SLAM and odometry differ by
-//   more than `wrong_turn`. Either may be wrong, so this alone means doubtful.
+//   more than `wrong_turn`, and at least half of it is left some seconds later
+//   (lasting_rotation). Either may be wrong, so this alone means doubtful.
 // A map is broken if contradicted path pieces make up `broken_share` of the
 // nodes that revisit a place, or `doubtful_share` of them together with a wrong
 // turn.

@@ -79,6 +79,46 @@ TEST(MotionDisagreementTest, OdometryIsInterpolated) {
   EXPECT_FALSE(CompareMotions(ThreeNodes(), other).steps[0].has_odometry);
 }
 
+// Local SLAM stands still for 60 s, a node each second, in two trajectories;
+// the heading of the wheels is a function of the time.
+template <typename Heading>
+MotionDisagreement Standing(const Heading& heading) {
+  MapGraph graph;
+  std::map<int, Trajectory> odometry;
+  for (const int trajectory_id : {0, 1}) {
+    std::vector<StampedPose> readings;
+    for (int i = 0; i <= 60; ++i) {
+      AddNode({trajectory_id, i}, i * kSecond, Pose2(), Pose2(), &graph);
+      readings.push_back(
+          {i * kSecond, ToIsometry(Pose2(0., 0., heading(trajectory_id, i)))});
+    }
+    odometry[trajectory_id] = Trajectory(readings);
+  }
+  return CompareMotions(graph, odometry);
+}
+
+TEST(MotionDisagreementTest, ATurnThatIsCaughtUpWithDoesNotLast) {
+  // One reading is off by 0.8 rad; the second trajectory loses a turn.
+  const MotionDisagreement result =
+      Standing([](const int trajectory_id, const int i) {
+        if (trajectory_id == 1) return i < 3 ? 0. : 0.8;
+        return i == 20 ? 0.8 : 0.;
+      });
+  ASSERT_EQ(result.steps.size(), 120u);
+  EXPECT_EQ(result.steps[19].node_id, (GraphId{0, 20}));
+  EXPECT_NEAR(result.steps[19].odometry_rotation, 0.8, 1e-9);
+  EXPECT_NEAR(result.steps[19].lasting_rotation, 0., 1e-9);
+  EXPECT_NEAR(result.steps[20].lasting_rotation, 0., 1e-9);
+  // Of a step six seconds before, the window ends in between.
+  EXPECT_NEAR(result.steps[14].lasting_rotation, 0.8, 1e-9);
+  EXPECT_NEAR(result.steps[13].lasting_rotation, 0., 1e-9);
+  EXPECT_EQ(result.steps[62].node_id, (GraphId{1, 3}));
+  EXPECT_NEAR(result.steps[62].odometry_rotation, 0.8, 1e-9);
+  EXPECT_NEAR(result.steps[62].lasting_rotation, 0.8, 1e-9);
+  EXPECT_NEAR(result.steps[67].lasting_rotation, 0.8, 1e-9);
+  EXPECT_NEAR(result.steps[68].lasting_rotation, 0., 1e-9);
+}
+
 TEST(MotionDisagreementTest, ReadsOdometryByTrajectory) {
   io::Pbstream pbstream;
   EXPECT_TRUE(ReadOdometry(pbstream).empty());
