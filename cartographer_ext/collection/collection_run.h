@@ -12,7 +12,7 @@
 #include "absl/status/statusor.h"
 #include "cartographer_ext/collection/baseline.h"
 #include "cartographer_ext/collection/map_record.h"
-#include "cartographer_ext/tuning/worker_pool.h"
+#include "cartographer_ext/tuning/workers/worker_pool.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_ext {

@@ -13,7 +13,7 @@
 #include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/report/map_report.h"
 #include "cartographer_ext/report/png_image.h"
-#include "cartographer_ext/tuning/worker_pool.h"
+#include "cartographer_ext/tuning/workers/worker_pool.h"
 
 namespace cartographer_ext {
 namespace collection {

@@ -13,7 +13,7 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer_ext/collection/map_record.h"
-#include "cartographer_ext/tuning/worker_pool.h"
+#include "cartographer_ext/tuning/workers/worker_pool.h"
 
 namespace cartographer_ext {
 namespace collection {

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "cartographer_ext/tuning/shared_folder_pool.h"
+#include "cartographer_ext/tuning/workers/shared_folder_pool.h"
+#include "cartographer_ext/tuning/workers/shared_folder_server.h"
 #include "gflags/gflags.h"
 
 DEFINE_string(job_folder, "",

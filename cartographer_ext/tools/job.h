@@ -12,8 +12,8 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "cartographer_ext/tuning/mpi_worker_pool.h"
-#include "cartographer_ext/tuning/worker_pool.h"
+#include "cartographer_ext/tuning/workers/mpi_worker_pool.h"
+#include "cartographer_ext/tuning/workers/worker_pool.h"
 
 namespace cartographer_ext {
 namespace tools {

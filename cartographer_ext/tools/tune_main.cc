@@ -26,8 +26,8 @@
 #include "cartographer_ext/tuning/result_writer.h"
 #include "cartographer_ext/tuning/search_spec.h"
 #include "cartographer_ext/tuning/sensitivity_plot.h"
+#include "cartographer_ext/tuning/trial_run.h"
 #include "cartographer_ext/tuning/tuner.h"
-#include "cartographer_ext/tuning/worker_pool.h"
 #include "gflags/gflags.h"
 
 DEFINE_string(search_filename, "",

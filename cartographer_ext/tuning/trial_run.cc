@@ -30,6 +30,7 @@
 #include "cartographer_ext/simulation/world_source.h"
 #include "cartographer_ext/slam/open_recording.h"
 #include "cartographer_ext/slam/slam_runner.h"
+#include "cartographer_ext/tuning/workers/worker_pool.h"
 
 namespace cartographer_ext {
 namespace tuning {
@@ -314,6 +315,14 @@ absl::StatusOr<Metrics> RunTrial(const RunRequest& request) {
   }
   return request.input.is_pbstream ? RunPbstream(*configuration, request)
                                    : RunRecording(*configuration, request);
+}
+
+nlohmann::json AnswerRequest(const nlohmann::json& request) {
+  const auto parsed = RequestFromJson(request);
+  if (!parsed.ok()) return Failure(std::string(parsed.status().message()));
+  const auto metrics = RunTrial(*parsed);
+  if (!metrics.ok()) return Failure(std::string(metrics.status().message()));
+  return {{"ok", true}, {"metrics", *metrics}};
 }
 
 }  // namespace tuning

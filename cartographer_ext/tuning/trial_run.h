@@ -45,6 +45,9 @@ absl::StatusOr<RunRequest> RequestFromJson(const nlohmann::json& json);
 absl::StatusOr<std::map<std::string, double>> RunTrial(
     const RunRequest& request);
 
+// The answer of a worker (worker_pool.h) to a request.
+nlohmann::json AnswerRequest(const nlohmann::json& request);
+
 }  // namespace tuning
 }  // namespace cartographer_ext
 

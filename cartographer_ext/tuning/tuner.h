@@ -37,7 +37,7 @@
 #include "cartographer_ext/tuning/parameter_space.h"
 #include "cartographer_ext/tuning/sampler.h"
 #include "cartographer_ext/tuning/search_spec.h"
-#include "cartographer_ext/tuning/worker_pool.h"
+#include "cartographer_ext/tuning/workers/worker_pool.h"
 
 namespace cartographer_ext {
 namespace tuning {

@@ -112,6 +112,13 @@ TEST_F(RunTrialTest, BadInputIsAnError) {
   EXPECT_FALSE(RunTrial(request).ok());
 }
 
+TEST(TrialRunTest, BadRequestsAreFailures) {
+  EXPECT_EQ(AnswerRequest(nlohmann::json("x"))["ok"], false);
+  EXPECT_EQ(
+      AnswerRequest({{"code", "return {"}, {"input", {{"name", "a"}}}})["ok"],
+      false);
+}
+
 }  // namespace
 }  // namespace tuning
 }  // namespace cartographer_ext

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/tuning/worker_pool.h"
+#include "cartographer_ext/tuning/workers/worker_pool.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -20,7 +20,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_ext/tuning/trial_run.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -117,14 +116,6 @@ std::string HowItEnded(const int state, const bool was_killed,
 
 nlohmann::json Failure(const std::string& message) {
   return {{"ok", false}, {"message", message}};
-}
-
-nlohmann::json AnswerRequest(const nlohmann::json& request) {
-  const auto parsed = RequestFromJson(request);
-  if (!parsed.ok()) return Failure(std::string(parsed.status().message()));
-  const auto metrics = RunTrial(*parsed);
-  if (!metrics.ok()) return Failure(std::string(metrics.status().message()));
-  return {{"ok", true}, {"metrics", *metrics}};
 }
 
 LocalWorkerPool::LocalWorkerPool(const int num_workers,

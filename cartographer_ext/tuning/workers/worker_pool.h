@@ -4,8 +4,8 @@
 // Executes runs, each in a separate process: a run that crashes, runs out of
 // memory or fails a check is a failed trial and does not stop the search, and
 // memory does not grow from run to run.
-#ifndef CARTOGRAPHER_EXT_TUNING_WORKER_POOL_H_
-#define CARTOGRAPHER_EXT_TUNING_WORKER_POOL_H_
+#ifndef CARTOGRAPHER_EXT_TUNING_WORKERS_WORKER_POOL_H_
+#define CARTOGRAPHER_EXT_TUNING_WORKERS_WORKER_POOL_H_
 
 #include <sys/types.h>
 
@@ -47,9 +47,6 @@ class WorkerPool {
 // Answers { "ok": ... } to a request; called in a separate process.
 using RunFunction = std::function<nlohmann::json(const nlohmann::json&)>;
 
-// Executes the request as a run of trial_run.h.
-nlohmann::json AnswerRequest(const nlohmann::json& request);
-
 // A failed answer.
 nlohmann::json Failure(const std::string& message);
 
@@ -59,8 +56,7 @@ class LocalWorkerPool : public WorkerPool {
  public:
   // Runs that exceed `max_cpu_seconds` (0: no limit) of CPU time are killed and
   // fail.
-  LocalWorkerPool(int num_workers, double max_cpu_seconds,
-                  RunFunction run = &AnswerRequest);
+  LocalWorkerPool(int num_workers, double max_cpu_seconds, RunFunction run);
   ~LocalWorkerPool() override;
 
   int num_workers() const override { return num_workers_; }
@@ -91,4 +87,4 @@ class LocalWorkerPool : public WorkerPool {
 }  // namespace tuning
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_TUNING_WORKER_POOL_H_
+#endif  // CARTOGRAPHER_EXT_TUNING_WORKERS_WORKER_POOL_H_

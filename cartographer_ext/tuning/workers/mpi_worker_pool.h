@@ -5,14 +5,14 @@
 // and distributes runs, all other ranks execute them, each in a child process
 // as LocalWorkerPool does. Recordings and configurations must have the same
 // paths on all machines. MPI is not initialised outside an MPI job.
-#ifndef CARTOGRAPHER_EXT_TUNING_MPI_WORKER_POOL_H_
-#define CARTOGRAPHER_EXT_TUNING_MPI_WORKER_POOL_H_
+#ifndef CARTOGRAPHER_EXT_TUNING_WORKERS_MPI_WORKER_POOL_H_
+#define CARTOGRAPHER_EXT_TUNING_WORKERS_MPI_WORKER_POOL_H_
 
 #include <map>
 #include <memory>
 #include <set>
 
-#include "cartographer_ext/tuning/worker_pool.h"
+#include "cartographer_ext/tuning/workers/worker_pool.h"
 
 namespace cartographer_ext {
 namespace tuning {
@@ -39,7 +39,7 @@ class MpiSession {
   int size() const { return size_; }
 
   // On all ranks except 0: executes requests from rank 0 until the end.
-  void Serve(double max_cpu_seconds, RunFunction run = &AnswerRequest);
+  void Serve(double max_cpu_seconds, RunFunction run);
 
  private:
   bool started_ = false;
@@ -53,4 +53,4 @@ std::unique_ptr<WorkerPool> CreateMpiWorkerPool(const MpiSession& session);
 }  // namespace tuning
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_TUNING_MPI_WORKER_POOL_H_
+#endif  // CARTOGRAPHER_EXT_TUNING_WORKERS_MPI_WORKER_POOL_H_

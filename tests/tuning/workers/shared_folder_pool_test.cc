@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/tuning/shared_folder_pool.h"
+#include "cartographer_ext/tuning/workers/shared_folder_pool.h"
 
 #include <signal.h>
 #include <sys/wait.h>
@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "cartographer_ext/tuning/workers/shared_folder_server.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/tuning/temporary_file.h"

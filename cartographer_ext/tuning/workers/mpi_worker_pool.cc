@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/tuning/mpi_worker_pool.h"
+#include "cartographer_ext/tuning/workers/mpi_worker_pool.h"
 
 #include <chrono>
 #include <cstdlib>

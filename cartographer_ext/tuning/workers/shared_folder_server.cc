@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/tuning/workers/shared_folder_server.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace tuning {
+namespace {
+
+// Between two looks whether a run has finished.
+constexpr double kRunPauseSeconds = 0.05;
+
+// A task other than 0.
+class Server {
+ public:
+  Server(const SharedFolderOptions& options, const RunFunction& run)
+      : options_(options), folder_(options.folder), token_(MakeToken()) {
+    for (int i = 0; i < options.num_workers; ++i) {
+      slots_.emplace_back(SlotName(TaskName(options.task), i),
+                          std::unique_ptr<LocalWorkerPool>(new LocalWorkerPool(
+                              1, options.max_cpu_seconds, run)));
+    }
+  }
+
+  absl::Status Run() {
+    last_heard_ = SteadySeconds();
+    while (true) {
+      const absl::Status status = Poll();
+      if (!status.ok() || ended_) {
+        if (status.code() != absl::StatusCode::kAlreadyExists) {
+          folder_.Remove(OwnName());
+        }
+        return status;
+      }
+      const double next = SteadySeconds() + options_.poll_seconds;
+      while (SteadySeconds() < next) {
+        const absl::Status answered = Answer();
+        if (!answered.ok()) return answered;
+        SleepFor(std::min(kRunPauseSeconds, options_.poll_seconds));
+      }
+    }
+  }
+
+ private:
+  struct Slot {
+    Slot(std::string name, std::unique_ptr<LocalWorkerPool> pool)
+        : name(std::move(name)), pool(std::move(pool)) {}
+    std::string name;
+    std::unique_ptr<LocalWorkerPool> pool;
+    int serial = -1;  // of the last request
+  };
+
+  std::string OwnName() const {
+    return absl::StrCat(TaskName(options_.task), ".json");
+  }
+
+  absl::Status Beat() {
+    const std::string owner = TextOf(folder_.Read(OwnName()), "token");
+    if (has_written_ && !owner.empty() && owner != token_) {
+      return absl::AlreadyExistsError(
+          absl::StrCat(options_.folder, ": another process is task ",
+                       options_.task, " of the same job"));
+    }
+    has_written_ = true;
+    return folder_.Write(
+        {{"token", token_}, {"beat", ++beat_}, {"slots", slots_.size()}},
+        OwnName());
+  }
+
+  absl::Status Poll() {
+    const nlohmann::json coordinator = folder_.Read(SharedFolder::kCoordinator);
+    const std::string session = TextOf(coordinator, "session");
+    const double beat = NumberOf(coordinator, "beat");
+    if (session != session_ || beat != last_beat_)
+      last_heard_ = SteadySeconds();
+    last_beat_ = beat;
+    if (session != session_) {
+      session_ = session;
+      for (Slot& slot : slots_) {
+        slot.pool->StopAll();
+        slot.serial = -1;
+      }
+    }
+    const bool ended = TextOf(coordinator, "state") == SharedFolder::kEnded;
+    if (ended && has_served_) {
+      ended_ = true;
+      return absl::OkStatus();
+    }
+    if (SteadySeconds() - last_heard_ > options_.wait_seconds) {
+      ended_ = ended;  // it had ended before this task began
+      return ended ? absl::OkStatus()
+                   : absl::DeadlineExceededError(absl::StrCat(
+                         options_.folder, ": no sign of task 0 for ",
+                         options_.wait_seconds, " s"));
+    }
+    if (session.empty() || ended) return absl::OkStatus();
+    has_served_ = true;
+    const absl::Status status = Beat();
+    if (!status.ok()) return status;
+    for (Slot& slot : slots_) TakeRequest(&slot);
+    return absl::OkStatus();
+  }
+
+  void TakeRequest(Slot* const slot) {
+    const nlohmann::json request = folder_.Read(RequestName(slot->name));
+    const bool is_mine = TextOf(request, "session") == session_ &&
+                         TextOf(request, "token") == token_ &&
+                         request.contains("request");
+    const int serial =
+        is_mine ? static_cast<int>(NumberOf(request, "serial")) : -1;
+    if (serial == slot->serial) return;
+    slot->pool->StopAll();
+    slot->serial = serial;
+    if (serial >= 0) slot->pool->Start(serial, request["request"]);
+  }
+
+  absl::Status Answer() {
+    for (Slot& slot : slots_) {
+      if (slot.pool->num_running() == 0) continue;
+      const auto result = slot.pool->Wait(0.);
+      if (!result.has_value()) continue;
+      const absl::Status status = folder_.Write({{"session", session_},
+                                                 {"token", token_},
+                                                 {"serial", result->id},
+                                                 {"answer", result->answer}},
+                                                AnswerName(slot.name));
+      if (!status.ok()) return status;
+    }
+    return absl::OkStatus();
+  }
+
+  const SharedFolderOptions options_;
+  const SharedFolder folder_;
+  const std::string token_;
+  std::vector<Slot> slots_;
+  std::string session_;
+  double last_beat_ = -1.;  // of task 0
+  double last_heard_ = 0.;  // seconds
+  int beat_ = 0;
+  bool has_written_ = false;
+  bool has_served_ = false;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+absl::Status ServeSharedFolder(const SharedFolderOptions& options,
+                               RunFunction run) {
+  CHECK_GT(options.task, 0);
+  const absl::Status found = SharedFolder(options.folder).Check();
+  if (!found.ok()) return found;
+  return Server(options, run).Run();
+}
+
+}  // namespace tuning
+}  // namespace cartographer_ext
