@@ -90,6 +90,16 @@ class TuneMainTest : public testing::Test {
     return runs;
   }
 
+  // Until tasks 1 to `count` of a job array have begun.
+  static void WaitForTasks(const TemporaryFolder& job, const int count) {
+    for (int task = 1; task <= count; ++task) {
+      const std::string name = "task-" + std::to_string(task) + ".json";
+      for (int i = 0; i < 3000 && ReadFile(job / name).empty(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+    }
+  }
+
   const TemporaryFolder folder_;
 };
 
@@ -181,6 +191,7 @@ TEST_F(TuneMainTest, AJobArrayFindsTheSame) {
   std::vector<std::thread> tasks;
   std::vector<CommandResult> results(3);
   for (int task = 2; task >= 0; --task) {
+    if (task == 0) WaitForTasks(job, 2);
     tasks.emplace_back([&, task]() {
       results[task] = RunCommand(
           "tune",

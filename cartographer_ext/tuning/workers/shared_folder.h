@@ -44,6 +44,9 @@ struct SharedFolderOptions {
   double silent_seconds = 120.;
   // Tasks other than 0 end when there has been no task 0 for so long.
   double wait_seconds = 600.;
+  // A task that finds a search that has ended waits so long for the next one,
+  // and then ends without an error.
+  double wait_after_end_seconds = 60.;
 };
 
 // The files of one job.

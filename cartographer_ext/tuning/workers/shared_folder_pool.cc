@@ -56,7 +56,10 @@ absl::StatusOr<std::unique_ptr<SharedFolderPool>> SharedFolderPool::Create(
       new SharedFolderPool(options, std::move(run)));
   // Left by an earlier search; tasks that are alive write theirs again.
   for (const std::string& name : folder.Names()) {
-    if (absl::StartsWith(name, "task-")) folder.Remove(name);
+    // Not the temporary files of tasks that are writing.
+    if (absl::StartsWith(name, "task-") && absl::EndsWith(name, ".json")) {
+      folder.Remove(name);
+    }
   }
   const absl::Status status = pool->Beat(SharedFolder::kRunning);
   if (!status.ok()) return status;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/types/optional.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -69,10 +70,17 @@ class Server {
           absl::StrCat(options_.folder, ": another process is task ",
                        options_.task, " of the same job"));
     }
-    has_written_ = true;
-    return folder_.Write(
+    const absl::Status status = folder_.Write(
         {{"token", token_}, {"beat", ++beat_}, {"slots", slots_.size()}},
         OwnName());
+    if (status.ok()) {
+      has_written_ = true;
+      last_written_ = SteadySeconds();
+    }
+    // A file system may fail for a moment.
+    const bool is_short = has_written_ && SteadySeconds() - last_written_ <
+                                              options_.silent_seconds;
+    return is_short ? absl::OkStatus() : status;
   }
 
   absl::Status Poll() {
@@ -89,22 +97,22 @@ class Server {
         slot.serial = -1;
       }
     }
+    if (!first_session_.has_value()) first_session_ = session;
     const bool ended = TextOf(coordinator, "state") == SharedFolder::kEnded;
-    if (ended && has_served_) {
+    const double silence = SteadySeconds() - last_heard_;
+    if (ended && (has_served_ || session != *first_session_ ||
+                  silence > options_.wait_after_end_seconds)) {
       ended_ = true;
       return absl::OkStatus();
     }
-    if (SteadySeconds() - last_heard_ > options_.wait_seconds) {
-      ended_ = ended;  // it had ended before this task began
-      return ended ? absl::OkStatus()
-                   : absl::DeadlineExceededError(absl::StrCat(
-                         options_.folder, ": no sign of task 0 for ",
-                         options_.wait_seconds, " s"));
+    if (silence > options_.wait_seconds) {
+      return absl::DeadlineExceededError(
+          absl::StrCat(options_.folder, ": no sign of task 0 for ",
+                       options_.wait_seconds, " s"));
     }
-    if (session.empty() || ended) return absl::OkStatus();
-    has_served_ = true;
     const absl::Status status = Beat();
-    if (!status.ok()) return status;
+    if (!status.ok() || session.empty() || ended) return status;
+    has_served_ = true;
     for (Slot& slot : slots_) TakeRequest(&slot);
     return absl::OkStatus();
   }
@@ -141,11 +149,13 @@ class Server {
   const SharedFolder folder_;
   const std::string token_;
   std::vector<Slot> slots_;
-  std::string session_;
-  double last_beat_ = -1.;  // of task 0
-  double last_heard_ = 0.;  // seconds
+  std::string session_;                        // of the coordinator
+  absl::optional<std::string> first_session_;  // when this task began
+  double last_beat_ = -1.;                     // of task 0
+  double last_heard_ = 0.;                     // seconds
   int beat_ = 0;
   bool has_written_ = false;
+  double last_written_ = 0.;  // seconds
   bool has_served_ = false;
   bool ended_ = false;
 };

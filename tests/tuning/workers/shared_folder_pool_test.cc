@@ -83,6 +83,12 @@ class SharedFolderPoolTest : public testing::Test {
     ExitCodeOf(child);
   }
 
+  void WaitForFile(const std::string& name) const {
+    for (int i = 0; i < 3000 && folder_.Read(name).empty(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+
   static bool WaitForTasks(SharedFolderPool* const pool, const int count) {
     for (int i = 0; i < 1000 && pool->num_tasks() != count; ++i) {
       EXPECT_FALSE(pool->Wait(0.02).has_value());
@@ -203,9 +209,8 @@ TEST_F(SharedFolderPoolTest, TasksServeACoordinatorThatIsStartedAgain) {
     while (true) (*pool)->Wait(1.);
   }
   const pid_t task = StartTask(Options(1));
-  for (int i = 0; i < 1000 && folder_.Read("task-1.json").empty(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  WaitForFile("coordinator.json");
+  WaitForFile("task-1.json");
   const auto second = SharedFolderPool::Create(Options(0), &Act);
   EXPECT_THAT(std::string(second.status().message()),
               HasSubstr("another process is task 0"));
@@ -228,7 +233,18 @@ TEST_F(SharedFolderPoolTest, WithoutTaskZeroTheOthersEnd) {
               HasSubstr("no sign of task 0"));
   // It had its time, and has ended.
   MakePool().reset();
+  options.wait_seconds = 20.;
+  options.wait_after_end_seconds = 0.2;
   EXPECT_TRUE(ServeSharedFolder(options, &Act).ok());
+}
+
+TEST_F(SharedFolderPoolTest, ASearchThatBeginsAndEndsUnseenEndsTheTask) {
+  SharedFolderOptions options = Options(1);
+  options.poll_seconds = 0.3;
+  const pid_t task = StartTask(options);
+  WaitForFile("task-1.json");
+  MakePool().reset();
+  EXPECT_EQ(ExitCodeOf(task), 0);
 }
 
 TEST_F(SharedFolderPoolTest, TwoTasksOfOneNumberAreAnError) {
