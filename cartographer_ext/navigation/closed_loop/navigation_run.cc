@@ -397,7 +397,13 @@ absl::Status ClosedLoop::Run(
   run_->jumps = CountJumps(run_->localization);
   run_->late_optimizations = localizer_->timeouts();
   for (size_t i = run_->goals.size(); i < goals_.size(); ++i) {
-    run_->goals.push_back({goals_[i], false, "out of time", run_->seconds});
+    const bool says_why =
+        i == navigator_->results().size() && !navigator_->message().empty();
+    run_->goals.push_back(
+        {goals_[i], false,
+         says_why ? absl::StrCat("out of time, ", navigator_->message())
+                  : "out of time",
+         run_->seconds});
     run_->goal_errors.push_back(
         (TruePoseInMap().translation() - goals_[i]).norm());
   }

@@ -11,9 +11,9 @@
 #include "absl/synchronization/mutex.h"
 #include "absl/time/time.h"
 #include "cartographer/mapping/map_builder.h"
+#include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/slam/scan_conversion.h"
-#include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/slam/starting_state.h"
 
 namespace cartographer_ext {

@@ -127,6 +127,13 @@ std::string ToText(const NavigationRun& run) {
       &text,
       "Localisation  median %.3f m, largest %.3f m, %d jumps above 0.5 m\n",
       MedianError(run.localization), MaxError(run.localization), run.jumps);
+  if (run.lost_cycles > 0) {
+    absl::StrAppendFormat(
+        &text,
+        "              stopped for %d of %d control cycles, because the robot "
+        "was lost or saw nothing\n",
+        run.lost_cycles, run.cycle_seconds.size());
+  }
   absl::StrAppendFormat(
       &text,
       "CPU           %.1f %% of a core, of it localisation %.1f %%; a control "

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "cartographer_ext/slam/resource_usage.h"
 #include "cartographer_ext/navigation/closed_loop/online_localizer.h"
+#include "cartographer_ext/slam/resource_usage.h"
 
 namespace cartographer_ext {
 namespace navigation {

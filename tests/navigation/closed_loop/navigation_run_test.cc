@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "cartographer_ext/navigation/closed_loop/run_report.h"
 #include "cartographer_ext/navigation/closed_loop/shadow_localization.h"
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/navigation/closed_loop/room_run.h"
 
@@ -74,6 +76,30 @@ TEST(NavigationRunTest, SaysWhyAGoalIsNotReached) {
   EXPECT_EQ(run->reached(), 1);
   EXPECT_FALSE(run->goals[0].reached);
   EXPECT_EQ(run->goals[1].reason, ToString(PlanOutcome::kGoalOutside));
+}
+
+TEST(NavigationRunTest, InAnotherBuildingItStopsAndSaysSo) {
+  const Room& room = Room::Get();
+  NavigationRunOptions options = room.Options();
+  options.max_seconds = 30.;
+  simulation::World other = room.world;
+  // Larger, and turned about the start.
+  const Eigen::Vector2d start = other.start.translation();
+  const Eigen::Matrix2d change =
+      2.3 * Eigen::Rotation2Dd(0.6).toRotationMatrix();
+  for (auto& segment : other.segments) {
+    segment.a = start + change * (segment.a - start);
+    segment.b = start + change * (segment.b - start);
+  }
+  const auto run = RunNavigation(other, room.map, room.configuration, options);
+  ASSERT_TRUE(run.ok()) << run.status();
+  EXPECT_EQ(run->reached(), 0);
+  EXPECT_LT(run->travelled, 0.1);
+  EXPECT_GT(run->lost_cycles, 100);
+  ASSERT_EQ(run->goals.size(), 2u);
+  EXPECT_THAT(run->goals[0].reason, testing::HasSubstr("stopped, lost: "));
+  EXPECT_EQ(run->goals[1].reason, "out of time");
+  EXPECT_THAT(ToText(*run), testing::HasSubstr("because the robot was lost"));
 }
 
 TEST(NavigationRunTest, RefusesWhatMakesNoSense) {
