@@ -250,10 +250,12 @@ MotionChain LocalChain(const io::Pbstream& pbstream) {
   return chain;
 }
 
-MotionChain GlobalChain(const evaluation::MapGraph& graph) {
-  MotionChain chain;
-  for (const auto& node : graph.nodes) {
-    chain[node.first] = node.second.global_pose;
+MotionChain GlobalChain(const io::Pbstream& pbstream,
+                        const evaluation::MapGraph& graph) {
+  MotionChain chain = LocalChain(pbstream);
+  for (auto& entry : chain) {
+    const auto node = graph.nodes.find(entry.first);
+    if (node != graph.nodes.end()) entry.second = node->second.global_pose;
   }
   return chain;
 }

@@ -45,8 +45,10 @@ using MotionChain = std::map<evaluation::GraphId, Pose2>;
 
 // By the stored local poses.
 MotionChain LocalChain(const io::Pbstream& pbstream);
-// By the optimised poses of `graph`.
-MotionChain GlobalChain(const evaluation::MapGraph& graph);
+// By the optimised poses of `graph`, and the stored local ones of nodes that it
+// lacks.
+MotionChain GlobalChain(const io::Pbstream& pbstream,
+                        const evaluation::MapGraph& graph);
 // By the odometry; LocalChain where there are no readings. Empty if no
 // trajectory has odometry for half of its nodes.
 MotionChain OdometryChain(const io::Pbstream& pbstream);

@@ -380,7 +380,7 @@ class Repairer {
     if (!options_.local) return;
     for (int i = 0; i < options_.max_rounds && !done(); ++i) {
       const PbstreamPointer before = result_.after.pbstream;
-      const MotionChain best = GlobalChain(result_.after.graph);
+      const MotionChain best = GlobalChain(*original_, result_.after.graph);
       RerunAlong("submaps rebuilt along the best map so far", best,
                  NodeMatching::kNone);
       if (before == result_.after.pbstream) break;

@@ -79,6 +79,17 @@ io::Pbstream TurnAlignment(io::Pbstream pbstream, const double rate) {
   return pbstream;
 }
 
+TEST_F(LocalRerunTest, ANodeThatTheGraphLacksKeepsItsLocalPose) {
+  evaluation::MapGraph graph = evaluation::MakeMapGraph(*room_);
+  const auto lacking = graph.nodes.begin()->first;
+  graph.nodes.erase(lacking);
+  const MotionChain chain = GlobalChain(*room_, graph);
+  EXPECT_EQ(chain.size(), room_->nodes.size());
+  EXPECT_EQ(chain.at(lacking).x, LocalChain(*room_).at(lacking).x);
+  EXPECT_EQ(chain.rbegin()->second.x,
+            graph.nodes.rbegin()->second.global_pose.x);
+}
+
 TEST_F(LocalRerunTest, AnyGravityAlignmentGivesTheSameLocalSlam) {
   const io::Pbstream turned = TurnAlignment(*room_, 0.3);
   for (const NodeMatching matching :
