@@ -3,7 +3,6 @@
 #include "cartographer_ext/tuning/tuner.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -29,12 +28,6 @@ constexpr double kHoldoutReserve = 1.3;  // times the run of the baseline
 // tried before.
 constexpr int kMaxRepetitions = 200;
 
-double Now() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 std::vector<TuneInput> Concatenate(std::vector<TuneInput> first,
                                    const std::vector<TuneInput>& second) {
   first.insert(first.end(), second.begin(), second.end());
@@ -59,7 +52,7 @@ Tuner::Tuner(TuneProblem problem, const TunerOptions& options,
       options_(options),
       pool_(pool),
       journal_(journal),
-      start_(Now()) {
+      start_(SteadySeconds()) {
   for (const RunRecord& record : journal_->runs()) {
     if (record.killed) continue;
     KnownRun& run = runs_[RunKey(record)];
@@ -73,7 +66,7 @@ void Tuner::SetProgressCallback(
   callback_ = std::move(callback);
 }
 
-double Tuner::Elapsed() const { return Now() - start_; }
+double Tuner::Elapsed() const { return SteadySeconds() - start_; }
 
 void Tuner::Report(const int trials) {
   if (!callback_) return;

@@ -10,11 +10,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <random>
-#include <thread>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -127,16 +125,6 @@ double NumberOf(const nlohmann::json& json, const char* const key) {
   if (!json.is_object()) return -1.;
   const auto found = json.find(key);
   return found != json.end() && found->is_number() ? found->get<double>() : -1.;
-}
-
-double SteadySeconds() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-void SleepFor(const double seconds) {
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
 }  // namespace tuning

@@ -22,6 +22,7 @@
 #ifndef CARTOGRAPHER_EXT_TUNING_WORKERS_SHARED_FOLDER_H_
 #define CARTOGRAPHER_EXT_TUNING_WORKERS_SHARED_FOLDER_H_
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +48,9 @@ struct SharedFolderOptions {
   // A task that finds a search that has ended waits so long for the next one,
   // and then ends without an error.
   double wait_after_end_seconds = 60.;
+
+  // Between two looks whether a run has finished.
+  double pause_seconds() const { return std::min(0.05, poll_seconds); }
 };
 
 // The files of one job.
@@ -88,10 +92,6 @@ std::string MakeToken();
 // Of a value that is missing or has another type: "" and -1.
 std::string TextOf(const nlohmann::json& json, const char* key);
 double NumberOf(const nlohmann::json& json, const char* key);
-
-// A clock of this machine, and waiting by it; seconds.
-double SteadySeconds();
-void SleepFor(double seconds);
 
 }  // namespace tuning
 }  // namespace cartographer_ext

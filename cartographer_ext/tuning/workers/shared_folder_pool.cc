@@ -17,8 +17,6 @@ namespace {
 
 // More would be a damaged file.
 constexpr int kMaxSlots = 10000;
-// Between two looks for answers.
-constexpr double kPauseSeconds = 0.05;
 
 nlohmann::json KilledAnswer(const std::string& slot, const double seconds) {
   nlohmann::json answer = Failure(
@@ -207,8 +205,7 @@ absl::optional<WorkerResult> SharedFolderPool::Wait(
     if (!running_.empty() && SteadySeconds() >= next_look) {
       result = TakeRemoteResult();
       if (result.has_value()) return result;
-      next_look =
-          SteadySeconds() + std::min(kPauseSeconds, options_.poll_seconds);
+      next_look = SteadySeconds() + options_.pause_seconds();
     }
     const double left = end - SteadySeconds();
     if (left <= 0.) return absl::nullopt;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tuning/workers/shared_folder_server.h"
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -15,9 +14,6 @@
 namespace cartographer_ext {
 namespace tuning {
 namespace {
-
-// Between two looks whether a run has finished.
-constexpr double kRunPauseSeconds = 0.05;
 
 // A task other than 0.
 class Server {
@@ -45,7 +41,7 @@ class Server {
       while (SteadySeconds() < next) {
         const absl::Status answered = Answer();
         if (!answered.ok()) return answered;
-        SleepFor(std::min(kRunPauseSeconds, options_.poll_seconds));
+        SleepFor(options_.pause_seconds());
       }
     }
   }

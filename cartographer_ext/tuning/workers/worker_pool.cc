@@ -26,12 +26,6 @@ namespace cartographer_ext {
 namespace tuning {
 namespace {
 
-double Now() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 double Seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * time.tv_usec;
 }
@@ -114,6 +108,16 @@ std::string HowItEnded(const int state, const bool was_killed,
 
 }  // namespace
 
+double SteadySeconds() {
+  return std::chrono::duration<double>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+void SleepFor(const double seconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
+
 nlohmann::json Failure(const std::string& message) {
   return {{"ok", false}, {"message", message}};
 }
@@ -134,7 +138,7 @@ void LocalWorkerPool::Start(const int id, const nlohmann::json& request) {
   child.id = id;
   child.answer = memfd_create("answer", MFD_CLOEXEC);
   child.messages = memfd_create("messages", MFD_CLOEXEC);
-  child.start = Now();
+  child.start = SteadySeconds();
   const pid_t parent = getpid();
   const pid_t pid = child.answer < 0 || child.messages < 0 ? -1 : fork();
   if (pid == 0) {
@@ -183,7 +187,7 @@ absl::optional<WorkerResult> LocalWorkerPool::Reap() {
           Failure(HowItEnded(state, was_killed, ReadFromStart(child.messages)));
       if (was_killed) result.answer["killed"] = true;
     }
-    result.answer["wall_seconds"] = Now() - child.start;
+    result.answer["wall_seconds"] = SteadySeconds() - child.start;
     result.answer["cpu_seconds"] = cpu_seconds;
     close(child.answer);
     close(child.messages);
@@ -194,12 +198,12 @@ absl::optional<WorkerResult> LocalWorkerPool::Reap() {
 
 absl::optional<WorkerResult> LocalWorkerPool::Wait(
     const double timeout_seconds) {
-  constexpr auto kPause = std::chrono::milliseconds(2);
-  const double end = Now() + timeout_seconds;
+  constexpr double kPauseSeconds = 0.002;
+  const double end = SteadySeconds() + timeout_seconds;
   while (true) {
     auto result = Reap();
-    if (result.has_value() || Now() >= end) return result;
-    std::this_thread::sleep_for(kPause);
+    if (result.has_value() || SteadySeconds() >= end) return result;
+    SleepFor(kPauseSeconds);
   }
 }
 

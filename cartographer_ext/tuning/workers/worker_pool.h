@@ -47,6 +47,10 @@ class WorkerPool {
 // Answers { "ok": ... } to a request; called in a separate process.
 using RunFunction = std::function<nlohmann::json(const nlohmann::json&)>;
 
+// A clock of this machine, and waiting by it; seconds.
+double SteadySeconds();
+void SleepFor(double seconds);
+
 // A failed answer.
 nlohmann::json Failure(const std::string& message);
 
