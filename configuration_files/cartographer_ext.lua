@@ -29,7 +29,6 @@
 --   constraint_builder.search.max_searches_per_node = 8
 --   constraint_builder.search.global_search = true
 --   constraint_builder.temporal_verification.window_base = 12
---   constraint_builder.path_noise.translation_per_metre = 0.05
 --   constraint_builder.compatible_subset.min_revisits = 2
 --   optimization_problem.robust_loops = true
 
@@ -144,12 +143,8 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Hard limit on searches per node. Lower is faster and may miss loops.
     -- [basic, >= 1 and <= 100000]
     max_searches_per_node = 8,
-    -- Largest half width of the search window. If the uncertainty is larger,
-    -- the whole submap is searched instead when global_search is on. [> 0 and
-    -- <= 1000, m]
-    max_linear_window = 15,
     -- Whether whole submaps of the same trajectory may be searched when the
-    -- uncertainty exceeds the largest window. [basic]
+    -- uncertainty exceeds the largest window (15 m). [basic]
     global_search = true,
     -- Memory limit for the search structures of the most recently used
     -- submaps; others are rebuilt when they are needed, with the same result.
@@ -202,20 +197,6 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- as along a corridor. Needs the swap full_information; stored maps have
     -- only the two weights.
     full_matrix = false,
-  },
-  path_noise = {
-    -- Standard deviation of the translation of local SLAM after one metre; it
-    -- grows with the square root of the path length. Larger values search
-    -- wider and reject less. [basic, >= 0 and <= 10, m]
-    translation_per_metre = 0.05,
-    -- Standard deviation of the heading of local SLAM after one metre; it
-    -- grows with the square root of the path length. [>= 0 and <= 10, rad]
-    rotation_per_metre = 0.005,
-    -- Standard deviation of the constant heading drift of a run, such as from
-    -- unequal wheels. [>= 0 and <= 10, rad/m]
-    heading_drift = 0.0005,
-    -- Standard deviation of the translation scale of a run. [>= 0 and <= 1]
-    scale_error = 0.005,
   },
   compatible_subset = {
     -- Buffer candidates until others confirm them. Off: every candidate that

@@ -14,7 +14,6 @@ void ReadSearch(const LoopClosureOptions::Search& from,
                 SearchPlannerOptions* const to) {
   to->enabled = from.enabled();
   to->max_searches_per_node = from.max_searches_per_node();
-  to->max_linear_window = from.max_linear_window();
   to->global_search = from.global_search();
 }
 
@@ -36,14 +35,6 @@ void ReadInformation(const LoopClosureOptions::Information& from,
   to->beta = from.beta();
   to->reference_score = from.reference_score();
   to->full_matrix = from.full_matrix();
-}
-
-void ReadPathNoise(const proto::PathNoiseOptions& from,
-                   uncertainty::PathNoiseOptions* const to) {
-  to->translation_per_metre = from.translation_per_metre();
-  to->rotation_per_metre = from.rotation_per_metre();
-  to->heading_drift = from.heading_drift();
-  to->scale_error = from.scale_error();
 }
 
 void ReadCompatibleSubset(const LoopClosureOptions::CompatibleSubset& from,
@@ -96,7 +87,6 @@ LoopOptions ToLoopOptions(const LoopClosureOptions& message) {
   ReadInformation(message.information(), &options.information);
   ReadCompatibleSubset(message.compatible_subset(), &options.compatible_subset);
   options.relocalization.enabled = message.localization().enabled();
-  ReadPathNoise(message.path_noise(), &options.path_noise);
   options.log_times = message.log().times();
   options.log_directory = message.log().directory();
   ReadPaperMode(message.paper_mode(), &options);
