@@ -119,6 +119,8 @@ class LowestCost {
     return better;
   }
 
+  double cost() const { return cost_; }
+
  private:
   const std::vector<WhitenedEdge>& edges_;
   const double gate_;
@@ -129,10 +131,13 @@ class LowestCost {
 };
 
 // Puts a group in force, releases it and polishes. With `relax` from a chordal
-// relaxation of what is in force then; false where there is none.
-bool SolveForced(const std::vector<int>& group, const double gate,
-                 const bool relax, std::vector<WhitenedEdge>* const edges,
+// relaxation of what is in force then; false where there is none, or where the
+// map costs more than `limit` while the group is in force.
+bool SolveForced(const std::vector<int>& group, const ForceOptions& options,
+                 const bool relax, const double limit,
+                 std::vector<WhitenedEdge>* const edges,
                  RobustSolver* const solver, std::vector<Pose2>* const poses) {
+  const double gate = options.gate;
   SolverOptions robust;
   robust.kernel = DefaultKernel(KernelType::kDcs);
   robust.kernel.parameter = gate;
@@ -143,7 +148,7 @@ bool SolveForced(const std::vector<int>& group, const double gate,
       !relax || ChordalPoses(*edges, DecideLoops(*edges, *poses, gate), poses);
   if (started) solver->Solve(robust, poses);
   for (const int i : group) (*edges)[i].is_loop = true;
-  if (!started) return false;
+  if (!started || TruncatedCost(*edges, *poses, gate) > limit) return false;
   solver->Solve(robust, poses);
   PolishTruncated(gate, kFullPolishRounds, solver, poses, nullptr);
   return true;
@@ -274,9 +279,10 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
     for (const bool relax : {false, true}) {
       if (better || (relax && !options.relax)) break;
       std::vector<Pose2> moved = *poses;
-      if (!SolveForced(support.groups[best], options.gate, relax, edges, solver,
-                       &moved)) {
-        break;
+      if (!SolveForced(support.groups[best], options, relax,
+                       lowest.cost() + options.max_rise * most * options.gate,
+                       edges, solver, &moved)) {
+        continue;
       }
       better = lowest.Offer(std::move(moved));
     }

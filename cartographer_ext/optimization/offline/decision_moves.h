@@ -54,6 +54,10 @@ struct ForceOptions {
   int max_trials = 30;
   int min_members = 1;  // of a group
   bool relax = true;    // try from a chordal relaxation, too
+  // Gates per rejected loop of the group by which the cost may rise while the
+  // group is in force; a map that costs more is given up before the group is
+  // released.
+  double max_rise = 1e9;
 };
 
 // A solution that was found and not kept.

@@ -234,6 +234,7 @@ bool Portfolio::FindsLostGroup() {
   force.max_trials = kMaxTrialsOfSettled;
   force.min_members = kSupported + 1;
   force.relax = false;  // the price of a graph that is settled
+  force.max_rise = 1.;  // a right group lowers the cost, or nearly so
   const double before = best().cost;
   // Less is a matter of loops near the gate.
   return AddForced(best().name, force) &&
@@ -277,8 +278,9 @@ bool Portfolio::ReplayIsLower() {
   const double before = best().cost;
   ReplayResult replay;
   if (!AddReplay(&replay)) return false;
-  const size_t first = AddKernels("r_isam, ", replay.poses, false);
-  return best().cost < before - kNearlySame * kChi2Gate && !IsSettled(first);
+  AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
+  return best().cost < before - kNearlySame * kChi2Gate &&
+         !IsSettled(AddKernels("r_isam, ", replay.poses, false));
 }
 
 bool Portfolio::RejectedContradict() {

@@ -77,25 +77,47 @@ TEST(DecisionMovesTest, RightGroupsPushOutAWrongOne) {
   for (size_t i = 0; i != clean; ++i) {
     if (edges[i].is_loop) wrong.edge_weights[i] = 0.;
   }
-  std::vector<Pose2> poses = world.graph.poses;
-  solver.Solve(wrong, &poses);
-  PolishTruncated(kChi2Gate, 30, &solver, &poses, nullptr);
-  const double before = TruncatedCost(edges, poses);
-  std::vector<Alternative> alternatives;
-  EXPECT_GT(ForceGroups(FindLoopSupport(world.graph, LoopSupportOptions()),
-                        ForceOptions(), &edges, &solver, &poses, &alternatives),
-            0);
-  EXPECT_LT(TruncatedCost(edges, poses), before);
-  int wrong_in_force = 0;
-  for (size_t i = clean; i != edges.size(); ++i) {
-    EXPECT_TRUE(edges[i].is_loop);
-    wrong_in_force +=
-        Chi2(edges[i], poses[edges[i].from], poses[edges[i].to]) < kChi2Gate;
+  std::vector<Pose2> start = world.graph.poses;
+  solver.Solve(wrong, &start);
+  PolishTruncated(kChi2Gate, 30, &solver, &start, nullptr);
+  const LoopSupport support =
+      FindLoopSupport(world.graph, LoopSupportOptions());
+  // Right groups lower the cost while they are in force.
+  for (const double max_rise : {1e9, 1.}) {
+    ForceOptions options;
+    options.max_rise = max_rise;
+    std::vector<Pose2> poses = start;
+    std::vector<Alternative> alternatives;
+    EXPECT_GT(
+        ForceGroups(support, options, &edges, &solver, &poses, &alternatives),
+        0);
+    EXPECT_LT(TruncatedCost(edges, poses), TruncatedCost(edges, start));
+    int wrong_in_force = 0;
+    for (size_t i = clean; i != edges.size(); ++i) {
+      EXPECT_TRUE(edges[i].is_loop);
+      wrong_in_force +=
+          Chi2(edges[i], poses[edges[i].from], poses[edges[i].to]) < kChi2Gate;
+    }
+    EXPECT_EQ(wrong_in_force, 0);
   }
-  EXPECT_EQ(wrong_in_force, 0);
 }
 
-// A ring that wrong groups have folded does not unfold by descent.
+// With a limit that nothing meets no group is released.
+TEST(DecisionMovesTest, WhatRaisesTheCostTooMuchIsGivenUp) {
+  test::GridWorld world = test::MakeWeakRing(2);
+  std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  std::vector<Pose2> poses = world.graph.poses;
+  PolishTruncated(kChi2Gate, 30, &solver, &poses, nullptr);
+  ForceOptions options;
+  options.max_rise = -1e9;
+  const LoopSupport support =
+      FindLoopSupport(world.graph, LoopSupportOptions());
+  EXPECT_EQ(ForceGroups(support, options, &edges, &solver, &poses, nullptr), 0);
+  options.max_rise = 1.;
+  EXPECT_GT(ForceGroups(support, options, &edges, &solver, &poses, nullptr), 0);
+}
+
 TEST(DecisionMovesTest, AChordalRelaxationUnfoldsARing) {
   int unfolded = 0;
   for (const uint64_t seed : {1, 6, 8, 10, 12, 14, 16}) {
