@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "absl/strings/match.h"
@@ -14,6 +13,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
+#include "cartographer_ext/common/bounded_read.h"
 #include "lua.hpp"
 
 namespace cartographer_ext {
@@ -73,14 +73,16 @@ void CountInstructions(lua_State* const lua, lua_Debug* /*where*/) {
   Environment* const environment = EnvironmentOf(lua);
   if (++environment->checks > kMaxChecks) {
     environment->is_exhausted = true;
-    // So that code which catches the error does not go on.
+    // The hook then fires at every instruction, so that code which catches the
+    // error cannot continue.
     lua_sethook(lua, CountInstructions, LUA_MASKCOUNT, 1);
     luaL_error(lua, "the code does not terminate");
   }
 }
 
 // Pushes the content of the file, or an error message, in which case false.
-// Nothing with a destructor is alive when the caller raises the error.
+// No object with a destructor is alive when the caller raises the error, which
+// does not unwind the stack.
 bool PushFile(lua_State* const lua) {
   if (lua_gettop(lua) != 1 || lua_type(lua, 1) != LUA_TSTRING) {
     lua_pushstring(lua, "include and read take a file name");
@@ -257,12 +259,7 @@ absl::StatusOr<std::string> ReadFromDirectories(
                          std::ios::binary);
     if (!stream) continue;
     std::string content;
-    char block[1 << 14];
-    while (content.size() <= kMaxFileSize && stream) {
-      stream.read(block, sizeof(block));
-      content.append(block, static_cast<size_t>(stream.gcount()));
-    }
-    if (stream.bad()) continue;
+    if (!ReadUpTo(kMaxFileSize, &stream, &content)) continue;
     if (content.size() <= kMaxFileSize) return content;
     return absl::InvalidArgumentError(absl::StrCat(
         directory, "/", basename, " has more than ", kMaxFileSize >> 20,

@@ -10,24 +10,17 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/io/picture.h"
+#include "cartographer_ext/metrics/statistics.h"
 
 namespace cartographer_ext {
 namespace experiments {
 namespace {
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0.;
-  std::sort(values.begin(), values.end());
-  const size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half]
-                                : 0.5 * (values[half - 1] + values[half]);
-}
-
 template <typename Member>
 double MedianOf(const std::vector<const SweepRun*>& runs, Member member) {
   std::vector<double> values;
   for (const SweepRun* const run : runs) values.push_back(run->*member);
-  return Median(values);
+  return evaluation::ComputeStatistics(std::move(values)).median;
 }
 
 const SweepCell* Find(const std::vector<SweepCell>& cells,

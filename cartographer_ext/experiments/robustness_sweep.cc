@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/experiments/sweep_graphs.h"
 #include "cartographer_ext/map/pose_graph_files.h"
@@ -90,8 +91,8 @@ absl::Status RunOne(const SweepOptions& options, const SweepGraph& dataset,
   if (!steps.empty()) {
     run->step_mean =
         1e3 * std::accumulate(steps.begin(), steps.end(), 0.) / steps.size();
-    run->step_p99 = 1e3 * optimization::Quantile(steps, 0.99);
-    run->step_max = 1e3 * optimization::Quantile(steps, 1.);
+    run->step_p99 = 1e3 * NearestRankQuantile(steps, 0.99);
+    run->step_max = 1e3 * NearestRankQuantile(steps, 1.);
   }
   const auto truth = options.truths.find(dataset.name);
   if (truth != options.truths.end()) {

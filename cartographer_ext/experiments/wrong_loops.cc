@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/experiments/wrong_loops.h"
 
-#include <algorithm>
-
 #include "absl/strings/str_cat.h"
 #include "cartographer/mapping/pose_graph.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/map/host_map.h"
 #include "cartographer_ext/map/pbstream_map.h"
 
@@ -21,12 +20,6 @@ using cartographer::transform::Rigid3d;
 
 constexpr int kMaxDraws = 1000;
 constexpr int kGrowingSubmaps = 2;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Rigid3d ToRigid3d(const Pose2& pose) {
   return Embed3D(Rigid2d(Eigen::Vector2d(pose.x, pose.y), pose.theta));
@@ -89,8 +82,8 @@ absl::StatusOr<std::vector<int>> AddWrongLoops(const WrongLoopOptions& options,
     rotation_weights.push_back(constraint.rotation_weight);
   }
   if (!translation_weights.empty()) {
-    weighted.translation_weight = Median(translation_weights);
-    weighted.rotation_weight = Median(rotation_weights);
+    weighted.translation_weight = UpperMedian(translation_weights);
+    weighted.rotation_weight = UpperMedian(rotation_weights);
   }
   Random random(options.seed);
   std::vector<GraphConstraint> loops;

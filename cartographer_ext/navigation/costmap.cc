@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "absl/strings/str_format.h"
-#include "cartographer_ext/navigation/distance_transform.h"
+#include "cartographer_ext/common/distance_transform.h"
 
 namespace cartographer_ext {
 namespace navigation {

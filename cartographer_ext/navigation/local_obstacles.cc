@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cartographer_ext/navigation/distance_transform.h"
+#include "cartographer_ext/common/distance_transform.h"
 
 namespace cartographer_ext {
 namespace navigation {

@@ -15,6 +15,7 @@
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/map/verdict/motion_disagreement.h"
 
@@ -177,13 +178,6 @@ void ForSteps(const MotionChain& chain, const Visit& visit) {
   }
 }
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0.;
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct Weights {
   double translation = kTranslationWeight;
   double rotation = kRotationWeight;
@@ -305,9 +299,11 @@ MotionChain MixedChain(const io::Pbstream& pbstream) {
     angles.push_back(std::abs(difference.theta));
     distances.push_back(difference.translation().norm());
   });
-  const double max_angle = std::max(kLeastAngle, kOutlying * Median(angles));
+  if (angles.empty()) return local;
+  const double max_angle =
+      std::max(kLeastAngle, kOutlying * UpperMedian(angles));
   const double max_distance =
-      std::max(kLeastDistance, kOutlying * Median(distances));
+      std::max(kLeastDistance, kOutlying * UpperMedian(distances));
   MotionChain chain = local;
   size_t step = 0;
   ForSteps(local, [&](const GraphId& from, const GraphId& to) {

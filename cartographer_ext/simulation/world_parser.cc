@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <set>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "cartographer_ext/common/bounded_read.h"
 #include "cartographer_ext/simulation/plan_builder.h"
 #include "cartographer_ext/simulation/statement.h"
 
@@ -30,7 +30,8 @@ constexpr double kMaxSeconds = 4. * 3600.;
 void ReadLaser(Statement* s, LaserSettings* laser) {
   laser->beams = static_cast<int>(s->Option("beams", laser->beams, 1., 7200.));
   const double fov = s->Option("fov", 360., 1e-3, 360.);
-  // A full turn has no double beam; any other field of view reaches both ends.
+  // A field of view of 360 degrees does not repeat its first beam; any other
+  // one has beams at both ends.
   const int intervals =
       fov == 360. ? laser->beams : std::max(1, laser->beams - 1);
   const double increment = s->Option("increment", fov / intervals, 1e-4, 360.);
@@ -313,12 +314,8 @@ absl::StatusOr<World> LoadWorld(const std::string& filename) {
     return absl::NotFoundError(absl::StrCat(filename, ": cannot be opened"));
   }
   std::string text;
-  std::vector<char> buffer(1 << 16);
-  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
-    text.append(buffer.data(), file.gcount());
-    if (text.size() > kMaxFileSize) break;  // ParseWorld says so
-  }
-  if (file.bad() || text.empty()) {
+  // ParseWorld reports a file that is too large.
+  if (!ReadUpTo(kMaxFileSize, &file, &text) || text.empty()) {
     return absl::InvalidArgumentError(
         absl::StrCat(filename, ": is empty or cannot be read"));
   }

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 
-#include "cartographer_ext/optimization/solvers/incremental_smoother.h"
+#include "cartographer_ext/common/order_statistics.h"
 
 namespace cartographer_ext {
 namespace evaluation {
+
 void LatencyMeter::AddReading(const double seconds, const bool is_scan) {
   since_scan_ += seconds;
   if (!is_scan) return;
@@ -27,9 +28,10 @@ LatencySummary LatencyMeter::Summary() const {
   LatencySummary summary;
   summary.scans = static_cast<int64_t>(scans_.size());
   summary.max_backlog = max_backlog_;
-  summary.local_slam_p50 = optimization::Quantile(scans_, 0.5);
-  summary.local_slam_p99 = optimization::Quantile(scans_, 0.99);
-  summary.local_slam_max = optimization::Quantile(scans_, 1.);
+  if (scans_.empty()) return summary;
+  summary.local_slam_p50 = NearestRankQuantile(scans_, 0.5);
+  summary.local_slam_p99 = NearestRankQuantile(scans_, 0.99);
+  summary.local_slam_max = NearestRankQuantile(scans_, 1.);
   return summary;
 }
 

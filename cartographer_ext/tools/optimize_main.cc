@@ -15,6 +15,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/types/optional.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/io/pbstream/pbstream_writer.h"
@@ -196,8 +197,8 @@ nlohmann::ordered_json NoiseReport(const optimization::OptimizeResult& result) {
   return json;
 }
 
-// Sets of loops that explain the graph as well as those in force and move the
-// map, or do not.
+// Sets of loops that explain the graph as well as those in force, with another
+// map or with the same.
 nlohmann::ordered_json RivalReport(const optimization::PoseGraph& graph,
                                    const optimization::OptimizeResult& result,
                                    const bool moves_map) {
@@ -222,7 +223,7 @@ nlohmann::ordered_json RivalReport(const optimization::PoseGraph& graph,
   return json;
 }
 
-// Says how far apart the maps are between which the data do not decide.
+// Reports the distance between the maps that the data cannot tell apart.
 void PrintRivals(const std::vector<optimization::RivalSets>& rivals) {
   for (const bool moves_map : {true, false}) {
     int count = 0;
@@ -276,8 +277,8 @@ nlohmann::ordered_json Report(const optimization::PoseGraph& graph,
     json["step_milliseconds"] = {
         {"mean",
          1e3 * std::accumulate(steps.begin(), steps.end(), 0.) / steps.size()},
-        {"p99", 1e3 * optimization::Quantile(steps, 0.99)},
-        {"max", 1e3 * optimization::Quantile(steps, 1.)}};
+        {"p99", 1e3 * NearestRankQuantile(steps, 0.99)},
+        {"max", 1e3 * NearestRankQuantile(steps, 1.)}};
   }
   return json;
 }

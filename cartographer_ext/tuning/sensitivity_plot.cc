@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/match.h"
@@ -13,6 +14,7 @@
 #include "cairo-svg.h"
 #include "cairo.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/configuration/lua_value.h"
 #include "cartographer_ext/io/picture.h"
 #include "cartographer_ext/tuning/comparable_trials.h"
@@ -69,7 +71,7 @@ class Cell {
 
   void Draw(const TuneResult& result, const Sensitivity& sensitivity) {
     SetColor(io::palette::kBlack);
-    // The last names say most.
+    // The last components of the name are the most specific.
     std::string title = parameter_.key;
     if (title.size() > 50) title = "..." + title.substr(title.size() - 47);
     Text(kLeft - 50., 16., title, 11.);
@@ -168,9 +170,7 @@ class Cell {
         }
       }
       if (members.empty()) continue;
-      std::nth_element(members.begin(), members.begin() + members.size() / 2,
-                       members.end());
-      const double y = Y(members[members.size() / 2]);
+      const double y = Y(UpperMedian(std::move(members)));
       cairo_move_to(cairo_, kLeft + Width() * group / groups, y);
       cairo_line_to(cairo_, kLeft + Width() * (group + 1) / groups, y);
       cairo_stroke(cairo_);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "benchmark/benchmark.h"
-#include "cartographer_ext/navigation/distance_transform.h"
+#include "cartographer_ext/common/distance_transform.h"
 #include "cartographer_ext/navigation/grid_search.h"
 
 namespace cartographer_ext {

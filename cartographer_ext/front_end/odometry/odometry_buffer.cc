@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "cartographer_ext/common/order_statistics.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -74,10 +77,7 @@ double OdometryBuffer::MedianInterval() const {
        i > 1 && intervals.size() + 1 < kUsualReadings; --i) {
     intervals.push_back(readings_[i - 1].time - readings_[i - 2].time);
   }
-  if (intervals.empty()) return 0.;
-  const auto middle = intervals.begin() + intervals.size() / 2;
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return intervals.empty() ? 0. : UpperMedian(std::move(intervals));
 }
 
 bool OdometryBuffer::Lookup(const double time,

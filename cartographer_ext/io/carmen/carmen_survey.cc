@@ -11,6 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/io/carmen/range_histogram.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/tokens.h"
@@ -41,12 +42,6 @@ struct LineKey {
   bool plausible = true;
 };
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // (robot <- laser) that explains 99 % of `offsets`; false if none does.
 bool FindConstantOffset(const std::vector<Pose2>& offsets, Pose2* offset) {
   std::vector<double> x, y, sine, cosine;
@@ -56,8 +51,9 @@ bool FindConstantOffset(const std::vector<Pose2>& offsets, Pose2* offset) {
     sine.push_back(std::sin(pose.theta));
     cosine.push_back(std::cos(pose.theta));
   }
-  *offset = Pose2(Median(x), Median(y),
-                  std::atan2(Median(std::move(sine)), Median(cosine)));
+  *offset = Pose2(
+      UpperMedian(std::move(x)), UpperMedian(std::move(y)),
+      std::atan2(UpperMedian(std::move(sine)), UpperMedian(std::move(cosine))));
   size_t num_close = 0;
   for (const Pose2& pose : offsets) {
     if (std::abs(pose.x - offset->x) <= kOffsetTolerance &&
@@ -81,7 +77,7 @@ class Survey {
  private:
   void MarkImplausible();
   void WarnOfIgnored(CarmenPlan* plan) const;
-  // Which lines the odometry is taken from; `disordered` messages have an
+  // Chooses the lines that odometry is read from; `disordered` messages have an
   // earlier stamp than the one before them.
   void ChooseOdometry(const std::string& odometry_source, int64_t disordered,
                       CarmenPlan* plan) const;
@@ -236,7 +232,8 @@ Pose2 Survey::ChooseLaserPose(CarmenKind scan_kind,
                      "used"));
     return parameter_offset_;
   }
-  // Equal poses say nothing: many loggers never knew where the laser is.
+  // Equal poses are no evidence: many loggers did not know where the laser is
+  // mounted.
   const bool equal =
       std::hypot(offset.x, offset.y) < 1e-4 && std::abs(offset.theta) < 1e-4;
   return equal ? parameter_offset_ : offset;

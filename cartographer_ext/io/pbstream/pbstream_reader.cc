@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/bounded_read.h"
 #include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/io/pbstream/message_size.h"
 #include "cartographer_ext/io/pbstream/pbstream_records.h"
@@ -37,9 +38,9 @@ bool TakeVarint(absl::string_view* bytes, uint64_t* value) {
 }
 
 // SerializedData is a union of messages, so a record is the number of one
-// field, a size, and that message. Taking this apart by hand lets us know the
-// kind before anything is allocated, and refuses records with several messages,
-// which is never written.
+// field, a size, and that message. It is parsed by hand so that the kind is
+// known before memory is allocated, and that records with several messages,
+// which no program writes, are refused.
 bool OpenEnvelope(absl::string_view record, int* field_number,
                   absl::string_view* message) {
   uint64_t tag, size;
@@ -174,7 +175,7 @@ class Parser {
     return absl::OkStatus();
   }
 
-  // Before the messages exist.
+  // Checked before the messages are created.
   absl::Status CountMemory(const int kind, const absl::string_view message) {
     const auto* const field = Data::descriptor()->FindFieldByNumber(kind);
     if (field == nullptr) return absl::OkStatus();
@@ -302,22 +303,20 @@ absl::StatusOr<Pbstream> ReadPbstream(const std::string& filename,
     return absl::NotFoundError(absl::StrCat(filename, ": cannot be opened"));
   }
   std::string content;
-  std::vector<char> piece(1 << 20);
-  do {
-    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    content.append(piece.data(), static_cast<size_t>(file.gcount()));
-    // Devices never end; nothing else is worth reading on.
+  // The first block tells whether this is a pbstream, before all is read.
+  if (ReadUpTo(0, &file, &content)) {
     const PbstreamRecords start(content, filename);
     if (!start.status().ok()) return start.status();
-    if (static_cast<int64_t>(content.size()) > options.limits.max_file_size) {
-      return absl::ResourceExhaustedError(
-          absl::StrFormat("%s: is larger than the %d bytes that are allowed",
-                          filename, options.limits.max_file_size));
-    }
-  } while (file);
-  if (file.bad()) {
+  }
+  const size_t limit = static_cast<size_t>(options.limits.max_file_size);
+  if (!ReadUpTo(limit, &file, &content)) {
     return absl::InvalidArgumentError(
         absl::StrCat(filename, ": cannot be read"));
+  }
+  if (content.size() > limit) {
+    return absl::ResourceExhaustedError(
+        absl::StrFormat("%s: is larger than the %d bytes that are allowed",
+                        filename, options.limits.max_file_size));
   }
   return ParsePbstream(content, filename, options);
 }

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
@@ -16,17 +17,15 @@ namespace {
 constexpr size_t kMaxScans = 1000;
 constexpr size_t kMinScans = 10;
 constexpr size_t kMaxSensors = 64;
-// Stamps of scans jitter.
+// Tolerance for the jitter of stamps, relative to the period.
 constexpr double kPeriodTolerance = 1.1;
 // Below, a walking robot moves less than the cells of its map within a scan.
 constexpr double kSlowPeriod = 0.05;
 constexpr double kTurningFieldOfView = 1.5 * kPi;
 
-double Median(std::vector<double> values) {
-  if (values.size() < kMinScans) return 0.;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2,
-                   values.end());
-  return values[values.size() / 2];
+// 0 for too few values.
+double Median(const std::vector<double>& values) {
+  return values.size() < kMinScans ? 0. : UpperMedian(values);
 }
 
 std::string Seconds(const double value) {

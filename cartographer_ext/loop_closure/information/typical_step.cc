@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/squared.h"
 
 namespace cartographer_ext {
@@ -30,11 +31,9 @@ double TypicalStep::WeightFactor(const int trajectory_id) const {
       found->second.steps.size() < kFewestSteps) {
     return 1.;
   }
-  std::vector<double> steps(found->second.steps.begin(),
-                            found->second.steps.end());
-  const auto median = steps.begin() + steps.size() / 2;
-  std::nth_element(steps.begin(), median, steps.end());
-  return Squared(std::max(1., *median / dense_step_));
+  const double median = UpperMedian(std::vector<double>(
+      found->second.steps.begin(), found->second.steps.end()));
+  return Squared(std::max(1., median / dense_step_));
 }
 
 }  // namespace loop_closure

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+
+#include "cartographer_ext/common/order_statistics.h"
 
 namespace cartographer_ext {
 namespace navigation {
@@ -27,9 +30,7 @@ double MedianError(const std::vector<LocalizationError>& errors) {
   for (const LocalizationError& error : errors) {
     distances.push_back(error.offset.norm());
   }
-  std::nth_element(distances.begin(), distances.begin() + distances.size() / 2,
-                   distances.end());
-  return distances[distances.size() / 2];
+  return UpperMedian(std::move(distances));
 }
 
 double MaxError(const std::vector<LocalizationError>& errors) {

@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/io/picture.h"
 
 namespace cartographer_ext {
@@ -16,11 +17,11 @@ namespace {
 
 constexpr int kPicturePixels = 1600;
 
-double Quantile(std::vector<double> values, const double ratio) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1,
-                         static_cast<size_t>(ratio * values.size()))];
+// Milliseconds that `fraction` of the control cycles took at most.
+double CycleTime(const NavigationRun& run, const double fraction) {
+  return run.cycle_seconds.empty()
+             ? std::numeric_limits<double>::quiet_NaN()
+             : 1e3 * NearestRankQuantile(run.cycle_seconds, fraction);
 }
 
 nlohmann::ordered_json LocalizationJson(
@@ -49,10 +50,9 @@ nlohmann::ordered_json ToJson(const NavigationRun& run) {
   json["localization"] = LocalizationJson(run.localization, run.jumps);
   json["localization"]["stopped_cycles"] = run.lost_cycles;
   json["localization"]["late_optimizations"] = run.late_optimizations;
-  json["control_cycle_milliseconds"] = {
-      {"p50", 1e3 * Quantile(run.cycle_seconds, 0.5)},
-      {"p99", 1e3 * Quantile(run.cycle_seconds, 0.99)},
-      {"max", 1e3 * Quantile(run.cycle_seconds, 1.)}};
+  json["control_cycle_milliseconds"] = {{"p50", CycleTime(run, 0.5)},
+                                        {"p99", CycleTime(run, 0.99)},
+                                        {"max", CycleTime(run, 1.)}};
   const double seconds = std::max(1e-9, run.seconds);
   json["cpu_share"] = {
       {"planning_and_control", run.planning_cpu_seconds / seconds},
@@ -118,9 +118,8 @@ std::string ToText(const NavigationRun& run) {
   }
   absl::StrAppendFormat(
       &text,
-      "Collisions    %d with stationary things (least clearance "
-      "%.2f m), %d with what "
-      "moves; run into %d times while standing\n",
+      "Collisions    %d with stationary obstacles (least clearance %.2f m), "
+      "%d with moving ones; run into %d times while stationary\n",
       run.static_collisions, run.least_clearance, run.moving_collisions,
       run.run_into);
   absl::StrAppendFormat(
@@ -141,8 +140,7 @@ std::string ToText(const NavigationRun& run) {
       100. * (run.planning_cpu_seconds + run.localization_cpu_seconds) /
           std::max(1e-9, run.seconds),
       100. * run.localization_cpu_seconds / std::max(1e-9, run.seconds),
-      1e3 * Quantile(run.cycle_seconds, 0.5),
-      1e3 * Quantile(run.cycle_seconds, 0.99));
+      CycleTime(run, 0.5), CycleTime(run, 0.99));
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "Eigen/Cholesky"
 #include "Eigen/LU"
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/common/order_statistics.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -97,9 +98,7 @@ void MarkLoops(PoseGraph* const graph) {
     gaps[k] = static_cast<uint64_t>(graph->ids[k + 1]) -
               static_cast<uint64_t>(graph->ids[k]);
   }
-  std::vector<uint64_t> sorted = gaps;
-  const auto middle = sorted.begin() + sorted.size() / 2;
-  if (!sorted.empty()) std::nth_element(sorted.begin(), middle, sorted.end());
+  const uint64_t usual_gap = gaps.empty() ? 0 : UpperMedian(gaps);
   std::vector<bool> has_forward(num_steps, false);
   for (const PoseGraphEdge& edge : graph->edges) {
     if (edge.to == edge.from + 1) has_forward[edge.from] = true;
@@ -108,7 +107,7 @@ void MarkLoops(PoseGraph* const graph) {
     const int k = std::min(edge.from, edge.to);
     edge.is_loop = std::max(edge.from, edge.to) != k + 1 ||
                    (edge.from != k && has_forward[k]) ||
-                   (gaps[k] - 1) / kLongGap >= *middle;
+                   (gaps[k] - 1) / kLongGap >= usual_gap;
   }
 }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include "cartographer_ext/common/loop_information.h"
+#include "cartographer_ext/common/order_statistics.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -35,9 +37,7 @@ double WeightScale(const std::vector<SlamConstraint>& constraints,
     }
   }
   if (weights.empty()) return 1. / (kStockLoopWeight * loop_sigma);
-  const auto middle = weights.begin() + weights.size() / 2;
-  std::nth_element(weights.begin(), middle, weights.end());
-  return 1. / (*middle * loop_sigma);
+  return 1. / (UpperMedian(std::move(weights)) * loop_sigma);
 }
 
 class Builder {

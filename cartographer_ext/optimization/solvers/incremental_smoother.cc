@@ -240,14 +240,5 @@ absl::Status Replay(const PoseGraph& graph, const SmootherOptions& options,
   return absl::OkStatus();
 }
 
-double Quantile(std::vector<double> values, const double fraction) {
-  if (values.empty()) return 0.;
-  const size_t rank = std::min(
-      values.size() - 1, static_cast<size_t>(std::max(
-                             0., std::ceil(fraction * values.size()) - 1.)));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[rank];
-}
-
 }  // namespace optimization
 }  // namespace cartographer_ext

@@ -189,9 +189,6 @@ struct ReplayResult {
 absl::Status Replay(const PoseGraph& graph, const SmootherOptions& options,
                     ReplayResult* result);
 
-// Quantile (nearest rank) of a set of values; 0 when empty.
-double Quantile(std::vector<double> values, double fraction);
-
 // argmin over s in [0, 1] of sum u_i^2 s^2/(1 + s^2 q_i) + w (1 - s)^2.
 double MinimizeSwitch(const Eigen::Vector3d& squared_innovation,
                       const Eigen::Vector3d& predicted_variance,

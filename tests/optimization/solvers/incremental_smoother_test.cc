@@ -208,13 +208,6 @@ TEST(IncrementalSmootherTest, Errors) {
   smoother.Finish();
 }
 
-TEST(IncrementalSmootherTest, Quantiles) {
-  EXPECT_DOUBLE_EQ(Quantile({}, 0.5), 0.);
-  EXPECT_DOUBLE_EQ(Quantile({3., 1., 2.}, 0.5), 2.);
-  EXPECT_DOUBLE_EQ(Quantile({3., 1., 2.}, 1.), 3.);
-  EXPECT_DOUBLE_EQ(Quantile({3., 1., 2.}, 0.), 1.);
-}
-
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext

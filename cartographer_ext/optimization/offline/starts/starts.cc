@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "Eigen/Cholesky"
 #include "Eigen/LU"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/optimization/solvers/block_ldlt.h"
 #include "cartographer_ext/optimization/solvers/edges_in_force.h"
@@ -43,12 +43,8 @@ Unit OdometryUnit(const PoseGraph& graph) {
   }
   Unit unit;
   if (positions.empty()) return unit;
-  const size_t middle = positions.size() / 2;
-  std::nth_element(positions.begin(), positions.begin() + middle,
-                   positions.end());
-  std::nth_element(angles.begin(), angles.begin() + middle, angles.end());
-  unit.position = positions[middle];
-  unit.angle = angles[middle];
+  unit.position = UpperMedian(std::move(positions));
+  unit.angle = UpperMedian(std::move(angles));
   return unit;
 }
 

@@ -5,15 +5,19 @@
 // Roerdink and Hesselink (2000): for every cell the distance to the nearest
 // occupied one, centre to centre, in time linear in the number of cells. All
 // arithmetic is on integers, so the squared distances are exact.
-#ifndef CARTOGRAPHER_EXT_NAVIGATION_DISTANCE_TRANSFORM_H_
-#define CARTOGRAPHER_EXT_NAVIGATION_DISTANCE_TRANSFORM_H_
+//
+// Two places measure distances in a grid for themselves, and with reason:
+// OccupancyView needs squared distances up to 11 cells only, in one byte a
+// cell, for every submap that is verified; SubmapCells tolerates a number of
+// rows and columns, which is the chessboard metric.
+#ifndef CARTOGRAPHER_EXT_COMMON_DISTANCE_TRANSFORM_H_
+#define CARTOGRAPHER_EXT_COMMON_DISTANCE_TRANSFORM_H_
 
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 namespace cartographer_ext {
-namespace navigation {
 
 // Squared distance of a grid without any occupied cell.
 constexpr int32_t kNoOccupiedCell = std::numeric_limits<int32_t>::max();
@@ -27,7 +31,6 @@ std::vector<int32_t> SquaredDistanceTransform(
 std::vector<float> DistanceTransform(const std::vector<uint8_t>& occupied,
                                      int width, int height, double resolution);
 
-}  // namespace navigation
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_NAVIGATION_DISTANCE_TRANSFORM_H_
+#endif  // CARTOGRAPHER_EXT_COMMON_DISTANCE_TRANSFORM_H_

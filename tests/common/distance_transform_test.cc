@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/navigation/distance_transform.h"
+#include "cartographer_ext/common/distance_transform.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,7 +9,6 @@
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
-namespace navigation {
 namespace {
 
 std::vector<int32_t> BruteForce(const std::vector<uint8_t>& occupied,
@@ -54,5 +53,4 @@ TEST(DistanceTransformTest, IsInMetres) {
 }
 
 }  // namespace
-}  // namespace navigation
 }  // namespace cartographer_ext

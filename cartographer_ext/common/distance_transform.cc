@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/navigation/distance_transform.h"
+#include "cartographer_ext/common/distance_transform.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include "glog/logging.h"
 
 namespace cartographer_ext {
-namespace navigation {
 namespace {
 
 // Farther than any cell of a permitted grid, and its square still fits.
@@ -104,5 +103,4 @@ std::vector<float> DistanceTransform(const std::vector<uint8_t>& occupied,
   return distances;
 }
 
-}  // namespace navigation
 }  // namespace cartographer_ext
