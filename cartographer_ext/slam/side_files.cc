@@ -3,10 +3,11 @@
 #include "cartographer_ext/slam/side_files.h"
 
 #include <fstream>
-#include <iterator>
+#include <limits>
 
 #include "absl/strings/strip.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/bounded_read.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -34,8 +35,11 @@ absl::Status WriteSideFiles(const std::string& records_filename,
 absl::StatusOr<std::string> ReadBytes(const std::string& filename) {
   std::ifstream file(AtomicFileSet::NameToRead(filename), std::ios::binary);
   if (!file) return absl::NotFoundError(absl::StrCat("cannot read ", filename));
-  return std::string((std::istreambuf_iterator<char>(file)),
-                     std::istreambuf_iterator<char>());
+  std::string bytes;
+  if (!ReadUpTo(std::numeric_limits<size_t>::max(), &file, &bytes)) {
+    return absl::DataLossError(absl::StrCat("cannot read ", filename));
+  }
+  return bytes;
 }
 
 }  // namespace evaluation

@@ -53,6 +53,10 @@ TEST(SideFilesTest, ErrorsNameTheFile) {
   const auto read = ReadBytes(missing);
   EXPECT_TRUE(absl::IsNotFound(read.status()));
   EXPECT_THAT(std::string(read.status().message()), HasSubstr("x.pb"));
+  const auto folder = ReadBytes(testing::TempDir());
+  EXPECT_TRUE(absl::IsDataLoss(folder.status()));
+  EXPECT_THAT(std::string(folder.status().message()),
+              HasSubstr(testing::TempDir()));
   EXPECT_TRUE(
       absl::IsNotFound(ReadSideFile<int>(missing, &ParseLength).status()));
   const std::string empty = testing::TempDir() + "side_files_empty.pb";

@@ -9,7 +9,7 @@
 #include <utility>
 
 #ifdef CARTOGRAPHER_EXT_HAS_MPI
-// The C interface only.
+// Only the C interface is used.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>

@@ -11,17 +11,18 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <random>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/common/bounded_read.h"
 
 namespace cartographer_ext {
 namespace tuning {
 namespace {
 
 constexpr char kAnswerEnding[] = ".answer.json";
+constexpr size_t kMaxFileSize = 64 << 20;  // of a file that is not damaged
 
 }  // namespace
 
@@ -56,14 +57,17 @@ std::vector<std::string> SharedFolder::Names() const {
 nlohmann::json SharedFolder::Read(const std::string& name) const {
   std::ifstream stream(PathOf(name), std::ios::binary);
   if (!stream) return nullptr;
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  std::string text;
+  if (!ReadUpTo(kMaxFileSize, &stream, &text) || text.size() > kMaxFileSize) {
+    return nullptr;
+  }
   auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object()) return nullptr;
   return json;
 }
 
-// It need not survive a loss of power and must be visible at once, so
-// AtomicFile does not serve.
+// AtomicFile is not used: it synchronises with the disk, which is not needed
+// here, and may wait for the end of a set.
 absl::Status SharedFolder::Write(const nlohmann::json& json,
                                  const std::string& name) const {
   const std::string path = PathOf(name);

@@ -15,16 +15,13 @@ namespace cartographer_ext {
 namespace tuning {
 namespace {
 
-// More would be a damaged file.
+// A file that claims more is damaged.
 constexpr int kMaxSlots = 10000;
 
 nlohmann::json KilledAnswer(const std::string& slot, const double seconds) {
-  nlohmann::json answer = Failure(
-      absl::StrCat("the task that ran it (", slot, ") is not alive any more"));
-  answer["killed"] = true;
-  answer["wall_seconds"] = seconds;
-  answer["cpu_seconds"] = 0.;
-  return answer;
+  return WithTimes(KilledFailure(absl::StrCat("the task that ran it (", slot,
+                                              ") is not alive any more")),
+                   seconds, 0.);
 }
 
 }  // namespace
@@ -43,7 +40,7 @@ absl::StatusOr<std::unique_ptr<SharedFolderPool>> SharedFolderPool::Create(
   if (!found.ok()) return found;
   const nlohmann::json other = folder.Read(SharedFolder::kCoordinator);
   if (TextOf(other, "state") == SharedFolder::kRunning) {
-    // It was killed, or it is alive.
+    // The other process was killed, or it is alive and its beat will change.
     SleepFor(3. * options.poll_seconds);
     if (folder.Read(SharedFolder::kCoordinator) != other) {
       return absl::AlreadyExistsError(absl::StrCat(
@@ -54,7 +51,7 @@ absl::StatusOr<std::unique_ptr<SharedFolderPool>> SharedFolderPool::Create(
       new SharedFolderPool(options, std::move(run)));
   // Left by an earlier search; tasks that are alive write theirs again.
   for (const std::string& name : folder.Names()) {
-    // Not the temporary files of tasks that are writing.
+    // Temporary files belong to tasks that are writing.
     if (absl::StartsWith(name, "task-") && absl::EndsWith(name, ".json")) {
       folder.Remove(name);
     }
@@ -104,7 +101,7 @@ std::string SharedFolderPool::IdleSlot() const {
 
 void SharedFolderPool::Start(const int id, const nlohmann::json& request) {
   CHECK_LT(num_running(), num_workers());
-  // Others first: this process distributes as well.
+  // Other tasks first, because this process also distributes runs.
   const std::string slot = IdleSlot();
   if (slot.empty()) {
     local_.Start(id, request);
@@ -150,7 +147,7 @@ void SharedFolderPool::FindTasks() {
                          known->second.beat != beat;
     task.beat_seconds = is_news ? now : known->second.beat_seconds;
     if (now - task.beat_seconds > options_.silent_seconds) {
-      // Otherwise it would be news again.
+      // Otherwise it would be taken for a new task at the next look.
       folder_.Remove(name);
       continue;
     }

@@ -28,22 +28,13 @@ class Server {
   }
 
   absl::Status Run() {
-    last_heard_ = SteadySeconds();
-    while (true) {
-      const absl::Status status = Poll();
-      if (!status.ok() || ended_) {
-        if (status.code() != absl::StatusCode::kAlreadyExists) {
-          folder_.Remove(OwnName());
-        }
-        return status;
-      }
-      const double next = SteadySeconds() + options_.poll_seconds;
-      while (SteadySeconds() < next) {
-        const absl::Status answered = Answer();
-        if (!answered.ok()) return answered;
-        SleepFor(options_.pause_seconds());
-      }
+    const absl::Status status = Serve();
+    // Task 0 then knows at once that this one has ended. The file may be that
+    // of another process with the same number, though.
+    if (status.code() != absl::StatusCode::kAlreadyExists) {
+      folder_.Remove(OwnName());
     }
+    return status;
   }
 
  private:
@@ -54,6 +45,20 @@ class Server {
     std::unique_ptr<LocalWorkerPool> pool;
     int serial = -1;  // of the last request
   };
+
+  absl::Status Serve() {
+    last_heard_ = SteadySeconds();
+    while (true) {
+      const absl::Status status = Poll();
+      if (!status.ok() || ended_) return status;
+      const double next = SteadySeconds() + options_.poll_seconds;
+      while (SteadySeconds() < next) {
+        const absl::Status answered = Answer();
+        if (!answered.ok()) return answered;
+        SleepFor(options_.pause_seconds());
+      }
+    }
+  }
 
   std::string OwnName() const {
     return absl::StrCat(TaskName(options_.task), ".json");

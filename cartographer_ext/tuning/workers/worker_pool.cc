@@ -53,7 +53,7 @@ void WriteAll(const int descriptor, const std::string& text) {
   }
 }
 
-// The line that says most: that of the failed check, else the last one.
+// The most informative line: that of a failed check, otherwise the last one.
 std::string TellingLine(const std::string& messages) {
   std::string telling;
   for (const absl::string_view line :
@@ -122,6 +122,19 @@ nlohmann::json Failure(const std::string& message) {
   return {{"ok", false}, {"message", message}};
 }
 
+nlohmann::json KilledFailure(const std::string& message) {
+  nlohmann::json answer = Failure(message);
+  answer["killed"] = true;
+  return answer;
+}
+
+nlohmann::json WithTimes(nlohmann::json answer, const double wall_seconds,
+                         const double cpu_seconds) {
+  answer["wall_seconds"] = wall_seconds;
+  answer["cpu_seconds"] = cpu_seconds;
+  return answer;
+}
+
 LocalWorkerPool::LocalWorkerPool(const int num_workers,
                                  const double max_cpu_seconds, RunFunction run)
     : num_workers_(num_workers),
@@ -152,10 +165,9 @@ void LocalWorkerPool::Start(const int id, const nlohmann::json& request) {
   const std::string error = strerror(errno);
   if (child.answer >= 0) close(child.answer);
   if (child.messages >= 0) close(child.messages);
-  nlohmann::json answer = Failure("no process could be started: " + error);
-  answer["wall_seconds"] = 0.;
-  answer["cpu_seconds"] = 0.;
-  failed_.push_back({id, answer});
+  failed_.push_back(
+      {id,
+       WithTimes(Failure("no process could be started: " + error), 0., 0.)});
 }
 
 absl::optional<WorkerResult> LocalWorkerPool::Reap() {
@@ -171,27 +183,26 @@ absl::optional<WorkerResult> LocalWorkerPool::Reap() {
     if (pid != entry->first) continue;
     const Child child = entry->second;
     children_.erase(entry);
-    WorkerResult result;
-    result.id = child.id;
-    result.answer = nlohmann::json::parse(ReadFromStart(child.answer), nullptr,
-                                          /*allow_exceptions=*/false);
+    nlohmann::json answer =
+        nlohmann::json::parse(ReadFromStart(child.answer), nullptr,
+                              /*allow_exceptions=*/false);
     const double cpu_seconds =
         Seconds(usage.ru_utime) + Seconds(usage.ru_stime);
-    if (!result.answer.is_object() || !result.answer.contains("ok")) {
+    if (!answer.is_object() || !answer.contains("ok")) {
       // The limit of CPU time ends a run with SIGXCPU, then with SIGKILL.
       const bool was_killed =
           WIFSIGNALED(state) &&
           (WTERMSIG(state) == SIGKILL || WTERMSIG(state) == SIGTERM) &&
           !(max_cpu_seconds_ > 0. && cpu_seconds >= max_cpu_seconds_);
-      result.answer =
-          Failure(HowItEnded(state, was_killed, ReadFromStart(child.messages)));
-      if (was_killed) result.answer["killed"] = true;
+      const std::string message =
+          HowItEnded(state, was_killed, ReadFromStart(child.messages));
+      answer = was_killed ? KilledFailure(message) : Failure(message);
     }
-    result.answer["wall_seconds"] = SteadySeconds() - child.start;
-    result.answer["cpu_seconds"] = cpu_seconds;
     close(child.answer);
     close(child.messages);
-    return result;
+    return WorkerResult{
+        child.id, WithTimes(std::move(answer), SteadySeconds() - child.start,
+                            cpu_seconds)};
   }
   return absl::nullopt;
 }

@@ -51,8 +51,13 @@ using RunFunction = std::function<nlohmann::json(const nlohmann::json&)>;
 double SteadySeconds();
 void SleepFor(double seconds);
 
-// A failed answer.
+// A failed answer, and that of a run which was ended from outside and may
+// succeed when it is repeated ("killed").
 nlohmann::json Failure(const std::string& message);
+nlohmann::json KilledFailure(const std::string& message);
+// The answer with the times that the run took.
+nlohmann::json WithTimes(nlohmann::json answer, double wall_seconds,
+                         double cpu_seconds);
 
 // Child processes of this one, which must have no other threads. They are
 // terminated with it.

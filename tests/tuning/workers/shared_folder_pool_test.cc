@@ -3,6 +3,7 @@
 #include "cartographer_ext/tuning/workers/shared_folder_pool.h"
 
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -162,6 +163,28 @@ TEST_F(SharedFolderPoolTest, ARunOfATaskThatDiesWasKilled) {
   EXPECT_THAT(result->answer["message"].get<std::string>(),
               HasSubstr("task-1-0"));
   EXPECT_EQ(pool->num_workers(), 1);
+}
+
+TEST_F(SharedFolderPoolTest, ATaskThatCannotAnswerTakesItsFileAway) {
+  // A file cannot take the place of a folder.
+  const std::string in_the_way = folder_.path() + "/task-1-0.answer.json";
+  ASSERT_EQ(mkdir(in_the_way.c_str(), 0755), 0);
+  const pid_t task = StartTask(Options(1));
+  SharedFolderOptions patient = Options(0);
+  patient.silent_seconds = 120.;
+  const auto pool = SharedFolderPool::Create(patient, &Act);
+  ASSERT_TRUE(pool.ok()) << pool.status();
+  ASSERT_TRUE(WaitForTasks(pool->get(), 2));
+  (*pool)->Start(5, Request(1.));
+  EXPECT_EQ(ExitCodeOf(task), 1);
+  EXPECT_EQ(folder_.Read("task-1.json"), "");
+  // Long before its silence would be noticed.
+  const auto result = (*pool)->Wait(30.);
+  ASSERT_TRUE(result.has_value());
+  EXPECT_EQ(result->id, 5);
+  EXPECT_EQ(result->answer["killed"], true);
+  EXPECT_EQ((*pool)->num_tasks(), 1);
+  rmdir(in_the_way.c_str());
 }
 
 TEST_F(SharedFolderPoolTest, ATaskStartedAgainTakesNewRuns) {
