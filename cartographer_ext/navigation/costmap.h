@@ -1,22 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a finished occupancy map means for a robot: where its centre may be and
-// what it costs to be there.
+// The configuration space of a robot in a finished occupancy map: which cells
+// its centre may occupy, and at what cost.
 //
 // With d the exact distance from the centre of a cell to the centre of the
 // nearest cell that is occupied or unknown, r the inscribed radius of the
-// footprint plus the padding, s what is tight on top of it and R the inflation
+// footprint plus the padding, s the width of the tight zone and R the inflation
 // radius,
 //   d <= r      blocked,
 //   d <= r + s  the highest weight, kMaxWeight,
 //   d >= R      weight 1,
 //   otherwise   1 + clearance_weight ((R - d) / (R - r - s))^2,
 // in units of GridSearch's kMinWeight: a metre of path costs between 1 and
-// 1 + clearance_weight metres, and 16 where it is tight. An echo is known to a
-// cell only: without the tight cells a narrow passage would come and go from
-// scan to scan, and the robot with it from one side of an obstacle to the
-// other.
+// 1 + clearance_weight metres, and 16 where it is tight. The position of an
+// echo is known to within a cell only. Without the tight cells a narrow passage
+// would open and close from scan to scan, and the path would change sides of an
+// obstacle.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_COSTMAP_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_COSTMAP_H_
 
@@ -35,13 +35,13 @@ namespace navigation {
 struct CostmapOptions {
   double inscribed_radius = 0.25;  // metres, of the footprint
   double padding = 0.05;           // metres, on top of it
-  double tight = 0.05;             // metres, a cell: on top of both
+  double tight = 0.05;             // metres, one cell: added to both
   double inflation_radius = 0.9;   // metres, at least these three
   double clearance_weight = 4.;    // at most kMaxWeight / kMinWeight - 1
   // A cell of at least this probability is occupied, any other known one is
   // free.
   double occupied_probability = 0.55;
-  // Whether the robot may go where the map knows nothing.
+  // Whether the robot may enter unknown space.
   bool unknown_is_free = false;
 };
 

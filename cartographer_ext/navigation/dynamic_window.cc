@@ -14,13 +14,13 @@ namespace cartographer_ext {
 namespace navigation {
 namespace {
 
-constexpr double kMaxStride = 0.05;      // metres between two looks at an arc
-constexpr double kMaxTurn = 0.1;         // radians
-constexpr double kTimeStep = 0.1;        // seconds, for what moves
-constexpr double kNearer = 0.002;        // metres: less is rounding
-constexpr double kStandingSpeed = 1e-3;  // m/s
-constexpr double kCreepingSpeed = 0.02;  // m/s
-constexpr double kHeadingSeconds = 0.8;  // ahead, where the heading is judged
+constexpr double kMaxStride = 0.05;        // metres between two looks at an arc
+constexpr double kMaxTurn = 0.1;           // radians
+constexpr double kTimeStep = 0.1;          // seconds, for what moves
+constexpr double kNearer = 0.002;          // metres: less is rounding
+constexpr double kStationarySpeed = 1e-3;  // m/s
+constexpr double kCreepingSpeed = 0.02;    // m/s
+constexpr double kHeadingSeconds = 0.8;    // ahead, where the heading is judged
 
 double DistanceToPath(const std::vector<Eigen::Vector2d>& path,
                       const Eigen::Vector2d& point) {
@@ -51,7 +51,8 @@ VelocityWindow DynamicWindow::WindowAround(const Velocity& current,
       std::min(highest, current.linear + robot_.acceleration * period);
   window.min_linear =
       std::max(0., current.linear - robot_.deceleration * period);
-  // A robot that is too fast (or rolls backwards) slows down as it can.
+  // A robot that is too fast (or rolls backwards) brakes with its largest
+  // deceleration.
   window.max_linear = std::max(window.max_linear, 0.);
   window.min_linear = std::min(window.min_linear, window.max_linear);
   const double change = robot_.turn_acceleration * period;
@@ -99,7 +100,7 @@ bool DynamicWindow::MeetsMoving(const DynamicWindowInput& input,
   const double end = reaction + braking;
   for (double time = 0.; time < end + kTimeStep; time += kTimeStep) {
     const double now = std::min(time, end);
-    // Share of the braking that is done; the arc keeps its curvature.
+    // Fraction of the braking that is over. The robot stays on its arc.
     const double done = std::max(0., now - reaction) / braking;
     const double seconds =
         std::min(now, reaction) + braking * (done - 0.5 * done * done);
@@ -118,7 +119,7 @@ EvaluatedVelocity DynamicWindow::Evaluate(const DynamicWindowInput& input,
   EvaluatedVelocity result;
   result.velocity = velocity;
   const double v = velocity.linear, w = velocity.angular;
-  // Far enough to see whether the robot can stop, too.
+  // Far enough to decide whether the robot can stop.
   const double horizon =
       std::max(options_.horizon,
                robot_.reaction_seconds + std::abs(v) / robot_.deceleration);
@@ -132,7 +133,7 @@ EvaluatedVelocity DynamicWindow::Evaluate(const DynamicWindowInput& input,
   double path_sum = 0.;
   int path_count = 0;
   double margin = options_.margin_cap;
-  const bool standing = std::abs(v) < kStandingSpeed;
+  const bool stationary = std::abs(v) < kStationarySpeed;
   const double now = input.obstacles->Clearance(robot_.footprint, input.pose);
   for (int i = 1; i <= steps; ++i) {
     const double seconds = i * step;
@@ -161,7 +162,7 @@ EvaluatedVelocity DynamicWindow::Evaluate(const DynamicWindowInput& input,
   // Eq. 14.
   const double free_angle = std::abs(w) * free_seconds;
   result.admissible =
-      (standing ||
+      (stationary ||
        std::abs(v) <= SafeSpeed(result.free_length, robot_.reaction_seconds,
                                 robot_.deceleration)) &&
       (free_seconds == horizon ||
@@ -172,8 +173,8 @@ EvaluatedVelocity DynamicWindow::Evaluate(const DynamicWindowInput& input,
   // Eq. 13.
   const double to_target = (input.target - input.pose.translation()).norm();
   const double seconds =
-      standing ? kHeadingSeconds
-               : std::min(kHeadingSeconds, 0.5 * to_target / std::abs(v));
+      stationary ? kHeadingSeconds
+                 : std::min(kHeadingSeconds, 0.5 * to_target / std::abs(v));
   const Pose2 ahead = input.pose * ArcPose(v * seconds, w * seconds);
   const Eigen::Vector2d direction = input.target - ahead.translation();
   const double heading_error = std::abs(
@@ -200,8 +201,9 @@ absl::optional<EvaluatedVelocity> DynamicWindow::Choose(
   const auto consider = [&](const double linear, const double angular) {
     const EvaluatedVelocity evaluated = Evaluate(input, {linear, angular});
     if (!evaluated.admissible) return;
-    // The objective alone would stand still for ever where every motion leads
-    // nearer to an obstacle: standing is for where nothing else is admissible.
+    // Where every motion leads nearer to an obstacle, zero velocity would have
+    // the greatest objective for ever. It is chosen only if no motion is
+    // admissible.
     const bool moves = linear >= kCreepingSpeed;
     if (!best.has_value() || (moves && !best_moves) ||
         (moves == best_moves && evaluated.score > best->score)) {

@@ -5,14 +5,14 @@
 // approach to collision avoidance", IEEE Robotics and Automation Magazine 4(1),
 // 1997. Equations by their numbers there.
 //
-// Of all velocities (v, w) of a circular arc only those are looked at that can
-// be reached within one control period (the dynamic window V_d, eq. 15) and
-// from which the robot can stop before it touches anything (the admissible
-// velocities V_a, eq. 14):
+// Of all velocities (v, w), each of which is a circular arc, only those are
+// considered that can be reached within one control period (the dynamic window
+// V_d, eq. 15) and from which the robot can stop before it touches anything
+// (the admissible velocities V_a, eq. 14):
 //   v <= sqrt(2 dist(v, w) b),   |w| <= sqrt(2 dist(v, w) |w / v| b_w),
-// with dist(v, w) the free length of the arc. Here a reaction time t comes on
-// top: v t + v^2 / (2 b) <= dist. Among these the objective (eq. 13, each term
-// in [0, 1]) is greatest:
+// with dist(v, w) the free length of the arc. Here a reaction time t is
+// added: v t + v^2 / (2 b) <= dist. Among these the objective (eq. 13, each
+// term in [0, 1]) is greatest:
 //
 //   G = alpha heading + beta dist + gamma velocity + delta path
 //       + epsilon margin
@@ -22,9 +22,10 @@
 //
 // Moving obstacles are predicted with their velocity. An arc is not admissible
 // either if the robot, braking after the reaction time, would touch one before
-// it is stationary; nor if one could reach it by then that turned round and
-// came its way (separation by speed, as ISO 13855 has it for people near
-// machines): until the robot stands, `walking_speed` t from where it is now.
+// it is stationary, or if one could reach it by then after a change of
+// direction (the separation distance of ISO 13855 for people near machines):
+// until the robot is stationary at t, an obstacle may be up to `walking_speed`
+// t away from where it is now.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_DYNAMIC_WINDOW_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_DYNAMIC_WINDOW_H_
 
@@ -54,7 +55,7 @@ struct DynamicWindowOptions {
   // obstacles.
   double margin = 0.05;
   double moving_margin = 0.2;
-  // What somebody may do within the time that the robot needs to stop.
+  // How a person may move while the robot brakes.
   double walking_speed = 1.;   // m/s, at least
   double reach_margin = 0.05;  // metres, of position and radius
   // Distances at which the terms saturate, metres.
@@ -69,7 +70,7 @@ struct DynamicWindowInput {
   Velocity current;                   // measured
   double max_speed = 0.;              // m/s, of this period
   Eigen::Vector2d target;             // a point of the path ahead
-  std::vector<Eigen::Vector2d> path;  // about a point a decimetre, from here on
+  std::vector<Eigen::Vector2d> path;  // ahead, one point every decimetre or so
   const LocalObstacles* obstacles = nullptr;
   std::vector<MovingDisc> moving;
 };
@@ -98,8 +99,8 @@ class DynamicWindow {
   EvaluatedVelocity Evaluate(const DynamicWindowInput& input,
                              const Velocity& velocity) const;
 
-  // The best admissible velocity; nothing where there is none, and then the
-  // robot has to brake.
+  // The best admissible velocity. Empty if there is none; the robot then has to
+  // brake.
   absl::optional<EvaluatedVelocity> Choose(
       const DynamicWindowInput& input) const;
 
@@ -109,7 +110,7 @@ class DynamicWindow {
                    const Velocity& velocity) const;
   bool TouchesMoving(const std::vector<MovingDisc>& moving, const Pose2& pose,
                      double seconds) const;
-  // Whether one of them could touch the robot, wherever it walks.
+  // Whether one of them could touch the robot, whatever its direction.
   bool IsWithinReach(const std::vector<MovingDisc>& moving, const Pose2& pose,
                      double seconds) const;
 

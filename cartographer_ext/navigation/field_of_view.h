@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where a scan looks: the bearings of its beams, with or without an echo. Known
-// without a description of the laser.
+// The field of view of a scan, from the bearings of its beams with and without
+// an echo; no description of the laser is needed.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_FIELD_OF_VIEW_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_FIELD_OF_VIEW_H_
 
@@ -18,7 +18,7 @@ namespace navigation {
 class FieldOfView {
  public:
   // Ends of beams with and without an echo in the robot frame; those that are
-  // not finite are left out.
+  // not finite are ignored.
   FieldOfView(const Eigen::Vector2d& laser,
               const std::vector<Eigen::Vector2d>& echoes,
               const std::vector<Eigen::Vector2d>& free_ends)
@@ -31,9 +31,9 @@ class FieldOfView {
     std::sort(bearings_.begin(), bearings_.end());
   }
 
-  // Whether a beam goes towards a point (robot frame), whatever is before it.
+  // Whether a beam points at a point (robot frame), occluded or not.
   bool Contains(const Eigen::Vector2d& point) const {
-    // About the gap between beams of which one gave no echo.
+    // Wide enough to bridge one missing beam.
     constexpr double kGap = 0.05;  // radians
     const double bearing = Bearing(point);
     const auto next =

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The outline of a robot as a union of discs in its frame: contact is decided
-// by one look at a distance map for each disc. A rectangle is covered by discs
-// that stand out of it by at most a fifth of its half width.
+// by one lookup in a distance map for each disc. A rectangle is covered by
+// discs that extend beyond it by at most a fifth of its half width.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_FOOTPRINT_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_FOOTPRINT_H_
 
@@ -48,8 +48,8 @@ struct Footprint {
     return footprint;
   }
 
-  // Of the largest disc around the origin inside the outline: nearer than that
-  // to an obstacle the robot cannot be, however it is turned.
+  // Of the largest disc around the origin inside the outline: the robot cannot
+  // be nearer to an obstacle than this, whatever its heading.
   double inscribed_radius() const {
     double radius = 0.;
     for (const Part& part : parts) {

@@ -14,8 +14,9 @@ namespace {
 
 constexpr int kDx[8] = {1, -1, 0, 0, 1, 1, -1, -1};
 constexpr int kDy[8] = {0, 0, 1, -1, 1, -1, 1, -1};
-// A node is (g << kWeightBits | weight). That of a cell which cannot be entered
-// is 0, so that no cost is less; g of one that is not reached is the greatest.
+// A node is (g << kWeightBits | weight). A cell that cannot be entered has the
+// node 0, so that no cost is less than its g; a cell that has not been reached
+// has the greatest g.
 constexpr uint32_t kWeightBits = 7;
 constexpr uint32_t kWeightMask = (1u << kWeightBits) - 1;
 constexpr uint32_t kWall = 0;
@@ -32,8 +33,9 @@ static_assert(kDiagonalStep * (kMaxWeight + kMinWeight) < kNumBuckets,
 constexpr int kMaxSide = 65534;  // two coordinates make one entry
 constexpr size_t kAhead = 8;     // entries between prefetching and expanding
 
-// Written without a maximum, whose branch would be mispredicted: with the sum
-// s and the difference d of dx and dy, 2 max = s + d and 2 min = s - d.
+// The heuristic without std::max, whose branch would be mispredicted: with the
+// sum s and the absolute difference d of dx and dy, 2 max = s + d and 2 min = s
+// - d.
 uint32_t Heuristic(const int x, const int y, const Cell& goal) {
   const int dx = std::abs(x - goal.x), dy = std::abs(y - goal.y);
   const uint32_t sum = dx + dy, difference = std::abs(dx - dy);
@@ -119,7 +121,8 @@ GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
     const int x = entry & 0xffff, y = entry >> 16;
     uint32_t* const here = nodes_.data() + Index(x, y);
     const uint32_t cost = *here >> kWeightBits;
-    // It was found again, nearer to the start, and is expanded already.
+    // This entry is outdated: the cell was reached again at a lower cost and
+    // has been expanded.
     if (cost + Heuristic(x, y, goal) != key) continue;
     ++path.expanded;
     if (x == goal.x && y == goal.y) {
@@ -137,7 +140,7 @@ GridPath GridSearch::Search(const WeightGrid& grid, const Cell& start,
       const uint32_t length =
           dx == 0 || dy == 0 ? kStraightStep : kDiagonalStep;
       const uint32_t node = base + weight * (length << kWeightBits | 1);
-      // Walls and cells that are expanded end here, too.
+      // Also skips walls and cells that have been expanded.
       if (node >= next) return;
       next = node;
       const uint32_t next_key =

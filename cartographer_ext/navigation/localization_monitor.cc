@@ -50,7 +50,8 @@ Pose2 RefinePose(const Costmap& costmap,
     if (echo.allFinite()) finite.push_back(echo);
   }
   if (finite.empty() || !IsFinite(guess)) return guess;
-  // From coarse to fine; the cap widens the basin of the coarse levels.
+  // From coarse to fine steps. A larger cap gives the coarse levels a larger
+  // basin of convergence.
   struct Level {
     double reach, step, turn_reach, turn_step, cap;
   };

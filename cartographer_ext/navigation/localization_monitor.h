@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether the pose that localisation reports can be believed: the share of the
-// echoes that lie at a wall of the map from there. Losing it needs a while, so
-// does finding it again.
+// Decides whether the pose reported by localisation can be trusted, by the
+// share of the echoes that are at walls of the map when seen from that pose.
+// The robot is lost, or found again, only after this has lasted for some time.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_LOCALIZATION_MONITOR_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_LOCALIZATION_MONITOR_H_
 
@@ -33,7 +33,7 @@ struct LocalizationMonitorOptions {
   double wall_tolerance = 0.25;  // metres
   double lost_share = 0.4;       // below it: lost
   double found_share = 0.55;     // above it: found again
-  double seconds = 1.;           // for so long
+  double seconds = 1.;           // duration of either
   double jump_distance = 0.5;    // metres between two poses, beyond odometry
   double max_pose_age = 0.5;     // seconds
 };
@@ -49,7 +49,7 @@ class LocalizationMonitor {
                const std::vector<Eigen::Vector2d>& echoes,
                const Pose2& map_from_robot, const Pose2& odometry_step,
                double time);
-  // Without a pose of late the robot is lost, too.
+  // The robot is also lost without a recent pose.
   bool IsLost(double now) const;
   // Why, for the user; empty unless lost.
   std::string Reason(double now) const;
@@ -61,7 +61,7 @@ class LocalizationMonitor {
   bool lost_ = false;
   bool jumped_ = false;
   double share_ = 0.;
-  double changing_since_ = 0.;  // since when the share says the other thing
+  double changing_since_ = 0.;  // since when the share contradicts the state
   bool changing_ = false;
   double last_time_ = 0.;
   Pose2 last_pose_;

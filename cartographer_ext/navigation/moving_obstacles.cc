@@ -11,8 +11,8 @@ namespace navigation {
 
 std::vector<MovingObstacles::Cluster> MovingObstacles::FindClusters(
     const std::vector<Echo>& echoes) const {
-  // Neighbouring beams see neighbouring points: one pass joins them. The first
-  // and the last beam are neighbours, too.
+  // Neighbouring beams hit neighbouring points, so one pass is enough to join
+  // them. The first and the last beam are neighbours, too.
   std::vector<std::vector<Echo>> groups;
   const auto apart = [this](const Echo& a, const Echo& b) {
     return (a.point - b.point).norm() > options_.join_distance;
@@ -75,7 +75,7 @@ void MovingObstacles::Correct(const Cluster& cluster, const double time,
       (cluster.center - track->begin).norm() >= options_.min_displacement;
   track->is_stationary = cluster.old_share > options_.max_old_share;
   if (track->is_stationary) {
-    // Motion has to be shown anew.
+    // The track must prove again that it moves.
     track->has_moved = false;
     track->begin = cluster.center;
   }
@@ -96,7 +96,7 @@ bool MovingObstacles::IsForgotten(const double time, const InView& in_view,
 void MovingObstacles::Update(const std::vector<Echo>& echoes, const double time,
                              const InView& in_view) {
   const std::vector<Cluster> clusters = FindClusters(echoes);
-  // Nearest pairs first.
+  // The nearest pairs of track and cluster are assigned first.
   struct Pair {
     double distance;
     size_t track, cluster;

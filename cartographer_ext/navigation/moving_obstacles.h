@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Follows what moves: echoes that the map does not explain are joined into
+// Tracks moving obstacles: echoes that the map does not explain are joined into
 // clusters, clusters into tracks with a velocity (alpha-beta filter). A track
-// that is out of sight goes on with its velocity for a while: for longer where
-// the laser does not look, as behind a robot whose laser sees half a turn.
+// that is not seen is extrapolated for a while: for longer outside the field of
+// view, as behind a robot whose laser covers 180 degrees.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_MOVING_OBSTACLES_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_MOVING_OBSTACLES_H_
 
@@ -19,20 +19,20 @@ namespace navigation {
 struct MovingObstacleOptions {
   double join_distance = 0.3;  // metres between echoes of one cluster
   double max_extent = 1.2;     // metres; larger clusters are not people
-  double gate = 0.6;           // metres from the predicted place
-  double moving_speed = 0.3;   // m/s: slower is taken for standing
+  double gate = 0.6;           // metres from the predicted position
+  double moving_speed = 0.3;   // m/s: slower is stationary
   double max_speed = 2.;       // m/s
   double memory_seconds = 2.;  // in view, but hidden or missed
-  // Where no beam goes. At a walking pace somebody overtakes a robot within
-  // this time or has turned elsewhere.
+  // Outside the field of view. A walking person overtakes the robot within this
+  // time or has left.
   double unseen_memory_seconds = 5.;
-  // Metres from where a track began: less is a change of the aspect.
+  // Metres from where a track began; less may be a change of the visible side.
   double min_displacement = 0.15;
-  // Somebody who turns round is slow for a moment.
+  // Seconds for which a moving track may be slow, as a person turning round.
   double slow_seconds = 1.;
   double old_seconds = 1.2;    // echoes of this age do not move
-  double max_old_share = 0.3;  // of the echoes of what moves
-  int min_updates = 3;         // before a velocity is believed
+  double max_old_share = 0.3;  // of the echoes of a moving track
+  int min_updates = 3;         // before a velocity is used
   double position_gain = 0.7;  // alpha
   double velocity_gain = 0.4;  // beta
   int max_tracks = 100;
@@ -59,15 +59,15 @@ class MovingObstacles {
     double age = 0.;
   };
 
-  // Whether a beam of the scan goes towards a point (map frame).
+  // Whether a point (map frame) is in the field of view.
   using InView = std::function<bool(const Eigen::Vector2d& point)>;
 
   // Echoes that no wall explains, in order of their beams. Without `in_view`
-  // the laser looks everywhere.
+  // the field of view is unlimited.
   void Update(const std::vector<Echo>& echoes, double time,
               const InView& in_view = nullptr);
 
-  // The tracks that move, where they are at `time`.
+  // The moving tracks at their positions at `time`.
   std::vector<MovingDisc> Moving(double time) const;
 
  private:

@@ -18,22 +18,23 @@ namespace {
 
 constexpr double kTurnFrom = 0.9;   // radians off the path: turn on the spot
 constexpr double kTurnUntil = 0.2;  // radians
-constexpr double kSlowSpeed = 0.1;  // m/s: slow enough to turn on the spot
+constexpr double kSlowSpeed = 0.1;  // m/s: turns on the spot below it
 constexpr double kBendSpeed = 0.3;  // m/s, at least, where the path bends
 constexpr double kAhead = 0.3;      // radians: near enough to drive at a goal
-constexpr double kStandingSpeed = 0.02;  // m/s, measured
-constexpr double kStandingTurn = 0.1;    // rad/s
-constexpr double kLookahead = 0.5;       // metres, and what one second covers
-constexpr double kPathAhead = 3.;        // metres of path the window looks at
+constexpr double kStationarySpeed = 0.02;  // m/s, measured
+constexpr double kStationaryTurn = 0.1;    // rad/s
+constexpr double kLookahead = 0.5;         // metres, and what one second covers
+constexpr double kPathAhead = 3.;          // metres of path the window looks at
 constexpr double kReplanSeconds = 0.3;  // soonest after a failure while driving
 constexpr double kKeepPathDistance = 0.4;  // metres
-// Metres of free path that a new path has to be shorter by, or what costs as
-// much: about what turning round and back again takes.
+// A new path replaces the present one if it is cheaper by at least this many
+// metres of free path, about the cost of turning round and back again.
 constexpr double kKeepPathMetres = 3.;
 constexpr double kLongDetour = 5.;             // metres more than expected
 constexpr double kDetourLookSeconds = 10.;     // what is seen then is kept
 constexpr double kDetourMemorySeconds = 600.;  // of what made it necessary
-constexpr double kNearby = 1.5;  // metres: somebody there may be in the way
+constexpr double kNearby =
+    1.5;  // metres: somebody this near may block the robot
 constexpr double kPersonMargin = 0.2;   // metres around what moves
 constexpr double kTrailLength = 1.;     // metres
 constexpr double kTrailSpacing = 0.05;  // metres
@@ -98,7 +99,7 @@ void Navigator::AddScan(const NavigatorScan& scan) {
   has_scan_ = true;
   monitor_.AddScan(*costmap_, scan.echoes, scan.map_from_robot,
                    scan.odometry_step, scan.time);
-  // From a wrong pose every wall would become an obstacle.
+  // With a wrong pose, every wall would be marked as an obstacle.
   if (!IsFinite(scan.map_from_robot) || monitor_.IsLost(scan.time)) return;
   ScanInMap in_map;
   in_map.time = scan.time;
@@ -111,8 +112,8 @@ void Navigator::AddScan(const NavigatorScan& scan) {
   for (const Eigen::Vector2d& echo : scan.echoes) {
     if (!echo.allFinite()) continue;
     const Eigen::Vector2d point = scan.map_from_robot * echo;
-    // What moves is for the dynamic window: a path around it would be wrong a
-    // moment later.
+    // Moving obstacles are left to the dynamic window: a path around them would
+    // be wrong a moment later.
     (IsAtAny(people, point, kPersonMargin) ? in_map.free_ends : in_map.echoes)
         .push_back(point);
     if ((point - in_map.laser).norm() <= options_.obstacles.range &&
@@ -140,7 +141,7 @@ Velocity Navigator::Stop(const DriveState state, const std::string& message) {
 
 bool Navigator::SensesAreGood(const NavigatorStep& step) {
   if (!has_scan_ || !(step.time - scan_.time <= options_.max_scan_age)) {
-    Stop(DriveState::kBlind, "stopped: no scan of late");
+    Stop(DriveState::kBlind, "stopped: no recent scan");
     return false;
   }
   int echoes = 0;
@@ -170,8 +171,8 @@ void Navigator::FinishGoal(const bool reached, const std::string& reason,
   planned_ = -1e9;
   has_progress_ = false;
   recovery_count_ = 0;
-  detour_.reset();
-  detours_ = 0;
+  passing_place_.reset();
+  passing_places_ = 0;
   blocked_seconds_ = 0.;
 }
 
@@ -220,7 +221,7 @@ bool Navigator::FollowsPlan(const NavigatorStep& step) {
   return true;
 }
 
-void Navigator::SayWhyBraking(const DynamicWindowInput& input) {
+void Navigator::ExplainBraking(const DynamicWindowInput& input) {
   DynamicWindowInput alone = input;
   alone.moving.clear();
   waits_for_somebody_ =
@@ -232,7 +233,7 @@ void Navigator::SayWhyBraking(const DynamicWindowInput& input) {
 Velocity Navigator::Admit(const DynamicWindowInput& input,
                           const Velocity& command) {
   if (window_.Evaluate(input, command).admissible) return command;
-  SayWhyBraking(input);
+  ExplainBraking(input);
   return Velocity();
 }
 
@@ -251,20 +252,29 @@ Velocity Navigator::Reach(const Velocity& current, const Velocity& wish) const {
 }
 
 DynamicWindowInput Navigator::WindowInput(
-    const NavigatorStep& step, const LocalObstacles* const obstacles) const {
+    const NavigatorStep& step, const Eigen::Vector2d& target,
+    const LocalObstacles* const obstacles) const {
   DynamicWindowInput input;
   input.pose = step.map_from_robot;
   input.current = step.velocity;
+  input.target = target;
+  input.obstacles = obstacles;
+  input.moving = moving_.Moving(step.time);
+  return input;
+}
+
+DynamicWindowInput Navigator::PathInput(
+    const NavigatorStep& step, const LocalObstacles* const obstacles) const {
+  DynamicWindowInput input = WindowInput(
+      step, tracker_.Ahead(kLookahead + std::abs(step.velocity.linear)),
+      obstacles);
   const double to_goal =
       (goals_[goal_] - step.map_from_robot.translation()).norm();
   input.max_speed =
       std::min(options_.robot.max_speed,
                std::max(0.08, std::sqrt(2. * 0.5 * options_.robot.acceleration *
                                         std::max(0., to_goal - 0.05))));
-  input.target = tracker_.Ahead(kLookahead + std::abs(step.velocity.linear));
   input.path = tracker_.PointsAhead(kPathAhead);
-  input.obstacles = obstacles;
-  input.moving = moving_.Moving(step.time);
   return input;
 }
 
@@ -285,27 +295,27 @@ bool Navigator::IsAtGoal(const NavigatorStep& step) const {
   const double to_goal =
       (goals_[goal_] - step.map_from_robot.translation()).norm();
   if (!(to_goal <= options_.goal_tolerance)) return false;
-  // A robot that stands was stopped: by itself, or by what is beside the goal.
+  // A robot that does not move has stopped by itself, or because of an obstacle
+  // beside the goal.
   return to_goal <= options_.goal_aim ||
-         std::abs(step.velocity.linear) < kStandingSpeed ||
+         std::abs(step.velocity.linear) < kStationarySpeed ||
          std::abs(BearingError(step.map_from_robot, goals_[goal_])) > kAhead;
 }
 
-std::vector<Eigen::Vector2d> Navigator::MapEchoes(
-    const NavigatorStep& step) const {
-  std::vector<Eigen::Vector2d> echoes;
+LocalObstacles Navigator::ObstaclesAround(const NavigatorStep& step) const {
+  std::vector<Eigen::Vector2d> echoes;  // map frame
   echoes.reserve(echoes_now_.size());
   for (const Eigen::Vector2d& echo : echoes_now_) {
     echoes.push_back(step.map_from_robot * echo);
   }
-  return echoes;
+  return LocalObstacles(*costmap_, &layer_, echoes,
+                        step.map_from_robot.translation(),
+                        options_.window_half_width);
 }
 
 Velocity Navigator::Follow(const NavigatorStep& step) {
-  const LocalObstacles obstacles(*costmap_, &layer_, MapEchoes(step),
-                                 step.map_from_robot.translation(),
-                                 options_.window_half_width);
-  DynamicWindowInput input = WindowInput(step, &obstacles);
+  const LocalObstacles obstacles = ObstaclesAround(step);
+  DynamicWindowInput input = PathInput(step, &obstacles);
   const double to_goal =
       (goals_[goal_] - step.map_from_robot.translation()).norm();
   state_ = DriveState::kDriving;
@@ -334,7 +344,7 @@ Velocity Navigator::Follow(const NavigatorStep& step) {
   if (!best.has_value()) {
     planned_ =
         std::min(planned_, step.time - options_.plan_period + kReplanSeconds);
-    SayWhyBraking(input);
+    ExplainBraking(input);
     return Velocity();
   }
   return best->velocity;
@@ -353,7 +363,7 @@ Velocity Navigator::Step(const NavigatorStep& step) {
     return Velocity();
   }
   if (IsAtGoal(step)) {
-    if (std::abs(step.velocity.linear) < kStandingSpeed) {
+    if (std::abs(step.velocity.linear) < kStationarySpeed) {
       FinishGoal(true, "", step.time);
       if (finished()) return Stop(DriveState::kFinished, "all goals done");
     }
@@ -370,7 +380,7 @@ Velocity Navigator::Step(const NavigatorStep& step) {
   Velocity command;
   if (step.time < recovery_end_ && recovery_count_ > 0) {
     command = Recover(step);
-  } else if (GivesWay(step)) {
+  } else if (IsGivingWay(step)) {
     command = GiveWay(step);
   } else if (FollowsPlan(step)) {
     tracker_.Advance(step.map_from_robot.translation());
@@ -384,8 +394,9 @@ Velocity Navigator::Step(const NavigatorStep& step) {
       LimitSpeed(echoes_now_, options_.robot, options_.stop_margin, command);
   const double elapsed = std::min(step.time - stepped_, 1.);
   stepped_ = step.time;
-  if (!detour_.has_value() && std::abs(command.linear) < kStandingSpeed &&
-      std::abs(command.angular) < kStandingTurn) {
+  if (!passing_place_.has_value() &&
+      std::abs(command.linear) < kStationarySpeed &&
+      std::abs(command.angular) < kStationaryTurn) {
     blocked_seconds_ += elapsed;
   }
   return command;

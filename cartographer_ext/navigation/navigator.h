@@ -7,12 +7,12 @@
 //   PathPlanner (A*) ─► path ─► DynamicWindow ─► LimitSpeed ─► command
 //
 // once a second a new path, ten times a second a new command. It stops where it
-// does not know its place or sees nothing, and says why. Where it makes no
-// progress it recovers: it turns once round and looks, forgets obstacles that it
-// has not seen since, backs up the way it came, waits, and at last gives the
+// is lost or its laser sees nothing, and reports why. Where it makes no
+// progress it recovers: it turns once round and looks, forgets obstacles that
+// it has not seen since, backs up along its path, waits, and at last gives the
 // goal up. Where it and somebody who walks there wait for each other it goes to
-// a wider place near by and lets them pass; touched, it stands still. Plain
-// types only, deterministic.
+// a passing place, a wider place near by, and lets them pass. While it is
+// touched it does not move. Plain types only, deterministic.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_NAVIGATOR_H_
 
@@ -25,6 +25,7 @@
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/navigation/costmap.h"
 #include "cartographer_ext/navigation/dynamic_window.h"
+#include "cartographer_ext/navigation/local_obstacles.h"
 #include "cartographer_ext/navigation/localization_monitor.h"
 #include "cartographer_ext/navigation/moving_obstacles.h"
 #include "cartographer_ext/navigation/obstacle_layer.h"
@@ -105,7 +106,7 @@ class Navigator {
   Velocity Step(const NavigatorStep& step);
 
   DriveState state() const { return state_; }
-  // What the robot does and why, for the user.
+  // What the robot does and why; a message for the user.
   const std::string& message() const { return message_; }
   bool finished() const { return goal_ == goals_.size(); }
   size_t goal() const { return goal_; }
@@ -125,25 +126,27 @@ class Navigator {
   // Plans when it is time to. False where there is nothing to follow.
   bool FollowsPlan(const NavigatorStep& step);
   // Whether the path followed so far is still free and hardly worse than a new
-  // one: changing one's mind at every turn of the laser gets nowhere.
+  // one: a robot that changes its path with every scan oscillates.
   bool KeepsPath(const Plan& plan, const Eigen::Vector2d& place) const;
-  // Whether the robot was a little behind its place a moment ago: a laser that
-  // looks forward only does not see where it backs up to.
+  // Whether the robot was a little behind its present position a moment ago: a
+  // laser that looks forward only does not see where it backs up to.
   bool CameFromBehind(const Pose2& pose) const;
   void FinishGoal(bool reached, const std::string& reason, double time);
   // Starts or ends a recovery where there was no progress.
   void WatchProgress(const NavigatorStep& step);
   Velocity Recover(const NavigatorStep& step);
-  // Metres from the outline to the nearest echo that no wall explains.
-  double NearestStranger(const NavigatorStep& step) const;
-  // Whether something that is not a wall touches the robot, which then stands.
+  // How many echoes that no wall explains are nearer than `distance` (metres)
+  // to the outline.
+  int CountUnexplainedEchoes(const NavigatorStep& step, double distance) const;
+  // Whether something that is not a wall touches the robot, which then stops.
   bool IsTouched(const NavigatorStep& step);
-  // Whether the robot goes, or is to go, to a wider place so as to let somebody
-  // pass; and the command that leads there.
-  bool GivesWay(const NavigatorStep& step);
+  // Whether the robot is on its way to a passing place or waits there. Looks
+  // for one where somebody has blocked it for some time.
+  bool IsGivingWay(const NavigatorStep& step);
+  // The command that leads to the passing place.
   Velocity GiveWay(const NavigatorStep& step);
-  // The echoes of now in the map frame.
-  std::vector<Eigen::Vector2d> MapEchoes(const NavigatorStep& step) const;
+  // Map, obstacle layer and the latest echoes around the robot.
+  LocalObstacles ObstaclesAround(const NavigatorStep& step) const;
   Velocity Follow(const NavigatorStep& step);
   Velocity Approach(const NavigatorStep& step, const DynamicWindowInput& input);
   // Whether the robot is as near to its goal as it gets without turning.
@@ -151,9 +154,15 @@ class Navigator {
   // The command if it is admissible; else stops and says whether it waits for
   // somebody.
   Velocity Admit(const DynamicWindowInput& input, const Velocity& command);
-  void SayWhyBraking(const DynamicWindowInput& input);
+  // Sets the message, and whether it brakes for a moving obstacle only.
+  void ExplainBraking(const DynamicWindowInput& input);
+  // For driving at `target` (map frame), without a path.
   DynamicWindowInput WindowInput(const NavigatorStep& step,
+                                 const Eigen::Vector2d& target,
                                  const LocalObstacles* obstacles) const;
+  // For following the path to the goal.
+  DynamicWindowInput PathInput(const NavigatorStep& step,
+                               const LocalObstacles* obstacles) const;
   // Nearest to the wish that acceleration allows.
   Velocity Reach(const Velocity& current, const Velocity& wish) const;
 
@@ -194,16 +203,17 @@ class Navigator {
   double looked_ = 0.;  // when the last look around began
   Recovery recovery_ = Recovery::kForget;
   int recovery_count_ = 0;  // since the last progress
-  // To where others can pass.
-  struct Detour {
-    Eigen::Vector2d place = Eigen::Vector2d::Zero();  // map frame
-    bool backwards = false;
+  // Where the robot lets others pass.
+  struct PassingPlace {
+    Eigen::Vector2d position = Eigen::Vector2d::Zero();  // map frame
+    bool backwards = false;                              // how it drives there
     bool arrived = false;
-    double end = 0.;  // when it is over
+    double end = 0.;  // when it goes on to its goal
   };
-  absl::optional<Detour> detour_;
-  int detours_ = 0;  // since the last progress
-  // Of standing where it should drive, since the last progress.
+  absl::optional<PassingPlace> passing_place_;
+  int passing_places_ = 0;  // since the last progress
+  // Seconds in which it did not move although it should, since the last
+  // progress.
   double blocked_seconds_ = 0.;
   double stepped_ = 0.;          // time of the last step
   double somebody_near_ = -1e9;  // when somebody last moved near the robot

@@ -101,7 +101,7 @@ void ObstacleLayer::Update(const ScanInMap& scan) {
       if (echo.allFinite()) ClearBeam(scan.laser, echo, true);
     }
   }
-  // The cleared ones leave the list before they can be marked again.
+  // Cleared cells are removed from the list before they can be marked again.
   Compact(scan.time);
   for (const Eigen::Vector2d& echo : scan.echoes) {
     if (!echo.allFinite() || (echo - scan.laser).norm() > options_.range) {

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the live laser sees that the finished map does not have.
+// Obstacles that the laser sees and the finished map lacks.
 //
 // An echo farther than `wall_tolerance` from every wall of the map marks its
 // cell. A beam clears the marks of the cells that it passes; only cells within
 // `range` of the laser are touched, so the layer rolls along with the robot.
-// Marks out of sight are kept for `memory_seconds`, which is how a closed door
-// is remembered while the robot looks for another path. Those that have not
-// been there for `settle_seconds` yet, as of somebody who walks by, are
-// forgotten sooner, and no path is planned around them: it would be wrong a
-// moment later. What the robot does next heeds them all.
+// Marks out of sight are kept for `memory_seconds`, so that a closed door is
+// remembered while the robot takes another path. Marks younger than
+// `settle_seconds`, as of somebody who walks past, are forgotten sooner, and no
+// path is planned around them: it would be wrong a moment later. The dynamic
+// window avoids all of them.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_OBSTACLE_LAYER_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_OBSTACLE_LAYER_H_
 
@@ -56,9 +56,9 @@ class ObstacleLayer {
   // since a time.
   void Clear(const Eigen::Vector2d& center, double radius, double since);
 
-  // Keeps the settled marks within `radius` metres until then, in seconds, if no
-  // beam clears them: what made the robot take a long way round is there, too,
-  // when that takes more than the memory of other marks.
+  // Keeps the settled marks within `radius` metres until that time (seconds)
+  // unless a beam clears them: the obstacle behind a long detour must not be
+  // forgotten while the robot drives it.
   void Keep(const Eigen::Vector2d& center, double radius, double until);
   // Marks that are kept are forgotten like all others again.
   void LetGo();

@@ -31,7 +31,7 @@ std::string ToString(const PlanOutcome outcome) {
     case PlanOutcome::kGoalOccupied:
       return "the goal is in a wall";
     case PlanOutcome::kGoalUnknown:
-      return "the goal is where the map knows nothing";
+      return "the goal is in unknown space";
     case PlanOutcome::kGoalTooNear:
       return "the goal is too near to a wall for the robot";
     case PlanOutcome::kGoalObstructed:
@@ -39,7 +39,7 @@ std::string ToString(const PlanOutcome outcome) {
     case PlanOutcome::kStartBlocked:
       return "there is no free space around the start";
     case PlanOutcome::kUnreachable:
-      return "no path of the map leads to the goal";
+      return "the map has no path to the goal";
     case PlanOutcome::kObstructed:
       return "obstacles block every path to the goal";
   }
@@ -92,7 +92,8 @@ std::vector<Cell> SimplifyPath(const WeightGrid& grid,
       const double allowed = (1. + tolerance) * (costs[i] - costs[corner]);
       const double cost = LineCost(grid, path[corner], path[i]);
       if (cost <= allowed) next = i;
-      // A line that is blocked stays so; one that costs a little more may not.
+      // A blocked line remains blocked with more cells; one that costs a little
+      // more may become cheaper again.
       if (std::isinf(cost) || i - next > 40) break;
     }
     corners.push_back(path[next]);
@@ -195,7 +196,7 @@ Plan PathPlanner::MakePlan(const Eigen::Vector2d& start,
   const std::vector<Cell> corners =
       SimplifyPath(weights, path.cells, kSimplification);
   plan.points.push_back(start);
-  // The first cell is where the robot is, unless it has to leave a blocked one.
+  // The path starts at the robot itself, unless its cell is blocked.
   for (size_t i = start_cell == geometry.CellAt(start) ? 1 : 0;
        i < corners.size(); ++i) {
     plan.points.push_back(geometry.Center(corners[i]));

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// From a map, a start and a goal to a path in metres: A* over the weights of
-// the costmap, then straight lines wherever one costs no more than the steps it
-// replaces.
+// Plans a path in metres from a start to a goal: A* over the weights of the
+// costmap, then straight lines wherever they cost no more than the steps they
+// replace.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_PATH_PLANNER_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_PATH_PLANNER_H_
 
@@ -23,17 +23,17 @@ enum class PlanOutcome {
   kNotFinite,       // start or goal is not a number
   kGoalOutside,     // of the map
   kGoalOccupied,    // in a wall
-  kGoalUnknown,     // where the map knows nothing
+  kGoalUnknown,     // in unknown space
   kGoalTooNear,     // the robot would touch a wall
-  kGoalObstructed,  // by something the map does not have
+  kGoalObstructed,  // by an obstacle that the map lacks
   kStartBlocked,    // no free cell near the start
-  kUnreachable,     // the map does not join start and goal
-  kObstructed,      // it does, but an obstacle is in between
+  kUnreachable,     // the map has no path
+  kObstructed,      // the map has one, but obstacles block it
 };
 
 // A sentence for the user.
 std::string ToString(PlanOutcome outcome);
-// Whether waiting does not change it.
+// Whether waiting would not change the outcome.
 bool IsFinal(PlanOutcome outcome);
 
 struct Plan {
@@ -67,8 +67,8 @@ class PathPlanner {
   Plan MakePlan(const Eigen::Vector2d& start, const Eigen::Vector2d& goal,
                 const ObstacleLayer* obstacles);
 
-  // Cost of a path, by LineCost, among the obstacles of the last plan, as metres
-  // of free path; infinite where something blocks it.
+  // Cost of a path, by LineCost, among the obstacles of the last plan, as
+  // metres of free path; infinite where something blocks it.
   double Cost(const std::vector<Eigen::Vector2d>& points) const;
 
   static constexpr double kStartTolerance = 0.5;   // metres

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How far along a path the robot is, and what lies ahead of it.
+// The progress of the robot along a path, and the path ahead of it.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_PATH_TRACKER_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_PATH_TRACKER_H_
 
@@ -19,14 +19,14 @@ class PathTracker {
   explicit PathTracker(const std::vector<Eigen::Vector2d>& corners);
 
   bool empty() const { return points_.empty(); }
-  // Moves on to the point of the path nearest to the robot, at most a little
-  // back and a few metres ahead of the last one.
+  // Advances to the point of the path nearest to the robot, from half a metre
+  // before to a few metres after the last one.
   void Advance(const Eigen::Vector2d& position);
-  // Metres from the robot's place on the path to its end.
+  // Metres from the robot's point on the path to its end.
   double Remaining() const;
-  // Point so many metres ahead, the end at most.
+  // The point this many metres ahead, or the end.
   Eigen::Vector2d Ahead(double distance) const;
-  // Points about a decimetre apart, from the robot's place on.
+  // Points about a decimetre apart, starting at the robot's.
   std::vector<Eigen::Vector2d> PointsAhead(double distance) const;
 
  private:

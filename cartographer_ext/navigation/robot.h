@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a robot can do: plain data shared by the controller and the simulator.
+// Velocity and limits of a robot, shared by the controller and the simulator.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_ROBOT_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_ROBOT_H_
 
@@ -24,8 +24,8 @@ struct RobotLimits {
   double acceleration = 0.5;       // m/s^2
   double deceleration = 1.;        // m/s^2
   double turn_acceleration = 1.5;  // rad/s^2
-  // Seconds from an echo to the wheels: age of the scan, one control period,
-  // delay of the drive.
+  // Seconds from an echo to the reaction of the wheels: age of the scan, one
+  // control period, delay of the drive.
   double reaction_seconds = 0.3;
 };
 

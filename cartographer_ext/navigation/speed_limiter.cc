@@ -12,12 +12,12 @@ namespace cartographer_ext {
 namespace navigation {
 namespace {
 
-constexpr double kStep = 0.02;           // metres along the arc
-constexpr double kTurnStep = 0.05;       // radians on the spot
-constexpr double kTurnAhead = 0.3;       // radians looked ahead on the spot
-constexpr double kStandingSpeed = 1e-3;  // m/s: slower is turning on the spot
+constexpr double kStep = 0.02;             // metres along the arc
+constexpr double kTurnStep = 0.05;         // radians on the spot
+constexpr double kTurnAhead = 0.3;         // radians looked ahead on the spot
+constexpr double kStationarySpeed = 1e-3;  // m/s: slower is turning on the spot
 
-// Whether the footprint at `pose` meets an echo that it comes nearer to.
+// Whether the footprint at `pose` is on an echo that it has come nearer to.
 bool Meets(const std::vector<Eigen::Vector2d>& echoes,
            const Footprint& footprint, const double margin, const Pose2& pose) {
   for (const Footprint::Part& part : footprint.parts) {
@@ -76,7 +76,7 @@ Velocity LimitSpeed(const std::vector<Eigen::Vector2d>& echoes,
     return Velocity();
   }
   const double speed = std::abs(command.linear);
-  if (speed < kStandingSpeed) {
+  if (speed < kStationarySpeed) {
     const std::vector<Eigen::Vector2d> near =
         Within(echoes, robot.footprint.circumscribed_radius() + margin);
     const double direction = command.angular >= 0. ? 1. : -1.;

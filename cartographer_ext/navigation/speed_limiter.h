@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The last word on every command: a robot that moves on an arc must be able to
+// The last check of every command: a robot that moves on an arc must be able to
 // stop before it reaches the nearest echo of the latest scan. Needs no map and
 // no localisation, so it holds when these fail.
 //

@@ -24,7 +24,8 @@ ObstacleMotion::ObstacleMotion(const std::vector<MovingObstacle>& obstacles,
       loop.distances.push_back(loop.distances.back() +
                                (loop.path[i] - loop.path[i - 1]).norm());
     }
-    // Drawn for everyone: one obstacle's setting does not move the others.
+    // Drawn for every obstacle, so that the setting of one does not change the
+    // phase of the others.
     const double drawn = random.Uniform();
     loop.start = (obstacle.random_phase ? drawn : obstacle.phase) *
                  loop.distances.back();
@@ -48,12 +49,16 @@ Eigen::Vector2d ObstacleMotion::Position(const size_t obstacle,
   return loop.path[i - 1] + ratio * (loop.path[i] - loop.path[i - 1]);
 }
 
+Disc ObstacleMotion::DiscAt(const size_t obstacle, const double time) const {
+  Disc disc;
+  disc.center = Position(obstacle, time);
+  disc.radius = loops_[obstacle].radius;
+  return disc;
+}
+
 std::vector<Disc> ObstacleMotion::At(const double time) const {
-  std::vector<Disc> discs(loops_.size());
-  for (size_t i = 0; i != loops_.size(); ++i) {
-    discs[i].center = Position(i, time);
-    discs[i].radius = loops_[i].radius;
-  }
+  std::vector<Disc> discs;
+  for (size_t i = 0; i != size(); ++i) discs.push_back(DiscAt(i, time));
   return discs;
 }
 

@@ -25,7 +25,8 @@ class ObstacleMotion {
   double radius(size_t obstacle) const { return loops_[obstacle].radius; }
   // Centre in the world, `time` seconds after the start of the drive.
   Eigen::Vector2d Position(size_t obstacle, double time) const;
-  // All of them as discs.
+  Disc DiscAt(size_t obstacle, double time) const;
+  // All of them.
   std::vector<Disc> At(double time) const;
 
  private:

@@ -253,7 +253,7 @@ TEST_F(NavigatorStopTest, WhenTheScanIsNotNumbers) {
 TEST_F(NavigatorStopTest, WhenScansStop) {
   for (int i = 0; i != 4; ++i) loop_.StepWithoutScan();
   loop_.time_ += 0.2;
-  ExpectStop(DriveState::kBlind, "no scan");
+  ExpectStop(DriveState::kBlind, "no recent scan");
 }
 
 TEST_F(NavigatorStopTest, WhenThePoseIsNotANumber) {
@@ -294,7 +294,7 @@ TEST_F(NavigatorStopTest, BeforeAnEchoInItsWay) {
   EXPECT_EQ(command.linear, 0.);
 }
 
-TEST(NavigatorTest, StandsStillWhileItIsTouched) {
+TEST(NavigatorTest, DoesNotMoveWhileItIsTouched) {
   // It would have to turn round; somebody leans on it.
   const io::OccupancyMap map = RoomMap(8., 6.);
   Loop loop(map, map, Pose2(4., 3., 0.), {{1., 3.}});

@@ -13,10 +13,12 @@ namespace {
 
 using simulation::Disc;
 
-// Slower is standing still: the last 10 and 33 ms of a stop.
+// A slower robot counts as stationary: these are the last 10 and 33 ms of a
+// stop.
 constexpr double kMovingSpeed = 0.01;  // m/s
 constexpr double kMovingTurn = 0.05;   // rad/s
-// From 0.9 m/s at 1 m/s^2, after 0.3 s of reaction.
+// The time in which the robot stops from 0.9 m/s at 1 m/s^2, after a reaction
+// time of 0.3 s.
 constexpr double kStoppingSeconds = 1.2;
 constexpr double kEchoTolerance = 0.1;  // metres beside a disc
 constexpr double kScanStep = 0.4;  // metres that somebody may walk in a scan
@@ -64,14 +66,15 @@ void ContactCounter::Record(const LiveRobot& robot, const bool with_moving,
 
 void ContactCounter::Check(const LiveRobot& robot,
                            const simulation::RayCaster& plan,
-                           const std::vector<Disc>& standing,
+                           const std::vector<Disc>& stationary,
                            const std::vector<Disc>& moving) {
   const Eigen::Vector2d place = robot.pose().translation();
   const auto gap = [&](const Disc& disc) {
     return (disc.center - place).norm() - disc.radius - radius_;
   };
   double clearance = plan.Clearance(place, radius_ + 1.) - radius_;
-  for (const Disc& disc : standing) clearance = std::min(clearance, gap(disc));
+  for (const Disc& disc : stationary)
+    clearance = std::min(clearance, gap(disc));
   least_clearance_ = std::min(least_clearance_, clearance);
   if (clearance < 0. && !touches_static_) {
     ++static_collisions_;

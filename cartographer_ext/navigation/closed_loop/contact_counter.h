@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Counts what the robot touches, by the true shapes. Something that moves may
-// run into a stationary robot; a contact in which the robot itself moves
-// at any time is a collision.
+// Counts contacts of the robot by the true shapes. A moving obstacle may run
+// into a stationary robot; a contact during which the robot itself moves at any
+// time is a collision.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_CONTACT_COUNTER_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_CONTACT_COUNTER_H_
 
@@ -31,18 +31,18 @@ class ContactCounter {
  public:
   explicit ContactCounter(double robot_radius) : radius_(robot_radius) {}
 
-  // The echoes of a scan and what moves, at the time of the scan.
+  // The echoes of a scan and the moving obstacles at its time.
   void AddScan(const std::vector<Eigen::Vector2d>& echoes,
                const std::vector<simulation::Disc>& moving, double time);
-  // A few times a decimetre of driving; everything in the world frame.
+  // To be called a few times per decimetre of driving; world frame.
   void Check(const LiveRobot& robot, const simulation::RayCaster& plan,
-             const std::vector<simulation::Disc>& standing,
+             const std::vector<simulation::Disc>& stationary,
              const std::vector<simulation::Disc>& moving);
 
   int static_collisions() const { return static_collisions_; }
   int moving_collisions() const { return moving_collisions_; }
-  // Of these the ones with somebody whom the laser had not shown for longer
-  // than a robot needs to stop: from behind a laser that looks forward only.
+  // Of these, collisions with somebody whom the laser had not seen for longer
+  // than the robot needs to stop: from outside its field of view.
   int unseen_collisions() const { return unseen_collisions_; }
   int run_into() const { return run_into_; }
   // Metres from the outline to stationary things, the least so far.

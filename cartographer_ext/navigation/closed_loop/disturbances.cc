@@ -18,15 +18,16 @@ using simulation::RayCaster;
 
 constexpr uint64_t kStream = 102;
 constexpr int kAttempts = 4000;
-// The first things drawn may leave no room for the others.
+// Drawing starts again up to this often, because the first disturbances may
+// leave no room for the others.
 constexpr int kDraws = 10;
 constexpr double kFromGoals = 1.5;  // metres kept free around goals
 constexpr double kApart = 2.;       // metres between two disturbances
 constexpr double kPersonRadius = 0.2;
 constexpr double kDoorSpacing = 0.08;  // metres between discs of a door
 constexpr double kWidest = 3.;         // metres, of a door
-// The way round the other side of an obstacle is longer by so many metres at
-// most; what is longer is another way.
+// A leg may become longer by at most this many metres where the robot passes an
+// obstacle on its other side. A longer leg is another route.
 constexpr double kRoundObstacle = 1.;
 
 // A place on one of the legs and the direction of the path there.
@@ -92,7 +93,7 @@ Disturbance DrawObstacle(const PathPlace& place, Random* const random) {
   return obstacle;
 }
 
-// Nothing where there is no room to walk.
+// Empty if there is no room to walk.
 bool DrawCrossing(const RayCaster& plan, const PathPlace& place,
                   Random* const random, Disturbance* const crossing) {
   const double side = random->Uniform() < 0.5 ? 1. : -1.;
@@ -135,15 +136,15 @@ bool IsNear(const PathPlace& place, const std::vector<Eigen::Vector2d>& taken,
   return false;
 }
 
-// Whether every leg can still be driven with some room to spare, and that is
-// the way which a robot of this radius would take without: where an obstacle
-// leaves a gap in a door that hardly holds the robot, the leg is "free" by
-// another door only.
-bool LegsAreFree(const RayCaster& plan, const std::vector<Disc>& standing,
+// Whether every leg can still be driven with some room to spare, on the route
+// that a robot of this radius would take without the discs. Where an obstacle
+// leaves a gap in a door that hardly holds the robot, a leg may be free by
+// another door only, which does not count.
+bool LegsAreFree(const RayCaster& plan, const std::vector<Disc>& stationary,
                  const std::vector<std::vector<Eigen::Vector2d>>& legs,
                  const DisturbanceOptions& options) {
   std::vector<Disc> discs = plan.discs();
-  discs.insert(discs.end(), standing.begin(), standing.end());
+  discs.insert(discs.end(), stationary.begin(), stationary.end());
   const double wide = options.robot_radius + 0.5 * options.spare_width;
   for (const auto& leg : legs) {
     const auto path =
@@ -197,7 +198,7 @@ absl::StatusOr<Disturbances> Disturbances::Draw(
     goals.push_back(leg.front());
     goals.push_back(leg.back());
   }
-  std::vector<Disc> standing;
+  std::vector<Disc> stationary;
   int obstacles = 0, crossings = 0, doors = 0;
   for (int attempt = 0; attempt != kAttempts; ++attempt) {
     const int count = static_cast<int>(result.disturbances_.size());
@@ -215,10 +216,10 @@ absl::StatusOr<Disturbances> Disturbances::Draw(
     }
     if (!fits) continue;
     if (drawn.kind != Disturbance::Kind::kCrossing) {
-      std::vector<Disc> more = standing;
+      std::vector<Disc> more = stationary;
       more.insert(more.end(), drawn.discs.begin(), drawn.discs.end());
       if (!LegsAreFree(plan, more, legs, options)) continue;
-      standing = more;
+      stationary = more;
     }
     doors += drawn.kind == Disturbance::Kind::kDoor;
     obstacles += drawn.kind == Disturbance::Kind::kObstacle;
@@ -236,7 +237,7 @@ absl::StatusOr<Disturbances> Disturbances::Draw(
 }
 
 void Disturbances::Update(const double time, const Eigen::Vector2d& robot) {
-  standing_.clear();
+  stationary_.clear();
   moving_.clear();
   for (Disturbance& disturbance : disturbances_) {
     if (disturbance.over) continue;
@@ -251,8 +252,8 @@ void Disturbances::Update(const double time, const Eigen::Vector2d& robot) {
       disturbance.begin = time;
     }
     if (disturbance.kind != Disturbance::Kind::kCrossing) {
-      standing_.insert(standing_.end(), disturbance.discs.begin(),
-                       disturbance.discs.end());
+      stationary_.insert(stationary_.end(), disturbance.discs.begin(),
+                         disturbance.discs.end());
       continue;
     }
     Disc disc = disturbance.discs.front();

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a robot meets that its map does not show: things that
-// are put in its path, people who cross suddenly, doors that close. All of it
-// is round; a closed door is a row of discs.
+// Disturbances that the map does not show: obstacles put in the robot's path,
+// people who cross suddenly, doors that close. All are discs; a closed door is
+// a row of them.
 //
-// Places are drawn along the shortest paths between the goals, so that the
-// robot meets them; they come to be when it is near, but never nearer than it
-// can react to. Stationary things leave a path to every goal, and each obstacle
-// leaves `spare_width` beside it: what closes a way is a door.
+// Positions are drawn along the shortest paths between the goals, so that the
+// robot meets them. A disturbance appears when the robot is near, but never
+// nearer than it can react to. Stationary ones leave a path to every goal, and
+// each obstacle leaves `spare_width` beside it: only doors close a passage.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_DISTURBANCES_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_DISTURBANCES_H_
 
@@ -30,7 +30,7 @@ struct DisturbanceOptions {
   double robot_radius = 0.25;  // metres
   // Free beside an obstacle on at least one side, on top of the robot's width.
   double spare_width = 0.25;
-  double min_distance = 1.5;  // metres from the robot at which they come to be
+  double min_distance = 1.5;  // metres from the robot at which they appear
 };
 
 struct Disturbance {
@@ -57,12 +57,14 @@ class Disturbances {
       const std::vector<std::vector<Eigen::Vector2d>>& legs,
       const DisturbanceOptions& options, uint64_t seed);
 
-  // Lets happen what is due with the robot at that place.
+  // Triggers the disturbances that are due with the robot at this position.
   void Update(double time, const Eigen::Vector2d& robot);
 
   const std::vector<Disturbance>& all() const { return disturbances_; }
   // At the time of the last update.
-  const std::vector<simulation::Disc>& standing() const { return standing_; }
+  const std::vector<simulation::Disc>& stationary() const {
+    return stationary_;
+  }
   const std::vector<simulation::Disc>& moving() const { return moving_; }
 
  private:
@@ -72,7 +74,7 @@ class Disturbances {
       const DisturbanceOptions& options, Random* random);
 
   std::vector<Disturbance> disturbances_;
-  std::vector<simulation::Disc> standing_;
+  std::vector<simulation::Disc> stationary_;
   std::vector<simulation::Disc> moving_;
   double min_distance_ = 0.;
 };

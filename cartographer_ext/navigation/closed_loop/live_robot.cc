@@ -12,7 +12,7 @@ namespace cartographer_ext {
 namespace navigation {
 namespace {
 
-// Streams of random numbers beside those of the simulator.
+// Streams of random numbers in addition to those of the simulator.
 constexpr uint64_t kStream = 101;
 
 double Toward(const double from, const double to, const double step) {

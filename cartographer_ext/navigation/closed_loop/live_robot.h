@@ -8,8 +8,8 @@
 // covered by a little less, wheel by wheel:
 //   travel = (1 - slip) * turned,
 // where slip is drawn for the run and grows now and then for half a second, as
-// on a wet patch. The odometry knows what the wheels turned, with the errors
-// that the world file gives it (simulation/wheel.h).
+// on a wet patch. Odometry measures the turns of the wheels, with the errors
+// that the world file specifies (simulation/sensors/wheel.h).
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_LIVE_ROBOT_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_LIVE_ROBOT_H_
 

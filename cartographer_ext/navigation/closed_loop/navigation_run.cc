@@ -125,8 +125,8 @@ class ClosedLoop {
 
 std::vector<Disc> ClosedLoop::Everything() const {
   std::vector<Disc> discs = People();
-  discs.insert(discs.end(), disturbances_.standing().begin(),
-               disturbances_.standing().end());
+  discs.insert(discs.end(), disturbances_.stationary().begin(),
+               disturbances_.stationary().end());
   return discs;
 }
 
@@ -138,7 +138,7 @@ std::vector<Disc> ClosedLoop::People() const {
 }
 
 absl::Status ClosedLoop::Prepare() {
-  // A map starts where its robot stood.
+  // The origin of a map is the pose at which its robot started.
   run_->map_from_world =
       AlignMapToWorld(run_->map, costmap_->options().occupied_probability,
                       plan_, world_.start.Inverse());
@@ -182,7 +182,7 @@ absl::Status ClosedLoop::DrawDisturbances() {
 
 absl::Status ClosedLoop::StartLocalization(
     const evaluation::SlamConfiguration& configuration) {
-  // An operator's guess, refined with a look at the walls.
+  // The operator's guess, refined by fitting the echoes to the walls.
   Random random(
       simulation::MixBits(simulation::MixBits(options_.seed) ^ kStream));
   const Pose2 truth = TruePoseInMap();
@@ -221,7 +221,7 @@ void ClosedLoop::SenseScan() {
   taken.time = scan.time;
   taken.scan = ToNavigatorScan(scan);
   taken.scan.time = robot_.time();
-  // Odometry between readings, by the speed they show.
+  // Between readings, odometry is extrapolated with the speed of the last two.
   const double span = odometry_time_ - odometry_before_time_;
   taken.odometry =
       span <= 0. ? odometry_
@@ -296,7 +296,7 @@ void ClosedLoop::Control() {
 }
 
 void ClosedLoop::CheckContacts() {
-  contacts_.Check(robot_, plan_, disturbances_.standing(), People());
+  contacts_.Check(robot_, plan_, disturbances_.stationary(), People());
 }
 
 void ClosedLoop::RecordFrame() {
@@ -317,7 +317,7 @@ void ClosedLoop::RecordFrame() {
     for (Disc& disc : discs) disc.center = run_->map_from_world * disc.center;
     return discs;
   };
-  frame.standing = to_map(disturbances_.standing());
+  frame.stationary = to_map(disturbances_.stationary());
   frame.moving = to_map(People());
   if (!scans_.empty() && estimate_.has_value()) {
     const auto& echoes = scans_.back().scan.echoes;
@@ -330,11 +330,11 @@ void ClosedLoop::RecordFrame() {
 }
 
 void ClosedLoop::MeasurePath() {
-  // The shortest path is told what stood in the end.
+  // The shortest path takes the obstacles present at the end into account.
   const Pose2 world_from_map = run_->map_from_world.Inverse();
   std::vector<Disc> discs = world_.discs;
-  discs.insert(discs.end(), disturbances_.standing().begin(),
-               disturbances_.standing().end());
+  discs.insert(discs.end(), disturbances_.stationary().begin(),
+               disturbances_.stationary().end());
   Eigen::Vector2d from = world_.start.translation();
   for (const GoalResult& result : run_->goals) {
     if (!result.reached) continue;
@@ -407,7 +407,7 @@ absl::Status ClosedLoop::Run(
     run_->goal_errors.push_back(
         (TruePoseInMap().translation() - goals_[i]).norm());
   }
-  // All threads but this one work for the localisation.
+  // CPU time of all threads but this one is time of the localisation.
   const double others = (evaluation::ProcessCpuSeconds() - process_begin) -
                         (ThreadCpuSeconds() - thread_begin);
   run_->localization_cpu_seconds = localization_cpu_ + std::max(0., others);

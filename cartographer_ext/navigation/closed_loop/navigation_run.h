@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A whole drive in closed loop, and what is measured of it.
+// A whole drive in closed loop and its measurements.
 //
 //   true pose ─► laser, odometry ─► localisation ─► Navigator ─► LiveRobot ─►
 //   true pose
 //
-// Time goes in steps of 10 ms: the base moves and contacts are counted,
+// Time advances in steps of 10 ms: the base moves and contacts are counted,
 // odometry and scans are taken at their rates, and after each scan the
 // navigator gives a command. Contacts are found with the true pose and the true
 // shapes.
@@ -36,7 +36,7 @@ namespace navigation {
 struct NavigationRunOptions {
   std::string pbstream_filename;
   uint64_t seed = 1;
-  // In the map frame; empty: drawn from the seed, so many.
+  // In the map frame. If empty, this many are drawn from the seed.
   std::vector<Eigen::Vector2d> goals;
   int num_goals = 4;
   int obstacles = 0;
@@ -62,7 +62,7 @@ struct NavigationFrame {
   Velocity velocity;
   DriveState state = DriveState::kDriving;
   size_t goal = 0;
-  std::vector<simulation::Disc> standing;
+  std::vector<simulation::Disc> stationary;
   std::vector<simulation::Disc> moving;
   std::vector<Eigen::Vector2d> echoes;  // some of them
   std::vector<Eigen::Vector2d> path;
@@ -81,9 +81,9 @@ struct NavigationRun {
   double path_ratio = 0.;
   int static_collisions = 0;
   int moving_collisions = 0;  // with the robot moving
-  int unseen_collisions = 0;  // of these, with somebody not seen of late
-  int run_into = 0;           // with the robot standing still
-  // Somebody waited for the robot, summed over everybody.
+  int unseen_collisions = 0;  // of these, with somebody not seen lately
+  int run_into = 0;           // with the robot stationary
+  // Seconds for which people waited for the robot, summed over people.
   double people_waited_seconds = 0.;
   double least_clearance = 0.;  // metres, to stationary things
   std::vector<Disturbance> disturbances;

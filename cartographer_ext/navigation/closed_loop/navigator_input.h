@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the navigator gets of a recorded scan.
+// Converts a recorded scan for the navigator.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_NAVIGATOR_INPUT_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_NAVIGATOR_INPUT_H_
 

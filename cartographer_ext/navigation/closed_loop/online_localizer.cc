@@ -130,7 +130,7 @@ class OnlineLocalizer::Implementation {
   int timeouts() const { return timeouts_; }
 
  private:
-  // The host optimises after the node that makes them more than so many.
+  // The host optimises after the node with which their number exceeds this.
   void WaitForOptimization() {
     if (optimize_every_n_nodes_ <= 0 ||
         nodes_since_optimization_ <= optimize_every_n_nodes_) {
@@ -153,7 +153,7 @@ class OnlineLocalizer::Implementation {
   Rigid3d map_from_local_ ABSL_GUARDED_BY(mutex_);
   int optimizations_ ABSL_GUARDED_BY(mutex_) = 0;
   int awaited_optimizations_ ABSL_GUARDED_BY(mutex_) = 0;
-  // Set from within AddSensorData, that is by the thread of the caller.
+  // Set by a callback within AddSensorData, on the thread of the caller.
   bool matched_ = false;
   io::TimeNs matched_time_ = 0;
   Rigid3d local_from_robot_;
@@ -161,7 +161,8 @@ class OnlineLocalizer::Implementation {
   int timeouts_ = 0;
   int trajectory_id_ = 0;
   TrajectoryBuilderInterface* builder_ = nullptr;
-  // Last: its threads end before what their callbacks use goes away.
+  // Declared last, so that its threads end before the members that their
+  // callbacks use are destroyed.
   const std::unique_ptr<MapBuilderInterface> map_builder_;
 };
 

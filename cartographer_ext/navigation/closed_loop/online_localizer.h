@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Localisation in a finished map by the host, fed sensor by sensor: what a node
-// of a robot does. After a scan whose node starts an optimisation the caller
-// waits for its result, as if the back end took no time: so a run depends
-// neither on the speed of the machine nor on the number of threads.
+// Localisation in a finished map by the host, fed sensor by sensor as by a ROS
+// node. After a scan whose node starts an optimisation the caller waits for its
+// result, as if the back end took no time. A run therefore depends neither on
+// the speed of the machine nor on the number of threads.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_ONLINE_LOCALIZER_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_ONLINE_LOCALIZER_H_
 

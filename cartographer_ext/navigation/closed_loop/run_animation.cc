@@ -187,10 +187,10 @@ nlohmann::ordered_json FrameJson(const NavigationFrame& frame,
   json["q"] = static_cast<int>(frame.state);
   json["w"] = frame.message;
   json["g"] = frame.goal;
-  json["s"] = DiscsJson(frame.standing);
+  json["s"] = DiscsJson(frame.stationary);
   json["m"] = DiscsJson(frame.moving);
   json["e"] = Flat(frame.echoes);
-  // Only where it changes.
+  // Only frames in which it changes.
   if (before == nullptr || before->path != frame.path) {
     json["l"] = Flat(frame.path);
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A drive in closed loop as numbers and as a picture.
+// Reports a drive in closed loop as numbers and as a picture.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_RUN_REPORT_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_RUN_REPORT_H_
 

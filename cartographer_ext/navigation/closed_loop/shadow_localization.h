@@ -14,7 +14,7 @@
 namespace cartographer_ext {
 namespace navigation {
 
-// How another localisation does on the readings of a run.
+// The errors of another localisation on the readings of a run.
 struct ShadowLocalization {
   std::vector<LocalizationError> errors;
   int jumps = 0;

@@ -107,7 +107,8 @@ Pose2 AlignMapToWorld(const io::OccupancyMap& map,
   const size_t stride = std::max<size_t>(1, points.size() / kAlignmentPoints);
   Pose2 world_from_map = guess.Inverse();
   for (int iteration = 0; iteration != kAlignmentIterations; ++iteration) {
-    // People that stood in the map and furniture that moved do not count.
+    // Walls of the map that the plan lacks, such as people and moved furniture,
+    // are outliers of the fit.
     const double limit = iteration < 4 ? 0.6 : 0.15;
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Identity() * 1e-9;
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();

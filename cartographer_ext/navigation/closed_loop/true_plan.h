@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The world's true shapes as a planner sees them: the shortest collision-free
-// path, against which the driven one is measured, and places for disturbances.
+// The world's true shapes as a map for a planner: gives the shortest
+// collision-free path, with which the driven one is compared, and positions for
+// disturbances.
 #ifndef CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_TRUE_PLAN_H_
 #define CARTOGRAPHER_EXT_NAVIGATION_CLOSED_LOOP_TRUE_PLAN_H_
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTimeStep = 0.1;         // seconds, of the prediction
 constexpr double kHeadingSeconds = 0.05;  // along the loop
-constexpr double kStanding = 0.02;        // of the walking speed: stationary
+constexpr double kStationaryPace = 0.02;  // of the walking speed: stationary
 constexpr double kNearer = 1e-3;          // metres: less is rounding
 
 }  // namespace
@@ -28,10 +28,9 @@ Walkers::Walkers(const simulation::ObstacleMotion* const motion,
       walkers_(motion->size()) {}
 
 std::vector<simulation::Disc> Walkers::At() const {
-  std::vector<simulation::Disc> discs(walkers_.size());
+  std::vector<simulation::Disc> discs;
   for (size_t i = 0; i != walkers_.size(); ++i) {
-    discs[i].center = motion_->Position(i, walkers_[i].time);
-    discs[i].radius = motion_->radius(i);
+    discs.push_back(motion_->DiscAt(i, walkers_[i].time));
   }
   return discs;
 }
@@ -57,7 +56,7 @@ bool Walkers::SeesContact(const size_t index, const Walker& walker,
          motion_->Position(index, walker.time + walker.direction * seconds))
             .norm() -
         touching;
-    // Somebody who is too near already may leave.
+    // Somebody who is too near already may walk away.
     if (later_gap < std::min(options_.clearance, gap - kNearer)) return true;
   }
   return false;
@@ -80,13 +79,14 @@ void Walkers::Advance(const double seconds, const Pose2& robot,
     }
     walker.pace += (walker.wanted_pace - walker.pace) *
                    std::min(1., seconds / options_.relaxation_seconds);
-    const bool stationary = walker.wanted_pace == 0. && walker.pace < kStanding;
+    const bool stationary =
+        walker.wanted_pace == 0. && walker.pace < kStationaryPace;
     if (stationary) walker.pace = 0.;
     if (walker.wanted_pace == 0.) waited_seconds_ += seconds;
-    walker.standing = stationary ? walker.standing + seconds : 0.;
-    if (walker.standing >= options_.patience_seconds) {
+    walker.stopped_seconds = stationary ? walker.stopped_seconds + seconds : 0.;
+    if (walker.stopped_seconds >= options_.patience_seconds) {
       walker.direction = -walker.direction;
-      walker.standing = 0.;
+      walker.stopped_seconds = 0.;
     }
     walker.time += seconds * walker.direction * walker.pace;
   }

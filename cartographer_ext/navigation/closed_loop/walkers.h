@@ -36,7 +36,7 @@ struct WalkerOptions {
   double reaction_seconds = 0.5;    // until a stop or a start begins
   double relaxation_seconds = 0.5;  // of the speed towards the wanted one
   double clearance = 0.15;          // metres kept from the robot's outline
-  double patience_seconds = 3.;     // standing, before turning round
+  double patience_seconds = 3.;     // stopped, before turning round
 };
 
 class Walkers {
@@ -62,7 +62,7 @@ class Walkers {
     double pace = 1.;         // present share of its walking speed
     double wanted_pace = 1.;  // 0 or 1
     double decided = 0.;      // seconds for which it has wanted the other one
-    double standing = 0.;     // seconds
+    double stopped_seconds = 0.;
     Eigen::Vector2d heading = Eigen::Vector2d::Zero();
   };
 

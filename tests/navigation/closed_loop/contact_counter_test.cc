@@ -18,11 +18,11 @@ class ContactCounterTest : public testing::Test {
                1),
         counter_(0.25) {}
 
-  void Drive(const double seconds, const std::vector<Disc>& standing,
+  void Drive(const double seconds, const std::vector<Disc>& stationary,
              const std::vector<Disc>& moving) {
     for (double time = 0.; time < seconds; time += 0.02) {
       robot_.Advance(0.02);
-      counter_.Check(robot_, plan_, standing, moving);
+      counter_.Check(robot_, plan_, stationary, moving);
     }
   }
 

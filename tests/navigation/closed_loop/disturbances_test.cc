@@ -38,28 +38,29 @@ TEST_F(DisturbancesTest, ComeToBeNearTheRobotButNotTooNear) {
   auto disturbances = Disturbances::Create(plan_, legs_, options, 4);
   ASSERT_TRUE(disturbances.ok()) << disturbances.status();
   EXPECT_EQ(disturbances->all().size(), 5u);
-  EXPECT_TRUE(disturbances->standing().empty());
+  EXPECT_TRUE(disturbances->stationary().empty());
   size_t most_moving = 0, before = 0;
   std::vector<Eigen::Vector2d> seen;
   for (double time = 0.; time < 40.; time += 0.05) {
     const Eigen::Vector2d robot(1. + 0.55 * time, 1.2);
     disturbances->Update(time, robot);
-    const auto& standing = disturbances->standing();
+    const auto& stationary = disturbances->stationary();
     // A new one is no nearer than it may be.
-    for (size_t i = 0; i < standing.size() && standing.size() > before; ++i) {
+    for (size_t i = 0; i < stationary.size() && stationary.size() > before;
+         ++i) {
       const double distance =
-          (standing[i].center - robot).norm() - standing[i].radius;
+          (stationary[i].center - robot).norm() - stationary[i].radius;
       if (std::find_if(seen.begin(), seen.end(), [&](const auto& center) {
-            return center == standing[i].center;
+            return center == stationary[i].center;
           }) == seen.end()) {
         EXPECT_GE(distance, options.min_distance);
-        seen.push_back(standing[i].center);
+        seen.push_back(stationary[i].center);
       }
     }
-    before = standing.size();
+    before = stationary.size();
     most_moving = std::max(most_moving, disturbances->moving().size());
   }
-  EXPECT_EQ(disturbances->standing().size(), 3u);
+  EXPECT_EQ(disturbances->stationary().size(), 3u);
   EXPECT_GE(most_moving, 1u);
   // Those who cross are gone in the end.
   for (double time = 40.; time < 60.; time += 0.1) {
@@ -75,12 +76,12 @@ TEST_F(DisturbancesTest, NothingAppearsWithinReach) {
   ASSERT_TRUE(disturbances.ok());
   const simulation::Disc disc = disturbances->all()[0].discs[0];
   disturbances->Update(0., disc.center + Eigen::Vector2d(1., 0.));
-  EXPECT_TRUE(disturbances->standing().empty());
+  EXPECT_TRUE(disturbances->stationary().empty());
   disturbances->Update(1., disc.center + Eigen::Vector2d(2.5, 0.));
-  EXPECT_EQ(disturbances->standing().size(), 1u);
+  EXPECT_EQ(disturbances->stationary().size(), 1u);
   // And stays.
   disturbances->Update(2., disc.center + Eigen::Vector2d(20., 0.));
-  EXPECT_EQ(disturbances->standing().size(), 1u);
+  EXPECT_EQ(disturbances->stationary().size(), 1u);
 }
 
 TEST_F(DisturbancesTest, ADoorLeavesAnotherPath) {
