@@ -27,7 +27,8 @@ std::string TestsOfSource(const std::string& source) {
       const testing::TestInfo& test = *suite.GetTestInfo(j);
       const std::string file = test.file();
       if (file.substr(file.find_last_of('/') + 1) != source) continue;
-      filter += (filter.empty() ? "" : ":") + std::string(suite.name()) + "." + test.name();
+      filter += (filter.empty() ? "" : ":") + std::string(suite.name()) + "." +
+                test.name();
     }
   }
   return filter;
@@ -41,7 +42,8 @@ int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   constexpr char kTestSource[] = "--test_source=";
   for (int i = 1; i != argc; ++i) {
-    if (std::strncmp(argv[i], kTestSource, std::strlen(kTestSource)) != 0) continue;
+    if (std::strncmp(argv[i], kTestSource, std::strlen(kTestSource)) != 0)
+      continue;
     const std::string source = argv[i] + std::strlen(kTestSource);
     const std::string filter = TestsOfSource(source);
     if (filter.empty()) {
@@ -49,7 +51,8 @@ int main(int argc, char** argv) {
       return 1;
     }
     // A filter given besides, as death tests give it to the process they start, is the narrower one.
-    if (testing::GTEST_FLAG(filter) == "*") testing::GTEST_FLAG(filter) = filter;
+    if (testing::GTEST_FLAG(filter) == "*")
+      testing::GTEST_FLAG(filter) = filter;
   }
   return RUN_ALL_TESTS();
 }

@@ -43,7 +43,8 @@ std::string TemporaryStem(const std::string& path) {
   return absl::StrCat(path, ".", host, "-");
 }
 
-// Of processes that are no more. Their names end in PID.NUMBER.tmp.
+// Removes the temporary files of processes that have ended. Their names end in
+// PID.NUMBER.tmp.
 void RemoveAbandoned(const std::string& stem) {
   const size_t slash = stem.rfind('/');
   const std::string folder =

@@ -26,7 +26,8 @@ double Seconds(std::chrono::steady_clock::duration duration) {
 }  // namespace
 
 std::string FormatDuration(double seconds) {
-  // A day-long estimate is noise; the bound also keeps the conversion defined.
+  // An estimate of days is meaningless; the bound also keeps the conversion
+  // defined.
   const int64_t whole = std::llround(std::min(std::max(seconds, 0.), 359999.));
   if (whole < 3600) return absl::StrFormat("%d:%02d", whole / 60, whole % 60);
   return absl::StrFormat("%d:%02d:%02d", whole / 3600, whole / 60 % 60,
@@ -35,8 +36,7 @@ std::string FormatDuration(double seconds) {
 
 std::string FormatProgress(const std::string& label, int64_t done,
                            int64_t total, double elapsed_seconds,
-                           const std::string& note,
-                           const double seconds_left) {
+                           const std::string& note, const double seconds_left) {
   std::string line = absl::StrCat(label, " ", done);
   if (total <= 0 && done == 0) {
     line = absl::StrCat(label, " ...");
@@ -79,12 +79,11 @@ void Progress::Update(int64_t done, const std::string& note,
   if (drawn_ && Seconds(now - last_draw_) < kSecondsBetweenDrawings) return;
   drawn_ = true;
   last_draw_ = now;
-  std::fputs(
-      absl::StrCat(kEraseLine, FormatProgress(label_, done, total_,
-                                              Seconds(now - start_), note,
-                                              seconds_left))
-          .c_str(),
-      stderr);
+  std::fputs(absl::StrCat(kEraseLine, FormatProgress(label_, done, total_,
+                                                     Seconds(now - start_),
+                                                     note, seconds_left))
+                 .c_str(),
+             stderr);
   std::fflush(stderr);
 }
 

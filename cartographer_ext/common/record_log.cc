@@ -62,8 +62,7 @@ void RecordLog::Append(const absl::string_view lines,
 }
 
 void RecordLog::Close(const std::string& filename) {
-  status_ =
-      absl::ErrnoToStatus(errno, absl::StrCat("cannot write ", filename));
+  status_ = absl::ErrnoToStatus(errno, absl::StrCat("cannot write ", filename));
   table_.close();
   messages_.close();
 }

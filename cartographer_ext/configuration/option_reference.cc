@@ -53,7 +53,7 @@ the options of the module that uses them.
 
 )";
 
-// Each block once, though it may be used in several tables.
+// Each block is described once, although it may be used in several tables.
 std::vector<const OptionBlock*> Distinct(
     const std::vector<OptionBlock>& blocks) {
   std::set<std::string> names;

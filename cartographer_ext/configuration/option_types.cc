@@ -26,7 +26,7 @@ bool IsInteger(const double value) {
          value <= std::numeric_limits<int32_t>::max();
 }
 
-// Null when the value is good, else what it should be.
+// Null if the value has the right type, otherwise a description of that type.
 const char* Expected(const FieldDescriptor& field, const json& value) {
   double number = value.is_number() ? value.get<double>() : 0.;
   const bool is_number =

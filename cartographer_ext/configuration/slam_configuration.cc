@@ -30,7 +30,7 @@ using cartographer::common::ConfigurationFileResolver;
 using cartographer::common::LuaParameterDictionary;
 using cartographer::mapping::TrajectoryBuilderInterface;
 
-// Of reading a configuration, which takes a hundredth of a second.
+// Limit for reading a configuration, which takes about a hundredth of a second.
 constexpr int kMaxLuaCpuSeconds = 20;
 
 const char* const kRosStrings[] = {"map_frame", "published_frame",
@@ -54,8 +54,8 @@ const char* const kRosNumbers[] = {"num_laser_scans",
                                    "imu_sampling_ratio",
                                    "landmarks_sampling_ratio"};
 
-// Reads what a ROS node's file has at its top; the dictionary wants every key
-// to be read.
+// Reads the keys that the configuration of a ROS node has at its top level; the
+// dictionary requires every key to be read.
 void ReadRosKeys(LuaParameterDictionary* const dictionary,
                  SensorSettings* const settings) {
   for (const char* key : kRosStrings) {
@@ -102,7 +102,7 @@ void ReadSensorSettings(LuaParameterDictionary* const dictionary,
   }
 }
 
-// Ends the program when something is wrong.
+// Ends the program if the configuration is invalid.
 SlamConfiguration ParseOrDie(const std::vector<std::string>& directories,
                              const std::string& name, const std::string& code) {
   SlamConfiguration configuration;
@@ -128,7 +128,7 @@ std::string ReadOrDie(const std::vector<std::string>& directories,
   return ConfigurationFileResolver(directories).GetFileContentOrDie(basename);
 }
 
-// Makes the objects that look closer at the options than the reading does.
+// Creates the objects that check their options more closely than the reader.
 void ConstructOrDie(const SlamConfiguration& configuration) {
   CHECK(configuration.map_builder_options.use_trajectory_builder_2d())
       << "map_builder.use_trajectory_builder_2d must be true: this is 2D SLAM";
@@ -156,7 +156,7 @@ std::vector<Part> Parts() {
            TrajectoryBuilderOptions::descriptor()}};
 }
 
-// As users write it: MAP_BUILDER.pose_graph is POSE_GRAPH.
+// The name that users write: MAP_BUILDER.pose_graph is POSE_GRAPH.
 std::string InLuaFile(const std::string& text) {
   return absl::StrReplaceAll(text,
                              {{"MAP_BUILDER.pose_graph.", "POSE_GRAPH."},
@@ -164,8 +164,9 @@ std::string InLuaFile(const std::string& text) {
                                "TRAJECTORY_BUILDER_2D."}});
 }
 
-// What the host's reader may pass over or end the program for without a name.
-// Whatever else is wrong with the table, the host says better.
+// Errors that the host's reader ignores, or for which it ends the program
+// without naming the key. For all other errors the message of the host is
+// better.
 absl::Status CheckValues(const nlohmann::json& table,
                          std::vector<std::string>* const warnings) {
   for (const Part& part : Parts()) {
@@ -207,8 +208,8 @@ absl::Status Suggest(const absl::Status& status, const nlohmann::json& table) {
   return status;
 }
 
-// The table that the code returns. Not an object when the host has to say what
-// is wrong with it. The first run is in a child process: code that calls one
+// The table that the code returns; not an object if the error is left to the
+// host. The code runs in a child process first, because code that calls one
 // function for hours cannot be interrupted.
 absl::StatusOr<nlohmann::json> Evaluate(
     const std::vector<std::string>& directories, const std::string& name,
@@ -239,7 +240,7 @@ absl::StatusOr<SlamConfiguration> LoadSlamConfiguration(
     const std::vector<std::string>& directories, const std::string& basename) {
   auto code = ReadFromDirectories(basename, directories);
   if (code.status().code() == absl::StatusCode::kNotFound) {
-    // The host may have a folder of its own.
+    // The host may have a folder with configuration files of its own.
     const absl::Status readable =
         TryInChildProcess([&] { ReadOrDie(directories, basename); });
     if (!readable.ok()) return Explain(readable, basename, directories);

@@ -21,7 +21,7 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-// What a block at this place decodes to; null for places of no known block.
+// The decoded block at this place; null if no block belongs there.
 std::unique_ptr<Message> BlockAt(const std::string& path) {
   if (absl::EndsWith(path, "ceres_scan_matcher_options")) {
     return std::make_unique<proto::ScanMatcherOptions>();

@@ -102,7 +102,7 @@ absl::Status Compare(const PoseGraph& graph, const SweepOptions& options,
                         comparison, &rival);
     if (!status.ok()) return status;
   }
-  // A cost near zero says nothing in relation to itself.
+  // A relative difference of a cost near zero is meaningless.
   comparison->excess = (comparison->cost - comparison->rival_cost) /
                        std::max(comparison->rival_cost, 1e-6);
   if (comparison->excess > kCostTolerance) {
@@ -168,7 +168,7 @@ bool FromJson(const nlohmann::json& json, CostComparison* const comparison) {
 class CostJournal {
  public:
   absl::Status Open(const SweepOptions& options) {
-    // What else the costs depend on.
+    // Other settings that the costs depend on.
     const std::string fingerprint =
         absl::StrCat("group_size ", options.group_size, ", adaptive_gate ",
                      options.optimize.adaptive_gate, ", lowest_cost ",

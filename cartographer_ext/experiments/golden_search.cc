@@ -84,7 +84,7 @@ class Searcher {
     }
   }
 
-  // `statistics` is only written by ours.
+  // Only our matcher writes `statistics`.
   bool Run(const GoldenPair& golden, const PointCloud& cloud,
            float* const score, Rigid2d* const pose,
            scan_matching::SearchStatistics* const statistics) const {

@@ -74,7 +74,7 @@ class Builder {
     }
     graph_.poses.assign(path_.poses.size(), Pose2());
     graph_.poses = optimization::DeadReckoning(graph_);
-    // One graph in ten holds another pose.
+    // One graph in ten fixes a second pose.
     if (path_.robots.back() == 0 && random_->UniformInt(0, 9) == 0) {
       const int other = path_.poses.size() / 2;
       graph_.fixed = {0, other};

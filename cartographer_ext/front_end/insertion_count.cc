@@ -9,7 +9,7 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// Between scans of 5 Hz, at half a radian a second.
+// Rotation between scans at 5 Hz and half a radian a second.
 constexpr double kRotationSpacing = 0.1;
 constexpr double kMostInsertions = 10.;
 
@@ -21,7 +21,7 @@ int InsertionCount(const Pose2& motion, const double spacing) {
   const double by_rotation =
       std::abs(NormalizeAngle(motion.theta)) / kRotationSpacing;
   const double count = std::max(by_translation, by_rotation);
-  // Written so that what is not a number counts once.
+  // The comparison is written so that NaN counts once.
   return count > 1. ? static_cast<int>(std::min(kMostInsertions, count)) : 1;
 }
 

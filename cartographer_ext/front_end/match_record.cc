@@ -25,7 +25,8 @@ constexpr char kHead[] =
     "information_ratio,disagreement_x,disagreement_y,"
     "disagreement_theta_degrees,chi_square,odometry,source,searched,score,"
     "time_offset,interval,odometry_scale,odometry_scale_sigma,rotation_scale,"
-    "rotation_scale_sigma,rotation_per_metre_degrees,rotation_per_metre_sigma_degrees\n";
+    "rotation_scale_sigma,rotation_per_metre_degrees,rotation_per_metre_sigma_"
+    "degrees\n";
 
 MatchRecord::Degeneracy ToProto(const DegeneracyState state) {
   switch (state) {
@@ -187,11 +188,11 @@ std::string RecordCsvRows(const std::vector<MatchRecord>& records) {
         absl::AsciiStrToLower(MatchRecord::Source_Name(record.source())),
         record.searched() ? 1 : 0, record.score(), record.time_offset(),
         record.interval());
-    absl::StrAppendFormat(&rows, "%.6f,%.6f,%.6f,%.6f,%.5f,%.5f\n",
-                          record.odometry_scale(), record.odometry_scale_sigma(),
-                          record.rotation_scale(), record.rotation_scale_sigma(),
-                          RadToDeg(record.rotation_per_metre()),
-                          RadToDeg(record.rotation_per_metre_sigma()));
+    absl::StrAppendFormat(
+        &rows, "%.6f,%.6f,%.6f,%.6f,%.5f,%.5f\n", record.odometry_scale(),
+        record.odometry_scale_sigma(), record.rotation_scale(),
+        record.rotation_scale_sigma(), RadToDeg(record.rotation_per_metre()),
+        RadToDeg(record.rotation_per_metre_sigma()));
   }
   return rows;
 }

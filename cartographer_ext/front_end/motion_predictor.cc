@@ -23,10 +23,10 @@ constexpr double kMaxTimeSinceInsertion = 10.;
 // Changes of speed below this many standard deviations of the accelerometer's
 // bias count as zero, because they would add up to metres per second.
 constexpr double kAccelerationGate = 2.;
-// Matches of a laser that sees less are worth less: the same scan lasts for a
-// shorter part of the path, and errors of the maps made of it add up. By the
-// square of the angle a depth camera of 57 degrees leaves odometry a tenth of
-// the variance, 3 mm and 3 %.
+// Matches of a laser with a narrow field of view are less accurate: a scan
+// overlaps with others over a shorter part of the path, so errors of the
+// submaps accumulate. Scaled by the square of the angle, a depth camera of 57
+// degrees leaves odometry a tenth of the variance, 3 mm and 3 %.
 constexpr double kWideFieldOfView = kPi;
 // A stationary robot's wheels move less between two scans, and its matches
 // scatter less: metres, radians.
@@ -102,7 +102,8 @@ MotionPrediction MotionPredictor::PredictByVelocity(
     prediction.covariance = velocity_.MotionCovariance(interval);
     return prediction;
   }
-  // After so long the velocity says nothing, least of all about rotation.
+  // After this many seconds the last velocity predicts nothing, least of all
+  // the rotation.
   prediction.covariance = WideCovariance(interval);
   prediction.is_uncertain = true;
   prediction.search_radius = options_.constant_velocity.speed_noise * interval;
@@ -149,7 +150,7 @@ void MotionPredictor::PredictByOdometry(
       monitor_.IsSuspect(interval, odometry.motion, odometry.frozen, without);
   if (!monitor_.IsTrusted() && monitor_.state() != OdometryState::kAbsent &&
       has_expectation) {
-    // Not used until the monitor trusts it again, but worth a search.
+    // Not used until the monitor trusts it again, but searched around.
     prediction->alternatives.push_back(odometry.motion);
     prediction->alternatives.push_back(monitor_.MissedMotion() *
                                        odometry.motion);
@@ -166,7 +167,7 @@ void MotionPredictor::PredictByOdometry(
   OdometryMotion since_anchor;
   if (monitor_.state() == OdometryState::kAbsent && has_anchor_ &&
       odometry_.Predict(anchor_time_, time, &since_anchor)) {
-    // Odometry is back, and it covers the time of its absence.
+    // Odometry has returned, and its readings span the gap.
     prediction->is_uncertain = !odometry.is_late;
     prediction->alternatives.push_back(since_anchor_.Inverse() *
                                        since_anchor.motion);
@@ -189,7 +190,7 @@ void MotionPredictor::PredictFromInsertion(
   ImuMotion imu;
   if (IntegrateImu(insertion_time_, time, &imu)) FuseRotations(imu, &odometry);
   prediction->motion = since_insertion_.Inverse() * odometry.motion;
-  // Into the frame of the last scan.
+  // Rotates it into the frame of the last scan.
   const Eigen::Matrix3d rotation = PlanarRotation(since_insertion_.theta);
   prediction->covariance =
       rotation.transpose() *

@@ -16,7 +16,7 @@ namespace {
 // while they turn fast.
 constexpr double kInitialTurnRateSigma = 0.2;
 
-// Of the change of the velocity over `interval`, per second squared.
+// Covariance of the change of the velocity over `interval`, per second squared.
 Eigen::Matrix3d Change(const ConstantVelocityOptions& options,
                        const double interval) {
   const double speed =

@@ -41,7 +41,7 @@ class G2oParser {
   std::vector<Fix> fixes_;
 };
 
-// Landmarks and sensor offsets, which a graph of poses does without.
+// Landmarks and sensor offsets, which a pose graph does not need.
 bool IsSkipped(const absl::string_view tag) {
   for (const char* const name :
        {"VERTEX_XY", "EDGE_SE2_XY", "EDGE_SE2_POINT_XY", "EDGE_BEARING_SE2_XY",

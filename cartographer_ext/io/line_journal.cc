@@ -35,8 +35,9 @@ std::string JournalLine(const nlohmann::ordered_json& json) {
          "\n";
 }
 
-// A line has a record, what it is made of, and scalars or lists of them. Deeper
-// structures take a stack as deep as they are once they exist, so they never do.
+// A line holds a record with fields that are scalars or lists of them. Deeper
+// structures are refused while parsing, because the library destroys them
+// recursively.
 nlohmann::json ParseJournalLine(const std::string& content, const size_t begin,
                                 const size_t end) {
   constexpr int kMaxDepth = 3;
@@ -102,7 +103,7 @@ absl::Status LineJournal::ReadAll(const JournalKind& kind,
     content.append(buffer, static_cast<size_t>(count));
   }
   const size_t whole = content.rfind('\n') + 1;  // 0 when there is none
-  // Nothing of a file that is no journal is cut off.
+  // A file that is not a journal is never truncated.
   const std::string begin_of_all = absl::StrCat("{\"", kind.key, "\":");
   const size_t common = std::min(content.size(), begin_of_all.size());
   if (content.compare(0, common, begin_of_all, 0, common) != 0) {

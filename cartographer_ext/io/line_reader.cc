@@ -38,7 +38,8 @@ class ExpandsTooMuch : public std::exception {
   const ExpansionBudget budget_;
 };
 
-// Behind a decompressor: ends the reading where the budget does.
+// A filter after the decompressor that stops reading when the budget is
+// exhausted.
 class ExpansionLimit : public boost::iostreams::multichar_input_filter {
  public:
   explicit ExpansionLimit(const ExpansionBudget& budget) : budget_(budget) {}

@@ -158,7 +158,7 @@ absl::string_view TakeWord(absl::string_view* rest) {
 }
 
 absl::StatusOr<Pgm> ReadPgm(const std::string& filename) {
-  // As text a value takes up to four bytes.
+  // In text form a value takes up to four bytes.
   auto content = ReadFile(filename, 4 * kMaxCells + 4096);
   if (!content.ok()) return content.status();
   const auto error = [&](absl::string_view what) {
@@ -200,7 +200,7 @@ absl::StatusOr<Pgm> ReadPgm(const std::string& filename) {
   return pgm;
 }
 
-// What map_server makes of a grey value.
+// Interprets a grey value as map_server does.
 float ToOccupancy(const Yaml& yaml, double grey, double max_value) {
   if (yaml.mode == "raw") {
     return grey <= 100. ? static_cast<float>(grey / 100.)

@@ -67,7 +67,7 @@ class Picture::Canvas {
       bounds.min_x = bounds.min_y = -0.5;
       bounds.max_x = bounds.max_y = 0.5;
     }
-    // Coordinates of any size must give a picture of sensible size.
+    // The picture must have a sensible size whatever the coordinates.
     const double extent = std::max(
         {bounds.max_x - bounds.min_x, bounds.max_y - bounds.min_y, 1e-3});
     const int longer = std::min(kMaxPixels, std::max(kMinPixels, size));
@@ -223,7 +223,7 @@ void Picture::Canvas::DrawMap(const OccupancyMap& map) {
   const double cell = scale_ * map.resolution;
   cairo_scale(context_, cell, cell);
   cairo_set_source_surface(context_, cells, 0., -map.height);
-  // Many cells a pixel are averaged; few stay sharp.
+  // Cells smaller than a pixel are averaged; larger ones stay sharp.
   cairo_pattern_set_filter(
       cairo_get_source(context_),
       cell < 1. ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);

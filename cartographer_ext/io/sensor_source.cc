@@ -27,9 +27,10 @@ std::string ReadHead(const std::string& filename) {
   return std::string(head, static_cast<size_t>(file.gcount()));
 }
 
-absl::StatusOr<std::unique_ptr<SensorSource>> OpenRos2(const std::string& filename,
-                                                       absl::StatusOr<std::unique_ptr<RosContainer>> container,
-                                                       const SensorSourceOptions& options) {
+absl::StatusOr<std::unique_ptr<SensorSource>> OpenRos2(
+    const std::string& filename,
+    absl::StatusOr<std::unique_ptr<RosContainer>> container,
+    const SensorSourceOptions& options) {
   if (!container.ok()) return container.status();
   return OpenRosRecording(filename, std::move(*container), options);
 }

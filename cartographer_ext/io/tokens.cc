@@ -85,8 +85,7 @@ bool ParseDouble(absl::string_view token, double* value) {
   const char* const end = token.data() + token.size();
   const auto result = absl::from_chars(token.data(), end, *value);
   if (result.ptr != end || token.empty()) return false;
-  // Underflow gives (nearly) zero and overflow infinity: both are what is
-  // meant.
+  // Underflow gives (nearly) zero and overflow infinity, as intended.
   if (result.ec == std::errc::result_out_of_range && std::abs(*value) > 1.) {
     *value = std::copysign(std::numeric_limits<double>::infinity(), *value);
   }

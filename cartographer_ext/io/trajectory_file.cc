@@ -15,7 +15,7 @@ namespace cartographer_ext {
 namespace io {
 namespace {
 
-// Files keep few digits; anything farther off is not a rotation.
+// Tolerance of the norm, because files keep few digits.
 constexpr double kMaxNormError = 0.01;
 
 absl::Status ParseLine(Tokens* tokens, StampedPose* stamped) {

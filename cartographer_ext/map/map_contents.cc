@@ -73,7 +73,7 @@ SubmapCells::SubmapCells(const cartographer::mapping::proto::Grid2D& grid,
                                                        : probability)));
     }
   }
-  // A little more, so that half a cell is rounded up whatever its rounding.
+  // The small addition rounds half a cell up, whatever the rounding error.
   radius_ = static_cast<int>(
       std::lround(std::min(std::max(0., margin / resolution_ + 1e-6),
                            static_cast<double>(kFar - 1))));

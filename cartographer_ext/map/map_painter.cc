@@ -21,9 +21,9 @@ constexpr int kMaxCellValue = 32767;
 // Marks a cell that was touched in the current update; never meant for files.
 constexpr int kUpdateMarker = 1 << 15;
 constexpr double kMaxCells = 4e8;
-// Of a map with little in it: submaps that lie far apart would make a small
-// file take gigabytes. In a thin diagonal corridor a fiftieth of the cells is
-// known.
+// Limit for maps with few known cells: submaps that are far apart would make a
+// small file expand to gigabytes. Even of a thin diagonal corridor, a fiftieth
+// of the cells is known.
 constexpr double kFreeCells = 1.6e7;
 constexpr double kMaxCellsPerKnown = 64.;
 constexpr float kSurface = 0.9f;

@@ -88,7 +88,7 @@ absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
   picture.DrawMap(map);
 
   const auto inserted = graph.InsertedNodes();
-  // Those that agree first: the others are what one looks for.
+  // Consistent loops first, so that the others are drawn over them.
   std::map<LoopKind, bool> present;
   for (const LoopKind kind :
        {LoopKind::kAgrees, LoopKind::kAgainstTheMap, LoopKind::kSwitchedOff}) {

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// What comparing a pose with itself may give.
+// The rounding error of comparing a pose with itself.
 constexpr double kRounding = 1e-9;  // metres, radians
 // Options named in a comparison.
 constexpr size_t kMaxNamedOptions = 40;

@@ -81,7 +81,7 @@ MapGraph MakeMapGraph(const io::Pbstream& pbstream) {
     GraphConstraint constraint;
     constraint.submap_id = ToSubmapId(record.submap_id());
     constraint.node_id = ToNodeId(record.node_id());
-    // Files have (submap <- tracking) already.
+    // Files already contain (submap <- tracking).
     constraint.relative_pose = ToPlanarPose(ToRigid3(record.relative_pose()));
     constraint.translation_weight = record.translation_weight();
     constraint.rotation_weight = record.rotation_weight();

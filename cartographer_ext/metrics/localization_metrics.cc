@@ -44,7 +44,7 @@ LocalizationSegment ComputeSegment(const std::vector<PosePair>& pairs,
     return error.translation.norm() <= options.translation_tolerance &&
            error.rotation <= options.rotation_tolerance;
   };
-  // Where the pose came in, as long as it has not gone out again.
+  // When the pose came within the tolerance, unless it has left it since.
   size_t localized = last;
   for (size_t i = first; i < last; ++i) {
     if (!within(i)) {

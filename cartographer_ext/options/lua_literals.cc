@@ -56,7 +56,8 @@ LuaLiteral ToLiteral(const absl::string_view text) {
   return literal;
 }
 
-// A name, so that a comparison in a string is no assignment.
+// Requires a name before the sign, so that a comparison in a string is not
+// taken for an assignment.
 bool IsName(const absl::string_view text) {
   for (const char c : text) {
     if (!absl::ascii_isalnum(c) && c != '_') return false;

@@ -27,7 +27,7 @@ const proto::OptionAnnotation& Annotation(const FieldDescriptor& field) {
   return field.options().GetExtension(proto::option);
 }
 
-// A number as short as it can be read back.
+// The shortest text that reads back as the same number.
 std::string NumberText(const double value) {
   if (value == std::floor(value) && std::abs(value) < 1e7) {
     return absl::StrCat(static_cast<int>(value));

@@ -15,8 +15,9 @@ namespace {
 constexpr char kKey[] = ".cartographer_ext";
 
 std::string Facts(const OptionDescription& option) {
-  std::string facts = absl::StrCat(
-      "default ", option.default_value.empty() ? "empty" : option.default_value);
+  std::string facts = absl::StrCat("default ", option.default_value.empty()
+                                                   ? "empty"
+                                                   : option.default_value);
   for (const std::string* fact : {&option.range, &option.unit}) {
     if (!fact->empty()) absl::StrAppend(&facts, "; ", *fact);
   }
@@ -30,7 +31,7 @@ std::unique_ptr<google::protobuf::Message> Defaults(
   return defaults;
 }
 
-// Whether the value differs from the default, however that is spelt.
+// Whether the value differs from the default, irrespective of notation.
 std::vector<bool> ChangedOptions(const google::protobuf::Message& options) {
   const std::vector<OptionDescription> defaults = Describe(*Defaults(options));
   const std::vector<OptionDescription> values = Describe(options);
@@ -139,7 +140,8 @@ std::string ToLuaFile(const std::vector<OptionBlock>& blocks) {
   std::set<std::string> written;
   for (const OptionBlock& block : blocks) {
     if (!written.insert(block.name).second) continue;
-    for (const OptionDescription& option : Describe(*Defaults(*block.options))) {
+    for (const OptionDescription& option :
+         Describe(*Defaults(*block.options))) {
       if (!option.is_basic) continue;
       absl::StrAppend(&result, "--   ", block.name, ".", option.key, " = ",
                       option.default_value, "\n");
@@ -149,10 +151,9 @@ std::string ToLuaFile(const std::vector<OptionBlock>& blocks) {
   absl::StrAppend(&result, "\nCARTOGRAPHER_EXT = {}\n");
   for (const OptionBlock& block : blocks) {
     if (!written.insert(block.name).second) continue;
-    absl::StrAppend(
-        &result, "\n-- ", block.summary, "\n",
-        ToLua(absl::StrCat("CARTOGRAPHER_EXT.", block.name),
-              *Defaults(*block.options)));
+    absl::StrAppend(&result, "\n-- ", block.summary, "\n",
+                    ToLua(absl::StrCat("CARTOGRAPHER_EXT.", block.name),
+                          *Defaults(*block.options)));
   }
   return result;
 }

@@ -92,8 +92,8 @@ RecordedTrack::MakeOptimizationProblem() {
 void RecordedTrack::OnNode(const Problem& problem) {
   if (num_steps_ >= plan_.steps.size()) return;
   const size_t step = num_steps_++;
-  // The new node against all submaps finished before, and a submap that this
-  // node finishes against all nodes that are not in it.
+  // Matches the new node against all submaps finished before, and a submap that
+  // this node finishes against all nodes that are not in it.
   const GraphId node_id = ids_.NodeOfStep(step);
   for (const GraphId& submap_id : finished_submaps_) {
     OnCandidate(problem, submap_id, node_id);

@@ -51,7 +51,7 @@ struct SubmapUse {
   bool has_successor = false;  // a node is in it and in a later one
 };
 
-// Decides on the submaps of one trajectory, node by node.
+// Plans the submaps of one trajectory, node by node.
 class SubmapChain {
  public:
   // `uses`: by index of the stored submap.

@@ -102,7 +102,7 @@ class SensorFeeder {
   Positions odometry_, imu_, fixed_frame_, landmarks_;
 };
 
-// Makes the submaps when they are due.
+// Creates submaps when they are due.
 class SubmapMaker {
  public:
   SubmapMaker(const io::Pbstream& pbstream, const ReplayPlan& plan)
@@ -193,7 +193,7 @@ MapGraph Translate(const MapGraph& graph, const ReplayIds& ids) {
   return result;
 }
 
-// From the ids of the pose graph to those of the stored map, where it has them.
+// Maps ids of the pose graph to those of the stored map.
 void TranslateDecisions(const ReplayIds& ids,
                         std::vector<proto::LoopDecision>* const decisions) {
   for (proto::LoopDecision& decision : *decisions) {
@@ -267,7 +267,7 @@ absl::StatusOr<Rerun> RerunPoseGraph(
   const auto wall_before = std::chrono::steady_clock::now();
 
   Rerun result;
-  // Lives longer than the pose graph, which shares its submaps.
+  // Outlives the pose graph, which shares its submaps.
   SubmapMaker submaps(pbstream, *plan);
   cartographer::common::ThreadPool thread_pool(options.num_background_threads);
   RecordedTrackOptions track_options;

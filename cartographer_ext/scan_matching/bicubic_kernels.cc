@@ -10,8 +10,8 @@ namespace cartographer_ext {
 namespace scan_matching {
 namespace {
 
-// The compiler makes vector code of these loops, for each set of instructions
-// that they are inlined for.
+// The compiler vectorises these loops for each instruction set for which they
+// are inlined.
 
 inline __attribute__((always_inline)) void FindPlacesInline(
     const GridFrame& frame, const double cosine, const double sine,
@@ -58,7 +58,7 @@ inline __attribute__((always_inline)) void InterpolateInline(
     const double s1 = 0.5 * (-10. * u + 9. * u2);
     const double s2 = 0.5 * (1. + 8. * u - 9. * u2);
     const double s3 = 0.5 * (3. * u2 - 2. * u);
-    // Along the rows, one after the other.
+    // First along the rows.
     const double value0 = ((w0 * c0[i] + w1 * c1[i]) + w2 * c2[i]) + w3 * c3[i];
     const double slope0 = ((s0 * c0[i] + s1 * c1[i]) + s2 * c2[i]) + s3 * c3[i];
     const double value1 =
@@ -79,7 +79,7 @@ inline __attribute__((always_inline)) void InterpolateInline(
     const double slope3 =
         ((s0 * c0[r3 + i] + s1 * c1[r3 + i]) + s2 * c2[r3 + i]) +
         s3 * c3[r3 + i];
-    // Across them.
+    // Then across the rows.
     const double v = row_fraction[i];
     const double v2 = v * v;
     const double v3 = v2 * v;

@@ -36,7 +36,7 @@ Eigen::Vector3d GainByDirections(const Eigen::Matrix2d& directions,
 Eigen::Vector3d GainByInformation(const ScanInformation& scan,
                                   const Eigen::Matrix3d& prior,
                                   const Eigen::Vector3d& difference) {
-  // In cells along the axes all entries are of one order of magnitude.
+  // In units of cells all entries are of the same order of magnitude.
   const Eigen::Matrix3d information =
       scan.axes.transpose() * scan.information * scan.axes;
   const Eigen::Matrix3d both =
@@ -103,7 +103,7 @@ Pose2 Remap(const ScanInformation& scan, const Eigen::Matrix3d* const prior,
     correction =
         GainByDirections(scan.directions, scan.direction_weights, difference);
   }
-  // What is taken from the match as a whole keeps its digits.
+  // A match that is used as a whole is not changed by rounding.
   if (correction == difference) return match;
   return Pose2(prediction.x + correction.x(), prediction.y + correction.y(),
                correction.z() == difference.z()
@@ -125,7 +125,7 @@ void Compare(const ScanInformation& scan, const Pose2& prediction,
       ++report->degrees_of_freedom;
       scatter(k, k) += scan.variances(k);
     } else {
-      // Decoupled from the others and without a difference of its own.
+      // This direction is decoupled from the others and has no residual.
       along(k) = 0.;
       scatter.row(k).setZero();
       scatter.col(k).setZero();

@@ -17,7 +17,8 @@ namespace {
 constexpr double kMaxDuration = 4. * 3600.;  // seconds
 // Corners sharper than this are turned in place.
 constexpr double kTurnInPlace = 100. * kPi / 180.;
-// A leg is begun with a turn in place when it starts further off the heading.
+// A leg begins with a turn in place if its direction differs from the heading
+// by more than this.
 constexpr double kAligned = 20. * kPi / 180.;
 // Distances and angles at which a target counts as reached.
 constexpr double kReached = 0.01;
@@ -63,7 +64,7 @@ MotionState Advance(const MotionState& state, const double time) {
   return next;
 }
 
-// Waypoints driven without a stop, in one direction.
+// A run of waypoints that is driven in one direction without a stop.
 struct Leg {
   std::vector<Eigen::Vector2d> points;  // starts at the robot
   std::vector<double> speeds;           // of the path to point i; [0] unused
@@ -161,7 +162,7 @@ class Driver {
   bool StandStill() {
     while (state_.speed != 0. || state_.turn_rate != 0.) {
       if (!Step(0., 0.)) return false;
-      // What is left of the division by the step length.
+      // The remainder of the division by the step length.
       if (std::abs(state_.speed) < 1e-12) state_.speed = 0.;
       if (std::abs(state_.turn_rate) < 1e-12) state_.turn_rate = 0.;
     }
@@ -175,7 +176,7 @@ class Driver {
         (leg.points[to] - leg.points[to - 1]).normalized();
     const double left = (leg.points[to] - position()).dot(along);
     if (to + 1 == leg.points.size()) return left < kReached;
-    // Round a corner the next segment takes over halfway.
+    // At a corner, the tracking switches to the next segment halfway round.
     const Eigen::Vector2d onwards =
         (leg.points[to + 1] - leg.points[to]).normalized();
     const Eigen::Vector2d bisector = along + onwards;
@@ -195,7 +196,8 @@ class Driver {
         return from + lookahead / length * rest;
       }
       if (to + 1 == leg.points.size()) {
-        // Beyond the end the last piece is prolonged: the aim stays ahead.
+        // The last segment is extended beyond its end, so that the target point
+        // stays ahead.
         const Eigen::Vector2d last =
             (leg.points[to] - leg.points[to - 1]).normalized();
         return leg.points[to] +
@@ -209,7 +211,7 @@ class Driver {
     }
   }
 
-  // Fast enough to get on, slow enough for every corner and the end.
+  // The highest speed that every corner ahead and the end allow.
   double SpeedLimit(const Leg& leg, const size_t to) const {
     double limit = leg.speeds[to];
     const double horizon =
@@ -250,7 +252,7 @@ class Driver {
     if (std::abs(curvature) * speed > robot_.turn_rate) {
       speed = std::max(0.02, robot_.turn_rate / std::abs(curvature));
     }
-    // Backwards the robot turns to where its tail must go.
+    // In reverse, the turn brings the robot's rear to the target.
     const double turn = Limited(
         curvature * std::max(std::abs(state_.speed), .02), robot_.turn_rate);
     return Step(leg.backwards ? -speed : speed, turn);
@@ -336,7 +338,8 @@ MotionState Drive::At(const double time) const {
     state.acceleration = state.turn_acceleration = 0.;
     return state;
   }
-  // Rounding may put a step's border on either side; both give the same pose.
+  // Rounding may assign a time at the border of two steps to either one; both
+  // give the same pose.
   const double index = std::floor(time / kDriveStep);
   if (index >= static_cast<double>(states_.size() - 1)) return states_.back();
   const size_t step = static_cast<size_t>(index);

@@ -155,9 +155,8 @@ void PlanBuilder::ReadPlace(Statement* statement) {
     return pose * Eigen::Vector2d(point.x(), mirror ? -point.y() : point.y());
   };
   for (const Segment& segment : shapes.segments) {
-    current_->segments.push_back(
-        {moved(segment.a), moved(segment.b), segment.reflectivity,
-         segment.echo_angle});
+    current_->segments.push_back({moved(segment.a), moved(segment.b),
+                                  segment.reflectivity, segment.echo_angle});
   }
   for (const Disc& disc : shapes.discs) {
     current_->discs.push_back(

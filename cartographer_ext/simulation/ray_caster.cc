@@ -92,7 +92,8 @@ RayCaster::RayCaster(std::vector<Segment> segments, std::vector<Disc> discs)
   cell_size_ = kPreferredCellSize;
   const double area = (extent.x() + 1.) * (extent.y() + 1.);
   cell_size_ = std::max(cell_size_, std::sqrt(area / kMaxCells));
-  // A long thin plan needs its own bound: one row of cells can be too many.
+  // A long thin plan needs a bound of its own: even one row may have too many
+  // cells.
   cell_size_ = std::max(cell_size_, extent.maxCoeff() / (kMaxCells / 4.));
   // A margin of one cell keeps shapes off the border.
   origin_ = min_ - Eigen::Vector2d::Constant(cell_size_);
@@ -154,8 +155,8 @@ void RayCaster::VisitCells(const int shape, const Visitor& visit) const {
        y <= row(disc.center.y() + disc.radius + pad); ++y) {
     for (int x = column(disc.center.x() - disc.radius - pad);
          x <= column(disc.center.x() + disc.radius + pad); ++x) {
-      // Only cells the circle's line passes: some corner outside, some point
-      // inside.
+      // Only cells that the circle passes through: with a corner outside and a
+      // point inside.
       const Eigen::Vector2d cell_min =
           origin_ + cell_size_ * Eigen::Vector2d(x, y);
       const Eigen::Vector2d cell_max =

@@ -44,28 +44,32 @@ class LogWriter {
     }
     if (options.bag) {
       const std::string filename = options.filestem + ".bag";
-      const absl::Status status = AddBag(filename, io::RosbagWriter::Open(filename, io::RosbagWriterOptions()));
+      const absl::Status status =
+          AddBag(filename,
+                 io::RosbagWriter::Open(filename, io::RosbagWriterOptions()));
       if (!status.ok()) return status;
     }
     io::RosbagWriterOptions ros2;
     ros2.compression = "zstd";
     if (options.mcap) {
       const std::string filename = options.filestem + ".mcap";
-      const absl::Status status =
-          AddBag(filename, io::OpenRosbag2Writer(filename, io::Rosbag2Storage::kMcap, ros2));
+      const absl::Status status = AddBag(
+          filename,
+          io::OpenRosbag2Writer(filename, io::Rosbag2Storage::kMcap, ros2));
       if (!status.ok()) return status;
     }
     if (options.db3) {
       const std::string filename = options.filestem + ".db3";
-      return AddBag(filename, io::OpenRosbag2Writer(filename, io::Rosbag2Storage::kDb3, ros2));
+      return AddBag(filename, io::OpenRosbag2Writer(
+                                  filename, io::Rosbag2Storage::kDb3, ros2));
     }
     return absl::OkStatus();
   }
 
   absl::Status operator()(const io::OdometryReading& reading) {
     ++summary_->odometry_readings;
-    // Velocities as a robot's driver has them: the change since the message
-    // before.
+    // Velocities as the driver of a robot computes them: from the change since
+    // the previous message.
     double linear = 0., angular = 0.;
     if (has_odometry_ && reading.time > odometry_.time) {
       const double seconds = io::ToSeconds(reading.time - odometry_.time);
@@ -80,7 +84,9 @@ class LogWriter {
           carmen_->AddOdometry(reading, linear, angular);
       if (!status.ok()) return status;
     }
-    return ToBags([&](io::RosbagWriter* bag) { return bag->AddOdometry(reading, linear, angular); });
+    return ToBags([&](io::RosbagWriter* bag) {
+      return bag->AddOdometry(reading, linear, angular);
+    });
   }
 
   absl::Status operator()(const io::ImuReading& reading) {
@@ -92,7 +98,8 @@ class LogWriter {
     ++summary_->scans;
     summary_->beams += scan.ranges.size();
     if (carmen_ != nullptr) {
-      // The pose in the scan line is the last one heard, as on a real robot.
+      // The pose in a scan line is that of the last odometry message, as on a
+      // real robot.
       const absl::Status status = carmen_->AddScan(scan, odometry_.pose);
       if (!status.ok()) return status;
     }
@@ -108,7 +115,8 @@ class LogWriter {
   }
 
  private:
-  absl::Status AddBag(const std::string& filename, absl::StatusOr<std::unique_ptr<io::RosbagWriter>> bag) {
+  absl::Status AddBag(const std::string& filename,
+                      absl::StatusOr<std::unique_ptr<io::RosbagWriter>> bag) {
     if (!bag.ok()) return bag.status();
     bags_.push_back(*std::move(bag));
     summary_->files.push_back(filename);

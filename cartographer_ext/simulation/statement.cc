@@ -12,7 +12,7 @@ namespace cartographer_ext {
 namespace simulation {
 namespace {
 
-// What a message quotes of a value that may be binary rubbish.
+// Makes a value, which may be binary, fit for an error message.
 std::string Quoted(absl::string_view text) {
   std::string quoted = "'";
   for (const char c : text.substr(0, 40)) {

@@ -45,7 +45,7 @@ std::vector<size_t> Sample(const std::vector<TruePose>& trajectory,
   return samples;
 }
 
-// Whether the laser looks where a point of the robot's frame lies.
+// Whether a point (robot frame) is in the field of view of the laser.
 bool InView(const LaserSettings& laser, const Eigen::Vector2d& in_robot) {
   const Eigen::Vector2d in_laser = laser.mounting.Inverse() * in_robot;
   if (in_laser.norm() < laser.min_range || in_laser.norm() > laser.max_range) {
@@ -126,7 +126,7 @@ std::vector<TrueRelation> LoopRelations(
   for (const size_t sample : samples) {
     const TruePose& here = trajectory[sample];
     const Eigen::Vector2d position = here.pose.translation();
-    // The nearest scan of the pass looked at, and that pass's last scan.
+    // The nearest scan of the present pass, and the last scan of that pass.
     const TruePose* best = nullptr;
     io::TimeNs last_time = 0;
     const auto emit = [&]() {

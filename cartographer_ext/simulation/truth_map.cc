@@ -35,8 +35,8 @@ class Painter {
       const RayHit hit = simulation_.plan().Cast(laser.translation(), direction,
                                                  settings.max_range);
       const double reach = settings.max_range * std::sqrt(hit.reflectivity);
-      // A cell is called free a little before the wall, so that a grazing beam
-      // does not empty the wall's own cells.
+      // Rays end a little before the wall, so that a grazing beam does not mark
+      // cells of the wall as free.
       if (hit.range > reach || hit.range < settings.min_range) continue;
       Free(laser.translation(), direction, hit.range - map_->resolution);
       Occupied(laser.translation() + hit.range * direction);

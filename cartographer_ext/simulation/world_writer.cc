@@ -24,7 +24,7 @@ std::string Option(const char* key, const double value) {
   return absl::StrCat(" ", key, "=", Number(value));
 }
 
-// Only what differs from the default.
+// Writes only values that differ from the default.
 std::string Option(const char* key, const double value, const double fallback) {
   return value == fallback ? "" : Option(key, value);
 }
@@ -37,7 +37,7 @@ std::string SurfaceOptions(const Segment& segment) {
 }
 
 void AddPlan(const World& world, std::string* text) {
-  // Lines that go on where the one before ends are one polyline.
+  // Joins segments that continue where the previous one ends into a polyline.
   for (size_t i = 0; i != world.segments.size();) {
     const Segment& first = world.segments[i];
     const std::string options = SurfaceOptions(first);
@@ -76,21 +76,20 @@ void AddLaser(const LaserSettings& laser, std::string* text) {
 }
 
 void AddOdometry(const OdometrySettings& odometry, std::string* text) {
-  absl::StrAppend(
-      text, "odometry ", odometry.present ? "" : " none",
-      Option("rate", odometry.rate),
-      Option("encoder_rate", odometry.encoder_rate),
-      Option("phase", odometry.phase, 0.),
-      Option("wheel_base", odometry.wheel_base),
-      Option("ticks_per_metre", odometry.ticks_per_meter, 0.),
-      Option("scale_left", odometry.scale_left, 0.),
-      Option("scale_right", odometry.scale_right, 0.),
-      Option("scale_sigma", odometry.scale_sigma, 0.),
-      Option("mismatch_sigma", odometry.mismatch_sigma, 0.),
-      Option("wheel_base_error", odometry.wheel_base_error, 0.),
-      Option("wheel_base_sigma", odometry.wheel_base_sigma, 0.),
-      Option("noise", odometry.noise, 0.),
-      Option("lateral_noise", odometry.lateral_noise, 0.), "\n");
+  absl::StrAppend(text, "odometry ", odometry.present ? "" : " none",
+                  Option("rate", odometry.rate),
+                  Option("encoder_rate", odometry.encoder_rate),
+                  Option("phase", odometry.phase, 0.),
+                  Option("wheel_base", odometry.wheel_base),
+                  Option("ticks_per_metre", odometry.ticks_per_meter, 0.),
+                  Option("scale_left", odometry.scale_left, 0.),
+                  Option("scale_right", odometry.scale_right, 0.),
+                  Option("scale_sigma", odometry.scale_sigma, 0.),
+                  Option("mismatch_sigma", odometry.mismatch_sigma, 0.),
+                  Option("wheel_base_error", odometry.wheel_base_error, 0.),
+                  Option("wheel_base_sigma", odometry.wheel_base_sigma, 0.),
+                  Option("noise", odometry.noise, 0.),
+                  Option("lateral_noise", odometry.lateral_noise, 0.), "\n");
 }
 
 void AddImu(const ImuSettings& imu, std::string* text) {
@@ -106,14 +105,13 @@ void AddImu(const ImuSettings& imu, std::string* text) {
 }
 
 void AddRobot(const RobotSettings& robot, std::string* text) {
-  absl::StrAppend(text, "robot    ", Option("radius", robot.radius),
-                  Option("speed", robot.speed),
-                  Option("acceleration", robot.acceleration),
-                  Option("turn_rate", robot.turn_rate),
-                  Option("turn_acceleration", robot.turn_acceleration),
-                  Option("lookahead", robot.lookahead),
-                  Option("jitter", robot.jitter, 0.),
-                  Option("turn_radius", robot.turn_radius, 0.), "\n");
+  absl::StrAppend(
+      text, "robot    ", Option("radius", robot.radius),
+      Option("speed", robot.speed), Option("acceleration", robot.acceleration),
+      Option("turn_rate", robot.turn_rate),
+      Option("turn_acceleration", robot.turn_acceleration),
+      Option("lookahead", robot.lookahead), Option("jitter", robot.jitter, 0.),
+      Option("turn_radius", robot.turn_radius, 0.), "\n");
 }
 
 void AddObstacle(const MovingObstacle& obstacle, std::string* text) {
@@ -214,9 +212,8 @@ std::string FormatWorld(const World& world) {
                     Point(distance.a), " ", Point(distance.b), "\n");
   }
   for (const RevisitPlace& place : world.places) {
-    absl::StrAppend(&text, "revisit   ", place.name, " ",
-                    Point(place.position), Option("radius", place.radius),
-                    "\n");
+    absl::StrAppend(&text, "revisit   ", place.name, " ", Point(place.position),
+                    Option("radius", place.radius), "\n");
   }
   return text;
 }

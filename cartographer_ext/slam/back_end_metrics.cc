@@ -25,7 +25,7 @@ LoopCpu MeasureLoopCpu(const MetricsCollector& metrics) {
            metrics.Sum(kOurCpuMetric, {{"stage", name}});
   };
   LoopCpu cpu;
-  // Stock's stage of searching has the refinement in it.
+  // Stock's time of the search includes the refinement.
   cpu.search = stage("search") + stage("refinement");
   cpu.build = stage("build");
   cpu.verification = stage("verification") + stage("planning");

@@ -23,7 +23,7 @@ bool PositionIsDegenerate(const MatchRecord& record) {
          record.degeneracy() == MatchRecord::EVERYTHING;
 }
 
-// The node nearest in time, null without any.
+// The node nearest in time; null if there is none.
 GraphNode* Nearest(const std::map<io::TimeNs, GraphNode*>& nodes,
                    const io::TimeNs time) {
   if (nodes.empty()) return nullptr;

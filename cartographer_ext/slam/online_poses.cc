@@ -27,7 +27,8 @@ void OnlinePoses::AddOptimization(const int node_index,
 std::vector<StampedPose> OnlinePoses::At(
     const std::vector<StampedPose>& local_scans) const {
   absl::MutexLock lock(&mutex_);
-  // In order of time; of one node the later optimisation holds.
+  // In order of time. If there are two optimisations for one node, the later
+  // one applies.
   std::vector<std::pair<io::TimeNs, Eigen::Isometry3d>> changes;
   for (const auto& optimization : optimizations_) {
     const auto node = node_times_.find(optimization.first);
@@ -73,7 +74,7 @@ absl::optional<StampedPose> OnlinePoses::LocalizedAt(
     if (node == node_times_.end()) return absl::nullopt;
     time = node->second;
   }
-  // The optimisation acts from the scan after its node on.
+  // The result of the optimisation applies to scans after its node.
   for (const StampedPose& pose : At(local_scans)) {
     if (pose.time > *time) return pose;
   }

@@ -34,13 +34,13 @@ nlohmann::ordered_json ToJson(const uncertainty::DriftEstimate& drift) {
           {"cycles", drift.num_cycles}};
 }
 
-// Seconds from the first scan to the one whose place in the map is known.
+// Seconds from the first scan to the first one localised in the map.
 double SecondsUntilLocalized(const SlamRun& run) {
   return io::ToSeconds(run.localized_at->time -
                        run.local_scan_poses.front().time);
 }
 
-// Null when never.
+// Null if that never happened.
 nlohmann::ordered_json LocalizedToJson(const SlamRun& run) {
   if (!run.localized_at.has_value()) return nullptr;
   const Pose2 pose = ToPose2(run.localized_at->pose);
@@ -92,7 +92,7 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
       {"cpu_seconds", run.loop_search_cpu_seconds},
       // Otherwise all threads of the back end are counted.
       {"cpu_seconds_of_search_alone", run.loop_search_cpu_is_measured},
-      // What these seconds are made of; all 0 if they are not measured.
+      // The parts of these seconds; all 0 if they were not measured.
       {"stages",
        {{"search", run.loop_cpu.search},
         {"build", run.loop_cpu.build},

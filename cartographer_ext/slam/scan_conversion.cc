@@ -30,7 +30,7 @@ cartographer::sensor::TimedPointCloudData ToTimedPointCloudData(
   const double last = static_cast<double>(scan.ranges.size()) - 1.;
   for (size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
-    // Written so that NaN fails.
+    // The comparison is written so that NaN fails it.
     if (!(range >= nearest && range <= furthest) || std::isinf(range)) continue;
     const double angle =
         scan.angle_min + static_cast<double>(i) * scan.angle_increment;

@@ -25,7 +25,8 @@ SensorId OdometrySensor() {
 
 SensorId ImuSensor() { return {SensorId::SensorType::IMU, kImuId}; }
 
-// By the host's clock, which has coarser ticks than the source.
+// Compared in ticks of the host's clock, which are coarser than those of the
+// source.
 bool IsLater(const io::TimeNs time, cartographer::common::Time* const last) {
   const cartographer::common::Time host_time = ToHostTime(time);
   if (host_time <= *last) return false;

@@ -47,7 +47,7 @@ constexpr size_t kMaxMatches = 2000000;
 // Longest wait for a queue that does not move.
 constexpr std::chrono::seconds kPatience(30);
 
-// Of a clock that never goes back, seconds.
+// Seconds of a monotonic clock.
 double Now() {
   return std::chrono::duration<double>(
              std::chrono::steady_clock::now().time_since_epoch())
@@ -139,7 +139,7 @@ class Runner {
     const absl::Status started = StartTrajectory();
     if (!started.ok()) return started;
     const absl::Status fed = Feed();
-    // After an error, too: the host does not bear being destroyed while it
+    // Also after an error, because the host must not be destroyed while it
     // waits for data.
     run_.map_builder->FinishTrajectory(run_.trajectory_id);
     if (!fed.ok()) return fed;
@@ -193,7 +193,8 @@ class Runner {
     thread_cpu_start_ = ThreadCpuSeconds();
   }
 
-  // Makes the map builder, with what is loaded into it, and the trajectory.
+  // Creates the map builder, loads the initial state into it, and adds the
+  // trajectory.
   absl::Status StartTrajectory() {
     auto map_builder_options = configuration_.map_builder_options;
     if (options_.num_background_threads > 0) {
@@ -209,7 +210,7 @@ class Runner {
           StartFrom(options_.state, &run_, &trajectory_options);
       if (!started.ok()) return started;
     }
-    // Called from within AddSensorData, that is in this thread.
+    // Called from within AddSensorData, on this thread.
     auto* const local_scan_poses = &run_.local_scan_poses;
     const auto online = online_;
     const auto latency = latency_;
@@ -232,7 +233,7 @@ class Runner {
     return absl::OkStatus();
   }
 
-  // Notes where each optimization puts the robot.
+  // Records the pose of the robot after each optimization.
   void FollowOptimizations() {
     PoseGraphInterface* const pose_graph = run_.map_builder->pose_graph();
     const int trajectory_id = run_.trajectory_id;
@@ -380,7 +381,7 @@ class Runner {
       context_->Get<loop_closure::DecisionRecorder>();
   front_end::MatchRecorder* const match_recorder_ =
       context_->Get<front_end::MatchRecorder>();
-  // Outlives the run in the callbacks.
+  // Shared with the callbacks, which may outlive the run.
   const std::shared_ptr<OnlinePoses> online_ = std::make_shared<OnlinePoses>();
 
   const std::shared_ptr<LatencyMeter> latency_ =

@@ -211,7 +211,7 @@ absl::Status Run(int* const num_mismatches) {
         absl::StrFormat("%s does not belong to %s: %s", FLAGS_golden_filename,
                         FLAGS_pbstream_filename, map.status().message()));
   }
-  // Not needed any more, and large.
+  // Frees memory that is not needed any more.
   *pbstream = io::Pbstream();
 
   Progress progress("matching", static_cast<int64_t>(pairs->size()));

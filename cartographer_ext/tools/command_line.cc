@@ -38,7 +38,7 @@ namespace cartographer_ext {
 namespace tools {
 namespace {
 
-// Every folder with our Lua files has it.
+// A file that every folder with our Lua files contains.
 constexpr char kOursBasename[] = "cartographer_ext.lua";
 // Folders above the program in which these are looked for.
 constexpr int kMaxParents = 4;
@@ -163,8 +163,8 @@ std::string Suggestion(const std::string& unknown) {
   return similar.empty() ? "" : absl::StrCat(", did you mean -", similar, "?");
 }
 
-// No flag means something by a number that is none, and only those whose default
-// is negative by one below 0.
+// No flag accepts NaN, and only flags with a negative default accept negative
+// numbers.
 bool IsSensible(const std::string& name, const std::string& value) {
   gflags::CommandLineFlagInfo info;
   double number = 0., default_number = 0.;
@@ -177,7 +177,7 @@ bool IsSensible(const std::string& name, const std::string& value) {
   return number >= 0. || (!std::isnan(number) && default_number < 0.);
 }
 
-// Of the flags that say how many threads or processes there shall be.
+// Limit of the flags for the number of threads or processes.
 void CheckNumberOfThreads(const std::string& name, const std::string& value) {
   int64_t number = 0;
   if ((name == "num_background_threads" || name == "threads" ||
@@ -206,7 +206,8 @@ bool IsBool(const std::string& name) {
          info.type == "bool";
 }
 
-// Whether writing one replaces the other. Devices and pipes are not replaced.
+// Whether writing one file replaces the other. Devices and pipes are not
+// replaced.
 bool IsSameFile(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty() || a == "-" || b == "-") return false;
   std::error_code error;

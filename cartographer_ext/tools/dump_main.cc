@@ -46,7 +46,7 @@ struct Inspected {
 
 Inspected Inspect(const std::string& filename) {
   Inspected result;
-  // Problems are listed; they are no error here.
+  // Problems are listed below, so they are not an error here.
   io::PbstreamReaderOptions options;
   options.validate = false;
   result.pbstream = io::ReadPbstream(filename, options);

@@ -140,7 +140,7 @@ absl::Status Run() {
           absl::StrCat(FLAGS_map_trajectory_filename, ": only ",
                        map_pairs->size(), " poses have a ground truth pose"));
     }
-    // The truth in the frame of the map.
+    // The reference trajectory in the frame of the map.
     const Pose2 map_from_truth = evaluation::AlignInPlane(*map_pairs).Inverse();
     for (evaluation::PosePair& pair : *pairs) {
       pair.reference = map_from_truth * pair.reference;

@@ -384,7 +384,7 @@ absl::Status RunOne(const std::string& command_line, bool* const fails) {
   return status.ok() ? run_again : status;
 }
 
-// A message, or empty.
+// The message about wrong usage, or empty.
 std::string WrongUsage(const bool many) {
   const std::string wrong = tools::WrongUsageOfMany(many);
   if (many || !wrong.empty()) return wrong;

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // LINK: slam_library verdict
 //
-// cartographer_ext_export: gets things out of a .pbstream.
+// cartographer_ext_export: extracts maps, trajectories and graphs from a
+// .pbstream.
 #include <iostream>
 #include <string>
 #include <vector>

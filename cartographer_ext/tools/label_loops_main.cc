@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // LINK: experiments
 //
-// cartographer_ext_label_loops: which loop candidates are true, and do the
-// scores know?
+// cartographer_ext_label_loops: which loop candidates are true, and how well do
+// the scores tell them apart?
 #include <iostream>
 #include <string>
 #include <vector>

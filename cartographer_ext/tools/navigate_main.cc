@@ -41,8 +41,7 @@ DEFINE_string(goals, "auto",
               "Goals in the map frame, metres: X,Y;X,Y - or auto: places that "
               "cover the map, drawn from the seed, the last one the start.");
 DEFINE_int32(num_goals, 4, "Number of goals for -goals auto.");
-DEFINE_uint64(seed, 1,
-              "Chooses goals, noise, slip, people and obstacles.");
+DEFINE_uint64(seed, 1, "Chooses goals, noise, slip, people and obstacles.");
 DEFINE_int32(obstacles, 0, "Things put in the robot's path.");
 DEFINE_int32(crossings, 0, "People who cross its path suddenly.");
 DEFINE_int32(doors, 0,

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // LINK: configuration io options
 //
-// cartographer_ext_print_options: what do our blocks of a configuration mean,
-// and what else could they say?
+// cartographer_ext_print_options: our options in a configuration, with their
+// meaning, default and range.
 #include <iostream>
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // LINK: repair_library
 //
-// cartographer_ext_repair: makes a better map of a finished one.
+// cartographer_ext_repair: improves a finished map.
 #include <iostream>
 #include <string>
 #include <vector>
@@ -44,10 +44,9 @@ DEFINE_bool(
     "Keep the frame of the map by a robust fit of its nodes, so that unchanged "
     "parts keep their coordinates. Otherwise the first node is fixed.");
 DEFINE_bool(dry_run, false, "Try all steps and report, without writing a map.");
-DEFINE_string(
-    drop_loops, "",
-    "Loops to remove, comma separated: "
-    "submap_trajectory:submap:node_trajectory:node.");
+DEFINE_string(drop_loops, "",
+              "Loops to remove, comma separated: "
+              "submap_trajectory:submap:node_trajectory:node.");
 DEFINE_string(add_loops, "",
               "Loops to add, with the same ids, optionally followed by "
               ":x:y:theta (node in the submap, metres and radians; otherwise "

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // LINK: simulation io
 //
-// cartographer_ext_simulate: drives a robot through a world file and writes
-// what its sensors say, beside the truth.
+// cartographer_ext_simulate: drives a robot through a world file and writes the
+// readings of its sensors and the ground truth.
 #include <cstdint>
 #include <ctime>
 #include <iostream>
@@ -152,7 +152,7 @@ bool FlagsAreKnown() {
          IsKnown("odometry", FLAGS_odometry, simulation::OdometryPresetNames());
 }
 
-// The small MEMS unit of the shipped worlds.
+// The MEMS unit of the shipped worlds.
 simulation::ImuSettings SmallImu() {
   simulation::ImuSettings imu;
   imu.present = true;

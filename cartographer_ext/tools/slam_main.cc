@@ -3,7 +3,7 @@
 // LINK: experiments report
 // SOURCES: slam_outputs.cc
 //
-// cartographer_ext_slam: a recording in, a map and numbers out.
+// cartographer_ext_slam: makes a map from a recording and measures it.
 #include <malloc.h>
 
 #include <algorithm>
@@ -223,7 +223,7 @@ absl::Status Run(const std::string& command_line) {
   const auto source = evaluation::OpenRecording(
       FLAGS_input_filename, SourceOptions(configuration->sensors), FLAGS_seed);
   if (!source.ok()) return source.status();
-  // With the JSON on standard output nothing else may go there.
+  // If the JSON goes to standard output, nothing else may.
   std::ostream& out = FLAGS_json == "-" ? std::cerr : std::cout;
   PrintRecording((*source)->info(), out);
   tools::PrintNotes((*source)->info().warnings);
@@ -280,8 +280,8 @@ absl::Status Run(const std::string& command_line) {
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
 #ifdef __GLIBC__
-  // One heap for all threads: what one thread has freed serves the next, which
-  // saves a fifth of the memory at no measurable cost.
+  // All threads share one heap, so that memory freed by one is used by another.
+  // This saves a fifth of the memory at no measurable cost.
   mallopt(M_ARENA_MAX, 1);
 #endif
   const std::string arguments = absl::StrJoin(argv, argv + argc, " ");

@@ -32,7 +32,7 @@ double EstimateSecondsLeft(const SlamWork& work, const double elapsed_seconds) {
   if (work.scans <= 0 || work.total_scans <= 0) return 0.;
   const double waiting = static_cast<double>(work.queue_length) /
                          (kNodesAScan + work.readings_a_scan);
-  // The queue may hold more than the estimate of readings a scan accounts for.
+  // The queue may hold more readings than estimated from the number of scans.
   const double done =
       std::max(static_cast<double>(work.scans) - waiting, 0.1 * work.scans);
   const double mapping =

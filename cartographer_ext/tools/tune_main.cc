@@ -3,7 +3,7 @@
 // LINK: tuning
 // SOURCES: job.cc
 //
-// cartographer_ext_tune: a configuration that suits the recordings.
+// cartographer_ext_tune: finds a configuration that suits the recordings.
 #include <algorithm>
 #include <iostream>
 #include <memory>

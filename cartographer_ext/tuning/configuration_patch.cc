@@ -104,7 +104,7 @@ Value ParseDescribed(const options::OptionDescription& description) {
   return description.value;
 }
 
-// What 2D SLAM looks at, as bytes.
+// The options that 2D SLAM reads, serialised.
 std::string Bytes(const evaluation::SlamConfiguration& configuration) {
   auto map_builder = configuration.map_builder_options;
   auto* const constraint_builder = map_builder.mutable_pose_graph_options()
@@ -117,10 +117,10 @@ std::string Bytes(const evaluation::SlamConfiguration& configuration) {
                       trajectory_builder.SerializeAsString());
 }
 
-// What is tried of a parameter before the search.
+// The values of a parameter that are checked before the search.
 std::vector<Value> Probes(const Parameter& parameter) {
   if (parameter.kind == Parameter::Kind::kChoice) return parameter.choices;
-  // Ends may be integers where a key wants them, what is between is not.
+  // The ends of a range may be integers by chance; a value between them is not.
   return {parameter.FromUnit(0.), parameter.FromUnit(0.37),
           parameter.FromUnit(1.)};
 }

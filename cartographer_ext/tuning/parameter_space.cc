@@ -193,7 +193,7 @@ double Parameter::ToUnit(const Value& value) const {
     const double index = found == choices.end()
                              ? 0.
                              : static_cast<double>(found - choices.begin());
-    // The middle of the piece of the interval that gives this choice.
+    // The middle of the part of the unit interval that maps to this choice.
     return (index + 0.5) / static_cast<double>(choices.size());
   }
   if (!value.is_number()) return 0.;

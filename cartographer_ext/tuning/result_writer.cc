@@ -163,7 +163,7 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
                     comment, CopyTables(key.key, &copied), key.key, " = ",
                     evaluation::ToLua(key.after), "\n");
   }
-  // The tables that it returns are those that are changed below.
+  // It returns the very tables that are changed below.
   absl::StrAppend(&text, "\nlocal configuration = ", include, "\n", includes,
                   copied.empty() ? "" : kCopyFunction, assignments,
                   "\nreturn configuration\n");

@@ -151,8 +151,8 @@ void AddLoops(const Truth& truth, const evaluation::MapGraph& graph,
   (*metrics)["loop_precision"] = loops.precision.value_or(1.);
 }
 
-// Shares of what contradicts itself, and how much thicker walls are where they
-// were seen in more than one visit.
+// Shares of inconsistent scans, and how much thicker walls are where they were
+// seen in more than one visit.
 void AddSelfConsistency(const evaluation::MapGraph& graph,
                         const io::Pbstream& pbstream, Metrics* const metrics) {
   const evaluation::SelfConsistency result = evaluation::AssessSelfConsistency(
@@ -169,7 +169,7 @@ void AddSelfConsistency(const evaluation::MapGraph& graph,
                                    result.cycles.fraction() + doubling;
 }
 
-// The map of a run as a file would have it.
+// The map of a run, as it would be read from a file.
 absl::StatusOr<io::Pbstream> ToPbstream(
     cartographer::mapping::MapBuilderInterface* const map_builder) {
   const char* const folder = getenv("TMPDIR");
@@ -284,7 +284,7 @@ nlohmann::json ToJson(const RunRequest& request) {
 
 absl::StatusOr<RunRequest> RequestFromJson(const nlohmann::json& json) {
   RunRequest request;
-  // The sender is this program; but a message may be cut.
+  // The message comes from this program, but may be truncated.
   if (!json.is_object() || !json.contains("input") || !json.contains("code")) {
     return absl::InvalidArgumentError("not a request for a run");
   }

@@ -21,7 +21,7 @@ namespace {
 constexpr int kMaxRetries = 2;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kWaitSeconds = 0.2;
-// Of the time of a search, what is left for pruning.
+// Share of the time of a search that is reserved for pruning.
 constexpr double kShareForPruning = 0.2;
 constexpr double kHoldoutReserve = 1.3;  // times the run of the baseline
 // A small space is exhausted after this many consecutive draws that have been

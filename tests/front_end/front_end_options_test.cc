@@ -37,7 +37,8 @@ std::map<std::string, double> Values(const FrontEndOptions& options) {
   };
 }
 
-options::test::KeyValues ValuesOfMessage(const proto::FrontEndOptions& message) {
+options::test::KeyValues ValuesOfMessage(
+    const proto::FrontEndOptions& message) {
   return Values(ToFrontEndOptions(message));
 }
 
@@ -48,7 +49,8 @@ TEST(FrontEndOptionsTest, DefaultsAreThoseOfTheParts) {
 }
 
 TEST(FrontEndOptionsTest, EveryKeyHasAnEffect) {
-  options::test::ExpectEveryKeyHasAnEffect<proto::FrontEndOptions>(ValuesOfMessage);
+  options::test::ExpectEveryKeyHasAnEffect<proto::FrontEndOptions>(
+      ValuesOfMessage);
 }
 
 TEST(FrontEndOptionsTest, WallsAreFilledAtTheResolutionOfTheGrid) {

@@ -78,10 +78,10 @@ bool ReadLua(const std::string& name) {
 // an intact one names.
 bool ReadPicture(const std::string& name) {
   const std::string yaml = name.substr(0, name.size() - 3) + "yaml";
-  test::WriteBytes(yaml,
-                   "image: " + name.substr(name.rfind('/') + 1) +
-                       "\nresolution: 0.05\norigin: [-1., -2., 0.]\n"
-                       "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  test::WriteBytes(
+      yaml, "image: " + name.substr(name.rfind('/') + 1) +
+                "\nresolution: 0.05\norigin: [-1., -2., 0.]\n"
+                "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   return io::ReadOccupancyMap(yaml).ok();
 }
 
@@ -125,9 +125,8 @@ int Run(const std::string& kind, const std::string& sample_name,
         [](const std::string& name) {
           return io::ReadTumTrajectory(name).ok();
         }},
-       {"relations", [](const std::string& name) {
-          return io::ReadRelations(name).ok();
-        }}};
+       {"relations",
+        [](const std::string& name) { return io::ReadRelations(name).ok(); }}};
   const auto reader = readers.find(kind);
   const std::string sample = test::ReadBytes(sample_name);
   if (reader == readers.end() || sample.empty()) {

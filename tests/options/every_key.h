@@ -74,8 +74,8 @@ void ExpectEveryKeyHasAnEffect(
           default:
             reflection->SetDouble(target, field, value);
         }
-        read.push_back(values(message).at(block.field(i)->name() + "." +
-                                          field->name()));
+        read.push_back(
+            values(message).at(block.field(i)->name() + "." + field->name()));
       }
       EXPECT_NE(read[0], read[1]) << field->full_name();
     }

@@ -148,12 +148,13 @@ TEST(MapBuilderOdometryTest, ReadingsThatAreNotLaterAreDropped) {
     std::string* const text = &poses[repeated ? 1 : 0];
     const int trajectory_id = builder->AddTrajectoryBuilder(
         {kLaser, kOdometry}, options.trajectory_builder,
-        [text](int, cartographer::common::Time, const Rigid3d local_pose,
-               cartographer::sensor::RangeData,
-               const std::unique_ptr<const mapping::TrajectoryBuilderInterface::
-                                         InsertionResult>) {
-          *text += cartographer::transform::ToProto(local_pose)
-                       .SerializeAsString();
+        [text](
+            int, cartographer::common::Time, const Rigid3d local_pose,
+            cartographer::sensor::RangeData,
+            const std::unique_ptr<
+                const mapping::TrajectoryBuilderInterface::InsertionResult>) {
+          *text +=
+              cartographer::transform::ToProto(local_pose).SerializeAsString();
         });
     auto* const trajectory = builder->GetTrajectoryBuilder(trajectory_id);
     for (int i = 0; i != kNumScans / 5; ++i) {
@@ -163,9 +164,9 @@ TEST(MapBuilderOdometryTest, ReadingsThatAreNotLaterAreDropped) {
                                 cartographer::sensor::OdometryData{time, pose});
       if (repeated) {
         for (const double late : {0., 0.1, 2.}) {
-          trajectory->AddSensorData(
-              kOdometry.id, cartographer::sensor::OdometryData{
-                                test::At(0.3 * i - late), Rigid3d()});
+          trajectory->AddSensorData(kOdometry.id,
+                                    cartographer::sensor::OdometryData{
+                                        test::At(0.3 * i - late), Rigid3d()});
         }
       }
       trajectory->AddSensorData(kLaser.id, test::Scan(pose, time));

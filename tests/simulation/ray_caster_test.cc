@@ -164,10 +164,10 @@ TEST(RayCasterTest, LongThinAndHugePlansStayBounded) {
 
 // A pane answers near its normal only; what lies behind is seen at a slant.
 TEST(RayCasterTest, PanesLetSlantingBeamsThrough) {
-  const RayCaster plan({{Vector2d(2., -9.), Vector2d(2., 9.), 0.5,
-                         DegToRad(20.)},
-                        {Vector2d(4., -9.), Vector2d(4., 9.), 1., kAnyAngle}},
-                       {});
+  const RayCaster plan(
+      {{Vector2d(2., -9.), Vector2d(2., 9.), 0.5, DegToRad(20.)},
+       {Vector2d(4., -9.), Vector2d(4., 9.), 1., kAnyAngle}},
+      {});
   for (int degrees = -60; degrees <= 60; ++degrees) {
     const RayHit hit =
         plan.Cast(Vector2d(0., 0.), Direction(DegToRad(degrees)), 30.);

@@ -33,10 +33,10 @@ ShellResult Shell(const std::string& command) {
 TEST(ReproduceTest, ListsEveryTable) {
   const ShellResult result = Shell("python3 scripts/reproduce list");
   EXPECT_EQ(result.exit_code, 0) << result.out;
-  for (const char* name : {"a_table_2", "r_table_2", "g_table_2", "g_table_3",
-                           "c_table_1", "c_table_3", "c_table_4", "c_table_5",
-                           "c_gamma", "c_alpha_beta", "stored_maps",
-                           "c_navigation", "any_building", "verdicts"}) {
+  for (const char* name :
+       {"a_table_2", "r_table_2", "g_table_2", "g_table_3", "c_table_1",
+        "c_table_3", "c_table_4", "c_table_5", "c_gamma", "c_alpha_beta",
+        "stored_maps", "c_navigation", "any_building", "verdicts"}) {
     EXPECT_THAT(result.out, HasSubstr(name));
   }
 }

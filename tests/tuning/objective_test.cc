@@ -86,7 +86,8 @@ TEST(WhyNotBetterTest, NothingAndLossesAreNot) {
   EXPECT_THAT(WhyNotBetter({1.}, {1.}, 0.005), HasSubstr("change by -0.0 %"));
   EXPECT_THAT(WhyNotBetter({1.}, {1.1}, 0.005), HasSubstr("+9.1 %"));
   EXPECT_THAT(WhyNotBetter({1.}, {0.998}, 0.005), HasSubstr("-0.2 %"));
-  EXPECT_THAT(WhyNotBetter({1., 1.}, {0.5, 1.01}, 0.005), HasSubstr("not all of them"));
+  EXPECT_THAT(WhyNotBetter({1., 1.}, {0.5, 1.01}, 0.005),
+              HasSubstr("not all of them"));
   EXPECT_THAT(WhyNotBetter({}, {}, 0.005), HasSubstr("could be judged"));
   EXPECT_THAT(WhyNotBetter({0.}, {0.}, 0.005), HasSubstr("change by"));
 }

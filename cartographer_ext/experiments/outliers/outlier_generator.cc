@@ -68,7 +68,7 @@ absl::StatusOr<std::vector<PoseGraphEdge>> GenerateOutliers(
       b = local ? random.UniformInt(a, std::min(last, a + options.local_span))
                 : random.UniformInt(0, last);
       if (a > b) std::swap(a, b);
-      // Neighbours would make it odometry.
+      // An edge between neighbours would count as odometry.
       if (b == a + 1) b = a + 2;
     } while (a == b);
     PoseGraphEdge edge;

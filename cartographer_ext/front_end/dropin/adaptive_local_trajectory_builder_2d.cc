@@ -38,7 +38,7 @@ constexpr double kMinObservableWeight = 0.5;
 // not enough to match the next one against.
 constexpr int kNumFirstScans = 5;
 
-// Of sensor time, between two lines of the program's log.
+// Seconds of sensor time between two lines in the log of the program.
 constexpr double kSecondsBetweenLines = 60.;
 
 // Whether the scan determines the translation along the direction of motion.

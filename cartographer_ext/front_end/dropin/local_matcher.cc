@@ -56,12 +56,12 @@ constexpr double kLimitZone = 0.5;  // metres
 // Longer ranges of a scan, of which there are at least this many, are no
 // outliers.
 constexpr size_t kMinFarthest = 3;
-// So many scans this far from each other tell the limit of a laser from the
-// size of a room.
+// This many scans, this far from each other, distinguish the limit of a laser
+// from the size of a room.
 constexpr int kMinScansAtLimit = 50;
 constexpr double kRangeStep = 0.2;  // metres
 
-// A place that is the best of some 150 needs so much more log-likelihood.
+// The best of some 150 candidate poses needs this much more log-likelihood.
 constexpr double kLogPlaces = 5.;
 
 // The block of the scan matcher, or its defaults.
@@ -75,7 +75,7 @@ proto::ScanMatcherOptions MatcherExtension(
 }
 
 // Whether the scan is evidence enough (scan_evidence.h) for `found` against the
-// place by odometry. Other predictions are guesses.
+// pose by odometry. Other predictions are guesses.
 bool MayOverrule(const MotionPrediction& prediction, const double log_places,
                  const Pose2& found, const Pose2& predicted,
                  const PointCloud& cloud, const Grid2D& grid) {
@@ -100,8 +100,8 @@ bool IsNear(const Pose2& a, const Pose2& b) {
          std::abs(NormalizeAngle(a.theta - b.theta)) < 0.01;
 }
 
-// Standard deviation of the place of a point of the cloud, metres: the root mean
-// square over the cloud, along the worst direction.
+// Standard deviation of the position of a point of the cloud, metres: the root
+// mean square over the cloud, along the worst direction.
 double PointSpread(const Eigen::Matrix3d& covariance, const PointCloud& cloud) {
   double squares = 0.;
   for (const auto& point : cloud)
@@ -113,8 +113,8 @@ double PointSpread(const Eigen::Matrix3d& covariance, const PointCloud& cloud) {
   return std::sqrt(solver.eigenvalues()(1) + squares * covariance(2, 2));
 }
 
-// Whether scan and prediction together speak for `a` rather than for `b`, two
-// matches from one prediction: the difference of their logarithms.
+// Whether scan and prediction together favour `a` over `b`, two matches from
+// one prediction, by the difference of their log-likelihoods.
 bool IsLikelier(const LocalMatch& a, const LocalMatch& b,
                 const PointCloud& cloud, const Grid2D& grid) {
   return scan_matching::ScanEvidence(a.pose, b.pose, cloud, grid) >
@@ -196,7 +196,7 @@ void LocalMatcher::UpdateRange(const Pose2& pose, const PointCloud& cloud) {
 }
 
 double LocalMatcher::LimitOfSight() const {
-  // Otherwise it is the building that ends.
+  // Otherwise the size of the building limits the range.
   const bool is_limit =
       scans_ >= kMinScansAtLimit && 2 * scans_at_limit_ >= scans_;
   return is_limit ? std::max(0., range_ - kLimitZone)
@@ -239,7 +239,7 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
         MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
     if (!match.relocated && match.report.mahalanobis > options_.gate &&
         !MayOverrule(prediction, 0., match.pose, predicted.pose, cloud, grid)) {
-      // Odometry is right more often than such a match.
+      // In that case odometry is right more often than the match.
       match.pose = predicted.pose;
       match.report.covariance = predicted.covariance;
       match.score = scan_matching::MeanScore(match.pose, cloud, grid);

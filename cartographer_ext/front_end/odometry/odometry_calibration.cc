@@ -16,8 +16,9 @@ namespace {
 // millimetres from one to the next, and of 6 to 8 mm per root metre from submap
 // to submap (simulated offices and corridors against ground truth).
 constexpr CalibrationFilter::Noise kTranslationNoise = {0.01, 0.008, 3e-5, 4.};
-// And of 0.1 degrees. The noise that grows with distance is that of the wheels:
-// 4 mm per root metre of each, at 40 cm from each other, are 0.8 degrees.
+// The same for rotation, 0.1 degrees. The noise that grows with distance is
+// that of the wheels: 4 mm per root metre of each wheel, 40 cm apart, are 0.8
+// degrees.
 constexpr CalibrationFilter::Noise kRotationNoise = {0.002, 0.015, 3e-5, 4.};
 // Metres that the wheels roll while the robot turns on the spot by a radian.
 constexpr double kWheelRadius = 0.2;
@@ -93,7 +94,7 @@ bool CalibrationFilter::Add(const Eigen::Vector2d& regressors,
   covariance_ = transition * covariance_ * transition.transpose();
   covariance_(2, 2) += Squared(noise_.walk) * length;
   for (int i = 0; i < 2; ++i) {
-    // Never less certain than initially.
+    // The variance never exceeds the initial one.
     covariance_(i, i) +=
         std::min(Squared(noise_.wander) * length,
                  std::max(0., initial_variances_(i) - covariance_(i, i)));

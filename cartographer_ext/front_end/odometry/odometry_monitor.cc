@@ -83,7 +83,7 @@ bool OdometryMonitor::IsSuspect(const double interval, const Pose2& odometry,
 OdometryState OdometryMonitor::CheckInterval(
     const MotionComparison& comparison) const {
   if (ChiSquare(comparison.odometry, comparison.match) <= options_.gate) {
-    // From one scan to the next a missing motion may pass the gate.
+    // Between two scans, a missing motion may be too small to fail the gate.
     const bool is_stale = comparison.frozen && !IsMotion(comparison.odometry) &&
                           IsMotion(comparison.match);
     return is_stale ? OdometryState::kStale : OdometryState::kOk;
@@ -138,7 +138,7 @@ bool OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
   const double change = has_speed_ ? speed - speed_ : 0.;
   speed_ = speed;
   has_speed_ = true;
-  // The IMU measures the part of the change that is the robot's.
+  // The IMU measures how much of the change is real motion.
   const double own = comparison.has_inertial
                          ? std::abs(change - comparison.inertial_speed_change)
                          : std::abs(change);
@@ -205,7 +205,7 @@ OdometryState OdometryMonitor::Add(const MotionComparison& given) {
     return state_;
   }
   if (state_ == OdometryState::kStale) {
-    // Moves again. The missed motion is either caught up with or lost.
+    // Odometry moves again. The missed motion is either caught up with or lost.
     Restart(comparison.time);
     state_ = OdometryState::kOk;
     return state_;

@@ -13,7 +13,7 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// The finite points, as nanoflann wants them.
+// The finite points in the layout that nanoflann expects.
 struct Cloud {
   std::vector<Eigen::Vector2d> points;
   std::vector<int> original;
@@ -93,7 +93,7 @@ Analysis Analyze(const AdaptiveFeatureOptions& options,
     for (size_t j = 0; j < found; ++j) {
       if (indices[j] != i) neighbors.push_back(static_cast<int>(indices[j]));
     }
-    // Coincident points can push the point itself out of its own list.
+    // With many coincident points, the list may lack the point itself.
     if (neighbors.size() > static_cast<size_t>(options.num_neighbors)) {
       neighbors.pop_back();
     }

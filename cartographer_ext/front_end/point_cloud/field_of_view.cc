@@ -12,7 +12,7 @@ namespace front_end {
 namespace {
 
 constexpr int64_t kEnough = 2000;  // points
-// A sector counts from a twentieth of the mean of all sectors on.
+// A sector counts if it has at least a twentieth of the mean of all sectors.
 constexpr double kShare = 0.05;
 
 }  // namespace

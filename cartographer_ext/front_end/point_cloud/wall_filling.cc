@@ -39,8 +39,8 @@ std::vector<Eigen::Vector3f> FillWalls(
     const Eigen::Vector2f after = points[i + 2].head<2>();
     const float along_before = direction.dot(from - before);
     const float along_after = direction.dot(after - from) - gap;
-    // In a row, and without a larger gap beside this one. Written so that what
-    // is not a number fails.
+    // The points must be in a row, without a larger gap beside this one. The
+    // comparisons are written so that NaN fails them.
     const bool is_in_a_row =
         along_before > 0.f && along_before <= kMaxGrowth * gap &&
         along_after > 0.f && along_after <= kMaxGrowth * gap;

@@ -35,8 +35,8 @@ bool ParsePose(Tokens* tokens, Pose2* pose) {
          ParseFinite(tokens->Next(), &theta) && MakePose(x, y, theta, pose);
 }
 
-// Numbers up to the host name or the end of the line, and how many words there
-// were at all. At most 15 are kept: no layout has more after its readings.
+// The numbers up to the host name or the end of the line, and the count of all
+// words. At most 15 are kept: no layout has more after its readings.
 struct Tail {
   std::array<absl::string_view, 15> words;
   size_t num_words = 0;
@@ -142,7 +142,7 @@ void ParseNewLaser(bool has_poses, Tokens* tokens, CarmenLine* line) {
   if (line->angle_increment == 0. && n > 1) {
     line->angle_increment = field_of_view / (n - 1);
   }
-  // A full turn, and a beam or two more where ends overlap.
+  // A full turn, with one or two more beams if the ends overlap.
   if (std::abs(line->angle_min) > 4. * kPi ||
       std::abs(line->angle_increment) * n > 2.1 * kPi ||
       (line->angle_increment == 0. && n > 1)) {

@@ -16,7 +16,7 @@ namespace cartographer_ext {
 namespace io {
 namespace {
 
-// What a SICK laser measures at most.
+// The largest range of a SICK laser.
 constexpr double kDefaultRangeMax = 80.;
 
 class CarmenSource : public SensorSource {

@@ -19,7 +19,7 @@ constexpr double kFrontLaserNoReturn = 81.91;
 bool HasFrontLaserAngles(const LaserScan& scan) {
   double angle_min, angle_increment;
   FrontLaserAngles(scan.ranges.size(), &angle_min, &angle_increment);
-  // A tenth of a beam over the whole sweep.
+  // The tolerance is a tenth of a beam over the whole sweep.
   const double tolerance = 0.1 * angle_increment;
   return std::abs(scan.angle_min - angle_min) < tolerance &&
          std::abs(scan.angle_increment - angle_increment) * scan.ranges.size() <

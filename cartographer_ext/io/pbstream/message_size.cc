@@ -20,7 +20,7 @@ using google::protobuf::internal::WireFormatLite;
 
 constexpr int kMaxDepth = 50;
 constexpr int64_t kPointer = sizeof(void*);
-// Of a field that its message does not know.
+// Memory of an unknown field.
 constexpr int64_t kUnknownField = 16;
 
 class Estimator {

@@ -103,7 +103,7 @@ absl::StatusOr<std::string> McapDecompress(absl::string_view compression,
       return Damaged("its size differs from the declared one");
     return std::string(data);
   }
-  // An empty chunk has no compressed frame with some writers.
+  // Some writers write an empty chunk without a compressed frame.
   if (size == 0 && data.empty()) return std::string();
   if (compression == "lz4") return DecompressLz4(data, size);
   if (compression == "zstd") return DecompressZstd(data, size);

@@ -28,9 +28,10 @@ struct Channel {
 
 class McapContainer : public RosContainer {
  public:
-  explicit McapContainer(const std::string& filename) : filename_(filename), file_(filename, std::ios::binary) {}
+  explicit McapContainer(const std::string& filename)
+      : filename_(filename), file_(filename, std::ios::binary) {}
 
-  // Reads the whole file once: its topics, and whether it is whole.
+  // Reads the whole file once to find its topics and whether it is complete.
   absl::Status Survey() {
     file_.seekg(0, std::ios::end);
     file_size_ = static_cast<uint64_t>(file_.tellg());
@@ -43,7 +44,8 @@ class McapContainer : public RosContainer {
     if (!status.ok()) return status;
     for (const auto& channel : channels_) {
       const auto schema = schemas_.find(channel.second.schema);
-      RosTopicType type = TypeOfRos2(schema == schemas_.end() ? "unknown" : schema->second);
+      RosTopicType type =
+          TypeOfRos2(schema == schemas_.end() ? "unknown" : schema->second);
       if (!channel.second.cdr) type.md5sum.clear();
       topics_[channel.second.topic] = type;
     }
@@ -55,7 +57,8 @@ class McapContainer : public RosContainer {
   const RosTopics& topics() const override { return topics_; }
   std::vector<std::string> warnings() const override {
     if (cut_off_at_ == 0) return {};
-    return {absl::StrCat(filename_, ": cut off; read up to byte ", cut_off_at_, " of ", file_size_)};
+    return {absl::StrCat(filename_, ": cut off; read up to byte ", cut_off_at_,
+                         " of ", file_size_)};
   }
 
   absl::Status Rewind(const std::set<std::string>& topics) override {
@@ -76,8 +79,10 @@ class McapContainer : public RosContainer {
     file_.clear();
     file_.seekg(0);
     char magic[kMcapMagicSize];
-    if (!file_.read(magic, sizeof(magic)) || std::string(magic, sizeof(magic)) != kMcapMagic) {
-      return absl::InvalidArgumentError(absl::StrCat(filename_, ": not an MCAP file of version 0"));
+    if (!file_.read(magic, sizeof(magic)) ||
+        std::string(magic, sizeof(magic)) != kMcapMagic) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(filename_, ": not an MCAP file of version 0"));
     }
     offset_ = kMcapMagicSize;
     chunk_.clear();
@@ -88,7 +93,8 @@ class McapContainer : public RosContainer {
   }
 
   absl::Status Damaged(const std::string& what) const {
-    return absl::DataLossError(absl::StrCat(filename_, ": ", what, " (record at byte ", record_offset_, ")"));
+    return absl::DataLossError(absl::StrCat(
+        filename_, ": ", what, " (record at byte ", record_offset_, ")"));
   }
 
   void CutOff() {
@@ -96,11 +102,12 @@ class McapContainer : public RosContainer {
     at_end_ = true;
   }
 
-  // Takes one record on; true if it was a message that is wanted.
+  // Reads the next record; true if it is a wanted message.
   absl::StatusOr<bool> Step(RosMessage* message) {
     if (!chunk_rest_.rest().empty()) {
       const uint8_t opcode = chunk_rest_.Take<uint8_t>();
-      const absl::string_view content = chunk_rest_.TakeBytes(chunk_rest_.Take<uint64_t>());
+      const absl::string_view content =
+          chunk_rest_.TakeBytes(chunk_rest_.Take<uint64_t>());
       if (!chunk_rest_.ok()) return Damaged("a chunk ends within a record");
       return Take(opcode, content, /*in_chunk=*/true, message);
     }
@@ -123,22 +130,25 @@ class McapContainer : public RosContainer {
       at_end_ = true;
       return false;
     }
-    const bool needed = opcode == kMcapSchema || opcode == kMcapChannel || opcode == kMcapMessage ||
-                        opcode == kMcapChunk;
+    const bool needed = opcode == kMcapSchema || opcode == kMcapChannel ||
+                        opcode == kMcapMessage || opcode == kMcapChunk;
     if (!needed) {
       file_.seekg(static_cast<std::streamoff>(offset_));
       return false;
     }
-    if (size > kMaxRecordSize) return Damaged(absl::StrCat("a record of ", size, " bytes"));
+    if (size > kMaxRecordSize)
+      return Damaged(absl::StrCat("a record of ", size, " bytes"));
     record_.resize(size);
     if (!file_.read(&record_[0], static_cast<std::streamsize>(size))) {
-      return absl::DataLossError(absl::StrCat(filename_, ": cannot be read at byte ", record_offset_));
+      return absl::DataLossError(
+          absl::StrCat(filename_, ": cannot be read at byte ", record_offset_));
     }
     return Take(opcode, record_, /*in_chunk=*/false, message);
   }
 
-  absl::StatusOr<bool> Take(const uint8_t opcode, const absl::string_view content, const bool in_chunk,
-                            RosMessage* message) {
+  absl::StatusOr<bool> Take(const uint8_t opcode,
+                            const absl::string_view content,
+                            const bool in_chunk, RosMessage* message) {
     switch (opcode) {
       case kMcapSchema:
         return TakeSchema(content);
@@ -175,7 +185,8 @@ class McapContainer : public RosContainer {
     return false;
   }
 
-  absl::StatusOr<bool> TakeMessage(const absl::string_view content, RosMessage* message) {
+  absl::StatusOr<bool> TakeMessage(const absl::string_view content,
+                                   RosMessage* message) {
     McapFields fields(content);
     const uint16_t id = fields.Take<uint16_t>();
     fields.Take<uint32_t>();  // sequence number
@@ -183,7 +194,8 @@ class McapContainer : public RosContainer {
     fields.Take<uint64_t>();  // when it was published
     if (!fields.ok()) return Damaged("a damaged message");
     const auto channel = channels_.find(id);
-    if (channel == channels_.end()) return Damaged(absl::StrCat("a message on the unknown channel ", id));
+    if (channel == channels_.end())
+      return Damaged(absl::StrCat("a message on the unknown channel ", id));
     if (wanted_.count(channel->second.topic) == 0) return false;
     message->topic = channel->second.topic;
     message->received = static_cast<TimeNs>(logged);
@@ -203,11 +215,15 @@ class McapContainer : public RosContainer {
     if (!compression.empty() && !budget_->Take(size)) {
       return budget_->Error(filename_);
     }
-    absl::StatusOr<std::string> records = McapDecompress(compression, data, size);
+    absl::StatusOr<std::string> records =
+        McapDecompress(compression, data, size);
     if (!records.ok()) {
-      return absl::Status(records.status().code(), Damaged(std::string(records.status().message())).message());
+      return absl::Status(
+          records.status().code(),
+          Damaged(std::string(records.status().message())).message());
     }
-    if (checksum != 0 && checksum != McapChecksum(*records)) return Damaged("a chunk with a wrong checksum");
+    if (checksum != 0 && checksum != McapChecksum(*records))
+      return Damaged("a chunk with a wrong checksum");
     chunk_ = std::move(*records);
     chunk_rest_ = McapFields(chunk_);
     return false;
@@ -232,7 +248,8 @@ class McapContainer : public RosContainer {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<RosContainer>> OpenMcap(const std::string& filename) {
+absl::StatusOr<std::unique_ptr<RosContainer>> OpenMcap(
+    const std::string& filename) {
   auto container = absl::make_unique<McapContainer>(filename);
   const absl::Status status = container->Survey();
   if (!status.ok()) return status;

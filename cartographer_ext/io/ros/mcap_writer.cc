@@ -23,7 +23,8 @@ void PutBytes(const absl::string_view bytes, std::string* record) {
   record->append(bytes.data(), bytes.size());
 }
 
-void AppendRecord(const uint8_t opcode, const absl::string_view content, std::string* to) {
+void AppendRecord(const uint8_t opcode, const absl::string_view content,
+                  std::string* to) {
   Put(opcode, to);
   Put(static_cast<uint64_t>(content.size()), to);
   to->append(content.data(), content.size());
@@ -48,8 +49,11 @@ void McapWriter::WriteRecord(const uint8_t opcode, const std::string& content) {
   offset_ += record.size();
 }
 
-uint16_t McapWriter::AddChannel(const std::string& topic, const std::string& type, const std::string& definition) {
-  const auto schema = schema_ids_.emplace(type, static_cast<uint16_t>(schema_ids_.size() + 1));
+uint16_t McapWriter::AddChannel(const std::string& topic,
+                                const std::string& type,
+                                const std::string& definition) {
+  const auto schema =
+      schema_ids_.emplace(type, static_cast<uint16_t>(schema_ids_.size() + 1));
   if (schema.second) {
     std::string record;
     Put(schema.first->second, &record);
@@ -71,7 +75,8 @@ uint16_t McapWriter::AddChannel(const std::string& topic, const std::string& typ
   return id;
 }
 
-absl::Status McapWriter::Write(const uint16_t channel, const TimeNs time, const absl::string_view data) {
+absl::Status McapWriter::Write(const uint16_t channel, const TimeNs time,
+                               const absl::string_view data) {
   const uint64_t stamp = static_cast<uint64_t>(time);
   chunk_messages_[channel].emplace_back(stamp, chunk_.size());
   std::string head;
@@ -142,7 +147,9 @@ std::string McapWriter::ChunkIndexRecord(const ChunkIndex& index) const {
     Put(channel.second, &offsets);
   }
   std::string record;
-  for (const uint64_t value : {index.begin_time, index.end_time, index.offset, index.length}) Put(value, &record);
+  for (const uint64_t value :
+       {index.begin_time, index.end_time, index.offset, index.length})
+    Put(value, &record);
   PutBytes(offsets, &record);
   Put(index.index_length, &record);
   PutBytes(compression_, &record);
@@ -178,9 +185,11 @@ absl::Status McapWriter::Finish() {
   WriteRecord(kMcapDataEnd, checksum);
   const uint64_t summary = offset_;
   for (const std::string& schema : schemas_) WriteRecord(kMcapSchema, schema);
-  for (const std::string& channel : channels_) WriteRecord(kMcapChannel, channel);
+  for (const std::string& channel : channels_)
+    WriteRecord(kMcapChannel, channel);
   WriteRecord(kMcapStatistics, StatisticsRecord());
-  for (const ChunkIndex& chunk : chunks_) WriteRecord(kMcapChunkIndex, ChunkIndexRecord(chunk));
+  for (const ChunkIndex& chunk : chunks_)
+    WriteRecord(kMcapChunkIndex, ChunkIndexRecord(chunk));
   std::string footer;
   Put(summary, &footer);
   Put(uint64_t{0}, &footer);  // no summary offsets

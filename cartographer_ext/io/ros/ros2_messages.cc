@@ -65,28 +65,43 @@ constexpr Definition kDefinitions[] = {
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
     {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
-    {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
-    {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
-    {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
-    {"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
-    {"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
-    {"geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+    {"geometry_msgs/Quaternion",
+     "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
+    {"geometry_msgs/Pose",
+     "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    {"geometry_msgs/PoseWithCovariance",
+     "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
+    {"geometry_msgs/Twist",
+     "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+    {"geometry_msgs/TwistWithCovariance",
+     "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
+    {"geometry_msgs/Transform",
+     "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
     {"geometry_msgs/TransformStamped",
-     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform "
+     "transform\n"},
     {"sensor_msgs/LaserEcho", "float32[] echoes\n"},
     {"sensor_msgs/LaserScan",
-     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
-     "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n"},
+     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 "
+     "angle_increment\nfloat32 time_increment\n"
+     "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] "
+     "ranges\nfloat32[] intensities\n"},
     {"sensor_msgs/MultiEchoLaserScan",
-     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
-     "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nsensor_msgs/LaserEcho[] ranges\n"
+     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 "
+     "angle_increment\nfloat32 time_increment\n"
+     "float32 scan_time\nfloat32 range_min\nfloat32 "
+     "range_max\nsensor_msgs/LaserEcho[] ranges\n"
      "sensor_msgs/LaserEcho[] intensities\n"},
     {"sensor_msgs/Imu",
-     "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
-     "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
-     "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n"},
+     "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] "
+     "orientation_covariance\n"
+     "geometry_msgs/Vector3 angular_velocity\nfloat64[9] "
+     "angular_velocity_covariance\n"
+     "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] "
+     "linear_acceleration_covariance\n"},
     {"nav_msgs/Odometry",
-     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
+     "std_msgs/Header header\nstring "
+     "child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
      "geometry_msgs/TwistWithCovariance twist\n"},
     {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
 };
@@ -99,8 +114,10 @@ const char* FieldsOf(const std::string& type) {
 }
 
 // Appends the definitions of the types in `fields` that are not `seen` yet.
-void AppendNested(const std::string& fields, std::set<std::string>* seen, std::string* text) {
-  for (const absl::string_view line : absl::StrSplit(fields, '\n', absl::SkipEmpty())) {
+void AppendNested(const std::string& fields, std::set<std::string>* seen,
+                  std::string* text) {
+  for (const absl::string_view line :
+       absl::StrSplit(fields, '\n', absl::SkipEmpty())) {
     const std::string type(line.substr(0, line.find_first_of(" [")));
     const char* nested = FieldsOf(type);
     if (nested == nullptr || !seen->insert(type).second) continue;
@@ -119,8 +136,9 @@ std::string EncodeLaserScan(const LaserScan& scan, const std::string& frame) {
   CdrEncoder encoder;
   encoder.PutHeader(FirstBeamTime(scan), frame);
   encoder.Put(static_cast<float>(scan.angle_min));
-  encoder.Put(
-      static_cast<float>(scan.angle_min + scan.angle_increment * (static_cast<double>(scan.ranges.size()) - 1.)));
+  encoder.Put(static_cast<float>(
+      scan.angle_min +
+      scan.angle_increment * (static_cast<double>(scan.ranges.size()) - 1.)));
   encoder.Put(static_cast<float>(scan.angle_increment));
   encoder.Put(static_cast<float>(scan.time_increment));
   encoder.Put(0.f);  // time between scans: not known
@@ -130,14 +148,17 @@ std::string EncodeLaserScan(const LaserScan& scan, const std::string& frame) {
     encoder.PutFloats(scan.ranges);
   } else {
     encoder.Put(static_cast<uint32_t>(scan.echoes.size()));
-    for (const std::vector<float>& echoes : scan.echoes) encoder.PutFloats(echoes);
+    for (const std::vector<float>& echoes : scan.echoes)
+      encoder.PutFloats(echoes);
   }
   encoder.Put(uint32_t{0});  // no intensities
   return encoder.Finish();
 }
 
-std::string EncodeOdometry(const OdometryReading& reading, const double linear_velocity,
-                           const double angular_velocity, const std::string& frame,
+std::string EncodeOdometry(const OdometryReading& reading,
+                           const double linear_velocity,
+                           const double angular_velocity,
+                           const std::string& frame,
                            const std::string& child_frame) {
   CdrEncoder encoder;
   encoder.PutHeader(reading.time, frame);
@@ -155,7 +176,8 @@ std::string EncodeImu(const ImuReading& reading, const std::string& frame) {
   encoder.PutHeader(reading.time, frame);
   encoder.PutDoubles(3, 0.);
   encoder.Put(1.);
-  encoder.Put(-1.);  // the first of the covariance: no estimate of the orientation
+  encoder.Put(
+      -1.);  // the first of the covariance: no estimate of the orientation
   encoder.PutDoubles(8, 0.);
   encoder.PutVector(reading.angular_velocity);
   encoder.PutDoubles(9, 0.);
@@ -164,8 +186,8 @@ std::string EncodeImu(const ImuReading& reading, const std::string& frame) {
   return encoder.Finish();
 }
 
-std::string EncodeTransform(const TimeNs time, const std::string& parent, const std::string& child,
-                            const Pose2& pose) {
+std::string EncodeTransform(const TimeNs time, const std::string& parent,
+                            const std::string& child, const Pose2& pose) {
   CdrEncoder encoder;
   encoder.Put(uint32_t{1});
   encoder.PutHeader(time, parent);
@@ -177,7 +199,8 @@ std::string EncodeTransform(const TimeNs time, const std::string& parent, const 
 std::string DefinitionOfRos2(const std::string& type) {
   const size_t at = type.find("/msg/");
   if (at == std::string::npos) return "";
-  const char* fields = FieldsOf(absl::StrCat(type.substr(0, at), "/", type.substr(at + 5)));
+  const char* fields =
+      FieldsOf(absl::StrCat(type.substr(0, at), "/", type.substr(at + 5)));
   if (fields == nullptr) return "";
   std::string text = fields;
   std::set<std::string> seen;

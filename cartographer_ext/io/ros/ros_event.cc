@@ -16,7 +16,7 @@ namespace cartographer_ext {
 namespace io {
 namespace {
 
-// The frame of REP 105, maybe within the name space of a robot.
+// The frame of REP 105, possibly with the namespace of a robot.
 bool IsOdometryFrame(const std::string& frame) {
   return frame == "odom" || absl::EndsWith(frame, "/odom");
 }

@@ -10,8 +10,8 @@ namespace io {
 namespace {
 
 constexpr size_t kMaxFrames = 10000;
-// Depth of any sensible robot; also ends the walk in trees that bite their
-// tail.
+// No robot has a deeper tree of frames; the limit also ends the search in trees
+// with a cycle.
 constexpr int kMaxDepth = 100;
 
 bool Same(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {

@@ -79,13 +79,13 @@ class RosRecording : public SensorSource {
   void CountEvents(const std::vector<EventKey>& keys);
   void ChooseTrackingFrame();
   void CheckFrames();
-  // Reads all messages once: what there is, and in which order.
+  // Reads all messages once to find the topics and their order.
   absl::Status ReadKeys(std::vector<EventKey>* keys);
   // Adds the transforms of a message to the frames.
   bool TakeTransforms(const RosMessage& message);
   // Moves the event into the robot's frame.
   void Place(RosEvent* decoded);
-  // Reads one message on.
+  // Reads the next message.
   absl::Status Advance();
   Eigen::Isometry3d SensorPose(const std::string& frame) const {
     return frames_.Lookup(tracking_frame_, frame)

@@ -21,7 +21,7 @@ namespace cartographer_ext {
 namespace io {
 namespace {
 
-// No message of a planar robot is larger; what a damaged file asks for may be.
+// No message of a planar robot is larger, but a damaged file may claim one.
 constexpr int kMaxMessageSize = 1 << 28;
 
 struct FinalizeStatement {

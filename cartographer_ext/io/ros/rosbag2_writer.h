@@ -18,8 +18,9 @@ namespace io {
 
 enum class Rosbag2Storage { kMcap, kDb3 };
 
-absl::StatusOr<std::unique_ptr<RosbagWriter>> OpenRosbag2Writer(const std::string& filename, Rosbag2Storage storage,
-                                                                const RosbagWriterOptions& options);
+absl::StatusOr<std::unique_ptr<RosbagWriter>> OpenRosbag2Writer(
+    const std::string& filename, Rosbag2Storage storage,
+    const RosbagWriterOptions& options);
 
 }  // namespace io
 }  // namespace cartographer_ext

@@ -219,7 +219,7 @@ absl::optional<MapAlignment> AlignWalls(
     const std::vector<Eigen::Vector2d>& first,
     const std::vector<Eigen::Vector2d>& second, const double tolerance) {
   if (first.size() < 3 || second.size() < 3) return absl::nullopt;
-  // The map with fewer walls is laid over the other one.
+  // The map with fewer walls is aligned to the other one.
   const bool swapped = first.size() < second.size();
   const std::vector<Eigen::Vector2d>& base = swapped ? second : first;
   const std::vector<Eigen::Vector2d>& laid = swapped ? first : second;

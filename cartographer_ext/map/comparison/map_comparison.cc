@@ -134,7 +134,7 @@ void FindMoved(const std::vector<CommonNode>& nodes,
   }
 }
 
-// The share of the nodes that lie alike is left in `nodes_agree`.
+// Stores the share of the nodes whose poses agree in `nodes_agree`.
 absl::Status Align(const std::vector<CommonNode>& nodes,
                    const std::vector<Eigen::Vector2d>& first,
                    const std::vector<Eigen::Vector2d>& second,

@@ -31,7 +31,7 @@ std::vector<std::string> KnownKeys(const pb::Descriptor& descriptor) {
   return keys;
 }
 
-// What has become of a key that earlier versions had; empty for others.
+// A note about a key that earlier versions had; empty for other keys.
 std::string FormerKey(const pb::Descriptor& descriptor,
                       const std::string& key) {
   const FieldDescriptor* const renamed = FindRenamed(descriptor, key);

@@ -52,7 +52,7 @@ void CoarseSearch::ChooseGroups() {
   versine_ = 1. - std::cos(angle);
 }
 
-// The reach a point needs: turned by up to `angle`, the point at (x, y) moves
+// The reach that a point needs: turned by up to `angle`, the point (x, y) moves
 // by at most |y| sin + |x| (1 - cos) along x.
 int CoarseSearch::ReachOf(const double x, const double y) const {
   if (half_group_ == 0) return 0;
@@ -119,7 +119,7 @@ void CoarseSearch::ScoreGroup(const int group) {
     }
     std::copy(word_sums_.begin(), word_sums_.end(), wide_sums_.begin());
   } else {
-    // Without partial sums: zero is right, too.
+    // The partial sums stay zero, which is allowed.
     for (int begin = 0; begin < num_points; begin += kPointsPerWord) {
       AddPoints(bounds, num_x, num_y, begin,
                 std::min(begin + kPointsPerWord, num_points));
@@ -186,7 +186,7 @@ void CoarseSearch::AddPoints(const OffsetBounds& bounds, const int num_x,
   const int size = static_cast<int>(word_sums_.size());
   int num_added = 0;
   for (int i = begin; i != end; ++i) {
-    // Distances from the sensor; the place within cells is not known.
+    // Distances from the sensor, with the uncertainty of a cell.
     const int level = ReachOf(std::abs(group_x_[i] - sensor_x) + 1.,
                               std::abs(group_y_[i] - sensor_y) + 1.);
     const CoarseMaxima& maxima = grid_.coarse[level];
@@ -241,7 +241,7 @@ void CoarseSearch::Collect(const int group, const OffsetBounds& bounds,
   }
 }
 
-// By counting, the largest sums first, else in the order of scoring.
+// A counting sort: the largest sums first, equal ones in the order of scoring.
 void CoarseSearch::Sort() {
   const int largest = CoarseMaxima::kMaxValue * scans_.num_points();
   std::vector<uint32_t> places(largest + 2, 0);

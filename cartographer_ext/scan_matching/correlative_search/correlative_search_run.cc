@@ -37,7 +37,7 @@ CorrelativeSearchRun::CorrelativeSearchRun(const PreparedGrid& grid,
   statistics_.rejected_early = coarse_.empty();
 }
 
-// By bisection, as rounding decides. A minimum that is NaN is never exceeded.
+// By bisection, because rounding decides. No sum exceeds a minimum that is NaN.
 int CorrelativeSearchRun::LargestSumNotAbove(const float score) const {
   const float num_points = static_cast<float>(scans_.num_points());
   int low = -1;
@@ -130,7 +130,7 @@ void CorrelativeSearchRun::OpenCoarse(const CoarseNode& node) {
     }
     ++statistics_.blocks_scored;
     Block block = {0, rotation, node.x, node.y, {}};
-    // What the remaining parts may add at most.
+    // The most that the remaining parts can add.
     int rest = 0;
     for (int part = 0; part != RotatedScans::kNumParts; ++part) {
       const int begin = scans_.PartBegin(part);

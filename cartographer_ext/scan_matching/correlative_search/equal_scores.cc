@@ -15,7 +15,7 @@ int LargestInSquare(const RectangleMaxima& cells, const RectangleMaxima& blocks,
   const bool use_blocks = (1 << level) >= kBlockSize;
   const RectangleMaxima& maxima = use_blocks ? blocks : cells;
   const int step = maxima.width;
-  // The part of the square where there is anything.
+  // Clips the square to the cells that have maxima.
   const int num_x = maxima.num_x - maxima.width + 1;
   const int num_y = maxima.num_y - maxima.height + 1;
   const int x_end = std::min(x + (1 << level), num_x);

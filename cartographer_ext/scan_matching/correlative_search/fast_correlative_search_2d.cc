@@ -15,7 +15,8 @@ namespace scan_matching {
 namespace {
 
 constexpr float kToTheEnd = -std::numeric_limits<float>::infinity();
-// More than any grid has; a search cuts it down to where points can be.
+// More cells than any grid has; the search reduces it to offsets at which
+// points can be in the grid.
 constexpr double kFullWindowCells = 1e6;
 constexpr int64_t kMostCells = int64_t{1} << 30;
 
@@ -133,7 +134,7 @@ std::vector<SearchTaskResult> MatchBestFew(const std::vector<SearchTask>& tasks,
     if (result.result.found) results.push_back(result);
   };
   while (static_cast<int>(results.size()) < num_best && !meter.used_up()) {
-    // The run with the largest bound, and what the others may reach.
+    // The run with the largest bound, and the largest bound of the others.
     int best = -1;
     float best_bound = 0.f;
     float next_bound = kToTheEnd;

@@ -69,7 +69,7 @@ RotatedScans::RotatedScans(const PlanarCloud& cloud, const Pose2& initial,
     largest_range = std::max(largest_range, range);
   }
   largest_range_ = largest_range;
-  // In multiples of the vector size, but for the end.
+  // Sizes are multiples of the vector size, except at the end.
   for (int part = 0; part != kNumParts; ++part) {
     part_begin_[part] = static_cast<int>(static_cast<int64_t>(num_points()) *
                                          part / kNumParts / 8 * 8);
@@ -106,7 +106,7 @@ void RotatedScans::FindRanges() {
   for (size_t i = 0; i != turned_x_.size(); ++i) {
     const float range =
         std::sqrt(turned_x_[i] * turned_x_[i] + turned_y_[i] * turned_y_[i]);
-    // A point that is not finite is nowhere, whatever the offset.
+    // A point that is not finite is outside the grid at any offset.
     ranges_.push_back(std::isfinite(range) ? range : -1.f);
     if (ranges_.back() < 0.f) all_finite_ = false;
   }

@@ -19,7 +19,7 @@ namespace scan_matching {
 #ifdef CARTOGRAPHER_EXT_X86_KERNELS
 namespace {
 
-// Read from 32 - n on: n times 0xff, then zeros.
+// A mask: read from position 32 - n, it gives n bytes of 0xff, then zeros.
 alignas(64) constexpr uint8_t kMask[64] = {
     255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255,
     255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255,
@@ -268,7 +268,7 @@ __attribute__((target("avx2"))) int AddSquaresAvx2(const uint8_t* const cells,
                                            _mm256_max_epu16(rows[2], rows[3]));
   const __m128i eight = _mm_max_epu16(_mm256_castsi256_si128(sixteen),
                                       _mm256_extracti128_si256(sixteen, 1));
-  // There is an instruction for the smallest only.
+  // SSE4.1 has an instruction for the minimum only.
   const __m128i all = _mm_set1_epi16(-1);
   return 65535 -
          _mm_extract_epi16(_mm_minpos_epu16(_mm_xor_si128(eight, all)), 0);

@@ -8,7 +8,7 @@ namespace cartographer_ext {
 namespace scan_matching {
 namespace {
 
-// target[i] = max(a[i], b[i]); compilers make vector instructions of it.
+// target[i] = max(a[i], b[i]); compilers vectorise it.
 void Larger(const uint8_t* const a, const uint8_t* const b, const int count,
             uint8_t* const target) {
   for (int i = 0; i < count; ++i) target[i] = a[i] > b[i] ? a[i] : b[i];

@@ -116,7 +116,7 @@ void DegeneracyAwareScanMatcher2D::MatchTsdf(
   stock_.Match(prediction.pose.translation(), initial_pose_estimate,
                point_cloud, grid, pose_estimate, &summary);
   if (report == nullptr) return;
-  // The uncertainty of the match is not known: that of the prediction is used.
+  // The uncertainty of the match is unknown, so that of the prediction is used.
   *report = MatchReport();
   const double t = options_.prediction_translation_sigma;
   const double r = options_.prediction_rotation_sigma;

@@ -20,7 +20,7 @@ namespace cartographer_ext {
 namespace simulation {
 namespace {
 
-// Plans drawn until the robot passes everywhere.
+// Plans are drawn until the robot fits through everywhere, at most this often.
 constexpr int kAttempts = 8;
 constexpr double kWait = 3.;        // seconds at the start and at the end
 constexpr double kLookStep = 0.05;  // seconds between collision checks
@@ -123,7 +123,8 @@ absl::Status Attempt(const BuildingOptions& options, const int attempt,
     return absl::InvalidArgumentError(
         "a robot that cannot turn in place finds no path through");
   }
-  // Laps and people must not move each other's random numbers.
+  // The number of laps must not change the random numbers of people, and vice
+  // versa.
   Random slack(random.NextBits());
   SetDrive(Waypoints(plan, building->route, &slack), &world);
   MarkPlaces(plan, building->route, &world);

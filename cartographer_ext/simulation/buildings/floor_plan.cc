@@ -70,8 +70,7 @@ double LineToBox(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
     leave = std::min(leave, std::max(low / step, high / step));
   }
   if (enter <= leave) return 0.;
-  double distance =
-      std::min(box.exteriorDistance(a), box.exteriorDistance(b));
+  double distance = std::min(box.exteriorDistance(a), box.exteriorDistance(b));
   const Segment line{a, b, 1., kAnyAngle};
   for (const double x : {box.min().x(), box.max().x()}) {
     for (const double y : {box.min().y(), box.max().y()}) {

@@ -103,8 +103,14 @@ Piece RoundThing(const double radius) {
 Piece ParkedCar() {
   Piece piece;
   piece.size = {4.4, 1.8};
-  Outline({{0.35, 0.}, {3.9, 0.}, {4.4, 0.45}, {4.4, 1.35}, {3.9, 1.8},
-           {0.35, 1.8}, {0., 1.4}, {0., 0.4}},
+  Outline({{0.35, 0.},
+           {3.9, 0.},
+           {4.4, 0.45},
+           {4.4, 1.35},
+           {3.9, 1.8},
+           {0.35, 1.8},
+           {0., 1.4},
+           {0., 0.4}},
           &piece);
   return piece;
 }
@@ -124,9 +130,9 @@ Piece Rack(const int bays, const double depth, const double filled,
       const double left = x + offset + random->Uniform(0., 0.05);
       const double low = random->Uniform(0.02, 0.1);
       const double high = depth - random->Uniform(0.02, 0.1);
-      Outline({{left, low}, {left + 1.2, low}, {left + 1.2, high},
-               {left, high}},
-              &piece);
+      Outline(
+          {{left, low}, {left + 1.2, low}, {left + 1.2, high}, {left, high}},
+          &piece);
     }
   }
   return piece;
@@ -203,8 +209,7 @@ void FurnishOffice(const Box& room, const double density, Random* random,
     if (kind < 0.35) {
       PlaceAtWall(Desk(), room, random, plan);
     } else if (kind < 0.6) {
-      PlaceAtWall(Cupboard(random->Uniform(0.8, 2.), 0.45), room, random,
-                  plan);
+      PlaceAtWall(Cupboard(random->Uniform(0.8, 2.), 0.45), room, random, plan);
     } else if (kind < 0.75) {
       PlaceAtWall(Cupboard(1.8, 0.8), room, random, plan);
     } else if (kind < 0.85) {

@@ -37,15 +37,16 @@ void AddHallWall(const double width, const double height, Random* random,
   }
 }
 
-// Round the grid, then from stop to stop as drawn, and back to the start.
+// Once round the grid, then to the stops in random order, and back to the
+// start.
 void RandomRound(const std::vector<std::vector<int>>& grid, const int stops,
                  Random* random, FloorPlan* plan) {
   const size_t last_x = grid.size() - 1, last_y = grid[0].size() - 1;
   plan->round = {grid[0][0], grid[last_x][0], grid[last_x][last_y],
                  grid[0][last_y]};
   for (int i = 0; i != stops; ++i) {
-    const int node = grid[random->UniformInt(0, last_x)]
-                         [random->UniformInt(0, last_y)];
+    const int node =
+        grid[random->UniformInt(0, last_x)][random->UniformInt(0, last_y)];
     if (node != plan->round.back()) plan->round.push_back(node);
   }
   if (plan->round.back() != grid[0][0]) plan->round.push_back(grid[0][0]);
@@ -83,7 +84,8 @@ void PlanWarehouse(Random* random, FloorPlan* plan) {
     PlaceAtWall(Cupboard(random->Uniform(0.6, 1.2), random->Uniform(0.4, 0.8)),
                 inside, random, plan);
   }
-  // Aisles in turn, to and fro, then back along the first cross aisle.
+  // All aisles one after the other in alternating direction, then back along
+  // the first cross aisle.
   plan->round = {grid[0][0]};
   bool at_end = false;
   const int first_step = static_cast<int>(random->UniformInt(1, 2));
@@ -120,8 +122,8 @@ void PlanHall(Random* random, FloorPlan* plan) {
   const double furnished = random->Uniform(0.2, 1.);
   for (int i = 0; i != columns; ++i) {
     for (int j = 0; j != rows; ++j) {
-      const Box cell = MakeBox(xs[i] + 1., ys[j] + 1., xs[i + 1] - 1.,
-                               ys[j + 1] - 1.);
+      const Box cell =
+          MakeBox(xs[i] + 1., ys[j] + 1., xs[i + 1] - 1., ys[j + 1] - 1.);
       // The column in the middle of a cell, then booths and tables round it.
       Placement placement;
       placement.corner =
@@ -132,9 +134,9 @@ void PlanHall(Random* random, FloorPlan* plan) {
         if (random->Uniform() > furnished) continue;
         const double kind = random->Uniform();
         if (kind < 0.5) {
-          PlaceInside(Cupboard(random->Uniform(1., 4.),
-                               random->Uniform(0.5, 3.)),
-                      cell, random, plan);
+          PlaceInside(
+              Cupboard(random->Uniform(1., 4.), random->Uniform(0.5, 3.)), cell,
+              random, plan);
         } else if (kind < 0.8) {
           PlaceInside(Table(8), cell, random, plan);
         } else {

@@ -22,7 +22,7 @@ class Facade {
   Facade(const double period, Random* random, FloorPlan* plan)
       : period_(period), random_(random), plan_(plan) {}
 
-  // From a to b, with the street on the left.
+  // The row goes from a to b, with the street on its left.
   void Draw(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
             const double gap_share) {
     const double length = (b - a).norm();
@@ -207,11 +207,11 @@ void PlanCampus(Random* random, FloorPlan* plan) {
                  grid[0][rows]};
   const double way = random->Uniform();
   if (way < 0.4) {
-    plan->round.insert(plan->round.end(), {grid[0][1], grid[columns][1],
-                                           grid[columns][0]});
+    plan->round.insert(plan->round.end(),
+                       {grid[0][1], grid[columns][1], grid[columns][0]});
   } else if (way < 0.7) {
-    plan->round.insert(plan->round.begin() + 1, {grid[1][0], grid[1][rows],
-                                                 grid[0][rows], grid[0][0]});
+    plan->round.insert(plan->round.begin() + 1,
+                       {grid[1][0], grid[1][rows], grid[0][rows], grid[0][0]});
   }
   plan->round.push_back(grid[0][0]);
   plan->lateral_slack = 0.6;

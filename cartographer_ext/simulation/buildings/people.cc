@@ -12,7 +12,7 @@ namespace cartographer_ext {
 namespace simulation {
 namespace {
 
-constexpr double kStep = 0.1;      // seconds between the looks at a walk
+constexpr double kStep = 0.1;      // seconds between the checks of a walk
 constexpr double kPersonal = 0.1;  // metres between person and robot or wall
 constexpr int kPhases = 6;         // tried for each walk
 constexpr int kWalksPerPerson = 6;
@@ -31,8 +31,8 @@ bool DrawWalk(const FloorPlan& plan, Random* random, MovingObstacle* person) {
   person->radius = random->Uniform(0.17, 0.25);
   person->speed = random->Uniform(0.4, 1.2);
   if (node.neighbours.empty()) return false;
-  const int to = node.neighbours[static_cast<size_t>(
-      choice * node.neighbours.size())];
+  const int to =
+      node.neighbours[static_cast<size_t>(choice * node.neighbours.size())];
   const Eigen::Vector2d step = plan.nodes[to].position - node.position;
   const double length = step.norm();
   if (length < 3.) return false;
@@ -74,7 +74,7 @@ void AddPeople(const FloorPlan& plan, const RayCaster& walls,
   for (double time = 0.; time <= drive.duration(); time += kStep) {
     robot.push_back(drive.PoseAt(time).translation());
   }
-  // What either moves between two looks is part of the distance kept.
+  // The distance kept includes what both may move between two checks.
   const double between = 0.5 * kStep * (world->robot.speed + 1.2);
   for (int attempt = 0; attempt != kWalksPerPerson * plan.people; ++attempt) {
     if (static_cast<int>(world->obstacles.size()) >= plan.people) break;

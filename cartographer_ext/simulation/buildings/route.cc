@@ -64,8 +64,8 @@ std::vector<int> RouteNodes(const FloorPlan& plan,
       if (!Continue(plan, plan.round[i], options.turns_back, &path)) return {};
     }
   }
-  // The beginning once more. It starts where the round ends; a robot that cannot
-  // turn back takes the first path round that leads into it.
+  // Repeats the beginning, which starts where the round ends. A robot that
+  // cannot turn back takes the shortest loop that leads into it.
   double left = plan.overlap;
   const size_t end = path.size();
   for (size_t i = 1; i < end && left > 0.; ++i) {

@@ -16,7 +16,8 @@ ImuModel::ImuModel(const ImuSettings& settings, const uint64_t seed)
 }
 
 Eigen::Vector3d ImuModel::Noise(const double sigma) {
-  // Named draws: the order of evaluation inside a call would be unspecified.
+  // The draws have names because the order of evaluation of arguments is
+  // unspecified.
   const double x = random_.Normal();
   const double y = random_.Normal();
   const double z = random_.Normal();

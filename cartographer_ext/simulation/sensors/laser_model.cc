@@ -37,7 +37,8 @@ double LaserModel::ExactRange(const Pose2& laser, const double angle,
 }
 
 float LaserModel::Measure(double range) {
-  // A fixed number of draws a beam: what one beam sees leaves the others alone.
+  // The number of draws per beam is fixed, so that the result of one beam does
+  // not change the noise of the others.
   const double dropout_draw = random_.Uniform();
   const double outlier_draw = random_.Uniform();
   const double place_draw = random_.Uniform();

@@ -74,7 +74,7 @@ class Odometer {
   void Mark(const size_t fault, const double from, const double to,
             const double distance, const double angle) {
     OpenLabel& open = open_[fault];
-    // Less than half a second apart is one event.
+    // Marks less than half a second apart belong to one event.
     if (open.open && begin_ + from > open.label.end + 0.5) Close(fault);
     if (!open.open) {
       open.open = true;

@@ -37,7 +37,8 @@ constexpr LaserSheet kLasers[] = {
     {"utm_30lx", 1081, 270., 0.1, 30., 40., 0.01, 0.0007, 0.005, 0.001},
     {"sick_lms", 361, 180., 0.1, 80., 10., 0.008, 0.0002, 0.005, 0.01}};
 
-// A LMS 2xx turns its mirror at 75 Hz whatever its serial line carries.
+// The mirror of an LMS 2xx turns at 75 Hz, whatever rate its serial line can
+// transmit.
 constexpr double kSickMirrorRate = 75.;
 
 absl::Status Unknown(const std::string& what, const std::string& name,
@@ -143,7 +144,7 @@ absl::Status ApplyOdometryPreset(const std::string& name, const uint64_t seed,
   odometry.present = name != "none";
   if (!odometry.present) return absl::OkStatus();
   odometry.scale_left = odometry.scale_right = odometry.wheel_base_error = 0.;
-  // Multiples of what a run of the shipped worlds has.
+  // Factor of the noise, relative to the shipped worlds.
   const double grade = name == "good" ? 0.2 : name == "fair" ? 1. : 2.5;
   odometry.scale_sigma = odometry.wheel_base_sigma = 0.02 * grade;
   odometry.mismatch_sigma = 0.005 * grade;

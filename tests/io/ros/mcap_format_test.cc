@@ -12,7 +12,10 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(McapFormatTest, FieldsEndWhereTheRecordEnds) {
-  McapFields fields(absl::string_view("\x01\x02\x00\x00\x00" "abc", 8));
+  McapFields fields(
+      absl::string_view("\x01\x02\x00\x00\x00"
+                        "abc",
+                        8));
   EXPECT_EQ(fields.Take<uint8_t>(), 1);
   EXPECT_EQ(fields.TakeString(), "ab");
   EXPECT_TRUE(fields.ok());
@@ -43,15 +46,23 @@ TEST(McapFormatTest, ChunksHoldWhatTheySay) {
     const std::string packed = *McapCompress(compression, text);
     EXPECT_FALSE(McapDecompress(compression, packed, text.size() - 1).ok());
     EXPECT_FALSE(McapDecompress(compression, packed, text.size() + 1).ok());
-    EXPECT_FALSE(McapDecompress(compression, packed.substr(0, packed.size() / 2), text.size()).ok());
+    EXPECT_FALSE(McapDecompress(compression,
+                                packed.substr(0, packed.size() / 2),
+                                text.size())
+                     .ok());
   }
   // A chunk that expands to gigabytes is refused before it does.
-  EXPECT_THAT(std::string(McapDecompress("zstd", "", uint64_t{1} << 40).status().message()), HasSubstr("declares"));
-  EXPECT_EQ(McapDecompress("bz2", "x", 1).status().code(), absl::StatusCode::kUnimplemented);
+  EXPECT_THAT(
+      std::string(
+          McapDecompress("zstd", "", uint64_t{1} << 40).status().message()),
+      HasSubstr("declares"));
+  EXPECT_EQ(McapDecompress("bz2", "x", 1).status().code(),
+            absl::StatusCode::kUnimplemented);
 }
 
 TEST(McapFormatTest, ChecksumIsThatOfThePublishedExample) {
-  EXPECT_EQ(McapChecksum("123456789"), 0xcbf43926u);  // the check value of CRC-32
+  EXPECT_EQ(McapChecksum("123456789"),
+            0xcbf43926u);  // the check value of CRC-32
 }
 
 }  // namespace

@@ -13,9 +13,11 @@ namespace io {
 namespace {
 
 // The records at the top level: opcode and content, by offset.
-std::map<uint64_t, std::pair<uint8_t, std::string>> Records(const std::string& file) {
+std::map<uint64_t, std::pair<uint8_t, std::string>> Records(
+    const std::string& file) {
   std::map<uint64_t, std::pair<uint8_t, std::string>> records;
-  McapFields fields(absl::string_view(file).substr(kMcapMagicSize, file.size() - 2 * kMcapMagicSize));
+  McapFields fields(absl::string_view(file).substr(
+      kMcapMagicSize, file.size() - 2 * kMcapMagicSize));
   while (!fields.rest().empty()) {
     const uint64_t offset = file.size() - kMcapMagicSize - fields.rest().size();
     const uint8_t opcode = fields.Take<uint8_t>();
@@ -45,7 +47,8 @@ TEST(McapWriterTest, IndexesPointToTheMessages) {
   EXPECT_EQ(counts[kMcapMessageIndex], 2);
   EXPECT_EQ(counts[kMcapChunkIndex], 1);
   EXPECT_EQ(counts[kMcapStatistics], 1);
-  EXPECT_EQ(counts[kMcapSchema], 1);  // in the summary; the other is in the chunk
+  EXPECT_EQ(counts[kMcapSchema],
+            1);  // in the summary; the other is in the chunk
   for (const auto& record : records) {
     McapFields fields(record.second.second);
     if (record.second.first == kMcapChunkIndex) {
@@ -53,7 +56,8 @@ TEST(McapWriterTest, IndexesPointToTheMessages) {
       EXPECT_EQ(fields.Take<uint64_t>(), 20u);
       const uint64_t chunk = fields.Take<uint64_t>();
       EXPECT_EQ(records.at(chunk).first, kMcapChunk);
-      EXPECT_EQ(fields.Take<uint64_t>(), kMcapRecordHeadSize + records.at(chunk).second.size());
+      EXPECT_EQ(fields.Take<uint64_t>(),
+                kMcapRecordHeadSize + records.at(chunk).second.size());
       McapFields offsets(fields.TakeString());
       for (int i = 0; i < 2; ++i) {
         const uint16_t channel = offsets.Take<uint16_t>();
@@ -71,7 +75,8 @@ TEST(McapWriterTest, IndexesPointToTheMessages) {
       // The chunk: times, size, checksum, compression, length, then records.
       for (const auto& chunk : records) {
         if (chunk.second.first != kMcapChunk) continue;
-        McapFields message(absl::string_view(chunk.second.second).substr(40 + offset));
+        McapFields message(
+            absl::string_view(chunk.second.second).substr(40 + offset));
         EXPECT_EQ(message.Take<uint8_t>(), kMcapMessage);
         message.Take<uint64_t>();
         EXPECT_EQ(message.Take<uint16_t>(), channel);

@@ -29,8 +29,10 @@ inline io::LaserScan SampleScan(const io::TimeNs time, const int num_beams) {
 }
 
 // Steps of 0.1 s from 1000.1 s on: odometry, IMU and scan with equal stamps.
-inline void WriteRos2Sample(const std::string& filename, const io::Rosbag2Storage storage,
-                            const std::string& compression, const int num_steps = 10, const int num_beams = 8) {
+inline void WriteRos2Sample(const std::string& filename,
+                            const io::Rosbag2Storage storage,
+                            const std::string& compression,
+                            const int num_steps = 10, const int num_beams = 8) {
   io::RosbagWriterOptions options;
   options.compression = compression;
   auto writer = io::OpenRosbag2Writer(filename, storage, options);
@@ -53,7 +55,9 @@ inline void WriteRos2Sample(const std::string& filename, const io::Rosbag2Storag
 }
 
 // What WriteRos2Sample wrote.
-inline void ExpectRos2Sample(io::SensorSource* const source, const int num_steps = 10, const int num_beams = 8) {
+inline void ExpectRos2Sample(io::SensorSource* const source,
+                             const int num_steps = 10,
+                             const int num_beams = 8) {
   EXPECT_EQ(source->info().num_scans, num_steps);
   EXPECT_EQ(source->info().num_odometry, num_steps);
   EXPECT_EQ(source->info().num_imu, num_steps);

@@ -26,7 +26,8 @@ class Folder {
  public:
   Folder() { mkdir(path().c_str(), 0755); }
   ~Folder() {
-    for (const std::string& name : names_) unlink((path() + "/" + name).c_str());
+    for (const std::string& name : names_)
+      unlink((path() + "/" + name).c_str());
     rmdir(path().c_str());
   }
   const std::string& path() const { return file_.path(); }
@@ -54,7 +55,8 @@ TEST(Rosbag2ReaderTest, TheFilesOfAFolderAreOneRecording) {
   Folder folder;
   test::WriteRos2Sample(folder.Add("run_9.db3"), Rosbag2Storage::kDb3, "none");
   test::WriteRos2Sample(folder.Add("run_10.db3"), Rosbag2Storage::kDb3, "none");
-  test::WriteBytes(folder.Add("metadata.yaml"), "rosbag2_bagfile_information:\n");
+  test::WriteBytes(folder.Add("metadata.yaml"),
+                   "rosbag2_bagfile_information:\n");
   auto source = OpenSensorSource(folder.path(), {});
   ASSERT_TRUE(source.ok()) << source.status();
   // The same stamps twice: both are there, in order.
@@ -64,21 +66,26 @@ TEST(Rosbag2ReaderTest, TheFilesOfAFolderAreOneRecording) {
 
 TEST(Rosbag2ReaderTest, FoldersWithoutARecordingAreRefused) {
   Folder folder;
-  EXPECT_THAT(std::string(OpenSensorSource(folder.path(), {}).status().message()),
-              HasSubstr("a folder without .db3 and .mcap files"));
+  EXPECT_THAT(
+      std::string(OpenSensorSource(folder.path(), {}).status().message()),
+      HasSubstr("a folder without .db3 and .mcap files"));
   test::WriteBytes(folder.Add("run_0.db3.zstd"), "x");
-  EXPECT_THAT(std::string(OpenSensorSource(folder.path(), {}).status().message()), HasSubstr("unzstd"));
+  EXPECT_THAT(
+      std::string(OpenSensorSource(folder.path(), {}).status().message()),
+      HasSubstr("unzstd"));
 }
 
 TEST(Rosbag2ReaderTest, OtherDatabasesAreRefused) {
   test::TemporaryFile file(".db3");
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(file.path().c_str(), &database), SQLITE_OK);
-  sqlite3_exec(database, "CREATE TABLE people(name TEXT)", nullptr, nullptr, nullptr);
+  sqlite3_exec(database, "CREATE TABLE people(name TEXT)", nullptr, nullptr,
+               nullptr);
   sqlite3_close(database);
   const auto source = OpenSensorSource(file.path(), {});
   ASSERT_FALSE(source.ok());
-  EXPECT_THAT(std::string(source.status().message()), HasSubstr("no such table: topics (not a database of rosbag2?)"));
+  EXPECT_THAT(std::string(source.status().message()),
+              HasSubstr("no such table: topics (not a database of rosbag2?)"));
   test::WriteBytes(file.path(), "SQLite format 3");
   EXPECT_FALSE(OpenSensorSource(file.path(), {}).ok());
 }
@@ -88,24 +95,27 @@ TEST(Rosbag2ReaderTest, MessagesInAnotherEncodingAreNotTaken) {
   test::WriteRos2Sample(file.path(), Rosbag2Storage::kDb3, "none");
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(file.path().c_str(), &database), SQLITE_OK);
-  sqlite3_exec(database, "UPDATE topics SET serialization_format = 'protobuf'", nullptr, nullptr, nullptr);
+  sqlite3_exec(database, "UPDATE topics SET serialization_format = 'protobuf'",
+               nullptr, nullptr, nullptr);
   sqlite3_close(database);
-  EXPECT_THAT(std::string(OpenSensorSource(file.path(), {}).status().message()), HasSubstr("no topic of type"));
+  EXPECT_THAT(std::string(OpenSensorSource(file.path(), {}).status().message()),
+              HasSubstr("no topic of type"));
 }
 
 TEST(Rosbag2ReaderTest, SurvivesDamagedDatabases) {
   test::TemporaryFile sample(".db3");
   test::WriteRos2Sample(sample.path(), Rosbag2Storage::kDb3, "none");
   test::TemporaryFile file(".db3");
-  test::ForEachMutation(test::ReadBytes(sample.path()), [&](const std::string& damaged) {
-    test::WriteBytes(file.path(), damaged);
-    auto source = OpenSensorSource(file.path(), {});
-    SensorEvent event;
-    for (int i = 0; source.ok() && i < 1000; ++i) {
-      const auto more = (*source)->Next(&event);
-      if (!more.ok() || !*more) break;
-    }
-  });
+  test::ForEachMutation(test::ReadBytes(sample.path()),
+                        [&](const std::string& damaged) {
+                          test::WriteBytes(file.path(), damaged);
+                          auto source = OpenSensorSource(file.path(), {});
+                          SensorEvent event;
+                          for (int i = 0; source.ok() && i < 1000; ++i) {
+                            const auto more = (*source)->Next(&event);
+                            if (!more.ok() || !*more) break;
+                          }
+                        });
 }
 
 }  // namespace

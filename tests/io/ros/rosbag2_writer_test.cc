@@ -16,7 +16,8 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(Rosbag2WriterTest, NothingIsLeftBehindWithoutFinish) {
-  for (const Rosbag2Storage storage : {Rosbag2Storage::kMcap, Rosbag2Storage::kDb3}) {
+  for (const Rosbag2Storage storage :
+       {Rosbag2Storage::kMcap, Rosbag2Storage::kDb3}) {
     test::TemporaryFile file(".ros2");
     {
       RosbagWriterOptions options;
@@ -32,19 +33,27 @@ TEST(Rosbag2WriterTest, NothingIsLeftBehindWithoutFinish) {
 TEST(Rosbag2WriterTest, ErrorsNameTheFile) {
   RosbagWriterOptions options;
   options.compression = "none";
-  EXPECT_THAT(
-      std::string(OpenRosbag2Writer("/nonexistent/a.mcap", Rosbag2Storage::kMcap, options).status().message()),
-      HasSubstr("/nonexistent"));
-  EXPECT_FALSE(OpenRosbag2Writer("/nonexistent/a.db3", Rosbag2Storage::kDb3, options).ok());
+  EXPECT_THAT(std::string(OpenRosbag2Writer("/nonexistent/a.mcap",
+                                            Rosbag2Storage::kMcap, options)
+                              .status()
+                              .message()),
+              HasSubstr("/nonexistent"));
+  EXPECT_FALSE(
+      OpenRosbag2Writer("/nonexistent/a.db3", Rosbag2Storage::kDb3, options)
+          .ok());
   test::TemporaryFile file(".mcap");
   auto writer = OpenRosbag2Writer(file.path(), Rosbag2Storage::kMcap, options);
   ASSERT_TRUE(writer.ok());
-  EXPECT_EQ((*writer)->AddScan(test::SampleScan(-5, 8)).code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ((*writer)->AddScan(test::SampleScan(-5, 8)).code(),
+            absl::StatusCode::kInvalidArgument);
   EXPECT_TRUE((*writer)->Finish().ok());
   EXPECT_EQ((*writer)->Finish().code(), absl::StatusCode::kFailedPrecondition);
   options.compression = "bz2";
-  EXPECT_THAT(std::string(OpenRosbag2Writer(file.path(), Rosbag2Storage::kMcap, options).status().message()),
-              HasSubstr("must be none, lz4 or zstd"));
+  EXPECT_THAT(
+      std::string(OpenRosbag2Writer(file.path(), Rosbag2Storage::kMcap, options)
+                      .status()
+                      .message()),
+      HasSubstr("must be none, lz4 or zstd"));
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ TEST(FloorPlanTest, LineToBoxIsTheLeastDistance) {
     const Vector2d b(random.Uniform(-4., 4.), random.Uniform(-4., 4.));
     double least = 1e9;
     for (int k = 0; k <= 2000; ++k) {
-      least = std::min(least, box.exteriorDistance(
-                                  Vector2d(a + (k / 2000.) * (b - a))));
+      least = std::min(
+          least, box.exteriorDistance(Vector2d(a + (k / 2000.) * (b - a))));
     }
     EXPECT_NEAR(LineToBox(a, b, box), least, 5e-3);
   }

@@ -111,7 +111,7 @@ class LuaParameterDictionary::State {
     return 1;
   }
 
-  // Its address is what counts.
+  // Only the address is used, as a key of the registry.
   static char kRegistryKey;
 
   lua_State* const lua_;

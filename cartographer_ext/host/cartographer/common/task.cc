@@ -36,7 +36,8 @@ void Task::AddDependency(std::weak_ptr<Task> dependency) {
     absl::MutexLock lock(&mutex_);
     CHECK_EQ(state_, NEW) << "a scheduled task cannot get dependencies";
     if (alive == nullptr) return;
-    // Before the other task can know of us, so that we never count below 0.
+    // Must precede the registration with the other task, so that the count
+    // never drops below 0.
     ++num_open_dependencies_;
   }
   if (!alive->AddDependent(this)) OnDependencyCompleted();
@@ -85,7 +86,7 @@ void Task::Execute() {
     state_ = COMPLETED;
     dependents.swap(dependents_);
   }
-  // They wait for us, so they are still there.
+  // The dependent tasks are alive because they wait for this one.
   for (Task* const dependent : dependents) dependent->OnDependencyCompleted();
 }
 

@@ -20,8 +20,8 @@ void ThreadPoolInterface::SetThreadPool(Task* const task) {
 
 namespace {
 
-// So that real-time work in the same process comes first. On Linux this is
-// about the calling thread alone.
+// Lowers the priority so that real-time work in the same process comes first.
+// On Linux this affects the calling thread only.
 void LowerPriorityOfThisThread() {
 #ifdef __linux__
   constexpr int kIncrement = 10;

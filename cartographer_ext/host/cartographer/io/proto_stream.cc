@@ -76,7 +76,7 @@ ProtoStreamReader::ProtoStreamReader(const std::string& filename)
 bool ProtoStreamReader::ReadProto(google::protobuf::Message* const proto) {
   uint64 size;
   if (!ReadNumber(&in_, &size)) return false;
-  // In pieces, so that a wrong size costs no memory.
+  // Read in pieces, so that a wrong size does not allocate memory.
   std::string compressed;
   char piece[1 << 16];
   while (compressed.size() < size) {

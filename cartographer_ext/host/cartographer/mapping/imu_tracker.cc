@@ -21,7 +21,7 @@ void ImuTracker::Advance(const common::Time time) {
   const Eigen::Quaterniond turn =
       transform::AngleAxisVectorToRotationQuaternion(angle_axis);
   orientation_ = (orientation_ * turn).normalized();
-  // In the frame of the body, gravity turns backwards.
+  // In the frame of the body, gravity rotates the opposite way.
   gravity_vector_ = turn.conjugate() * gravity_vector_;
   time_ = time;
 }

@@ -28,7 +28,7 @@ namespace {
 
 using proto::SerializedData;
 
-// What pure_localization, which has no number of its own, means.
+// The number of submaps kept by pure_localization, which has no option for it.
 constexpr int kDefaultNumSubmapsToKeep = 3;
 
 // pure_localization is deprecated, but stored options may still use it.
@@ -40,7 +40,7 @@ bool HasDeprecatedPureLocalization(
 }
 #pragma GCC diagnostic pop
 
-// Nothing where all submaps are to stay.
+// Empty if all submaps are to be kept.
 absl::optional<int> NumSubmapsToKeep(
     const proto::TrajectoryBuilderOptions& options) {
   if (HasDeprecatedPureLocalization(options)) {
@@ -54,7 +54,7 @@ absl::optional<int> NumSubmapsToKeep(
   return absl::nullopt;
 }
 
-// What is stored of the options of a trajectory.
+// The options of a trajectory that are stored.
 proto::TrajectoryBuilderOptionsWithSensorIds WithSensorIds(
     const proto::TrajectoryBuilderOptions& options,
     const std::set<MapBuilder::SensorId>& sensor_ids) {
@@ -74,7 +74,7 @@ std::unique_ptr<sensor::CollatorInterface> MakeCollator(
   return absl::make_unique<sensor::Collator>();
 }
 
-// Hands one record to the pose graph.
+// Passes one record to the pose graph.
 class RecordLoader {
  public:
   RecordLoader(const StoredState& state, const bool frozen,
@@ -104,7 +104,8 @@ class RecordLoader {
         pose_graph_->SetTrajectoryDataFromProto(record.trajectory_data());
         return;
       default:
-        // Sensor data moves poses, and those of a frozen state do not move.
+        // Sensor data would only constrain poses, and those of a frozen state
+        // are fixed.
         if (!frozen_) LoadSensorData(record);
     }
   }
@@ -296,7 +297,7 @@ std::map<int, int> MapBuilder::LoadState(
     pose_graph_->AddSerializedConstraints(constraints);
     return new_ids;
   }
-  // Nothing moves, so that constraints only say which nodes built a submap.
+  // No pose moves, so that constraints only record which nodes built a submap.
   for (const PoseGraph::Constraint& constraint : constraints) {
     if (constraint.tag == PoseGraph::Constraint::INTRA_SUBMAP) {
       pose_graph_->AddNodeToSubmap(constraint.node_id, constraint.submap_id);

@@ -83,7 +83,7 @@ void PoseExtrapolator::AddPose(const common::Time time,
         absl::make_unique<ImuTracker>(gravity_time_constant_, start);
   }
   timed_poses_.push_back(TimedPose{time, pose});
-  // Two poses always stay, so that there is a velocity.
+  // Two poses are always kept, so that there is a velocity.
   DropOlderThan(time - pose_queue_duration_, 2, &timed_poses_);
   UpdateVelocityFromPoses();
   AdvanceTracker(time, pose_tracker_.get());
@@ -188,13 +188,13 @@ void PoseExtrapolator::UpdateVelocityFromOdometry() {
   const sensor::OdometryData& newest = odometry_data_.back();
   const sensor::OdometryData& oldest = odometry_data_.front();
   const double seconds = common::ToSeconds(newest.time - oldest.time);
-  // Where the robot has come from, seen from where it is now: this gives the
-  // velocity in the newest tracking frame, backwards.
+  // The previous pose in the newest tracking frame, which gives the negative
+  // velocity in that frame.
   const transform::Rigid3d origin = newest.pose.inverse() * oldest.pose;
   velocity_from_odometry_.angular =
       -AngularVelocity(origin.rotation(), seconds);
   if (HasPose()) {
-    // The tracker must know the new rotation rate before it predicts.
+    // The tracker must receive the new rotation rate before it predicts.
     const Eigen::Quaterniond turn =
         TurnUntil(newest.time, odometry_tracker_.get());
     velocity_from_odometry_.linear =

@@ -59,7 +59,7 @@ proto::SensorId ToProto(const SensorId& sensor_id) {
 }
 
 SensorId FromProto(const proto::SensorId& sensor_id_proto) {
-  // Files of a later version may have types that are not known here.
+  // Files of a later version may have unknown types.
   const bool is_known =
       proto::SensorId::SensorType_IsValid(sensor_id_proto.type());
   return SensorId{is_known ? static_cast<SensorType>(sensor_id_proto.type())

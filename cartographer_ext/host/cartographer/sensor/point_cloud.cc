@@ -54,7 +54,7 @@ TimedPointCloud TransformTimedPointCloud(const TimedPointCloud& point_cloud,
 
 PointCloud CropPointCloud(const PointCloud& point_cloud, const float min_z,
                           const float max_z) {
-  // A height that is not a number is outside.
+  // NaN counts as outside.
   const auto is_inside = [=](const RangefinderPoint& point) {
     const float z = point.position.z();
     return z >= min_z && z <= max_z;

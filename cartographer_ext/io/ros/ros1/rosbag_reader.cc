@@ -28,7 +28,7 @@ class RosbagContainer : public RosContainer {
   explicit RosbagContainer(const std::string& filename)
       : filename_(filename), file_(filename) {}
 
-  // Reads the whole file once: its topics, and whether it is whole.
+  // Reads the whole file once to find its topics and whether it is complete.
   absl::Status Survey() {
     if (!absl::StartsWith(Bytes(), kMagic)) {
       return absl::InvalidArgumentError(
@@ -91,7 +91,7 @@ class RosbagContainer : public RosContainer {
         absl::StrCat(filename_, ": at byte ", position_, ": ", what));
   }
 
-  // Takes one record on; true if it was a message that is wanted.
+  // Reads the next record; true if it is a wanted message.
   absl::StatusOr<bool> Step(RosMessage* message) {
     RosbagRecord record;
     if (!chunk_rest_.empty()) {

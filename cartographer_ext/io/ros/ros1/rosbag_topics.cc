@@ -12,8 +12,8 @@ namespace cartographer_ext {
 namespace io {
 namespace {
 
-// The topic asked for, if its type is one of `types`; or the first by name of
-// the first type that occurs; or none.
+// The requested topic, if its type is one of `types`; without a request the
+// first by name of the first type that occurs; or none.
 absl::StatusOr<std::string> Choose(const RosTopics& topics,
                                    const std::vector<RosType>& types,
                                    const std::string& asked_for,
@@ -68,10 +68,10 @@ namespace {
 absl::Status ChooseScans(const RosTopics& topics, const std::string& asked_for,
                          ChosenTopics* chosen) {
   for (const absl::string_view name : absl::StrSplit(asked_for, ',')) {
-    const auto scan = Choose(
-        topics, {kRosLaserScan, kRosMultiEchoLaserScan, kRosPointCloud2},
-        std::string(name), "laser scans", "; -scan_topic names others, or several",
-        &chosen->warnings);
+    const auto scan =
+        Choose(topics, {kRosLaserScan, kRosMultiEchoLaserScan, kRosPointCloud2},
+               std::string(name), "laser scans",
+               "; -scan_topic names others, or several", &chosen->warnings);
     if (!scan.ok()) return scan.status();
     if (scan->empty()) {
       return absl::NotFoundError(absl::StrCat(
@@ -80,11 +80,10 @@ absl::Status ChooseScans(const RosTopics& topics, const std::string& asked_for,
           ListTopics(topics)));
     }
     const std::string& md5sum = topics.at(*scan).md5sum;
-    chosen->scans[*scan] = md5sum == kRosLaserScan.md5sum
-                               ? RosScanType::kLaserScan
-                           : md5sum == kRosPointCloud2.md5sum
-                               ? RosScanType::kPointCloud2
-                               : RosScanType::kMultiEchoLaserScan;
+    chosen->scans[*scan] =
+        md5sum == kRosLaserScan.md5sum     ? RosScanType::kLaserScan
+        : md5sum == kRosPointCloud2.md5sum ? RosScanType::kPointCloud2
+                                           : RosScanType::kMultiEchoLaserScan;
   }
   return absl::OkStatus();
 }
@@ -100,9 +99,9 @@ absl::StatusOr<ChosenTopics> ChooseTopics(const RosTopics& topics,
   if (!options.odometry_topic.empty()) {
     odometry_types.push_back(kRosTransforms);
   }
-  auto odometry = Choose(topics, odometry_types, options.odometry_topic,
-                         "odometry", "; -odometry_topic names another",
-                         &chosen.warnings);
+  auto odometry =
+      Choose(topics, odometry_types, options.odometry_topic, "odometry",
+             "; -odometry_topic names another", &chosen.warnings);
   if (!odometry.ok()) return odometry.status();
   chosen.odometry = *odometry;
   auto imu = Choose(topics, {kRosImu}, options.imu_topic, "an IMU",

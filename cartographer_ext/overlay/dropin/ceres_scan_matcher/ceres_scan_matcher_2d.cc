@@ -53,8 +53,7 @@ CeresScanMatcher2D::CeresScanMatcher2D(
   ::cartographer_ext::proto::ScanMatcherOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
     ::cartographer_ext::LogStart(
-        "CeresScanMatcher2D",
-        "ceres_scan_matcher.cartographer_ext", extension);
+        "CeresScanMatcher2D", "ceres_scan_matcher.cartographer_ext", extension);
     degeneracy_aware_ = absl::make_unique<
         ::cartographer_ext::scan_matching::DegeneracyAwareScanMatcher2D>(
         options, extension);

@@ -59,8 +59,8 @@ ConstraintBuilder2D::ConstraintBuilder2D(
   ::cartographer_ext::proto::LoopClosureOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
     ::cartographer_ext::LogStart(
-        "ConstraintBuilder2D",
-        "POSE_GRAPH.constraint_builder.cartographer_ext", extension);
+        "ConstraintBuilder2D", "POSE_GRAPH.constraint_builder.cartographer_ext",
+        extension);
     verified_ = absl::make_unique<VerifiedConstraintBuilder2D>(
         options, ::cartographer_ext::loop_closure::ToLoopOptions(extension),
         thread_pool);

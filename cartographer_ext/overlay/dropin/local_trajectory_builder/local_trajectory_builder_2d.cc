@@ -39,9 +39,9 @@ LocalTrajectoryBuilder2D::LocalTrajectoryBuilder2D(
     const std::vector<std::string>& expected_range_sensor_ids) {
   ::cartographer_ext::proto::FrontEndOptions extension;
   if (::cartographer_ext::options::GetExtension(options, &extension)) {
-    ::cartographer_ext::LogStart(
-        "LocalTrajectoryBuilder2D",
-        "TRAJECTORY_BUILDER_2D.cartographer_ext", extension);
+    ::cartographer_ext::LogStart("LocalTrajectoryBuilder2D",
+                                 "TRAJECTORY_BUILDER_2D.cartographer_ext",
+                                 extension);
     adaptive_ = absl::make_unique<AdaptiveLocalTrajectoryBuilder2D>(
         options, ::cartographer_ext::front_end::ToFrontEndOptions(extension),
         expected_range_sensor_ids);

@@ -24,9 +24,9 @@ std::string Block(const std::string& bytes) {
 
 template <typename Number>
 std::string Field(const std::string& name, const Number number) {
-  return Block(name + "=" +
-               std::string(reinterpret_cast<const char*>(&number),
-                           sizeof(number)));
+  return Block(
+      name + "=" +
+      std::string(reinterpret_cast<const char*>(&number), sizeof(number)));
 }
 
 // A chunk of zeros after a file header.

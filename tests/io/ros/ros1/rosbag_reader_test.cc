@@ -307,10 +307,9 @@ TEST(RosbagReaderTest, ReadsWithoutTheIndex) {
   EXPECT_TRUE(warnings.empty());
   // Cut off behind the only chunk, as when the recorder was killed.
   for (const size_t missing : {size_t{1}, size_t{100}}) {
-    EXPECT_EQ(
-        ReadBytesAsBag(bytes.substr(0, bytes.size() - missing), &warnings)
-            .size(),
-        30u);
+    EXPECT_EQ(ReadBytesAsBag(bytes.substr(0, bytes.size() - missing), &warnings)
+                  .size(),
+              30u);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_THAT(warnings[0], HasSubstr("cut off at byte"));
   }

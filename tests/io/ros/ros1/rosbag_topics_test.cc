@@ -32,7 +32,8 @@ TEST(RosbagTopicsTest, Defaults) {
   const auto chosen = ChooseTopics(topics, {});
   ASSERT_TRUE(chosen.ok()) << chosen.status();
   // Plain scans before echoes, then by name.
-  EXPECT_THAT(chosen->scans, ElementsAre(Pair("/scan_front", RosScanType::kLaserScan)));
+  EXPECT_THAT(chosen->scans,
+              ElementsAre(Pair("/scan_front", RosScanType::kLaserScan)));
   EXPECT_EQ(chosen->odometry, "/odom");
   EXPECT_EQ(chosen->imu, "");
   EXPECT_THAT(chosen->transforms, ElementsAre("/tf", "/tf_static"));
@@ -51,7 +52,8 @@ TEST(RosbagTopicsTest, AskedFor) {
   options.imu_topic = "/imu";
   const auto chosen = ChooseTopics(topics, options);
   ASSERT_TRUE(chosen.ok()) << chosen.status();
-  EXPECT_THAT(chosen->scans, ElementsAre(Pair("/echoes", RosScanType::kMultiEchoLaserScan)));
+  EXPECT_THAT(chosen->scans,
+              ElementsAre(Pair("/echoes", RosScanType::kMultiEchoLaserScan)));
   EXPECT_FALSE(chosen->odometry_from_transforms);
   EXPECT_EQ(chosen->imu, "/imu");
   EXPECT_TRUE(chosen->warnings.empty());
@@ -72,18 +74,22 @@ TEST(RosbagTopicsTest, SeveralLasersWithAndWithoutSlash) {
   options.scan_topic = "/front,rear";
   auto chosen = ChooseTopics(topics, options);
   ASSERT_TRUE(chosen.ok()) << chosen.status();
-  EXPECT_THAT(chosen->scans, ElementsAre(Pair("/rear", RosScanType::kPointCloud2),
-                                         Pair("front", RosScanType::kLaserScan)));
+  EXPECT_THAT(chosen->scans,
+              ElementsAre(Pair("/rear", RosScanType::kPointCloud2),
+                          Pair("front", RosScanType::kLaserScan)));
   EXPECT_TRUE(chosen->warnings.empty());
   EXPECT_TRUE(chosen->odometry_from_transforms);
   options.scan_topic = "front,side";
-  EXPECT_THAT(std::string(ChooseTopics(topics, options).status().message()), HasSubstr("no topic \"side\""));
+  EXPECT_THAT(std::string(ChooseTopics(topics, options).status().message()),
+              HasSubstr("no topic \"side\""));
   // Points only where there is no scan.
   chosen = ChooseTopics(topics, {});
-  EXPECT_THAT(chosen->scans, ElementsAre(Pair("front", RosScanType::kLaserScan)));
+  EXPECT_THAT(chosen->scans,
+              ElementsAre(Pair("front", RosScanType::kLaserScan)));
   topics.erase("front");
   chosen = ChooseTopics(topics, {});
-  EXPECT_THAT(chosen->scans, ElementsAre(Pair("/rear", RosScanType::kPointCloud2)));
+  EXPECT_THAT(chosen->scans,
+              ElementsAre(Pair("/rear", RosScanType::kPointCloud2)));
 }
 
 TEST(RosbagTopicsTest, OdometryOfTransformsOnDemandOrWithoutMessages) {

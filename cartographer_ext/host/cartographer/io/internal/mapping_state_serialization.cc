@@ -70,11 +70,11 @@ void WriteSubmap(const mapping::SubmapId& id, const mapping::Submap& submap,
                  ProtoStreamWriterInterface* const writer) {
   const auto* const submap_2d = dynamic_cast<const mapping::Submap2D*>(&submap);
   if (submap_2d != nullptr && submap_2d->grid() != nullptr &&
-      submap_2d->grid()->GetGridType() ==
-          mapping::GridType::PROBABILITY_GRID) {
-    writer->WriteSerialized([&](const ProtoStreamWriterInterface::Write& write) {
-      WriteSubmapRecord(id, *submap_2d, write);
-    });
+      submap_2d->grid()->GetGridType() == mapping::GridType::PROBABILITY_GRID) {
+    writer->WriteSerialized(
+        [&](const ProtoStreamWriterInterface::Write& write) {
+          WriteSubmapRecord(id, *submap_2d, write);
+        });
     return;
   }
   SerializedData record;

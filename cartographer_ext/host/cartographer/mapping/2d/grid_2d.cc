@@ -130,7 +130,7 @@ void Grid2D::GrowLimits(const Eigen::Vector2f& point,
       auto old_row = grids[i]->cbegin();
       auto new_row = grown.begin() + margin.y() * new_size.num_x_cells;
       for (int row = 0; row != old_size.num_y_cells; ++row) {
-        // What is not written takes no memory.
+        // Cells that are never written take no memory.
         const auto is_known = [](const uint16 cell) { return cell != 0; };
         const auto old_end = old_row + old_size.num_x_cells;
         const auto first = std::find_if(old_row, old_end, is_known);

@@ -96,7 +96,7 @@ void Submap2D::UpdateFromProto(const proto::Submap& proto) {
   ReadState(proto.submap_2d());
 }
 
-// All but the pose, which does not change.
+// Sets everything but the pose, which does not change.
 void Submap2D::ReadState(const proto::Submap2D& proto) {
   if (proto.has_grid()) {
     grid_ = GridFromProto(proto.grid(), conversion_tables_);

@@ -43,7 +43,7 @@ void WorkQueue::Resume() {
       absl::MutexLock lock(&mutex_);
       if (items_.empty()) {
         active_ = false;
-        // The queue may be gone from here on.
+        // From here on the queue may have been destroyed.
         return;
       }
       task = std::move(items_.front().task);

@@ -12,7 +12,7 @@ namespace sensor {
 
 namespace {
 
-// So many waiting readings point to a sensor that is silent.
+// This many waiting readings indicate a sensor that has stopped.
 constexpr size_t kSuspiciousQueueSize = 500;
 
 std::ostream& operator<<(std::ostream& os, const QueueKey& key) {

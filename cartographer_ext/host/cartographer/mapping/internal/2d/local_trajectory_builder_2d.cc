@@ -166,7 +166,7 @@ transform::Rigid2d LocalTrajectoryBuilder2D::Match(
   if (submaps.empty()) {
     return prediction;
   }
-  // The older submap knows more.
+  // The older submap contains more scans.
   const Grid2D& grid = *submaps.front()->grid();
   transform::Rigid2d initial = prediction;
   if (options_.use_online_correlative_scan_matching()) {

@@ -17,7 +17,7 @@ proto::LocalTrajectoryBuilderOptions2D CreateLocalTrajectoryBuilderOptions2D(
     common::LuaParameterDictionary* const table) {
   auto options =
       common::ReadOptions<proto::LocalTrajectoryBuilderOptions2D>(table);
-  // In the order in which a scan meets them.
+  // In the order in which they apply to a scan.
   *options.mutable_pose_extrapolator_options() = common::ReadTable(
       table, "pose_extrapolator", &CreatePoseExtrapolatorOptions);
   *options.mutable_adaptive_voxel_filter_options() =

@@ -50,7 +50,7 @@ std::map<SubmapId, common::Time> TimesOfNewestNodes(
   return times;
 }
 
-// A cell of the coverage grid that a submap knows.
+// A cell of the coverage grid that a submap covers.
 struct Coverage {
   int64 x;
   int64 y;

@@ -106,7 +106,7 @@ std::vector<SubmapId> PoseGraph2D::AppendInsertionSubmaps(
     const int trajectory_id,
     const std::vector<std::shared_ptr<const Submap2D>>& insertion_submaps) {
   auto& submaps = data_.submap_data;
-  // All but the newest are known already, or else the trajectory is new.
+  // All submaps but the newest were added before, unless the trajectory is new.
   size_t num_known = 0;
   if (submaps.SizeOfTrajectoryOrZero(trajectory_id) > 0) {
     const auto last = *std::prev(submaps.EndOfTrajectory(trajectory_id));
@@ -160,7 +160,8 @@ WorkItem::Result PoseGraph2D::ProcessNode(
       nodes_in_new_submap = finished.node_ids;
     }
   }
-  // The new node against all old submaps, a new submap against all old nodes.
+  // Matches the new node against all old submaps, and a new submap against all
+  // old nodes.
   for (const SubmapId& submap_id : older_submap_ids) {
     SearchConstraint(node_id, submap_id);
   }
@@ -191,7 +192,7 @@ void PoseGraph2D::PlaceNewSubmaps(
     }
     const int trajectory_id = submap_ids[i].trajectory_id;
     if (i > 0) {
-      // As far from the older submap as local SLAM says.
+      // Keeps the relative pose of the two submaps in local SLAM.
       optimization_problem_->AddSubmap(
           trajectory_id,
           placed.at(submap_ids[i - 1]).global_pose *

@@ -15,7 +15,7 @@
 
 namespace cartographer {
 namespace mapping {
-// Data beside the nodes.
+// Sensor data other than nodes.
 
 void PoseGraph2D::AddChangeOf(const int trajectory_id,
                               const std::function<void()>& change) {
@@ -92,7 +92,7 @@ void PoseGraph2D::SetInitialTrajectoryPose(const int from_trajectory_id,
 }
 
 void PoseGraph2D::AddTrimmer(std::unique_ptr<PoseGraphTrimmer> trimmer) {
-  // std::function wants to be copied.
+  // A shared pointer, because std::function must be copyable.
   auto shared =
       std::make_shared<std::unique_ptr<PoseGraphTrimmer>>(std::move(trimmer));
   AddWorkItem([this, shared]() {

@@ -263,7 +263,7 @@ void ConstraintBuilder2D::CallBack() {
     queue_length_metric->Set(0);
     std::swap(callback, callback_);
   }
-  // The builder may be gone once this returns.
+  // The builder may be destroyed once this returns.
   callback(result);
 }
 

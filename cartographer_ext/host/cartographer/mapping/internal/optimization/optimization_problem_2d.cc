@@ -20,7 +20,7 @@ namespace mapping {
 namespace optimization {
 namespace {
 
-// Ceres 2.1 renamed it, 2.2 knows the new name only.
+// Ceres 2.1 renamed it; 2.2 has the new name only.
 #if CERES_VERSION_MAJOR > 2 || \
     (CERES_VERSION_MAJOR == 2 && CERES_VERSION_MINOR >= 1)
 using UnitQuaternion = ceres::QuaternionManifold;
@@ -167,7 +167,7 @@ class OptimizationProblem2D::Solver {
   void SolveAndStore() {
     ceres::Solver::Options solver_options =
         common::CreateCeresSolverOptions(options_.ceres_solver_options());
-    // With more threads Ceres adds up in an order that varies.
+    // With several threads the order of summation in Ceres varies.
     solver_options.num_threads = 1;
     ceres::Solver::Summary summary;
     ceres::Solve(solver_options, &problem_, &summary);
@@ -282,7 +282,7 @@ class OptimizationProblem2D::Solver {
   OptimizationProblem2D& data_;
   const optimization::proto::OptimizationProblemOptions& options_;
   std::map<int, bool> frozen_;
-  // Ceres keeps pointers into these.
+  // Ceres keeps pointers to these values.
   MapById<SubmapId, Values2D> submaps_;
   MapById<NodeId, Values2D> nodes_;
   std::map<int, Values2D> fixed_frames_;
