@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/slam_runner.h"
 
+#include <errno.h>
+
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -414,8 +416,11 @@ absl::Status WritePbstream(MapBuilderInterface* const map_builder,
                            const std::string& filename) {
   AtomicFile file(filename);
   if (!file.status().ok()) return file.status();
+  errno = 0;
   if (!map_builder->SerializeStateToFile(true, file.temporary_path())) {
-    return absl::InternalError(absl::StrCat("cannot write ", filename));
+    // The host does not report the reason, such as a full disk.
+    return absl::ErrnoToStatus(errno == 0 ? EIO : errno,
+                               absl::StrCat("cannot write ", filename));
   }
   const auto constraints = map_builder->pose_graph()->constraints();
   if (FindWithdrawnLoops(constraints,

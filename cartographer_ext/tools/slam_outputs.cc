@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tools/slam_outputs.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/io/occupancy_map.h"
@@ -59,6 +62,14 @@ namespace cartographer_ext {
 namespace tools {
 namespace {
 
+// Whether the map goes to a device or pipe, which has no files beside it and
+// cannot be read again.
+bool MapIsNoFile() {
+  struct stat existing;
+  return ::stat(FLAGS_pbstream_filename.c_str(), &existing) == 0 &&
+         !S_ISREG(existing.st_mode) && !S_ISDIR(existing.st_mode);
+}
+
 // Leaves the loops that were switched off out of a map just written.
 absl::Status RemoveSwitchedLoops(const evaluation::SlamRun& run,
                                  const std::string& filename) {
@@ -80,10 +91,17 @@ void NameSlamOutputs(const std::string& stem) {
   name(&FLAGS_pbstream_filename, ".pbstream");
   name(&FLAGS_map_filestem, "");
   name(&FLAGS_picture_filename, ".png");
-  name(&FLAGS_report_filename, ".html");
+  if (!MapIsNoFile()) name(&FLAGS_report_filename, ".html");
 }
 
 absl::Status CheckSlamOutputs() {
+  if (MapIsNoFile() &&
+      (!FLAGS_report_filename.empty() || !FLAGS_keep_switched_loops)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(FLAGS_pbstream_filename,
+                     ": is not a file, so the map cannot be read again for "
+                     "-report_filename or -nokeep_switched_loops"));
+  }
   std::vector<std::string> outputs = {FLAGS_pbstream_filename,
                                       FLAGS_picture_filename,
                                       FLAGS_report_filename,
@@ -107,6 +125,8 @@ absl::Status WriteSlamResults(const evaluation::SlamRun& run) {
     const absl::Status status =
         evaluation::WritePbstream(map_builder, FLAGS_pbstream_filename);
     if (!status.ok()) return status;
+  }
+  if (!FLAGS_pbstream_filename.empty() && !MapIsNoFile()) {
     const absl::Status decisions = evaluation::WriteDecisionsBeside(
         FLAGS_pbstream_filename, run.decisions);
     if (!decisions.ok()) return decisions;

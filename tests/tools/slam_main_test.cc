@@ -156,6 +156,35 @@ TEST(SlamMainTest, WritesAllOrNothing) {
   }
 }
 
+TEST(SlamMainTest, DevicesAreWrittenToWithoutFilesBesideThem) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 80);
+  // A link, so that files beside the device would be in the folder.
+  ASSERT_EQ(symlink("/dev/null", (folder / "null").c_str()), 0);
+  ASSERT_EQ(symlink("/dev/full", (folder / "full").c_str()), 0);
+  const std::vector<std::string> to_null = {
+      folder / "room.clf", "-pbstream_filename", folder / "null",
+      "-output_filestem", folder / "a"};
+  const CommandResult written = RunCommand("slam", to_null);
+  EXPECT_EQ(written.exit_code, 0) << written.error;
+  EXPECT_THAT(folder.Names(), UnorderedElementsAre("room.clf", "null", "full",
+                                                   "a.pgm", "a.yaml", "a.png"));
+  auto with_report = to_null;
+  with_report.insert(with_report.end(),
+                     {"-report_filename", folder / "a.html"});
+  const CommandResult refused = RunCommand("slam", with_report);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.error, HasSubstr("is not a file"));
+  EXPECT_THAT(refused.out, IsEmpty());
+  // The reason is named.
+  const CommandResult full =
+      RunCommand("slam", {"-input_filename", folder / "room.clf",
+                          "-pbstream_filename", folder / "full"});
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_THAT(full.error, HasSubstr("cannot write"));
+  EXPECT_THAT(full.error, HasSubstr("No space left on device"));
+}
+
 TEST(SlamMainTest, LocalizesInAMap) {
   const TemporaryFolder folder;
   WriteRoomLog(folder / "room.clf", 300);
