@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 # SPDX-License-Identifier: Apache-2.0
-"""Maps with known truth, for scripts/reproduce: how often the verdict without ground truth is wrong.
+"""Maps with known truth, for scripts/reproduce: how often the verdict without ground truth is wrong, and what a repair makes of them.
 
 A case is a generated building, a laser, a grade of odometry, a seed and what is done to the map: nothing, stock behaviour, loops that
 are believed too easily, local SLAM that follows bad odometry, no loops, things moved between two visits, or two floors one over the
@@ -23,6 +23,12 @@ TREATMENTS = ("ours", "stock", "credulous", "ours", "bent", "moved", "ours", "no
 SEED = 3000  # of the first case
 SOUND_LOOP_ERROR = 0.2  # metres, mean over relations of revisits
 WORDS = ("sound", "unknown", "doubtful", "broken")
+OWN_TREATMENTS = sorted(set(TREATMENTS) - {"floors"})
+# Repairs: maps of each kind, and metres within which two errors are alike.
+BROKEN_MAPS = 100
+SOUND_MAPS = 20
+FLOORS = 10
+SAME_ERROR = 0.02
 
 OWN_LUA = {
     # Our local SLAM; stock's loop closure takes what scores 0.4 within 7 m.
@@ -52,6 +58,16 @@ def cases(count):
         block = i // len(TREATMENTS)
         result.append((KINDS[(i + block) % len(KINDS)], LASERS[(i + block) % len(LASERS)], GRADES[(i // 3 + block) % len(GRADES)],
                        SEED + i, TREATMENTS[i % len(TREATMENTS)]))
+    return result
+
+
+def chosen(options):
+    """(name, case) of the cases that the user wants."""
+    result = []
+    for case in cases(options.runs or 300):
+        wanted = zip((options.kinds, options.lasers, options.odometry), case)
+        if all(not words or own in words.split(",") for words, own in wanted):
+            result.append(("%s.%s.%s.%d.%s" % case, case))
     return result
 
 
@@ -232,7 +248,8 @@ class Bench:
                           loop_error=loops["translation"]["mean"] if loops.get("count") else None,
                           loop_max=loops["translation"]["max"] if loops.get("count") else None, loops=loops.get("count", 0))
             result["truth"] = truth(result)
-            os.replace(str(stem.with_suffix(".pbstream")), str(self.maps / (name + ".pbstream")))
+            for suffix in (".relations", ".pbstream"):
+                os.replace(str(stem.with_suffix(suffix)), str(self.maps / (name + suffix)))
         except common.Failed as error:
             result.update(failure=str(error), truth="failed")
         finally:
@@ -242,14 +259,34 @@ class Bench:
             with open(str(self.path), "a") as stream:
                 stream.write(json.dumps(result) + "\n")
 
+    def json_of(self, command, path, *arguments, codes=(0,)):
+        """The JSON that a command writes, unless it is there and newer than the command."""
+        if path.exists() and path.stat().st_mtime < os.stat(self.commands.path(command)).st_mtime:
+            path.unlink()
+        self.commands.run(command, *arguments, "-json", path, unless=path, codes=codes)
+        return json.loads(path.read_text())
+
     def verdict(self, name):
         """The verdict of cartographer_ext_evaluate on the map alone."""
-        path = self.maps / (name + ".json")
-        command = self.commands.path("evaluate")
-        if path.exists() and path.stat().st_mtime < os.stat(command).st_mtime:
-            path.unlink()
-        self.commands.run("evaluate", "-pbstream_filename", self.maps / (name + ".pbstream"), "-json", path, unless=path)
-        return json.loads(path.read_text())["consistency"]
+        return self.json_of("evaluate", self.maps / (name + ".json"), "-pbstream_filename", self.maps / (name + ".pbstream"))["consistency"]
+
+    def by_truth(self, case, pbstream):
+        """Errors of a map of this case, by its relations."""
+        relations = self.json_of("evaluate", pbstream.with_suffix(".truth.json"), "-pbstream_filename", pbstream, "-relations_filename",
+                                 self.maps / (case["name"] + ".relations"), "-self_consistency=false")["relations"]
+        loops = relations.get("loop", {})
+        result = dict(treatment=case["treatment"], loops=loops.get("count", 0), max=relations["translation"]["max"],
+                      loop_error=loops["translation"]["mean"] if loops.get("count") else None)
+        return dict(result, truth=truth(result))
+
+    def repair(self, case):
+        """The case with its map repaired: errors by truth before and after, and what the command says."""
+        original = self.maps / (case["name"] + ".pbstream")
+        path = self.maps / (case["name"] + ".repaired.pbstream")
+        said = self.json_of("repair", path.with_suffix(".json"), original, "-output_filename", path, "-keep_frame",
+                            "-num_background_threads", 1, codes=(0, 3))
+        before = self.by_truth(case, original)
+        return dict(case, before=before, after=self.by_truth(case, path) if said["written"] else before, said=said)
 
 
 def truth(case):
@@ -277,8 +314,8 @@ def verdicts(commands, options):
     bench = Bench(commands)
     log = list(commands.log)
 
-    def one(case):
-        name = "%s.%s.%s.%d.%s" % case
+    def one(item):
+        name, case = item
         if name not in bench.cases:
             bench.map(name, case)
         result = dict(bench.cases[name])
@@ -288,7 +325,7 @@ def verdicts(commands, options):
         commands.log[:] = log
         return result
 
-    results = commands.each(one, cases(options.runs or 300))
+    results = commands.each(one, chosen(options))
     judged = [case for case in results if "verdict" in case]
     halves = [("chosen on", [c for c in judged if c["seed"] % 2 == 0]), ("judged", [c for c in judged if c["seed"] % 2 == 1])]
     text = common.table(["half", "truth", "maps"] + list(WORDS), [line for label, own in halves for line in confusion(label, own)]) + "\n"
@@ -308,4 +345,61 @@ def verdicts(commands, options):
             "superimposed floors are broken. Halves by the parity of the seed." % SOUND_LOOP_ERROR, text)
 
 
-EXPERIMENTS = [verdicts]
+# --- repairs ----------------------------------------------------------------
+
+
+def outcome(case):
+    """What a repair did to a map, by truth: unchanged, worse, sound, better or alike."""
+    if not case["said"]["written"]:
+        return "unchanged"
+    before, after = case["before"], case["after"]
+    if after["loop_error"] > before["loop_error"] + SAME_ERROR or (before["truth"], after["truth"]) == ("sound", "broken"):
+        return "worse"
+    if after["truth"] == "sound":
+        return "sound"
+    return "better" if after["loop_error"] < before["loop_error"] - SAME_ERROR else "alike"
+
+
+OUTCOMES = ("sound", "better", "alike", "unchanged", "worse")
+
+
+def repair_line(label, cases_):
+    found = [outcome(case) for case in cases_]
+    errors = [[case[when]["loop_error"] for case in cases_] for when in ("before", "after")]
+    return [label, len(cases_)] + [found.count(word) for word in OUTCOMES] + [common.number(common.median(e), 2) for e in errors]
+
+
+def repairs(commands, options):
+    """Maps with known truth repaired from the pbstream alone: the broken ones, and the first of the sound ones."""
+    bench = Bench(commands)
+    log = list(commands.log)
+    own = [bench.cases[name] for name, _ in chosen(options) if name in bench.cases]
+    sound = [case for case in own if case["truth"] == "sound"][:SOUND_MAPS]
+    broken = [case for case in own if case["truth"] == "broken" and case["loops"]]
+    # Two floors are no one map, whatever is done to it.
+    floors = [case for case in broken if case["treatment"] == "floors"][:FLOORS]
+    broken = [case for case in broken if case["treatment"] != "floors"][:BROKEN_MAPS]
+
+    def one(case):
+        result = bench.repair(case)
+        commands.log[:] = log
+        return result
+
+    if not broken + sound:
+        raise common.Failed("there are no maps yet: run scripts/reproduce verdicts first")
+    broken, sound, floors = [commands.each(one, group) for group in (broken, sound, floors)]
+    header = ["maps", "count"] + list(OUTCOMES) + ["loops before m", "after m"]
+    lines = [repair_line("broken", broken)] + [repair_line(name, [c for c in broken if c["treatment"] == name]) for name in OWN_TREATMENTS]
+    text = common.table(header, [line for line in lines + [repair_line("floors", floors), repair_line("sound", sound)] if line[1]]) + "\n"
+    left = [c for c in broken if outcome(c) != "sound"] + [c for c in floors + sound if outcome(c) == "worse"]
+    text += "Broken maps that are not sound afterwards, and others that are worse:\n\n" + common.table(
+        ["map", "outcome", "loops m before", "after", "largest m", "verdict before", "after", "said"],
+        [[c["name"], outcome(c), common.number(c["before"]["loop_error"], 2), common.number(c["after"]["loop_error"], 2),
+          common.number(c["after"]["max"], 2), c["said"]["before"]["verdict"], c["said"]["after"]["verdict"],
+          c["said"]["conclusion"]] for c in left])
+    return ("Broken maps repaired",
+            "By ground truth: sound as in the verdicts; better, worse: relations of revisits differ by more than %.0f cm in the mean; "
+            "unchanged: nothing was written. Two superimposed floors cannot be one sound map." % (100. * SAME_ERROR), text)
+
+
+EXPERIMENTS = [verdicts, repairs]

@@ -3,21 +3,18 @@
 #include "cartographer_ext/repair/local_rerun.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/types/optional.h"
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/mapping/internal/2d/local_trajectory_builder_2d.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/transform/transform.h"
-#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/map/host_types.h"
-#include "cartographer_ext/map/verdict/motion_disagreement.h"
 
 namespace cartographer_ext {
 namespace repair {
@@ -37,11 +34,6 @@ constexpr char kSensor[] = "scan";
 // Stock's weights of insertions, where the map has none.
 constexpr double kTranslationWeight = 5e2;
 constexpr double kRotationWeight = 1.6e3;
-// The wheels replace local SLAM where the two differ by more than this, and by
-// as a multiple of the median difference.
-constexpr double kLeastAngle = 0.087;    // radians
-constexpr double kLeastDistance = 0.15;  // metres
-constexpr double kOutlying = 10.;
 
 GraphId IdOf(const cartographer::mapping::proto::Node& node) {
   return {node.node_id().trajectory_id(), node.node_id().node_index()};
@@ -166,18 +158,6 @@ class NodeMapper {
   std::vector<int> last_inserted_;
 };
 
-// Calls `visit` for each pair of successive nodes of a trajectory.
-template <typename Visit>
-void ForSteps(const MotionChain& chain, const Visit& visit) {
-  const GraphId* last = nullptr;
-  for (const auto& entry : chain) {
-    if (last != nullptr && last->trajectory_id == entry.first.trajectory_id) {
-      visit(*last, entry.first);
-    }
-    last = &entry.first;
-  }
-}
-
 struct Weights {
   double translation = kTranslationWeight;
   double rotation = kRotationWeight;
@@ -234,87 +214,6 @@ void StoreSubmaps(const std::map<int, NodeMapper>& mappers,
 }
 
 }  // namespace
-
-MotionChain LocalChain(const io::Pbstream& pbstream) {
-  MotionChain chain;
-  for (const auto& node : pbstream.nodes) {
-    chain[IdOf(node)] = evaluation::ToPlanarPose(
-        cartographer::transform::ToRigid3(node.node_data().local_pose()));
-  }
-  return chain;
-}
-
-MotionChain GlobalChain(const io::Pbstream& pbstream,
-                        const evaluation::MapGraph& graph) {
-  MotionChain chain = LocalChain(pbstream);
-  for (auto& entry : chain) {
-    const auto node = graph.nodes.find(entry.first);
-    if (node != graph.nodes.end()) entry.second = node->second.global_pose;
-  }
-  return chain;
-}
-
-MotionChain OdometryChain(const io::Pbstream& pbstream) {
-  const std::map<int, evaluation::Trajectory> odometry =
-      evaluation::ReadOdometry(pbstream);
-  const MotionChain local = LocalChain(pbstream);
-  MotionChain chain;
-  int64_t covered = 0;
-  bool has_last = false;
-  GraphId last;
-  absl::optional<Pose2> last_wheels;
-  for (const auto& record : pbstream.nodes) {
-    const GraphId id = IdOf(record);
-    absl::optional<Pose2> wheels;
-    const auto readings = odometry.find(id.trajectory_id);
-    if (readings != odometry.end()) {
-      const auto pose = readings->second.Lookup(
-          evaluation::FromHostTicks(record.node_data().timestamp()), 0);
-      if (pose.has_value()) wheels = evaluation::ToPose2(*pose);
-    }
-    if (!has_last || last.trajectory_id != id.trajectory_id) {
-      chain[id] = local.at(id);
-    } else if (wheels.has_value() && last_wheels.has_value()) {
-      chain[id] = chain[last] * Between(*last_wheels, *wheels);
-      ++covered;
-    } else {
-      chain[id] = chain[last] * Between(local.at(last), local.at(id));
-    }
-    has_last = true;
-    last = id;
-    last_wheels = wheels;
-  }
-  if (2 * covered < static_cast<int64_t>(chain.size())) chain.clear();
-  return chain;
-}
-
-MotionChain MixedChain(const io::Pbstream& pbstream) {
-  const MotionChain wheels = OdometryChain(pbstream);
-  if (wheels.empty()) return wheels;
-  const MotionChain local = LocalChain(pbstream);
-  std::vector<double> angles, distances;
-  ForSteps(local, [&](const GraphId& from, const GraphId& to) {
-    const Pose2 difference = Between(Between(local.at(from), local.at(to)),
-                                     Between(wheels.at(from), wheels.at(to)));
-    angles.push_back(std::abs(difference.theta));
-    distances.push_back(difference.translation().norm());
-  });
-  if (angles.empty()) return local;
-  const double max_angle =
-      std::max(kLeastAngle, kOutlying * UpperMedian(angles));
-  const double max_distance =
-      std::max(kLeastDistance, kOutlying * UpperMedian(distances));
-  MotionChain chain = local;
-  size_t step = 0;
-  ForSteps(local, [&](const GraphId& from, const GraphId& to) {
-    const bool differ =
-        angles[step] > max_angle || distances[step] > max_distance;
-    const MotionChain& source = differ ? wheels : local;
-    chain[to] = chain[from] * Between(source.at(from), source.at(to));
-    ++step;
-  });
-  return chain;
-}
 
 LocalTrajectoryBuilderOptions2D OptionsForClouds(
     const LocalTrajectoryBuilderOptions2D& base,

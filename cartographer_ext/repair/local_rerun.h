@@ -20,13 +20,10 @@
 #ifndef CARTOGRAPHER_EXT_REPAIR_LOCAL_RERUN_H_
 #define CARTOGRAPHER_EXT_REPAIR_LOCAL_RERUN_H_
 
-#include <map>
-
 #include "absl/status/statusor.h"
 #include "cartographer/mapping/proto/local_trajectory_builder_options_2d.pb.h"
-#include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
-#include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/repair/motion_chain.h"
 
 namespace cartographer_ext {
 namespace repair {
@@ -38,24 +35,6 @@ enum class NodeMatching {
                       // map; the chain is for nodes that cannot be matched
   kNone,              // by the motion of the chain: submaps are only rebuilt
 };
-
-// Poses of the tracking frame at the nodes, planar, in any frame: only the
-// motion from one node of a trajectory to the next is used.
-using MotionChain = std::map<evaluation::GraphId, Pose2>;
-
-// By the stored local poses.
-MotionChain LocalChain(const io::Pbstream& pbstream);
-// By the optimised poses of `graph`, and the stored local ones of nodes that it
-// lacks.
-MotionChain GlobalChain(const io::Pbstream& pbstream,
-                        const evaluation::MapGraph& graph);
-// By the odometry; LocalChain where there are no readings. Empty if no
-// trajectory has odometry for half of its nodes.
-MotionChain OdometryChain(const io::Pbstream& pbstream);
-
-// The stored chain, with the motion of the odometry wherever the two differ by
-// far more than usual. Empty if OdometryChain is.
-MotionChain MixedChain(const io::Pbstream& pbstream);
 
 // Options of `base` adapted to the clouds of a map: every node is inserted,
 // nothing is cropped, submaps have the size and resolution of those of

@@ -96,7 +96,7 @@ std::string WhyBroken(const MapRepair& repair) {
 }
 
 // The sentence on top, and what to do.
-void Conclude(MapRepair* const repair) {
+void Conclude(const bool keep_frame, MapRepair* const repair) {
   const std::string& before = repair->before.quality.verdict;
   const std::string& after = repair->after.quality.verdict;
   const bool is_fine = after == "sound" || after == "unknown";
@@ -116,9 +116,10 @@ void Conclude(MapRepair* const repair) {
     repair->advice.push_back(
         "Compare both pictures: a self-consistent map can still be wrong where "
         "a place was seen only once.");
-    repair->advice.push_back(
-        "Poses defined in the old map (docks, waypoints) have moved: run with "
-        "-keep_frame and look them up in the table of poses.");
+    repair->advice.push_back(absl::StrCat(
+        "Poses defined in the old map (docks, waypoints) have moved: ",
+        keep_frame ? "" : "run with -keep_frame and ",
+        "look them up in the table of poses."));
     return;
   }
   repair->conclusion =
@@ -157,7 +158,7 @@ class Repairer {
     is_local_ = true;
     RepeatAlongBest();
     if (result_.changed()) KeepFrame();
-    Conclude(&result_);
+    Conclude(options_.keep_frame, &result_);
     return std::move(result_);
   }
 

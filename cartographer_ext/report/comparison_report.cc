@@ -6,6 +6,7 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/report/map_figure.h"
 #include "cartographer_ext/report/sections.h"
+#include "cartographer_ext/report/style.h"
 
 namespace cartographer_ext {
 namespace report {
@@ -60,6 +61,10 @@ void OpenPage(const std::string& title, Markup* const page) {
 }
 
 void ClosePage(Markup* const page) {
+  page->Close();
+  page->Open("script");
+  page->Raw(Script());
+  page->Raw(ViewerScript());
   page->Close();
   page->Close();
   page->Close();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -15,6 +16,12 @@ namespace {
 
 // The longer side of a figure, in the units of its SVG.
 constexpr double kUnits = 1000.;
+
+constexpr size_t kTimedSegments = 120;
+// Hues of a path coloured by time, degrees: blue to magenta. Orange and red are
+// for what contradicts the map.
+constexpr double kFirstHue = 205.;
+constexpr double kLastHue = 325.;
 
 // 1, 2 or 5 times a power of ten, at most `limit`.
 double RoundLength(const double limit) {
@@ -91,6 +98,38 @@ void MapFigure::Path(const std::vector<Eigen::Vector2d>& points,
   body_.Empty("path", {{"class", absl::StrCat("path ", style)}, {"d", path}});
 }
 
+void MapFigure::TimedPath(const std::vector<Eigen::Vector2d>& points,
+                          const std::vector<double>& seconds,
+                          const std::string& style) {
+  const size_t step = 1 + points.size() / kTimedSegments;
+  for (size_t first = 0; first + 1 < points.size(); first += step) {
+    const size_t last = std::min(first + step, points.size() - 1);
+    std::string path;
+    double begin = std::numeric_limits<double>::quiet_NaN();
+    for (size_t i = first; i <= last; ++i) {
+      if (!points[i].allFinite()) continue;
+      const Eigen::Vector2d at = ToUnits(points[i]);
+      const bool pen_up =
+          path.empty() || (i > first && !points[i - 1].allFinite());
+      absl::StrAppend(&path, pen_up ? "M" : "L", Number(at.x(), 1), " ",
+                      Number(at.y(), 1));
+      if (std::isnan(begin)) begin = seconds[i];
+    }
+    if (path.empty()) continue;
+    const double share =
+        static_cast<double>(first) / static_cast<double>(points.size());
+    body_.Empty(
+        "path",
+        {{"class", absl::StrCat("path timed ", style)},
+         {"data-t", Number(begin, 1)},
+         {"style",
+          absl::StrCat("--when:hsl(",
+                       Number(kFirstHue + share * (kLastHue - kFirstHue), 0),
+                       " 75% 45%)")},
+         {"d", path}});
+  }
+}
+
 void MapFigure::Line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                      const std::string& style, const std::string& hover,
                      const Attributes& more) {
@@ -122,13 +161,16 @@ void MapFigure::Dots(const std::vector<Eigen::Vector2d>& points,
 }
 
 void MapFigure::Ring(const Eigen::Vector2d& center, const double radius,
-                     const std::string& label, const std::string& hover) {
+                     const std::string& label, const std::string& hover,
+                     const Attributes& more) {
   const Eigen::Vector2d at = ToUnits(center);
   const double r = std::max(10., radius * units_);
-  body_.Open("circle", {{"class", "ring"},
-                        {"cx", Number(at.x(), 1)},
-                        {"cy", Number(at.y(), 1)},
-                        {"r", Number(r, 1)}});
+  Attributes attributes = {{"class", "ring"},
+                           {"cx", Number(at.x(), 1)},
+                           {"cy", Number(at.y(), 1)},
+                           {"r", Number(r, 1)}};
+  attributes.insert(attributes.end(), more.begin(), more.end());
+  body_.Open("circle", attributes);
   body_.Element("title", {}, hover);
   body_.Close();
   body_.Element("text",

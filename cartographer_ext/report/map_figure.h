@@ -39,6 +39,10 @@ class MapFigure {
   // Breaks the line at points that are not finite.
   void Path(const std::vector<Eigen::Vector2d>& points,
             const std::string& style);
+  // The same in segments, so that the script can cut it at a time: `seconds` of
+  // each point. The style "by-time" colours it from the start to the end.
+  void TimedPath(const std::vector<Eigen::Vector2d>& points,
+                 const std::vector<double>& seconds, const std::string& style);
   // `more`: additional attributes, for the script.
   void Line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
             const std::string& style, const std::string& hover,
@@ -47,7 +51,8 @@ class MapFigure {
             const std::string& style);
   // A ring with a label beside it; `radius` in metres.
   void Ring(const Eigen::Vector2d& center, double radius,
-            const std::string& label, const std::string& hover);
+            const std::string& label, const std::string& hover,
+            const Attributes& more = {});
   void Legend(const std::string& label, const std::string& style);
 
   // With a scale bar; the legend is below.

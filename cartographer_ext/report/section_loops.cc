@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -89,7 +90,8 @@ void AddLoopFigure(const ReportData& data, const ReportRun& run,
                    const Prepared& prepared, Markup* const page) {
   MapFigure figure(absl::StrCat("Loops, ", run.name), prepared.bounds);
   if (!image_id.empty()) figure.Image(image_id);
-  figure.Path(NodePath(run.graph), "s7 thin");
+  figure.TimedPath(NodePath(run.graph), NodeSeconds(run.graph, prepared.start),
+                   "s7 thin");
   AddTrouble(data, run, &figure);
   size_t good = 0;
   for (const LoopEvidence& loop : evidence) {
@@ -203,7 +205,9 @@ void AddLoops(const ReportData& data, const Prepared& prepared,
 
 void AddScans(const ReportData& data, const Prepared& prepared,
               Markup* const page) {
-  std::set<GraphId> nodes;
+  const std::vector<GraphId> places = NodesOfPlaces(data);
+  const std::set<GraphId> always(places.begin(), places.end());
+  std::set<GraphId> nodes = always;
   for (const auto& evidence : prepared.evidence) {
     for (const LoopEvidence& loop : evidence) nodes.insert(loop.node_id);
   }
@@ -219,7 +223,10 @@ void AddScans(const ReportData& data, const Prepared& prepared,
   size_t position = 0;
   for (const GraphId& id : nodes) {
     const auto scan = data.contents->scans.find(id);
-    if (position++ % step != 0 || scan == data.contents->scans.end()) continue;
+    if (scan == data.contents->scans.end() ||
+        (position++ % step != 0 && always.count(id) == 0)) {
+      continue;
+    }
     absl::StrAppend(&json, json.size() > 1 ? ",\n" : "", "\"", id.trajectory_id,
                     ":", id.index, "\":[");
     const size_t every = 1 + scan->second.size() / max_points;

@@ -1,9 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/types/optional.h"
 #include "cartographer_ext/report/map_figure.h"
 #include "cartographer_ext/report/sections.h"
 
@@ -13,9 +19,21 @@ namespace {
 
 using evaluation::ConflictPiece;
 using evaluation::GraphId;
+using evaluation::MapGraph;
+using evaluation::MotionStep;
+using evaluation::SelfConsistency;
 using evaluation::ToString;
 
-std::vector<Eigen::Vector2d> PathOfNodes(const evaluation::MapGraph& graph,
+// Wrong turns with a letter of their own.
+constexpr size_t kMaxLetters = 6;
+
+// Two nodes whose scans tell what is wrong at a place.
+struct ScanPair {
+  GraphId first, second;
+  std::string words;  // which is which
+};
+
+std::vector<Eigen::Vector2d> PathOfNodes(const MapGraph& graph,
                                          const GraphId& first,
                                          const GraphId& last) {
   std::vector<Eigen::Vector2d> path;
@@ -26,82 +44,160 @@ std::vector<Eigen::Vector2d> PathOfNodes(const evaluation::MapGraph& graph,
   return path;
 }
 
-// The stored map with rings round the places that speak against it.
-void AddPlaces(const ReportData& data, const Prepared& prepared,
-               Markup* const page) {
-  const ReportRun& stored = data.runs.front();
-  MapFigure figure("Map with the places that contradict it", prepared.bounds);
-  if (!prepared.image_ids[0].empty()) figure.Image(prepared.image_ids[0]);
-  figure.Path(NodePath(stored.graph), "s1");
-  figure.Legend("path of the robot", "s1");
-  Table table({"place", "x", "y", "nodes", "after the start",
-               "rays contradicted", "contradicts"});
-  if (stored.evaluation.consistency.has_value()) {
-    const auto& consistency = *stored.evaluation.consistency;
-    if (!consistency.severe.empty()) {
-      figure.Legend("nodes whose scans contradict the map", "s2");
+using InsertedNodes = std::map<GraphId, std::vector<GraphId>>;  // by submap
+
+// The worst node of the piece, and of the submap that it contradicts most the
+// nearest node.
+absl::optional<ScanPair> PairOf(const MapGraph& graph,
+                                const InsertedNodes& inserted,
+                                const SelfConsistency& consistency,
+                                const ConflictPiece& piece) {
+  const evaluation::NodeContradiction* worst = nullptr;
+  for (const auto& node : consistency.contradictions.nodes) {
+    if (node.node_id < piece.first_node || piece.last_node < node.node_id) {
+      continue;
     }
-    for (const auto& piece : consistency.severe) {
-      figure.Path(PathOfNodes(stored.graph, piece.first_node, piece.last_node),
-                  "s2");
-    }
-    int number = 0;
-    for (const ConflictPiece& piece : consistency.severe) {
-      ++number;
-      std::string submaps;
-      for (const GraphId& id : piece.submaps) {
-        absl::StrAppend(&submaps, submaps.empty() ? "" : " ", ToString(id));
-      }
-      const std::string seconds = absl::StrFormat(
-          "%.1f to %.1f s", io::ToSeconds(piece.begin - prepared.start),
-          io::ToSeconds(piece.end - prepared.start));
-      figure.Ring(
-          piece.center, 0.5 * piece.metres + 1., absl::StrCat(number),
-          absl::StrFormat("place %d: nodes %s to %s\n%s\n%.0f %% of the rays "
-                          "contradict submaps %s",
-                          number, ToString(piece.first_node),
-                          ToString(piece.last_node), seconds,
-                          100. * piece.fraction, submaps));
-      table.AddRow({absl::StrCat(number),
-                    absl::StrFormat("%.1f m", piece.center.x()),
-                    absl::StrFormat("%.1f m", piece.center.y()),
-                    absl::StrCat(ToString(piece.first_node), " to ",
-                                 ToString(piece.last_node)),
-                    seconds, absl::StrFormat("%.0f %%", 100. * piece.fraction),
-                    absl::StrCat("submaps ", submaps)});
-    }
-    char letter = 'A';
-    for (const auto& step : consistency.wrong_turns) {
-      if (letter > 'F') break;
-      const auto& node = stored.graph.nodes.at(step.node_id);
-      const std::string words = absl::StrFormat(
-          "local SLAM and odometry differ by %.0f deg before node %s, %.1f s "
-          "after the start",
-          RadToDeg(step.odometry_rotation), ToString(step.node_id),
-          io::ToSeconds(step.time - prepared.start));
-      figure.Ring(node.global_pose.translation(), 0.8, std::string(1, letter),
-                  words);
-      table.AddRow(
-          {std::string(1, letter),
-           absl::StrFormat("%.1f m", node.global_pose.x),
-           absl::StrFormat("%.1f m", node.global_pose.y),
-           ToString(step.node_id),
-           absl::StrFormat("%.1f s", io::ToSeconds(step.time - prepared.start)),
-           "",
-           absl::StrFormat("odometry, by %.0f deg",
-                           RadToDeg(step.odometry_rotation))});
-      ++letter;
+    if (worst == nullptr || node.worst_fraction > worst->worst_fraction) {
+      worst = &node;
     }
   }
-  page->Open("figure");
-  page->Raw(figure.ToHtml());
-  page->Element(
-      "figcaption", {},
-      "The map as stored. Numbers: path pieces whose scans are in free space "
-      "or behind walls mapped by another visit. Letters: places where the "
-      "rotation of local SLAM differs from that of the wheels.");
-  page->Close();
-  if (!table.empty()) page->Raw(table.ToHtml("Places that contradict the map"));
+  if (worst == nullptr || graph.nodes.count(worst->node_id) == 0) {
+    return absl::nullopt;
+  }
+  const Eigen::Vector2d place =
+      graph.nodes.at(worst->node_id).global_pose.translation();
+  absl::optional<GraphId> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  const auto others = inserted.find(worst->worst_submap_id);
+  if (others == inserted.end()) return absl::nullopt;
+  for (const GraphId& id : others->second) {
+    const auto node = graph.nodes.find(id);
+    if (node == graph.nodes.end()) continue;
+    const double distance =
+        (node->second.global_pose.translation() - place).norm();
+    if (distance >= least) continue;
+    least = distance;
+    nearest = id;
+  }
+  if (!nearest.has_value()) return absl::nullopt;
+  return ScanPair{
+      worst->node_id, *nearest,
+      absl::StrCat("Scans in the map: orange of node ",
+                   ToString(worst->node_id), ", blue of node ",
+                   ToString(*nearest), " of the contradicted submap ",
+                   ToString(worst->worst_submap_id), ".")};
+}
+
+absl::optional<ScanPair> PairOf(const MapGraph& graph, const MotionStep& step) {
+  const auto node = graph.nodes.find(step.node_id);
+  if (node == graph.nodes.end() || node == graph.nodes.begin()) {
+    return absl::nullopt;
+  }
+  const GraphId before = std::prev(node)->first;
+  if (before.trajectory_id != step.node_id.trajectory_id) return absl::nullopt;
+  return ScanPair{step.node_id, before,
+                  absl::StrCat("Scans in the map: blue before the turn, node ",
+                               ToString(before), ", orange after it, node ",
+                               ToString(step.node_id), ".")};
+}
+
+// Of the severe pieces, then of the turns that have a letter.
+std::vector<absl::optional<ScanPair>> PairsOf(
+    const MapGraph& graph, const SelfConsistency& consistency) {
+  std::vector<absl::optional<ScanPair>> pairs;
+  const InsertedNodes inserted = graph.InsertedNodes();
+  for (const ConflictPiece& piece : consistency.severe) {
+    pairs.push_back(PairOf(graph, inserted, consistency, piece));
+  }
+  const size_t count = std::min(kMaxLetters, consistency.wrong_turns.size());
+  for (size_t i = 0; i != count; ++i) {
+    pairs.push_back(PairOf(graph, consistency.wrong_turns[i]));
+  }
+  return pairs;
+}
+
+std::string ScanText(const MapGraph& graph, const GraphId& id) {
+  const Pose2& pose = graph.nodes.at(id).global_pose;
+  return absl::StrCat(id.trajectory_id, ":", id.index, " ", Number(pose.x, 3),
+                      " ", Number(pose.y, 3), " ", Number(pose.theta, 4));
+}
+
+// What a click on the ring shows. `name` occurs in the reason of the verdict.
+Attributes RingAttributes(const MapGraph& graph, const std::string& name,
+                          const double seconds,
+                          const absl::optional<ScanPair>& pair) {
+  Attributes attributes = {{"data-name", name}, {"data-t", Number(seconds, 1)}};
+  if (!pair.has_value()) return attributes;
+  attributes.emplace_back("data-words", pair->words);
+  attributes.emplace_back("data-scan", ScanText(graph, pair->first));
+  attributes.emplace_back("data-other", ScanText(graph, pair->second));
+  return attributes;
+}
+
+void AddPieces(const ReportRun& stored, const SelfConsistency& consistency,
+               const std::vector<absl::optional<ScanPair>>& pairs,
+               const io::TimeNs start, MapFigure* const figure,
+               Table* const table) {
+  if (!consistency.severe.empty()) {
+    figure->Legend("nodes whose scans contradict the map", "s2");
+  }
+  for (const ConflictPiece& piece : consistency.severe) {
+    figure->Path(PathOfNodes(stored.graph, piece.first_node, piece.last_node),
+                 "s2");
+  }
+  int number = 0;
+  for (const ConflictPiece& piece : consistency.severe) {
+    ++number;
+    std::string submaps;
+    for (const GraphId& id : piece.submaps) {
+      absl::StrAppend(&submaps, submaps.empty() ? "" : " ", ToString(id));
+    }
+    const double begin = io::ToSeconds(piece.begin - start);
+    const std::string seconds = absl::StrFormat(
+        "%.1f to %.1f s", begin, io::ToSeconds(piece.end - start));
+    const std::string nodes = absl::StrCat(ToString(piece.first_node), " to ",
+                                           ToString(piece.last_node));
+    figure->Ring(
+        piece.center, 0.5 * piece.metres + 1., absl::StrCat(number),
+        absl::StrFormat(
+            "place %d: nodes %s\n%s\n%.0f %% of the rays contradict submaps %s",
+            number, nodes, seconds, 100. * piece.fraction, submaps),
+        RingAttributes(stored.graph, absl::StrCat("nodes ", nodes, " ("), begin,
+                       pairs[number - 1]));
+    table->AddRow({absl::StrCat(number),
+                   absl::StrFormat("%.1f m", piece.center.x()),
+                   absl::StrFormat("%.1f m", piece.center.y()), nodes, seconds,
+                   absl::StrFormat("%.0f %%", 100. * piece.fraction),
+                   absl::StrCat("submaps ", submaps)});
+  }
+}
+
+void AddTurns(const ReportRun& stored, const SelfConsistency& consistency,
+              const std::vector<absl::optional<ScanPair>>& pairs,
+              const io::TimeNs start, MapFigure* const figure,
+              Table* const table) {
+  const size_t count = std::min(kMaxLetters, consistency.wrong_turns.size());
+  for (size_t i = 0; i != count; ++i) {
+    const MotionStep& step = consistency.wrong_turns[i];
+    const std::string letter(1, static_cast<char>('A' + i));
+    const auto& node = stored.graph.nodes.at(step.node_id);
+    const double seconds = io::ToSeconds(step.time - start);
+    const std::string name =
+        absl::StrCat("before node ", ToString(step.node_id));
+    figure->Ring(
+        node.global_pose.translation(), 0.8, letter,
+        absl::StrFormat("local SLAM and odometry differ by %.0f deg %s, %.1f s "
+                        "after the start",
+                        RadToDeg(step.odometry_rotation), name, seconds),
+        RingAttributes(stored.graph, absl::StrCat(name, " ("), seconds,
+                       pairs[consistency.severe.size() + i]));
+    table->AddRow({letter, absl::StrFormat("%.1f m", node.global_pose.x),
+                   absl::StrFormat("%.1f m", node.global_pose.y),
+                   ToString(step.node_id), absl::StrFormat("%.1f s", seconds),
+                   "",
+                   absl::StrFormat("odometry, by %.0f deg",
+                                   RadToDeg(step.odometry_rotation))});
+  }
 }
 
 std::string PlainMap(const ReportData& data, const Prepared& prepared,
@@ -169,6 +265,62 @@ std::vector<Eigen::Vector2d> NodePath(const evaluation::MapGraph& graph) {
     path.push_back(entry.second.global_pose.translation());
   }
   return path;
+}
+
+std::vector<double> NodeSeconds(const evaluation::MapGraph& graph,
+                                const io::TimeNs start) {
+  std::vector<double> seconds;
+  int trajectory_id = 0;
+  for (const auto& entry : graph.nodes) {
+    if (!seconds.empty() && entry.first.trajectory_id != trajectory_id) {
+      seconds.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+    trajectory_id = entry.first.trajectory_id;
+    seconds.push_back(io::ToSeconds(entry.second.time - start));
+  }
+  return seconds;
+}
+
+std::vector<GraphId> NodesOfPlaces(const ReportData& data) {
+  std::vector<GraphId> nodes;
+  const ReportRun& stored = data.runs.front();
+  if (!stored.evaluation.consistency.has_value()) return nodes;
+  for (const auto& pair :
+       PairsOf(stored.graph, *stored.evaluation.consistency)) {
+    if (!pair.has_value()) continue;
+    nodes.push_back(pair->first);
+    nodes.push_back(pair->second);
+  }
+  return nodes;
+}
+
+void AddPlaces(const ReportData& data, const Prepared& prepared,
+               Markup* const page) {
+  const ReportRun& stored = data.runs.front();
+  MapFigure figure("Map with the places that contradict it", prepared.bounds);
+  if (!prepared.image_ids[0].empty()) figure.Image(prepared.image_ids[0]);
+  figure.TimedPath(NodePath(stored.graph),
+                   NodeSeconds(stored.graph, prepared.start), "by-time");
+  figure.Legend("path of the robot, from start (blue) to end (magenta)",
+                "by-time");
+  Table table({"place", "x", "y", "nodes", "after the start",
+               "rays contradicted", "contradicts"});
+  if (stored.evaluation.consistency.has_value()) {
+    const SelfConsistency& consistency = *stored.evaluation.consistency;
+    const auto pairs = PairsOf(stored.graph, consistency);
+    AddPieces(stored, consistency, pairs, prepared.start, &figure, &table);
+    AddTurns(stored, consistency, pairs, prepared.start, &figure, &table);
+  }
+  page->Open("figure");
+  page->Raw(figure.ToHtml());
+  page->Element(
+      "figcaption", {},
+      "The map as stored. Numbers: path pieces whose scans are in free space "
+      "or behind walls mapped by another visit. Letters: places where the "
+      "rotation of local SLAM differs from that of the wheels. Click a ring to "
+      "see the two scans that do not agree.");
+  page->Close();
+  if (!table.empty()) page->Raw(table.ToHtml("Places that contradict the map"));
 }
 
 void AddMaps(const ReportData& data, const Prepared& prepared,

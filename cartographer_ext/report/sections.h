@@ -36,9 +36,15 @@ void AddHead(const std::string& title, Markup* page);
 void AddSummary(const ReportData& data, Markup* page);
 // Where the map contradicts itself; before and after.
 void AddMaps(const ReportData& data, const Prepared& prepared, Markup* page);
+// The map as stored, with rings at contradicted path pieces and wrong turns. A
+// click on one shows two scans over each other: of a node in conflict and of
+// the visit that it contradicts; before and after a turn.
+void AddPlaces(const ReportData& data, const Prepared& prepared, Markup* page);
+// The nodes of those scans.
+std::vector<evaluation::GraphId> NodesOfPlaces(const ReportData& data);
 // Loops on the map, coloured by verdict.
 void AddLoops(const ReportData& data, const Prepared& prepared, Markup* page);
-// The scans of the loops' nodes as data for the script: { "trajectory:node":
+// The scans of loops and places as data for the script: { "trajectory:node":
 // [x, y, ...] }, centimetres in the frame of the node.
 void AddScans(const ReportData& data, const Prepared& prepared, Markup* page);
 // Histograms of scores and residuals, and the two scores against each other.
@@ -58,6 +64,10 @@ void AddOrigin(const ReportData& data, Markup* page);
 // Positions of the nodes; trajectories are separated by a point that is not
 // finite.
 std::vector<Eigen::Vector2d> NodePath(const evaluation::MapGraph& graph);
+// Seconds after `start` of each of these positions; not finite between
+// trajectories.
+std::vector<double> NodeSeconds(const evaluation::MapGraph& graph,
+                                io::TimeNs start);
 
 }  // namespace report
 }  // namespace cartographer_ext

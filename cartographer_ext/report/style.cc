@@ -56,6 +56,9 @@ svg.map-figure{max-height:86vh;border:1px solid var(--rule);border-radius:4px}
 .path,.line{fill:none;stroke-width:1.6;stroke-linejoin:round;
 vector-effect:non-scaling-stroke}
 .path{stroke-width:2}
+.by-time{stroke:var(--when)}
+.swatch.by-time{border-image:linear-gradient(90deg,hsl(205 75% 45%),
+hsl(325 75% 45%)) 1}
 .loop{stroke-width:1.3;vector-effect:non-scaling-stroke;stroke-linecap:round}
 .loop:hover,.ring:hover{stroke-width:5}
 .loop.bad{stroke-dasharray:7 4;stroke-width:1.8}
@@ -119,6 +122,10 @@ background:var(--ground);color:var(--ink);border:1px solid var(--rule);
 border-radius:4px;cursor:pointer}
 .viewer .loop{cursor:pointer;pointer-events:stroke}
 .viewer .loop.chosen{stroke-width:6;stroke-opacity:1}
+.viewer .ring{cursor:pointer}.viewer .ring.chosen{fill-opacity:0}
+.show{font:inherit;font-size:.85rem;margin-left:8px;padding:0 6px;
+background:var(--ground);color:var(--blue);border:1px solid var(--rule);
+border-radius:4px;cursor:pointer}
 button.entry{all:unset;display:inline-flex;align-items:center;gap:6px;
 cursor:pointer}button.entry:focus-visible{outline:2px solid var(--blue)}
 button.entry[aria-pressed=false]{opacity:.4;text-decoration:line-through}
@@ -129,7 +136,7 @@ vector-effect:non-scaling-stroke;pointer-events:none}
 .evidence{background:var(--panel);border-radius:6px;padding:10px 14px;
 margin:8px 0;white-space:pre-wrap}
 .evidence code{user-select:all}
-@media print{.tools,.evidence,.time{display:none}}
+@media print{.tools,.evidence,.time,.show{display:none}}
 @media (max-width:720px){.pair{grid-template-columns:1fr}}
 @media print{:root{color-scheme:light;--ground:#fff;--panel:#f4f4f4;--ink:#000;
 --soft:#444;--rule:#bbb;--map-filter:none}body{font-size:10.5pt}

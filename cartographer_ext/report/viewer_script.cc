@@ -31,7 +31,7 @@ function zoom(f,p){var w=Math.min(home[2],Math.max(home[2]/400,at[2]*f));
 f=w/at[2];at=[p[0]-(p[0]-at[0])*f,p[1]-(p[1]-at[1])*f,w,at[3]*f];
 if(w>=home[2])at=home.slice();limit();show();}
 function middle(){return [at[0]+at[2]/2,at[1]+at[3]/2];}
-function go(x,y,w){var f=Math.min(1,w/home[2]);
+function go(x,y,w){var f=Math.min(.4,w/home[2]);
 at=[x-home[2]*f/2,y-home[3]*f/2,home[2]*f,home[3]*f];limit();show();}
 function shift(x,y){at[0]+=x;at[1]+=y;limit();show();}
 function reset(){at=home.slice();show();}
@@ -72,9 +72,9 @@ var tools=make('div',frame);tools.className='tools';
 var b=make('button',tools,t[0]);b.type='button';
 b.setAttribute('aria-label',t[1]);b.title=t[1];b.addEventListener('click',t[2]);});
 layers(svg,frame);
-var loops=svg.querySelectorAll('.loop[data-loop]');
-if(loops.length){time(svg,frame,loops);
-choose(svg,frame,loops,go,function(){return moved<5;});}}
+time(svg,frame,svg.querySelectorAll('[data-t]'));
+var marks=svg.querySelectorAll('.loop[data-loop],.ring[data-name]');
+if(marks.length)choose(svg,frame,marks,go,function(){return moved<5;});}
 function layers(svg,frame){
 var legend=frame.nextElementSibling;
 if(!legend||!legend.classList.contains('legend'))return;
@@ -97,17 +97,17 @@ b.addEventListener('click',function(){
 var on=b.getAttribute('aria-pressed')==='false';
 b.setAttribute('aria-pressed',on);
 maps.forEach(function(e){e.classList.toggle('off',!on);});});}
-function time(svg,frame,loops){
-var last=0;loops.forEach(function(l){last=Math.max(last,+l.dataset.t);});
+function time(svg,frame,events){
+var last=0;events.forEach(function(e){last=Math.max(last,+e.dataset.t);});
 if(!(last>0))return;
 var label=make('label',frame);label.className='slider time';
-make('span',label,'Loops until');
+make('span',label,'Until');
 var input=make('input',label);input.type='range';input.min=0;
 input.max=Math.ceil(last);input.value=input.max;
 var text=make('span',label);
 function set(){text.textContent=input.value+' s';
-loops.forEach(function(l){
-l.style.visibility=+l.dataset.t<=+input.value?'':'hidden';});}
+events.forEach(function(e){
+e.style.visibility=+e.dataset.t<=+input.value?'':'hidden';});}
 input.addEventListener('input',set);set();}
 function dots(svg,points,pose,kind){
 var u=+svg.dataset.units,x0=+svg.dataset.x,y0=+svg.dataset.y,d='';
@@ -119,35 +119,58 @@ d+='M'+((pose[0]+c*x-s*y-x0)*u).toFixed(2)+' '+
 var path=document.createElementNS(space,'path');
 path.setAttribute('class','scan '+kind);path.setAttribute('d',d);
 svg.appendChild(path);}
-function choose(svg,frame,loops,go,still){
-var panel=make('div',frame);panel.className='evidence off';
-panel.setAttribute('aria-live','polite');
-function clear(){svg.querySelectorAll('.scan').forEach(function(e){e.remove();});
-loops.forEach(function(l){l.classList.remove('chosen');});
-panel.textContent='';panel.classList.add('off');}
 function numbers(t){return t.split(' ').map(Number);}
-function open(line){
-clear();line.classList.add('chosen');
+function drawn(svg,node,pose,kind){
+if(scans[node])dots(svg,scans[node],pose,kind);return !!scans[node];}
+function loop(svg,panel,line){
 var id=line.dataset.id,node=id.split(':').slice(2).join(':');
-var loop=numbers(line.dataset.loop),map=numbers(line.dataset.map);
-make('div',panel,line.querySelector('title').textContent);
-if(scans[node]){dots(svg,scans[node],loop,'loop-scan');
-dots(svg,scans[node],map,'map-scan');
-make('div',panel,'Scan: blue at the pose of the loop, orange at the pose in '+
-'the map.');}
-else make('div',panel,'The scan is not included in this page.');
+var map=numbers(line.dataset.map);
+var any=drawn(svg,node,numbers(line.dataset.loop),'loop-scan');
+drawn(svg,node,map,'map-scan');
+make('div',panel,any?'Scan: blue at the pose of the loop, orange at the pose '+
+'in the map.':'The scan is not included in this page.');
 var refused=line.classList.contains('s6');
 make('div',panel,refused?'Add: ':'Remove: ').appendChild(
 document.createElement('code')).textContent=
 refused?'-add_loops '+id+':'+line.dataset.pose:'-drop_loops '+id;
-var u=+svg.dataset.units,near=make('button',panel,'Show');
-near.type='button';near.addEventListener('click',function(){
-go((map[0]-(+svg.dataset.x))*u,(+svg.dataset.y-map[1])*u,30*u);});
-var close=make('button',panel,'Close');close.type='button';
-close.addEventListener('click',clear);
-panel.classList.remove('off');}
-loops.forEach(function(line){
-line.addEventListener('click',function(){if(still())open(line);});});}
+return map;}
+function spot(svg,panel,ring){
+var box=ring.getBBox(),u=+svg.dataset.units,words=ring.dataset.words;
+[['other','loop-scan'],['scan','map-scan']].forEach(function(s){
+var t=ring.dataset[s[0]];if(!t)return;
+drawn(svg,t.split(' ')[0],numbers(t).slice(1),s[1]);});
+if(words)make('div',panel,words);
+return [(box.x+box.width/2)/u+(+svg.dataset.x),
++svg.dataset.y-(box.y+box.height/2)/u];}
+function choose(svg,frame,marks,go,still){
+var panel=make('div',frame);panel.className='evidence off';
+panel.setAttribute('aria-live','polite');
+function clear(){svg.querySelectorAll('.scan').forEach(function(e){e.remove();});
+marks.forEach(function(m){m.classList.remove('chosen');});
+panel.textContent='';panel.classList.add('off');}
+function near(at){var u=+svg.dataset.units;
+go((at[0]-(+svg.dataset.x))*u,(+svg.dataset.y-at[1])*u,30*u);}
+function open(mark){
+clear();mark.classList.add('chosen');
+make('div',panel,mark.querySelector('title').textContent);
+var at=(mark.dataset.loop?loop:spot)(svg,panel,mark);
+[['Show',function(){near(at);}],['Close',clear]].forEach(function(b){
+var button=make('button',panel,b[0]);button.type='button';
+button.addEventListener('click',b[1]);});
+panel.classList.remove('off');return at;}
+function link(parent,ring){
+var b=make('button',parent,'Show');b.type='button';b.className='show';
+b.addEventListener('click',function(){near(open(ring));
+svg.scrollIntoView({block:'center'});});}
+var rings=0,table=frame.parentNode.nextElementSibling;
+var rows=table?table.querySelectorAll('tbody tr'):[];
+marks.forEach(function(mark){
+mark.addEventListener('click',function(){if(still())open(mark);});
+if(!mark.dataset.name)return;
+document.querySelectorAll('.verdict li').forEach(function(li){
+if(li.textContent.indexOf(mark.dataset.name)>=0)link(li,mark);});
+if(rows[rings])link(rows[rings].lastElementChild,mark);
+rings++;});}
 document.querySelectorAll('svg.map-figure').forEach(view);
 })();
 )js";

@@ -140,39 +140,6 @@ TEST_F(LocalRerunTest, RecordedOdometryFollowsALostTurn) {
   }
 }
 
-TEST_F(LocalRerunTest, TheWheelsReplaceALostTurn) {
-  // Local SLAM turns half a radian too far before one node.
-  io::Pbstream lost = *room_;
-  const size_t node = lost.nodes.size() / 2;
-  const MotionChain right = LocalChain(lost);
-  const auto id = [&](const size_t i) {
-    return evaluation::GraphId{0, lost.nodes[i].node_id().node_index()};
-  };
-  const Pose2 pivot = right.at(id(node));
-  const Pose2 turn = pivot * Pose2(0., 0., 0.5) * pivot.Inverse();
-  for (size_t i = node; i < lost.nodes.size(); ++i) {
-    const Pose2 pose = turn * right.at(id(i));
-    auto* const proto = lost.nodes[i].mutable_node_data();
-    *proto->mutable_local_pose() = cartographer::transform::ToProto(
-        cartographer::transform::Embed3D(cartographer::transform::Rigid2d(
-            Eigen::Vector2d(pose.x, pose.y), pose.theta)));
-  }
-  const MotionChain mixed = MixedChain(lost);
-  ASSERT_FALSE(mixed.empty());
-  // The room's odometry is exact.
-  const auto graph = evaluation::MakeMapGraph(lost);
-  const auto truth = [&](const size_t i) {
-    return test::RoomSource::TruePose(static_cast<int>(
-        (graph.nodes.at(id(i)).time - test::RoomSource::kStart) /
-        test::RoomSource::kStep));
-  };
-  const Pose2 error =
-      Between(Between(truth(node - 1), truth(node)),
-              Between(mixed.at(id(node - 1)), mixed.at(id(node))));
-  EXPECT_LT(std::abs(error.theta), 1e-3);
-  EXPECT_LT(error.translation().norm(), 1e-3);
-}
-
 }  // namespace
 }  // namespace repair
 }  // namespace cartographer_ext

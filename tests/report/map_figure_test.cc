@@ -61,6 +61,38 @@ TEST(MapFigureTest, WhatHasNoPlaceIsLeftOut) {
   EXPECT_THAT(html, Not(HasSubstr("nan")));
 }
 
+// Every point is on the segments, each knows its time, and gaps stay gaps.
+TEST(MapFigureTest, ATimedPathCanBeCut) {
+  std::vector<Eigen::Vector2d> points;
+  std::vector<double> seconds;
+  for (int i = 0; i < 300; ++i) {
+    points.emplace_back(0.01 * i, 0.);
+    seconds.push_back(10. + i);
+  }
+  points[150] = {kNan, kNan};
+  seconds[150] = kNan;
+  MapFigure figure("f", Bounds());
+  figure.TimedPath(points, seconds, "by-time");
+  const std::string html = figure.ToHtml();
+  const auto count = [&html](const std::string& part) {
+    int found = 0;
+    for (size_t at = html.find(part); at != std::string::npos;
+         at = html.find(part, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count("class=\"path timed by-time\""), 100);
+  EXPECT_THAT(html, HasSubstr("data-t=\"10\" style=\"--when:hsl(205 "));
+  EXPECT_THAT(html, HasSubstr("data-t=\"307\""));
+  // Three steps in each segment, two of them lost with the point.
+  EXPECT_EQ(count("L"), 299 - 2);
+  EXPECT_THAT(html, Not(HasSubstr("nan")));
+  MapFigure empty("f", Bounds());
+  empty.TimedPath({}, {}, "by-time");
+  EXPECT_THAT(empty.ToHtml(), Not(HasSubstr("timed")));
+}
+
 TEST(MapFigureTest, RingsAreNeverTooSmall) {
   MapFigure figure("f", Bounds());
   figure.Ring({0., 0.}, 2., "1", "two metres");

@@ -8,12 +8,14 @@
 #include <iterator>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/report/loop_evidence.h"
 #include "cartographer_ext/report/map_runs.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "nlohmann/json.hpp"
 #include "tests/slam/room_map.h"
 
 namespace cartographer_ext {
@@ -220,30 +222,141 @@ TEST(ReportErrorTest, NothingToReport) {
   EXPECT_FALSE(MakeReport(empty).ok());
 }
 
+// Runs chromium over a page; false if there is none. `text`: what it prints.
+bool OpenInBrowser(const std::string& name, const std::string& page,
+                   const std::string& flags, std::string* const text) {
+  const std::string stem = absl::StrCat(testing::TempDir(), "/", name);
+  std::ofstream(stem + ".html") << page;
+  const int status = std::system(
+      absl::StrCat("timeout 120 chromium --headless=new --no-sandbox "
+                   "--disable-gpu --hide-scrollbars --user-data-dir=",
+                   stem, "_profile --enable-logging=stderr ", flags, " file://",
+                   stem, ".html > ", stem, ".out 2> ", stem, ".log")
+          .c_str());
+  for (const char* const ending : {".out", ".log"}) {
+    std::ifstream file(stem + ending);
+    text->append(std::istreambuf_iterator<char>(file),
+                 std::istreambuf_iterator<char>());
+  }
+  return status == 0;
+}
+
 TEST_F(ReportTest, OpensInABrowserWithoutErrors) {
-  if (std::system("command -v chromium > /dev/null 2>&1") != 0) {
+  const std::string picture = testing::TempDir() + "/report_test.png";
+  const std::string paper = testing::TempDir() + "/report_test.pdf";
+  std::string text;
+  if (!OpenInBrowser("report_test", *MakeReport(*data_),
+                     "--window-size=1366,2000 --screenshot=" + picture,
+                     &text) ||
+      !OpenInBrowser("report_test", *MakeReport(*data_),
+                     "--print-to-pdf=" + paper, &text)) {
     GTEST_SKIP() << "no chromium here";
   }
-  const std::string folder = testing::TempDir();
-  const std::string html = folder + "/report_test.html";
-  std::ofstream(html) << *MakeReport(*data_);
-  const std::string log = folder + "/report_test.log";
-  const std::string picture = folder + "/report_test.png";
-  const int status = std::system(
-      absl::StrCat("timeout 60 chromium --headless=new --no-sandbox "
-                   "--disable-gpu --hide-scrollbars --user-data-dir=",
-                   folder,
-                   "/report_test_profile --enable-logging=stderr "
-                   "--window-size=1366,2000 --screenshot=",
-                   picture, " file://", html, " 2> ", log, " > /dev/null")
-          .c_str());
-  if (status != 0) GTEST_SKIP() << "chromium does not run here";
-  std::ifstream file(log);
-  const std::string text((std::istreambuf_iterator<char>(file)),
-                         std::istreambuf_iterator<char>());
   EXPECT_THAT(text, Not(HasSubstr("CONSOLE")));
-  std::ifstream drawn(picture, std::ios::binary | std::ios::ate);
-  EXPECT_GT(drawn.tellg(), 20000);
+  for (const std::string& filename : {picture, paper}) {
+    std::ifstream drawn(filename, std::ios::binary | std::ios::ate);
+    EXPECT_GT(drawn.tellg(), 20000) << filename;
+  }
+}
+
+// Does what a user does, and writes what has changed as JSON into the page.
+constexpr char kUser[] = R"html(<script>
+window.addEventListener('load', function() {
+var out = {};
+function box(svg) { return svg.getAttribute('viewBox').split(' ').map(
+function(v) { return (+v).toFixed(2); }).join(' '); }
+var svg = document.querySelector('svg.map-figure'), home = box(svg);
+var frame = svg.parentNode, r = svg.getBoundingClientRect();
+function key(name) {
+svg.dispatchEvent(new KeyboardEvent('keydown', {key: name})); return box(svg); }
+function pointer(type, id, x, y) {
+svg.dispatchEvent(new PointerEvent(type, {pointerId: id, clientX: r.left + x,
+clientY: r.top + y})); }
+function click(e) { e.dispatchEvent(new MouseEvent('click', {bubbles: true})); }
+function width() { return +box(svg).split(' ')[2]; }
+out.plus = key('+') !== home;
+var before = box(svg);
+out.arrow = key('ArrowLeft') !== before;
+out.all = key('0') === home;
+var wheel = {deltaY: -300, clientX: r.left + 50, clientY: r.top + 50,
+cancelable: true};
+svg.dispatchEvent(new WheelEvent('wheel', wheel));
+out.wheelScrollsThePage = box(svg) === home;
+wheel.ctrlKey = true;
+svg.dispatchEvent(new WheelEvent('wheel', wheel));
+out.wheel = width() < +home.split(' ')[2];
+before = box(svg);
+pointer('pointerdown', 1, 100, 100); pointer('pointermove', 1, 130, 120);
+pointer('pointerup', 1, 130, 120);
+out.drag = box(svg) !== before;
+before = width();
+pointer('pointerdown', 1, 100, 100); pointer('pointerdown', 2, 150, 100);
+pointer('pointermove', 2, 250, 100);
+pointer('pointerup', 1, 100, 100); pointer('pointerup', 2, 250, 100);
+out.pinch = width() < before;
+frame.querySelectorAll('.tools button').forEach(click);
+out.button = box(svg) === home;
+var entry = frame.nextElementSibling.querySelector('button');
+click(entry);
+out.layer = entry.getAttribute('aria-pressed') === 'false' &&
+svg.querySelectorAll('.by-time.off').length > 0;
+var slider = frame.querySelector('.time input');
+slider.value = 0; slider.dispatchEvent(new Event('input'));
+out.time = svg.querySelectorAll('.timed[style*=hidden]').length > 0;
+var panel = frame.querySelector('.evidence'), ring = svg.querySelector('.ring');
+pointer('pointerdown', 3, 1, 1); pointer('pointerup', 3, 1, 1);
+click(ring);
+out.ring = panel.textContent; out.ringScans = svg.querySelectorAll('.scan').length;
+click(document.querySelector('.verdict .show'));
+out.reason = box(svg) !== home;
+var loop = document.querySelector('.loop[data-loop]');
+var loops = loop.closest('.viewer');
+click(loop);
+out.loop = loops.querySelector('.evidence').textContent;
+out.loopScans = loops.querySelectorAll('.scan').length;
+out.fits = document.documentElement.scrollWidth <= window.innerWidth;
+out.dark = getComputedStyle(document.body).backgroundColor;
+var answers = document.createElement('pre');
+answers.textContent = 'ANSWERS' + JSON.stringify(out) + 'ANSWERS';
+document.body.appendChild(answers); });
+</script>)html";
+
+TEST_F(ReportTest, AnswersMouseTouchAndKeys) {
+  ReportData data = *data_;
+  auto& consistency = *data.runs[0].evaluation.consistency;
+  evaluation::ConflictPiece piece;
+  piece.first_node = {0, 30};
+  piece.last_node = {0, 40};
+  piece.submaps = {{0, 0}};
+  consistency.severe = {piece};
+  consistency.word = "broken";
+  consistency.reasons.push_back("nodes (0, 30) to (0, 40) (1.0 s) contradict");
+  data.runs[0].evaluation.trajectory.reset();
+  const std::string page = absl::StrCat(*MakeReport(data), kUser);
+  std::string text;
+  if (!OpenInBrowser("report_test_user", page,
+                     "--window-size=500,900 --dump-dom "
+                     "--blink-settings=preferredColorScheme=0",
+                     &text)) {
+    GTEST_SKIP() << "no chromium here";
+  }
+  EXPECT_THAT(text, Not(HasSubstr("CONSOLE")));
+  const std::vector<std::string> parts = absl::StrSplit(text, "ANSWERS");
+  const auto end = std::find_if(
+      parts.rbegin(), parts.rend(),
+      [](const std::string& part) { return part.rfind("{\"plus\"", 0) == 0; });
+  ASSERT_TRUE(end != parts.rend()) << text.substr(text.size() - 2000);
+  const auto answers = nlohmann::json::parse(*end, nullptr, false);
+  ASSERT_TRUE(answers.is_object()) << *end;
+  for (const auto& answer : answers.items()) {
+    if (!answer.value().is_boolean()) continue;
+    EXPECT_TRUE(answer.value().get<bool>()) << answer.key();
+  }
+  EXPECT_THAT(answers["ring"], HasSubstr("of the contradicted submap"));
+  EXPECT_EQ(answers["ringScans"], 2);
+  EXPECT_THAT(answers["loop"], HasSubstr("Remove: -drop_loops 0:"));
+  EXPECT_EQ(answers["loopScans"], 2);
+  EXPECT_EQ(answers["dark"], "rgb(20, 24, 28)");
 }
 
 }  // namespace

@@ -28,7 +28,9 @@ TEST(CompareMainTest, AMapAgreesWithItself) {
   EXPECT_EQ(json["walls"]["only_first"], 0);
   EXPECT_EQ(json["walls"]["only_second"], 0);
   EXPECT_TRUE(json["first"]["verdict"].is_string());
-  EXPECT_THAT(ReadFile(folder / "report.html"), HasSubstr("walls in both"));
+  const std::string report = ReadFile(folder / "report.html");
+  EXPECT_THAT(report, HasSubstr("walls in both"));
+  EXPECT_THAT(report, HasSubstr("svg.map-figure').forEach(view)"));
 }
 
 TEST(CompareMainTest, TakesAPgmForAMap) {

@@ -6,9 +6,12 @@
 #include <sys/wait.h>
 
 #include <filesystem>
+#include <sstream>
+#include <string>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/test_data.h"
 #include "tests/tools/run_command.h"
 
 namespace cartographer_ext {
@@ -172,6 +175,48 @@ TEST_F(EvaluateManyTest, GoesOnAfterItWasKilled) {
   ASSERT_EQ(once.exit_code, 0) << once.error;
   EXPECT_TRUE(ReadFile(folder_ / "again.html") ==
               ReadFile(folder_ / "once.html"));
+}
+
+// Overview, JSON, page and exit code of real maps: one verdict, one reason.
+TEST(EvaluateAllMapsTest, OneVerdictInEveryOutput) {
+  CARTOGRAPHER_EXT_SKIP_WITHOUT(SharedData("pbstream"));
+  CARTOGRAPHER_EXT_SKIP_WITHOUT(SharedData("wild"));
+  const TemporaryFolder folder;
+  const CommandResult result = RunCommand(
+      "evaluate",
+      {SharedData("pbstream"), SharedData("wild"), "-reports_directory",
+       folder / "pages", "-report_filename", folder / "all.html",
+       "-json_lines_filename", folder / "all.jsonl", "-fail_on", "broken"});
+  const std::string overview = ReadFile(folder / "all.html");
+  std::istringstream lines(ReadFile(folder / "all.jsonl"));
+  std::string line;
+  int count = 0;
+  bool any_broken = false;
+  while (std::getline(lines, line)) {
+    const auto json = ParseJson(line);
+    ASSERT_TRUE(json.is_object()) << line;
+    ++count;
+    const std::string word = json["verdict"];
+    any_broken = any_broken || word == "broken";
+    EXPECT_THAT(overview, HasSubstr("<tr data-verdict=\"" + word + "\">"));
+    const std::string page = ReadFile(json["report"]);
+    EXPECT_THAT(page, HasSubstr("<div class=\"verdict " + word + "\">"));
+    EXPECT_THAT(page, HasSubstr("Map " + word + "<"));
+    const std::string headline = json["reasons"][0];
+    const bool is_consistent =
+        headline.find("self-consistent") != std::string::npos;
+    EXPECT_EQ(is_consistent, word == "sound") << line;
+    for (const std::string reason : json["reasons"]) {
+      EXPECT_THAT(page, HasSubstr("<li>" + reason + "</li>"));
+      EXPECT_THAT(overview, HasSubstr(reason));
+      for (const std::string other : {"sound", "doubtful", "broken"}) {
+        if (other == word) continue;
+        EXPECT_THAT(reason, testing::Not(HasSubstr(other))) << line;
+      }
+    }
+  }
+  EXPECT_GE(count, 9);
+  EXPECT_EQ(result.exit_code, any_broken ? 3 : 0) << result.error;
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(ReproduceTest, ListsEveryTable) {
   for (const char* name :
        {"a_table_2", "r_table_2", "g_table_2", "g_table_3", "c_table_1",
         "c_table_3", "c_table_4", "c_table_5", "c_gamma", "c_alpha_beta",
-        "stored_maps", "c_navigation", "any_building", "verdicts"}) {
+        "stored_maps", "c_navigation", "any_building", "verdicts", "repairs"}) {
     EXPECT_THAT(result.out, HasSubstr(name));
   }
 }
@@ -102,6 +102,21 @@ TEST(ReproduceTest, CasesOfVerdicts) {
   EXPECT_EQ(result.exit_code, 0) << result.out;
   EXPECT_EQ(result.out,
             "[7, 7] [3, 6, 2]\nsound broken broken unknown broken\nTrue\n");
+}
+
+TEST(ReproduceTest, OutcomesOfRepairs) {
+  const ShellResult result = Shell(
+      "python3 -c \"m = {}; "
+      "exec(open('scripts/reproduce_verdicts.py').read(), m); "
+      "of = lambda before, after, top=0.4, written=True: m['outcome'](dict("
+      "said=dict(written=written), "
+      "before=dict(loop_error=before, truth='broken'), "
+      "after=dict(loop_error=after, truth=m['truth'](dict(treatment='ours', "
+      "loops=1, loop_error=after, max=top))))); "
+      "print(of(3., 0.1), of(3., 1.), of(3., 3.01), of(3., 3.1), "
+      "of(3., 3., written=False), of(0.1, 0.15, 0.6))\"");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_EQ(result.out, "sound better alike worse unchanged worse\n");
 }
 
 // The second recording goes on in odometry where the first one ends.
