@@ -48,6 +48,12 @@ std::string WhyNotBetter(const MapQuality& current,
         "time, before %.0f",
         candidate.agreeing_nodes, current.agreeing_nodes);
   }
+  if (candidate.verdict == "unknown" && current.verdict != "unknown") {
+    return absl::StrFormat(
+        "it tears the map apart: hardly any place is mapped twice, only %.0f "
+        "nodes agree with scans of another time",
+        candidate.agreeing_nodes);
+  }
   const int rank = Rank(candidate.verdict), before = Rank(current.verdict);
   if (rank != before) {
     return rank < before ? ""

@@ -13,6 +13,7 @@
 #include "cartographer_ext/map/pbstream_optimization.h"
 #include "cartographer_ext/map/verdict/motion_disagreement.h"
 #include "cartographer_ext/optimization/offline/optimize.h"
+#include "cartographer_ext/repair/conclusion.h"
 #include "cartographer_ext/repair/kept_frame.h"
 #include "cartographer_ext/repair/local_rerun.h"
 #include "cartographer_ext/repair/store_graph.h"
@@ -73,70 +74,6 @@ PbstreamPointer Optimize(const evaluation::MapGraph& graph,
   return result;
 }
 
-// Why a map stays as it is, a clause.
-std::string WhyBroken(const MapRepair& repair) {
-  const evaluation::SelfConsistency& after = repair.after.consistency;
-  if (!after.wrong_turns.empty()) {
-    const evaluation::MotionStep& step = after.wrong_turns.front();
-    return absl::StrFormat(
-        "local SLAM turned %.0f degrees away from the odometry before node %s, "
-        "and no loop repairs that",
-        RadToDeg(step.odometry_rotation), evaluation::ToString(step.node_id));
-  }
-  if (!after.severe.empty()) {
-    const evaluation::ConflictPiece& piece = after.severe.front();
-    return absl::StrFormat(
-        "no step makes nodes %s to %s (near x = %.1f m, y = %.1f m) consistent "
-        "with what was mapped there at another time",
-        evaluation::ToString(piece.first_node),
-        evaluation::ToString(piece.last_node), piece.center.x(),
-        piece.center.y());
-  }
-  return "no step improved it";
-}
-
-// The sentence on top, and what to do.
-void Conclude(const bool keep_frame, MapRepair* const repair) {
-  const std::string& before = repair->before.quality.verdict;
-  const std::string& after = repair->after.quality.verdict;
-  const bool is_fine = after == "sound" || after == "unknown";
-  if (!repair->changed() && is_fine) {
-    repair->conclusion = absl::StrCat(
-        "nothing to repair: ", repair->before.consistency.reasons.front());
-    repair->advice.push_back("Use the map as it is.");
-    return;
-  }
-  const std::string better =
-      absl::StrFormat("severe share %.1f %% before, %.1f %% after",
-                      100. * repair->before.quality.severe_share,
-                      100. * repair->after.quality.severe_share);
-  if (repair->changed() && is_fine) {
-    repair->conclusion = absl::StrCat("repaired: the map was ", before,
-                                      " and is ", after, " (", better, ")");
-    repair->advice.push_back(
-        "Compare both pictures: a self-consistent map can still be wrong where "
-        "a place was seen only once.");
-    repair->advice.push_back(absl::StrCat(
-        "Poses defined in the old map (docks, waypoints) have moved: ",
-        keep_frame ? "" : "run with -keep_frame and ",
-        "look them up in the table of poses."));
-    return;
-  }
-  repair->conclusion =
-      repair->changed()
-          ? absl::StrCat("better, but still ", after, " (", better,
-                         "): cannot be repaired further, because ",
-                         WhyBroken(*repair))
-          : absl::StrCat("cannot be repaired, because ", WhyBroken(*repair));
-  repair->advice.push_back(
-      "Do not navigate with this map. If the recording still exists, run "
-      "cartographer_ext_slam on it: it uses all scans instead of the filtered "
-      "clouds of the nodes.");
-  repair->advice.push_back(
-      "If you record again: drive slowly through the places named above, close "
-      "loops early and more than once, and record the odometry.");
-}
-
 // The state of a repair: the best version so far, and how it came about.
 class Repairer {
  public:
@@ -157,8 +94,16 @@ class Repairer {
     RunLoopClosure(false);
     is_local_ = true;
     RepeatAlongBest();
+    const double severe = 100. * result_.after.quality.severe_share;
+    const bool is_given_up = IsStillBroken();
+    if (is_given_up) result_.after = result_.before;
     if (result_.changed()) KeepFrame();
     Conclude(options_.keep_frame, &result_);
+    if (is_given_up) {
+      absl::StrAppendFormat(&result_.conclusion,
+                            "; the best version is still broken (%.1f %%)",
+                            severe);
+    }
     return std::move(result_);
   }
 
@@ -166,6 +111,13 @@ class Repairer {
   bool is_sound() const {
     const std::string& word = result_.after.consistency.word;
     return word == "sound" || word == "unknown";
+  }
+
+  // Of two broken maps the one with fewer contradictions need not be nearer to
+  // the truth. Who names loops by hand gets there in several runs.
+  bool IsStillBroken() const {
+    return result_.changed() && result_.after.quality.verdict == "broken" &&
+           options_.dropped_loops.empty() && options_.added_loops.empty();
   }
 
   // New loops over bent submaps can make a map just sound; local SLAM has its

@@ -58,6 +58,8 @@ TEST(MapQualityTest, AMapTornApartIsNotBetter) {
   EXPECT_THAT(WhyNotBetter(Broken(), torn), HasSubstr("apart"));
   torn.agreeing_nodes = 81.;
   EXPECT_EQ(WhyNotBetter(Broken(), torn), "");
+  torn.verdict = "unknown";
+  EXPECT_THAT(WhyNotBetter(Broken(), torn), HasSubstr("apart"));
 }
 
 }  // namespace

@@ -19,6 +19,11 @@ using nlohmann::ordered_json;
 constexpr size_t kMaxNamedPlaces = 5;
 constexpr size_t kMaxNamedTurns = 3;
 
+// Share of the nodes that must revisit a place before a map without
+// contradictions is called sound. A map torn apart has hardly any overlap, and
+// so no contradictions.
+constexpr double kMinJudgedShare = 0.05;
+
 io::TimeNs StartTime(const MapGraph& graph) {
   io::TimeNs start = std::numeric_limits<io::TimeNs>::max();
   for (const auto& node : graph.nodes) {
@@ -48,7 +53,10 @@ std::string Place(const Eigen::Vector2d& place) {
 std::string Headline(const MapGraph& graph, const SelfConsistency& result) {
   const io::TimeNs start = StartTime(graph);
   if (result.word == "unknown") {
-    return "no place was mapped twice, so consistency cannot be checked";
+    return result.contradictions.judged_nodes == 0
+               ? "no place was mapped twice, so consistency cannot be checked"
+               : "hardly any place was mapped twice, so consistency can hardly "
+                 "be checked";
   }
   if (result.word == "sound") {
     return "the map is self-consistent: places that were mapped twice coincide";
@@ -192,7 +200,10 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
   } else if (result.severe_share >= options.doubtful_share || turned) {
     result.word = "doubtful";
   } else {
-    result.word = judged > 0 ? "sound" : "unknown";
+    const auto nodes = static_cast<double>(result.contradictions.nodes.size());
+    const bool is_checked =
+        static_cast<double>(judged) >= std::max(1., kMinJudgedShare * nodes);
+    result.word = is_checked ? "sound" : "unknown";
   }
   Explain(graph, &result);
   return result;

@@ -93,6 +93,24 @@ TEST(SelfConsistencyTest, NothingSeenTwiceIsUnknown) {
       "unknown");
 }
 
+TEST(SelfConsistencyTest, HardlyAnythingSeenTwiceIsUnknown) {
+  const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  SelfConsistencyOptions options;
+  bool is_few = false, is_enough = false;
+  for (int gap = 40; gap < 110; ++gap) {
+    options.contradiction.min_node_gap = gap;
+    const SelfConsistency result =
+        AssessSelfConsistency(world.graph, world.contents, {}, options);
+    // Of a hundred nodes.
+    const int64_t judged = result.contradictions.judged_nodes;
+    EXPECT_EQ(result.word, judged < 5 ? "unknown" : "sound") << judged;
+    is_few = is_few || (judged > 0 && judged < 5);
+    is_enough = is_enough || judged >= 5;
+  }
+  EXPECT_TRUE(is_few);
+  EXPECT_TRUE(is_enough);
+}
+
 TEST(SelfConsistencyTest, TruthGoesBeforeTheMapsOwnWord) {
   const test::BoxWorld world =
       test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
