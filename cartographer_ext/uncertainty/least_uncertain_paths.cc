@@ -15,9 +15,7 @@ namespace uncertainty {
 namespace {
 
 constexpr size_t kNone = std::numeric_limits<size_t>::max();
-// Bounds of memory and work. Later loops are not stored; beyond the number of
-// trees all are searched again.
-constexpr size_t kMaxLoops = 5000;
+// Beyond this number of trees all are searched again.
 constexpr size_t kMaxTrees = 500;
 
 double TranslationVariance(const UncertainPose& pose) {
@@ -27,8 +25,12 @@ double TranslationVariance(const UncertainPose& pose) {
 }  // namespace
 
 LeastUncertainPaths::LeastUncertainPaths(const double spacing,
-                                         const PathUncertainty* const paths)
-    : spacing_(spacing), paths_(CHECK_NOTNULL(paths)) {}
+                                         const PathUncertainty* const paths,
+                                         const size_t max_loops)
+    : max_loops_(max_loops), spacing_(spacing), paths_(CHECK_NOTNULL(paths)) {
+  CHECK_GE(spacing, 0.);
+  CHECK_GT(max_loops, 0u);
+}
 
 bool LeastUncertainPaths::HasNear(const LoopEdge& loop) const {
   const auto is_near = [this](const VertexId& u, const VertexId& v) {
@@ -54,10 +56,28 @@ bool LeastUncertainPaths::HasNear(const LoopEdge& loop) const {
 }
 
 void LeastUncertainPaths::Add(const LoopEdge& loop) {
-  if (loops_.size() >= kMaxLoops || HasNear(loop)) return;
+  if (HasNear(loop)) return;
   loops_.push_back(loop);
   ends_[loop.b].push_back(loop.a);
   is_built_ = false;
+  if (loops_.size() > max_loops_) Thin();
+}
+
+void LeastUncertainPaths::Thin() {
+  spacing_ *= 2.;
+  std::vector<LoopEdge> all;
+  all.swap(loops_);
+  ends_.clear();
+  for (const LoopEdge& loop : all) {
+    if (HasNear(loop)) continue;
+    loops_.push_back(loop);
+    ends_[loop.b].push_back(loop.a);
+  }
+  if (loops_.size() <= max_loops_) return;
+  // Nothing is near anything else: the oldest go.
+  loops_.erase(loops_.begin(), loops_.end() - max_loops_);
+  ends_.clear();
+  for (const LoopEdge& loop : loops_) ends_[loop.b].push_back(loop.a);
 }
 
 void LeastUncertainPaths::RemoveIf(

@@ -13,7 +13,9 @@
 //
 // One search of the graph serves all queries from the same vertex, until the
 // next loop or the next change of the drift. A loop close to another one at
-// both ends adds no path and is not stored. Not thread-safe.
+// both ends adds no path and is not stored; when there are too many, the spacing
+// is doubled and loops are dropped accordingly, so that memory and time are
+// bounded however long the robot drives. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 #define CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 
@@ -34,10 +36,11 @@ namespace uncertainty {
 // Relative poses over accepted loops, see above.
 class LeastUncertainPaths {
  public:
-  // A loop both of whose ends are within `spacing` metres of those of a stored
-  // one, measured along the trajectory, is not stored. `paths` must outlive
-  // this object and contain the ends of the loops.
-  LeastUncertainPaths(double spacing, const PathUncertainty* paths);
+  // A loop both of whose ends are within `spacing` metres (>= 0) of those of a
+  // stored one, measured along the trajectory, is not stored. `paths` must
+  // outlive this object and contain the ends of the loops.
+  LeastUncertainPaths(double spacing, const PathUncertainty* paths,
+                      size_t max_loops = 5000);
 
   void Add(const LoopEdge& loop);
   void RemoveIf(const std::function<bool(const LoopEdge&)>& condition);
@@ -69,6 +72,8 @@ class LeastUncertainPaths {
   };
 
   bool HasNear(const LoopEdge& loop) const;
+  // Doubles the spacing.
+  void Thin();
   void BuildVertices();
   // The vertex with this id, or its neighbours along the trajectory.
   std::vector<size_t> Adjacent(const VertexId& id) const;
@@ -78,7 +83,8 @@ class LeastUncertainPaths {
   void Search(Tree* tree) const;
   const absl::optional<UncertainPose>& PoseOf(size_t vertex, Tree* tree) const;
 
-  const double spacing_;
+  const size_t max_loops_;
+  double spacing_;
   const PathUncertainty* const paths_;
   std::vector<LoopEdge> loops_;
   std::map<VertexId, std::vector<VertexId>> ends_;  // from b to each a

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "cartographer_ext/common/planar_matrix.h"
@@ -49,9 +50,16 @@ constexpr double kOrdinary = 1.5;
 // Keeps costs finite where driving is configured to be exact.
 constexpr double kMinNoise = 1e-4;
 
+// The indices increase, and mostly by one.
 template <typename Entries>
 auto LowerBound(Entries& entries, const int index)
     -> decltype(entries.begin()) {
+  if (!entries.empty() && entries.front().index <= index) {
+    const size_t offset = static_cast<size_t>(index - entries.front().index);
+    if (offset < entries.size() && entries[offset].index == index) {
+      return entries.begin() + static_cast<ptrdiff_t>(offset);
+    }
+  }
   return std::lower_bound(entries.begin(), entries.end(), index,
                           [](const typename Entries::value_type& entry,
                              const int value) { return entry.index < value; });

@@ -169,6 +169,43 @@ TEST_F(LeastUncertainPathsTest, SubmapsAreVerticesOfTheirOwn) {
   EXPECT_NEAR(path->covariance(0, 0), 4. + 0.25 + 3., 1e-6);
 }
 
+TEST_F(LeastUncertainPathsTest, ManyLoopsAreThinnedNotForgotten) {
+  LeastUncertainPaths bounded(2., &paths_, 10);
+  // Every third node of the second 150 m lies where one of the first does.
+  for (int i = 0; i < 50; ++i) {
+    LoopEdge loop;
+    loop.a = NodeId{0, 3 * i};
+    loop.b = NodeId{0, 150 + 3 * i};
+    loop.pose.covariance = Eigen::Vector3d(0.25, 0.25, 0.).asDiagonal();
+    bounded.Add(loop);
+    ASSERT_LE(bounded.num_loops(), 10u);
+  }
+  EXPECT_GE(bounded.num_loops(), 5u);
+  // The next loop is at most half the spacing of those kept (16 m) away, at
+  // either end.
+  for (const int i : {0, 40, 75, 110, 140}) {
+    const auto path = bounded.Between(NodeId{0, i}, NodeId{0, 150 + i});
+    ASSERT_TRUE(path.has_value());
+    EXPECT_LE(path->covariance(0, 0), 16. + 16. + 0.25 + 1e-6) << i;
+  }
+}
+
+TEST_F(LeastUncertainPathsTest, LoopsThatAreFarFromEachOtherAreForgotten) {
+  // Nodes of other trajectories are at no distance from each other.
+  LeastUncertainPaths bounded(2., &paths_, 4);
+  for (int i = 1; i <= 6; ++i) {
+    paths_.Add(NodeId{i, 0}, Pose2());
+    LoopEdge loop;
+    loop.a = NodeId{0, 0};
+    loop.b = NodeId{i, 0};
+    loop.pose.covariance = Eigen::Vector3d(0.25, 0.25, 0.).asDiagonal();
+    bounded.Add(loop);
+  }
+  EXPECT_EQ(bounded.num_loops(), 4u);
+  EXPECT_FALSE(bounded.Between(NodeId{0, 0}, NodeId{2, 0}).has_value());
+  EXPECT_TRUE(bounded.Between(NodeId{0, 0}, NodeId{6, 0}).has_value());
+}
+
 }  // namespace
 }  // namespace uncertainty
 }  // namespace cartographer_ext

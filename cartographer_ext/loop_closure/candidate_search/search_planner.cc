@@ -148,6 +148,13 @@ SearchPlan SearchPlanner::PlanAlone(const LoopCandidate& candidate) {
   return plan;
 }
 
+bool SearchPlanner::IsSaturated(const uncertainty::SubmapId& submap) const {
+  const auto memory = submaps_.find(submap);
+  return memory != submaps_.end() &&
+         memory->second.accepted.size() >=
+             static_cast<size_t>(options_.saturating_loops);
+}
+
 double SearchPlanner::Promise(const LoopCandidate& candidate,
                               const SearchPlan& plan) const {
   const double sigma = std::max(plan.translation_sigma, 1e-3);
@@ -160,7 +167,11 @@ double SearchPlanner::Promise(const LoopCandidate& candidate,
 
 void SearchPlanner::ApplyCap(
     const std::vector<const LoopCandidate*>& candidates,
-    const std::vector<size_t>& indices, std::vector<SearchPlan>* const plans) {
+    const std::vector<size_t>& of_node, std::vector<SearchPlan>* const plans) {
+  std::vector<size_t> indices;
+  for (const size_t i : of_node) {
+    if ((*plans)[i].is_searched()) indices.push_back(i);
+  }
   const size_t cap = static_cast<size_t>(options_.max_searches_per_node);
   std::vector<double> promise(indices.size());
   std::vector<size_t> order(indices.size());
@@ -189,24 +200,62 @@ void SearchPlanner::ApplyCap(
   }
 }
 
+void SearchPlanner::PlanAndNote(const LoopCandidate& candidate,
+                                SearchPlan* const plan) {
+  *plan = PlanAlone(candidate);
+  if (!plan->is_searched()) return;
+  Nodes* const searched = submaps_[candidate.submap].Searched(*plan);
+  searched->emplace(candidate.node, candidate.node_time);
+  if (searched->size() > kMaxNodesPerSubmap) searched->erase(searched->begin());
+}
+
+void SearchPlanner::PlanNode(
+    const std::vector<const LoopCandidate*>& candidates,
+    const std::vector<size_t>& indices, std::vector<SearchPlan>* const plans) {
+  std::vector<size_t> saturated;
+  for (const size_t i : indices) {
+    if (IsSaturated(candidates[i]->submap)) {
+      saturated.push_back(i);
+    } else {
+      PlanAndNote(*candidates[i], &(*plans)[i]);
+    }
+  }
+  const auto distance = [&](const size_t i) {
+    return candidates[i]->SearchCenter().translation().norm();
+  };
+  std::stable_sort(saturated.begin(), saturated.end(),
+                   [&](const size_t a, const size_t b) {
+                     return distance(a) < distance(b);
+                   });
+  int num_searched = 0;
+  bool is_recorded = false;
+  for (const size_t i : saturated) {
+    SearchPlan& plan = (*plans)[i];
+    if (num_searched < options_.max_saturated_searches_per_node) {
+      PlanAndNote(*candidates[i], &plan);
+      if (plan.is_searched() &&
+          plan.translation_sigma < options_.saturated_sigma) {
+        ++num_searched;
+      }
+      continue;
+    }
+    // One record for all, or the records would grow with every visit.
+    plan.skipped = LoopDecision::SKIPPED_UNINFORMATIVE;
+    plan.out_of_reach = is_recorded || distance(i) > reach_;
+    is_recorded = is_recorded || !plan.out_of_reach;
+  }
+}
+
 std::vector<SearchPlan> SearchPlanner::Plan(
     const std::vector<const LoopCandidate*>& candidates) {
-  std::vector<SearchPlan> plans(candidates.size());
   std::map<uncertainty::NodeId, std::vector<size_t>> of_node;
   for (size_t i = 0; i < candidates.size(); ++i) {
     credit_.AddNode(candidates[i]->node);
-    // One by one, since the searches of a burst space each other out.
-    plans[i] = PlanAlone(*candidates[i]);
-    if (plans[i].out_of_reach || plans[i].skipped != LoopDecision::NONE) {
-      continue;
-    }
     of_node[candidates[i]->node].push_back(i);
-    Nodes* const searched = submaps_[candidates[i]->submap].Searched(plans[i]);
-    searched->emplace(candidates[i]->node, candidates[i]->node_time);
-    if (searched->size() > kMaxNodesPerSubmap) {
-      searched->erase(searched->begin());
-    }
   }
+  std::vector<SearchPlan> plans(candidates.size());
+  // One by one, since the searches of a burst space each other out.
+  for (const auto& entry : of_node) PlanNode(candidates, entry.second, &plans);
   for (const auto& entry : of_node) ApplyCap(candidates, entry.second, &plans);
   return plans;
 }

@@ -17,6 +17,10 @@
 //              searched: those with much to gain that are near enough to
 //              overlap; wide windows only while there is credit for them
 //              (search_credit.h).
+//   saturation A submap that many loops constrain already gains little from
+//              another one, and a node needs few loops. Of the saturated
+//              submaps around a node only the nearest are searched, so that its
+//              cost does not grow with the number of earlier visits.
 //
 // The plans depend only on the sequence of previous proposals and decisions.
 // Not thread-safe.
@@ -71,6 +75,13 @@ struct SearchPlannerOptions {
   // Metres. If the path to the submap is less uncertain than this, a loop would
   // not add information.
   double informative_sigma = 0.05;
+  // A submap with this many accepted loops is saturated, > 0: one more lowers
+  // the standard deviation of its pose by half a percent. Of the saturated
+  // submaps around a node this many are searched if the path to them is less
+  // uncertain than `saturated_sigma` metres, otherwise all.
+  int saturating_loops = 100;
+  double saturated_sigma = 1.;
+  int max_saturated_searches_per_node = 1;  // > 0
 };
 
 // Plans the searches of candidates, see above.
@@ -125,9 +136,17 @@ class SearchPlanner {
   // The window for the uncertainty of the prediction, into the plan; returns
   // whether the uncertainty is known.
   bool PlanWindow(const LoopCandidate& candidate, SearchPlan* plan);
+  bool IsSaturated(const uncertainty::SubmapId& submap) const;
+  // Plans a candidate and notes the search.
+  void PlanAndNote(const LoopCandidate& candidate, SearchPlan* plan);
+  // Plans the candidates of one node, `indices`.
+  void PlanNode(const std::vector<const LoopCandidate*>& candidates,
+                const std::vector<size_t>& indices,
+                std::vector<SearchPlan>* plans);
   // Priority of a candidate; larger is better.
   double Promise(const LoopCandidate& candidate, const SearchPlan& plan) const;
-  // Skips all but the most promising of the candidates of one node, `indices`.
+  // Of the planned searches of one node, `of_node`, skips all but the most
+  // promising.
   void ApplyCap(const std::vector<const LoopCandidate*>& candidates,
                 const std::vector<size_t>& indices,
                 std::vector<SearchPlan>* plans);

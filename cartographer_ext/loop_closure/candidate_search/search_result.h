@@ -20,7 +20,8 @@ namespace loop_closure {
 struct SearchPlan {
   // NONE: to be searched. Otherwise why not.
   proto::LoopDecision::Reason skipped = proto::LoopDecision::NONE;
-  // Beyond the largest window: not a candidate.
+  // Beyond the largest window, or one of many of which one is recorded: not a
+  // candidate.
   bool out_of_reach = false;
   bool full_submap = false;
   double linear_window = 0.;   // metres, half width
@@ -32,6 +33,10 @@ struct SearchPlan {
   // their node in a whole map. Skipped ones are included because hypotheses are
   // tracked into their submaps.
   int64_t query = -1;
+
+  bool is_searched() const {
+    return skipped == proto::LoopDecision::NONE && !out_of_reach;
+  }
 };
 
 // Result of the correlative search and of the refinement started from it.

@@ -250,6 +250,42 @@ TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
   EXPECT_EQ(plan.linear_window, 7.);
 }
 
+// Submaps that many loops constrain share a limit per node, and one record.
+TEST_F(SearchPlannerTest, OfSaturatedSubmapsTheNearestIsSearched) {
+  options_.max_searches_per_node = 8;
+  options_.saturating_loops = 3;
+  options_.saturated_sigma = 2.;
+  MakePlanner();
+  const auto saturate = [&](const int submap, const int num_loops) {
+    for (int i = 0; i < num_loops; ++i) {
+      LoopCandidate accepted = Accepted(submap, 0);
+      uncertainty::LoopEdge loop;
+      loop.a = uncertainty::NodeId{0, 0};
+      loop.b = uncertainty::NodeId{0, 10 * (i + 1)};
+      loop.pose.covariance = Eigen::Vector3d(9., 9., 0.).asDiagonal();
+      planner_->AddAcceptedLoop(accepted, loop);
+    }
+  };
+  for (const int submap : {0, 1, 2}) saturate(submap, 3);
+  saturate(3, 2);
+  const auto plans = PlanAll({Pair(0, 0, 100, 9.), Pair(1, 0, 100, 4.),
+                              Pair(2, 0, 100, 6.), Pair(3, 0, 100, 9.)});
+  EXPECT_EQ(plans[1].skipped, LoopDecision::NONE);
+  EXPECT_EQ(plans[3].skipped, LoopDecision::NONE);
+  EXPECT_EQ(plans[2].skipped, LoopDecision::SKIPPED_UNINFORMATIVE);
+  EXPECT_FALSE(plans[2].out_of_reach);
+  EXPECT_TRUE(plans[0].out_of_reach);
+  // While the place is uncertain (one metre), all are.
+  options_.saturated_sigma = 0.9;
+  MakePlanner();
+  for (const int submap : {0, 1, 2}) saturate(submap, 3);
+  for (const SearchPlan& plan :
+       PlanAll({Pair(0, 0, 100, 9.), Pair(1, 0, 100, 4.)})) {
+    EXPECT_EQ(plan.skipped, LoopDecision::NONE);
+    EXPECT_FALSE(plan.out_of_reach);
+  }
+}
+
 }  // namespace
 }  // namespace loop_closure
 }  // namespace cartographer_ext
