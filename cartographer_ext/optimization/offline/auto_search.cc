@@ -178,7 +178,7 @@ std::unique_ptr<Portfolio> SearchWithNoise(const PoseGraph& graph,
 AutoResult SearchAutomatically(const PoseGraph& graph,
                                const AutoOptions& options) {
   AutoResult result;
-  std::vector<PoseGraph> scaled(2);  // outlive the portfolios
+  std::vector<PoseGraph> scaled(3);  // outlive the portfolios
   auto portfolio = absl::make_unique<Portfolio>(graph, options.portfolio);
   portfolio->Run();
   if (options.estimate_noise && graph.edges.size() < kMaxEdgesForNoise) {
@@ -195,6 +195,12 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
       // The map is known but for its metric.
       portfolio = SearchWithNoise(graph, noise, options, *portfolio,
                                   /*whole=*/false, &scaled[1]);
+      applied = noise.metric;
+      map = MeasureNoise(portfolio.get());
+    }
+    if (FindSmallerNoise(applied, map, *portfolio, &noise)) {
+      portfolio = SearchWithNoise(graph, noise, options, *portfolio,
+                                  /*whole=*/false, &scaled[2]);
       applied = noise.metric;
     }
     result.applied_odometry_scale = applied.odometry;

@@ -11,7 +11,10 @@
 //      loops then look as they should. That noise is the metric of all that
 //      follows, the result included. Where one of odometry and loops claims too
 //      much noise in relation to the other, the search continues from its
-//      members with the estimate; the larger of both factors stays at least one;
+//      members with the estimate; the larger of both factors stays at least one.
+//      Below one are both only where that decides between two maps: where the
+//      lowest cost needs the noise that the matrices claim, and another map costs
+//      less with the noise that the data show;
 //   3. the members near the lowest truncated cost polished with a gate adapted
 //      to the scale of the accepted loops, where the matrices claim too little;
 //      the lowest cost truncated there is taken. Where they do not, that of

@@ -21,6 +21,8 @@ namespace {
 
 // Loops with a chi2 beyond so many gates are not worth a look.
 constexpr double kNear = 100.;
+// Gates beyond which a loop is rejected in a map that is another one.
+constexpr double kDecisive = 4.;
 // Relative decrease of the cost that counts.
 constexpr double kProgress = 1e-9;
 // The same for a move after which all others are tried again.
@@ -213,6 +215,18 @@ bool Regrow(const LoopSupport& support, const double gate,
 }
 
 }  // namespace
+
+bool DifferNearGateOnly(const std::vector<WhitenedEdge>& edges,
+                        const std::vector<Pose2>& a,
+                        const std::vector<Pose2>& b) {
+  return std::all_of(edges.begin(), edges.end(), [&](const WhitenedEdge& edge) {
+    if (!edge.is_loop) return true;
+    const double in_a = Chi2(edge, a[edge.from], a[edge.to]);
+    const double in_b = Chi2(edge, b[edge.from], b[edge.to]);
+    return std::min(in_a, in_b) >= kChi2Gate ||
+           std::max(in_a, in_b) < kDecisive * kChi2Gate;
+  });
+}
 
 int FlipLoops(const FlipOptions& options, RobustSolver* const solver,
               std::vector<Pose2>* const poses) {

@@ -36,6 +36,13 @@
 namespace cartographer_ext {
 namespace optimization {
 
+// Whether two maps decide all loops alike but for those near the gate: whether no
+// loop is in force in one and beyond four gates in the other, which is twice the
+// residual that is accepted at most.
+bool DifferNearGateOnly(const std::vector<WhitenedEdge>& edges,
+                        const std::vector<Pose2>& a,
+                        const std::vector<Pose2>& b);
+
 // Limits of FlipLoops.
 struct FlipOptions {
   double gate = kChi2Gate;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 
@@ -28,6 +29,12 @@ constexpr double kNearlyAll = 0.98;
 // are, and the share of its loops that it keeps.
 constexpr double kMinRatio = 1.25;
 constexpr double kMostly = 0.75;
+
+// Upper bound of a factor from which a smaller noise is looked into, and loops by
+// which a map has to cost less with it to be another one.
+constexpr double kSmaller = 0.9;
+constexpr double kAnother = 3.;
+constexpr int kMaxMaps = 3;  // in turn
 
 enum class Floor {
   kEach,    // no factor is below one
@@ -242,6 +249,55 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
                       applied.loops * scale.loops.factor},
                      trial);
   if (!found->valid || found->accepted < kMostly * map.accepted) return false;
+  RoundScales(&found->metric);
+  return found->metric.odometry != applied.odometry ||
+         found->metric.loops != applied.loops;
+}
+
+bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
+                      const Portfolio& portfolio,
+                      NoiseHypothesis* const found) {
+  if (map.accepted < kMinLoops ||
+      std::min(map.scale.odometry.high, map.scale.loops.high) >= kSmaller) {
+    return false;
+  }
+  // In relation to that of the portfolio.
+  NoiseMetric metric = {map.scale.odometry.factor, map.scale.loops.factor};
+  found->poses = portfolio.best().poses;
+  found->valid = false;
+  for (int k = 0; k != kMaxMaps; ++k) {
+    const std::vector<WhitenedEdge> edges =
+        WithNoiseScale(portfolio.edges(), metric.odometry, metric.loops);
+    RobustSolver solver(edges);
+    const double ours = TruncatedCost(edges, portfolio.best().poses);
+    double lowest = TruncatedCost(edges, found->poses) * (1. - 1e-6);
+    const Portfolio::Member* other = nullptr;
+    for (const Portfolio::Member& member : portfolio.members()) {
+      const double cost = TruncatedCost(edges, member.poses);
+      if (cost >= lowest) continue;
+      lowest = cost;
+      other = &member;
+    }
+    if (other == nullptr) {
+      found->valid = lowest < ours - kAnother * kChi2Gate &&
+                     !DifferNearGateOnly(portfolio.edges(), found->poses,
+                                         portfolio.best().poses);
+      break;
+    }
+    // What it says about the noise itself.
+    found->poses = other->poses;
+    std::vector<double> weights;
+    PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &found->poses,
+                    &weights);
+    found->accepted = CountLoops(edges, weights);
+    if (found->accepted < kMinLoops) break;
+    const NoiseScale noise = EstimateNoiseScale(found->poses, weights, &solver);
+    metric.odometry *= noise.odometry.factor;
+    metric.loops *= noise.loops.factor;
+  }
+  if (!found->valid) return false;
+  found->metric = {applied.odometry * std::min(1., metric.odometry),
+                   applied.loops * std::min(1., metric.loops)};
   RoundScales(&found->metric);
   return found->metric.odometry != applied.odometry ||
          found->metric.loops != applied.loops;

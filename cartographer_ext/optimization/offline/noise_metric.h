@@ -54,6 +54,15 @@ bool FindLargerNoise(const PoseGraph& graph, const NoiseOfMap& map,
 bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
                     const Portfolio& portfolio, NoiseHypothesis* found);
 
+// Finds a noise smaller than the matrices claim with which another map of the
+// portfolio costs less than its best, and decides loops differently that are not
+// near the gate; false where there is none. A gate that is too wide lets groups of
+// wrong loops bend odometry that is better than it claims. Where the same map is
+// the best in both metrics, the given one is as good. `applied` and `map` as
+// above.
+bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
+                      const Portfolio& portfolio, NoiseHypothesis* found);
+
 }  // namespace optimization
 }  // namespace cartographer_ext
 

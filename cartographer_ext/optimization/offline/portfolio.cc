@@ -25,9 +25,6 @@ constexpr double kSame = 1e-6;
 // Loops by which solvers differ that decide only what is near the gate
 // differently.
 constexpr double kNearlySame = 3.;
-// Gates beyond which a loop is rejected in a map that is another one: twice the
-// residual that is accepted at most.
-constexpr double kDecisive = 4.;
 // Wrong loops that may fit into a map by chance for the search to end early.
 constexpr double kFewByChance = 1.;
 // Rejected loops whose innovation is looked at.
@@ -184,14 +181,9 @@ size_t Portfolio::RunQuick() {
 }
 
 bool Portfolio::DecideAlike(const size_t first) const {
-  const std::vector<double> ours = Chi2OfEdges(edges_, best().poses);
   for (size_t m = first; m != first + kQuickKernels; ++m) {
-    const std::vector<double> theirs = Chi2OfEdges(edges_, members_[m].poses);
-    for (size_t i = 0; i != edges_.size(); ++i) {
-      if (edges_[i].is_loop && std::min(ours[i], theirs[i]) < kChi2Gate &&
-          std::max(ours[i], theirs[i]) >= kDecisive * kChi2Gate) {
-        return false;
-      }
+    if (!DifferNearGateOnly(edges_, best().poses, members_[m].poses)) {
+      return false;
     }
   }
   return true;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 
+#include <cmath>
+
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/weak_ring.h"
@@ -56,6 +58,23 @@ TEST(DecisionMovesTest, FlipBringsInALoopThatTheMapAllows) {
   poses[20].y = 2.;
   solver.Solve(SolverOptions(), &poses);
   EXPECT_LT(Chi2(edges[20], poses[0], poses[20]), kChi2Gate);
+}
+
+TEST(DecisionMovesTest, MapsDifferNearTheGateOrFarFromIt) {
+  PoseGraphEdge loop;
+  loop.from = 0;
+  loop.to = 1;
+  loop.information = Eigen::Matrix3d::Identity();
+  loop.is_loop = true;
+  const std::vector<WhitenedEdge> edges =
+      Whiten(std::vector<PoseGraphEdge>{loop});
+  const auto at = [](const double gates) -> std::vector<Pose2> {
+    return {Pose2(), Pose2(std::sqrt(gates * kChi2Gate), 0., 0.)};
+  };
+  EXPECT_TRUE(DifferNearGateOnly(edges, at(0.9), at(3.9)));
+  EXPECT_TRUE(DifferNearGateOnly(edges, at(1.1), at(100.)));
+  EXPECT_FALSE(DifferNearGateOnly(edges, at(0.9), at(4.1)));
+  EXPECT_FALSE(DifferNearGateOnly(edges, at(4.1), at(0.9)));
 }
 
 TEST(DecisionMovesTest, RightGroupsPushOutAWrongOne) {

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/noise_metric.h"
 
+#include <cmath>
+
+#include "cartographer_ext/common/squared.h"
+#include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
 
@@ -58,6 +62,78 @@ TEST(NoiseMetricTest, AMapOfFewLoopsSaysNothing) {
   NoiseHypothesis found;
   EXPECT_FALSE(FindLargerNoise(world.graph, map, &portfolio, &found));
   EXPECT_FALSE(FindNoiseRatio(NoiseMetric(), map, portfolio, &found));
+}
+
+// A robot walks 200 m straight on and back, with right loops between both ways,
+// and a group of wrong ones that says it has come round in a circle. `circle`
+// receives the poses of that.
+PoseGraph MakeWayAndCircle(const double claimed,
+                           std::vector<Pose2>* const circle) {
+  constexpr int kLength = 200, kRound = 160;
+  Random random(1);
+  PoseGraph graph;
+  for (int i = 0; i != 2 * kLength; ++i) {
+    graph.ids.push_back(i);
+    const int along = i < kLength ? i : 2 * kLength - 1 - i;
+    const double back = i < kLength ? 0. : kPi;
+    const double angle = 2. * kPi * along / kRound;
+    const double radius = kRound / (2. * kPi);
+    graph.poses.push_back(Pose2(along, 0., back));
+    circle->push_back(Pose2(radius * std::sin(angle),
+                            radius * (1. - std::cos(angle)),
+                            NormalizeAngle(angle + back)));
+  }
+  const auto add = [&](const int from, const int to, const bool is_loop,
+                       const Pose2& measurement) {
+    PoseGraphEdge edge;
+    edge.from = from;
+    edge.to = to;
+    edge.is_loop = is_loop;
+    edge.measurement =
+        measurement * Pose2(random.Normal(0., 0.02), random.Normal(0., 0.02),
+                            random.Normal(0., 0.002));
+    const Eigen::Vector3d actual(2500., 2500., 250000.);
+    edge.information = (actual / Squared(claimed)).asDiagonal();
+    graph.edges.push_back(edge);
+  };
+  const auto add_right = [&](const int from, const int to, const bool is_loop) {
+    add(from, to, is_loop, Between(graph.poses[from], graph.poses[to]));
+  };
+  for (int i = 1; i != 2 * kLength; ++i) add_right(i - 1, i, false);
+  for (int i = 0; i < kLength - 10; i += 8) {
+    add_right(i, 2 * kLength - 1 - i, true);
+  }
+  for (int i = 20; i != 26; ++i) add(i, i + kRound, true, Pose2());
+  return graph;
+}
+
+// Matrices of sixty times the actual noise let the circle cost less than six
+// refused loops; the noise that it shows itself makes it cost more.
+TEST(NoiseMetricTest, ASmallerNoiseDecidesBetweenMaps) {
+  std::vector<Pose2> circle;
+  const PoseGraph graph = MakeWayAndCircle(60., &circle);
+  Portfolio portfolio(graph, PortfolioOptions());
+  portfolio.Add("straight", graph.poses);
+  NoiseHypothesis noise;
+  // There is no other map.
+  EXPECT_FALSE(FindSmallerNoise(NoiseMetric(), MeasureNoise(&portfolio),
+                                portfolio, &noise));
+  portfolio.Add("circle", circle);
+  ASSERT_EQ(portfolio.best().name, "circle");
+  ASSERT_TRUE(FindSmallerNoise(NoiseMetric(), MeasureNoise(&portfolio),
+                               portfolio, &noise));
+  // With few loops the prior holds it back.
+  EXPECT_LT(noise.metric.odometry, 0.1);
+  EXPECT_LT(AbsoluteTrajectoryError(noise.poses, graph.poses), 0.5);
+  // Nor does it where the matrices are right.
+  circle.clear();
+  const PoseGraph honest = MakeWayAndCircle(1., &circle);
+  Portfolio careful(honest, PortfolioOptions());
+  careful.Add("straight", honest.poses);
+  careful.Add("circle", circle);
+  EXPECT_EQ(careful.best().name, "straight");
+  EXPECT_FALSE(
+      FindSmallerNoise(NoiseMetric(), MeasureNoise(&careful), careful, &noise));
 }
 
 }  // namespace
