@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/repair/map_repair.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "cartographer/mapping/trajectory_node.h"
+#include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/experiments/wrong_loops.h"
 #include "cartographer_ext/io/pbstream/pbstream_validation.h"
 #include "cartographer_ext/io/pbstream/pbstream_writer.h"
@@ -124,6 +128,40 @@ TEST_F(MapRepairTest, AnyNumberOfThreadsGivesTheSameBytes) {
     bytes[threads == 1] = io::SerializePbstream(*repair->after.pbstream);
   }
   EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+// The second half saw everything at 0.6 of its distance, which nothing repairs; the
+// wrong loops go, and the map is still broken.
+TEST_F(MapRepairTest, WhatStaysBrokenIsNotWritten) {
+  io::Pbstream broken = Broken();
+  for (size_t i = broken.nodes.size() / 2; i < broken.nodes.size(); ++i) {
+    auto* const proto = broken.nodes[i].mutable_node_data();
+    auto data = cartographer::mapping::FromProto(*proto);
+    std::vector<cartographer::sensor::RangefinderPoint> points;
+    for (const auto& point : data.filtered_gravity_aligned_point_cloud) {
+      points.push_back({0.6f * point.position});
+    }
+    data.filtered_gravity_aligned_point_cloud =
+        cartographer::sensor::PointCloud(points);
+    *proto = cartographer::mapping::ToProto(data);
+  }
+  RepairOptions options = Options();
+  options.local = false;
+  const auto repair = RepairMap(broken, options);
+  ASSERT_TRUE(repair.ok()) << repair.status();
+  EXPECT_EQ(repair->before.quality.verdict, "broken");
+  EXPECT_TRUE(std::any_of(repair->steps.begin(), repair->steps.end(),
+                          [](const RepairStep& step) { return step.kept; }));
+  EXPECT_FALSE(repair->changed());
+  EXPECT_THAT(repair->conclusion, StartsWith("cannot be repaired"));
+  EXPECT_THAT(repair->conclusion,
+              HasSubstr("the best version is still broken"));
+
+  // Corrected by hand, it is written for the next correction.
+  options.dropped_loops = {broken.pose_graph.constraint_size() - 1};
+  const auto by_hand = RepairMap(broken, options);
+  ASSERT_TRUE(by_hand.ok()) << by_hand.status();
+  EXPECT_TRUE(by_hand->changed());
 }
 
 TEST_F(MapRepairTest, AMapWithoutNodesIsRefused) {
