@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "Eigen/Eigenvalues"
 #include "glog/logging.h"
@@ -200,39 +201,40 @@ void SearchPlanner::ApplyCap(
   }
 }
 
+void SearchPlanner::Remember(const uncertainty::VertexId& node,
+                             const int64_t time, Nodes* const nodes) {
+  nodes->emplace(node, time);
+  if (nodes->size() > kMaxNodesPerSubmap) nodes->erase(nodes->begin());
+}
+
 void SearchPlanner::PlanAndNote(const LoopCandidate& candidate,
                                 SearchPlan* const plan) {
   *plan = PlanAlone(candidate);
   if (!plan->is_searched()) return;
-  Nodes* const searched = submaps_[candidate.submap].Searched(*plan);
-  searched->emplace(candidate.node, candidate.node_time);
-  if (searched->size() > kMaxNodesPerSubmap) searched->erase(searched->begin());
+  Remember(candidate.node, candidate.node_time,
+           submaps_[candidate.submap].Searched(*plan));
 }
 
 void SearchPlanner::PlanNode(
     const std::vector<const LoopCandidate*>& candidates,
     const std::vector<size_t>& indices, std::vector<SearchPlan>* const plans) {
-  std::vector<size_t> saturated;
+  // With their distances, nearest first.
+  std::vector<std::pair<double, size_t>> saturated;
   for (const size_t i : indices) {
     if (IsSaturated(candidates[i]->submap)) {
-      saturated.push_back(i);
+      saturated.emplace_back(candidates[i]->SearchCenter().translation().norm(),
+                             i);
     } else {
       PlanAndNote(*candidates[i], &(*plans)[i]);
     }
   }
-  const auto distance = [&](const size_t i) {
-    return candidates[i]->SearchCenter().translation().norm();
-  };
-  std::stable_sort(saturated.begin(), saturated.end(),
-                   [&](const size_t a, const size_t b) {
-                     return distance(a) < distance(b);
-                   });
+  std::sort(saturated.begin(), saturated.end());
   int num_searched = 0;
   bool is_recorded = false;
-  for (const size_t i : saturated) {
-    SearchPlan& plan = (*plans)[i];
+  for (const auto& entry : saturated) {
+    SearchPlan& plan = (*plans)[entry.second];
     if (num_searched < options_.max_saturated_searches_per_node) {
-      PlanAndNote(*candidates[i], &plan);
+      PlanAndNote(*candidates[entry.second], &plan);
       if (plan.is_searched() &&
           plan.translation_sigma < options_.saturated_sigma) {
         ++num_searched;
@@ -241,7 +243,7 @@ void SearchPlanner::PlanNode(
     }
     // One record for all, or the records would grow with every visit.
     plan.skipped = LoopDecision::SKIPPED_UNINFORMATIVE;
-    plan.out_of_reach = is_recorded || distance(i) > reach_;
+    plan.out_of_reach = is_recorded || entry.first > reach_;
     is_recorded = is_recorded || !plan.out_of_reach;
   }
 }
@@ -263,9 +265,7 @@ std::vector<SearchPlan> SearchPlanner::Plan(
 void SearchPlanner::AddAcceptedLoop(const LoopCandidate& candidate,
                                     const uncertainty::LoopEdge& loop) {
   credit_.Reward(candidate.plan);
-  Nodes& accepted = submaps_[candidate.submap].accepted;
-  accepted.emplace(loop.b, candidate.node_time);
-  if (accepted.size() > kMaxNodesPerSubmap) accepted.erase(accepted.begin());
+  Remember(loop.b, candidate.node_time, &submaps_[candidate.submap].accepted);
   least_uncertain_paths_.Add(loop);
 }
 

@@ -136,6 +136,9 @@ class SearchPlanner {
   // The window for the uncertainty of the prediction, into the plan; returns
   // whether the uncertainty is known.
   bool PlanWindow(const LoopCandidate& candidate, SearchPlan* plan);
+  // Adds a node, within the bound on memory.
+  static void Remember(const uncertainty::VertexId& node, int64_t time,
+                       Nodes* nodes);
   bool IsSaturated(const uncertainty::SubmapId& submap) const;
   // Plans a candidate and notes the search.
   void PlanAndNote(const LoopCandidate& candidate, SearchPlan* plan);
