@@ -85,8 +85,8 @@ vector-effect:non-scaling-stroke}
 .middle{text-anchor:middle}.end{text-anchor:end}
 .ring{fill:#d55e00;fill-opacity:.1;stroke:#d55e00;stroke-width:2.5;
 vector-effect:non-scaling-stroke}
-.ring-label{font-size:24px;font-weight:700;fill:#8a3300;stroke:#fff;
-stroke-width:4;paint-order:stroke}
+.ring-label{font-size:calc(24px*var(--zoom,1));font-weight:700;fill:#8a3300;
+stroke:#fff;stroke-width:calc(4px*var(--zoom,1));paint-order:stroke}
 .scale{fill:none;stroke:#222;stroke-width:2;vector-effect:non-scaling-stroke}
 .scale-label{font-size:20px;fill:#222;stroke:#fff;stroke-width:4;
 paint-order:stroke}

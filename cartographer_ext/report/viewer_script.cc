@@ -19,6 +19,7 @@ var frame=document.createElement('div'),at=home.slice(),fingers={},moved=0;
 frame.className='viewer';svg.parentNode.insertBefore(frame,svg);
 frame.appendChild(svg);svg.tabIndex=0;
 function show(){svg.setAttribute('viewBox',at.join(' '));
+svg.style.setProperty('--zoom',at[2]/home[2]);
 frame.classList.toggle('zoomed',at[2]<home[2]*.999);}
 function place(x,y){var r=svg.getBoundingClientRect();
 var s=Math.max(at[2]/r.width,at[3]/r.height);

@@ -136,10 +136,17 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
 
 std::string ToText(const SlamRun& run) {
   std::string text;
-  absl::StrAppendFormat(
-      &text, "Map        %d nodes, %d submaps, %d loops from %d searches\n",
-      run.nodes, run.submaps, run.inter_constraints, run.loop_searches);
-  if (run.loaded_nodes > 0) absl::StrAppend(&text, LocalizedToText(run));
+  absl::StrAppendFormat(&text, "Map        %d nodes, %d submaps, ", run.nodes,
+                        run.submaps);
+  if (run.loaded_nodes > 0) {
+    // Loops of trimmed submaps are gone by the end.
+    absl::StrAppendFormat(&text, "loops found by %d of %d searches\n",
+                          run.loops_found, run.loop_searches);
+    absl::StrAppend(&text, LocalizedToText(run));
+  } else {
+    absl::StrAppendFormat(&text, "%d loops from %d searches\n",
+                          run.inter_constraints, run.loop_searches);
+  }
   absl::StrAppendFormat(&text,
                         "Time       %.1f s for %.1f s of sensor data; CPU %.1f "
                         "s, including %.1f s of local SLAM; %.0f MB\n",

@@ -274,7 +274,12 @@ svg.dispatchEvent(new PointerEvent(type, {pointerId: id, clientX: r.left + x,
 clientY: r.top + y})); }
 function click(e) { e.dispatchEvent(new MouseEvent('click', {bubbles: true})); }
 function width() { return +box(svg).split(' ')[2]; }
+var label = svg.querySelector('.ring-label');
+function fontSize() { return parseFloat(getComputedStyle(label).fontSize); }
+var font = fontSize();
 out.plus = key('+') !== home;
+out.labelKeepsItsSize = Math.abs(fontSize() / font -
+width() / +home.split(' ')[2]) < .01;
 var before = box(svg);
 out.arrow = key('ArrowLeft') !== before;
 out.all = key('0') === home;

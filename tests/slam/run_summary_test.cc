@@ -36,7 +36,12 @@ TEST(RunSummaryTest, TellsWhenAndWhereItWasLocalized) {
   SlamRun run;
   EXPECT_FALSE(ToJson(run).contains("localized"));
   EXPECT_THAT(ToText(run), testing::Not(testing::HasSubstr("Localised")));
+  EXPECT_THAT(ToText(run), testing::HasSubstr("0 loops from 0 searches"));
   run.loaded_nodes = 5;
+  run.loop_searches = 3222;
+  run.loops_found = 812;
+  EXPECT_THAT(ToText(run),
+              testing::HasSubstr("loops found by 812 of 3222 searches"));
   EXPECT_TRUE(ToJson(run)["localized"].is_null());
   EXPECT_THAT(ToText(run), testing::HasSubstr("Localised  never"));
   run.local_scan_poses.push_back(io::MakeStampedPose(1000000000, Pose2()));

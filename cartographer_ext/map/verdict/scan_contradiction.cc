@@ -7,27 +7,11 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace cartographer_ext {
 namespace evaluation {
 namespace {
-
-// The nodes inserted in a submap, as spans of indices by trajectory.
-struct IndexSpan {
-  int first = 0;
-  int last = -1;
-};
-
-std::map<GraphId, IndexSpan> InsertionSpans(const MapGraph& graph) {
-  std::map<GraphId, IndexSpan> spans;
-  for (const auto& entry : graph.InsertedNodes()) {
-    IndexSpan span;
-    span.first = entry.second.front().index;
-    span.last = entry.second.back().index;
-    spans[entry.first] = span;
-  }
-  return spans;
-}
 
 // Axis-aligned box of a submap in the map frame.
 struct Box {
@@ -49,6 +33,66 @@ Box SubmapBox(const SubmapCells& cells, const Pose2& map_from_local) {
     box.max = box.max.cwiseMax(point);
   }
   return box;
+}
+
+// A submap as seen from a node inserted in it. The optimisation moves the nodes
+// of a submap against each other: where a long submap is bent, its far end as
+// drawn lies elsewhere than the scans it was drawn from.
+struct Anchor {
+  Eigen::Vector2d place;  // of the node, map frame
+  Pose2 local_from_map;   // of the submap, by the poses of this node
+};
+
+struct PlacedSubmap {
+  GraphId id;
+  const SubmapCells* cells;
+  std::vector<Anchor> anchors;  // at least one
+  int first_node, last_node;    // inserted
+  Box box;                      // by the pose of the submap
+
+  // As inserted nodes nearest to a place saw it.
+  const Pose2& LocalFromMap(const Eigen::Vector2d& place) const {
+    const auto distance = [&place](const Anchor& anchor) {
+      return (anchor.place - place).squaredNorm();
+    };
+    return std::min_element(anchors.begin(), anchors.end(),
+                            [&distance](const Anchor& a, const Anchor& b) {
+                              return distance(a) < distance(b);
+                            })
+        ->local_from_map;
+  }
+};
+
+std::vector<PlacedSubmap> PlaceSubmaps(const MapGraph& graph,
+                                       const MapContents& contents) {
+  std::map<GraphId, std::vector<Anchor>> anchors;
+  std::map<GraphId, std::pair<int, int>> spans;
+  for (const GraphConstraint& constraint : graph.constraints) {
+    if (constraint.is_loop) continue;
+    const auto submap = graph.submaps.find(constraint.submap_id);
+    const auto node = graph.nodes.find(constraint.node_id);
+    if (submap == graph.submaps.end() || node == graph.nodes.end()) continue;
+    const Pose2& pose = node->second.global_pose;
+    anchors[constraint.submap_id].push_back(
+        {pose.translation(), submap->second.local_pose *
+                                 constraint.relative_pose * pose.Inverse()});
+    const int index = constraint.node_id.index;
+    auto& span =
+        spans.emplace(constraint.submap_id, std::make_pair(index, index))
+            .first->second;
+    span = {std::min(span.first, index), std::max(span.second, index)};
+  }
+  std::vector<PlacedSubmap> placed;
+  for (const auto& entry : graph.submaps) {
+    const auto cells = contents.submaps.find(entry.first);
+    const auto span = spans.find(entry.first);
+    if (cells == contents.submaps.end() || span == spans.end()) continue;
+    placed.push_back({entry.first, &cells->second,
+                      std::move(anchors.at(entry.first)), span->second.first,
+                      span->second.second,
+                      SubmapBox(cells->second, MapFromLocal(entry.second))});
+  }
+  return placed;
 }
 
 // True where the ray goes through a wall and on, well before its end.
@@ -138,23 +182,7 @@ void FindPieces(const MapGraph& graph, const ContradictionOptions& options,
 Contradictions FindContradictions(const MapGraph& graph,
                                   const MapContents& contents,
                                   const ContradictionOptions& options) {
-  struct Placed {
-    GraphId id;
-    const SubmapCells* cells;
-    Pose2 local_from_map;
-    Box box;
-    IndexSpan span;
-  };
-  const auto spans = InsertionSpans(graph);
-  std::vector<Placed> submaps;
-  for (const auto& entry : graph.submaps) {
-    const auto cells = contents.submaps.find(entry.first);
-    const auto span = spans.find(entry.first);
-    if (cells == contents.submaps.end() || span == spans.end()) continue;
-    const Pose2 map_from_local = MapFromLocal(entry.second);
-    submaps.push_back({entry.first, &cells->second, map_from_local.Inverse(),
-                       SubmapBox(cells->second, map_from_local), span->second});
-  }
+  const std::vector<PlacedSubmap> submaps = PlaceSubmaps(graph, contents);
   Contradictions result;
   for (const auto& entry : graph.nodes) {
     NodeContradiction node;
@@ -169,15 +197,16 @@ Contradictions FindContradictions(const MapGraph& graph,
         box.min = box.min.cwiseMin(end);
         box.max = box.max.cwiseMax(end);
       }
-      for (const Placed& submap : submaps) {
+      for (const PlacedSubmap& submap : submaps) {
         if (submap.id.trajectory_id == entry.first.trajectory_id &&
-            entry.first.index > submap.span.first - options.min_node_gap &&
-            entry.first.index < submap.span.last + options.min_node_gap) {
+            entry.first.index > submap.first_node - options.min_node_gap &&
+            entry.first.index < submap.last_node + options.min_node_gap) {
           continue;
         }
         if (!box.Meets(submap.box)) continue;
         ScanConflict conflict = HoldAgainst(
-            scan->second, submap.local_from_map * pose, *submap.cells, options);
+            scan->second, submap.LocalFromMap(pose.translation()) * pose,
+            *submap.cells, options);
         if (conflict.judged < options.min_judged) continue;
         conflict.node_id = entry.first;
         conflict.submap_id = submap.id;

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Contradictions within a map, without ground truth. Each scan, at the pose of
-// its node in the map, is compared with the submaps of other times: a return in
-// space that such a submap holds free, or a ray through a wall of such a
-// submap, indicates that one of the two is misplaced. (Moved furniture has the
-// same effect, but on a few rays, not on most of the scan.) A folded map has
-// path pieces whose scans contradict most of the submaps they overlap.
+// its node in the map, is compared with the submaps of other times, each placed
+// by its inserted node nearest to the scan: a return in space that such a
+// submap holds free, or a ray through a wall of such a submap, indicates that
+// one of the two is misplaced. (Moved furniture has the same effect, but on a
+// few rays, not on most of the scan.) A folded map has path pieces whose scans
+// contradict most of the submaps they overlap.
 //
 // Scans are not compared with the submaps they were inserted into, nor with
 // those built just before or after, which local SLAM has aligned.

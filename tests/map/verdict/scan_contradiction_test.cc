@@ -66,6 +66,37 @@ TEST(ScanContradictionTest, NodesMovedAwayContradictTheFirstSubmap) {
   EXPECT_GT(result.node_fraction(), 0.5);
 }
 
+// What is judged are the poses of the nodes, not where the submap, which may be
+// bent, is drawn.
+TEST(ScanContradictionTest, SubmapsArePlacedByTheirNodes) {
+  const Pose2 wrong(1.5, 1.2, DegToRad(20.));
+  test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  world.graph.submaps.at({0, 1}).global_pose = wrong;
+  EXPECT_EQ(FindContradictions(world.graph, world.contents, {}).conflict_nodes,
+            0);
+  world = test::MakeBoxWorld(90, wrong);
+  world.graph.submaps.at({0, 1}).global_pose = Pose2();
+  const Contradictions result =
+      FindContradictions(world.graph, world.contents, {});
+  ASSERT_EQ(result.pieces.size(), 2u);
+  EXPECT_EQ(result.pieces.front().first_node, (GraphId{0, 0}));
+  EXPECT_THAT(result.pieces.front().submaps, ElementsAre(GraphId{0, 1}));
+  EXPECT_EQ(result.pieces.back().num_nodes, 10);
+}
+
+// Of the nodes inserted in a submap the nearest one places it.
+TEST(ScanContradictionTest, ABentSubmapIsPlacedPieceByPiece) {
+  test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  for (int i = 95; i < 100; ++i) {
+    auto& pose = world.graph.nodes.at({0, i}).global_pose;
+    pose = Pose2(0., 40., 0.) * pose;  // far from all others
+  }
+  const Contradictions result =
+      FindContradictions(world.graph, world.contents, {});
+  EXPECT_GT(result.judged_nodes, 40);
+  EXPECT_EQ(result.conflict_nodes, 0);
+}
+
 TEST(ScanContradictionTest, OwnAndNeighbouringSubmapsDoNotCount) {
   const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
   ContradictionOptions options;
