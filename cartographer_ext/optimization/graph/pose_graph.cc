@@ -281,10 +281,17 @@ double UnwhitenedSquaredNorm(const WhitenedEdge& edge,
 
 std::vector<double> Chi2OfEdges(const std::vector<WhitenedEdge>& edges,
                                 const std::vector<Pose2>& poses) {
+  std::vector<Eigen::Vector2d> rotations(poses.size());
+  for (size_t i = 0; i != poses.size(); ++i) {
+    rotations[i] << std::cos(poses[i].theta), std::sin(poses[i].theta);
+  }
   std::vector<double> result;
   result.reserve(edges.size());
   for (const WhitenedEdge& edge : edges) {
-    result.push_back(Chi2(edge, poses[edge.from], poses[edge.to]));
+    const Eigen::Vector2d& rotation = rotations[edge.from];
+    result.push_back(Residual(edge, poses[edge.from], poses[edge.to],
+                              rotation.x(), rotation.y())
+                         .squaredNorm());
   }
   return result;
 }

@@ -149,18 +149,25 @@ void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   for (const int i : near) result->accepted[i] = true;
 }
 
-// Searches the graph with another noise, which is returned in `scaled`.
+// An estimate in a search with the factor `applied`, for the given matrices.
+void ReferToGivenMatrices(const double applied, ScaleEstimate* const scale) {
+  scale->factor *= applied;
+  scale->low *= applied;
+  scale->high *= applied;
+}
+
+// Searches the graph with another noise, from what the last search has found.
 std::unique_ptr<Portfolio> SearchWithNoise(const PoseGraph& graph,
                                            const NoiseHypothesis& noise,
+                                           const bool anew,
                                            const AutoOptions& options,
-                                           const Portfolio& last,
-                                           const bool whole,
-                                           PoseGraph* const scaled) {
-  *scaled = WithNoiseScale(graph, noise.metric.odometry, noise.metric.loops);
-  auto result = absl::make_unique<Portfolio>(*scaled, options.portfolio);
+                                           const Portfolio& last) {
+  auto result = absl::make_unique<Portfolio>(
+      WithNoiseScale(graph, noise.metric.odometry, noise.metric.loops),
+      options.portfolio);
   std::vector<Portfolio::Member> known = last.members();
   known.push_back({"noise", noise.poses});
-  if (whole) {
+  if (anew) {
     result->Run();
     for (const Portfolio::Member& member : known) {
       result->Add(member.name, member.poses);
@@ -173,39 +180,39 @@ std::unique_ptr<Portfolio> SearchWithNoise(const PoseGraph& graph,
   return result;
 }
 
+// Steps 1 and 2 of the header; `applied` is the metric of the last search.
+std::unique_ptr<Portfolio> Search(const PoseGraph& graph,
+                                  const AutoOptions& options,
+                                  NoiseMetric* const applied) {
+  auto portfolio = absl::make_unique<Portfolio>(graph, options.portfolio);
+  portfolio->Run();
+  if (!options.estimate_noise || graph.edges.size() >= kMaxEdgesForNoise) {
+    return portfolio;
+  }
+  NoiseOfMap map = MeasureNoise(portfolio.get());
+  for (const NoiseChange change :
+       {NoiseChange::kLarger, NoiseChange::kRatio, NoiseChange::kSmaller}) {
+    NoiseHypothesis noise;
+    if (!FindNoise(change, *applied, map, portfolio.get(), &noise)) continue;
+    // Only where the matrices claim too little is another map to be expected
+    // than those that are known.
+    portfolio = SearchWithNoise(graph, noise, change == NoiseChange::kLarger,
+                                options, *portfolio);
+    *applied = noise.metric;
+    map = MeasureNoise(portfolio.get());
+  }
+  return portfolio;
+}
+
 }  // namespace
 
 AutoResult SearchAutomatically(const PoseGraph& graph,
                                const AutoOptions& options) {
   AutoResult result;
-  std::vector<PoseGraph> scaled(3);  // outlive the portfolios
-  auto portfolio = absl::make_unique<Portfolio>(graph, options.portfolio);
-  portfolio->Run();
-  if (options.estimate_noise && graph.edges.size() < kMaxEdgesForNoise) {
-    NoiseMetric applied;
-    NoiseHypothesis noise;
-    NoiseOfMap map = MeasureNoise(portfolio.get());
-    if (FindLargerNoise(graph, map, portfolio.get(), &noise)) {
-      portfolio = SearchWithNoise(graph, noise, options, *portfolio,
-                                  /*whole=*/true, &scaled[0]);
-      applied = noise.metric;
-      map = MeasureNoise(portfolio.get());
-    }
-    if (FindNoiseRatio(applied, map, *portfolio, &noise)) {
-      // The map is known but for its metric.
-      portfolio = SearchWithNoise(graph, noise, options, *portfolio,
-                                  /*whole=*/false, &scaled[1]);
-      applied = noise.metric;
-      map = MeasureNoise(portfolio.get());
-    }
-    if (FindSmallerNoise(applied, map, *portfolio, &noise)) {
-      portfolio = SearchWithNoise(graph, noise, options, *portfolio,
-                                  /*whole=*/false, &scaled[2]);
-      applied = noise.metric;
-    }
-    result.applied_odometry_scale = applied.odometry;
-    result.applied_loop_scale = applied.loops;
-  }
+  NoiseMetric applied;
+  const std::unique_ptr<Portfolio> portfolio = Search(graph, options, &applied);
+  result.applied_odometry_scale = applied.odometry;
+  result.applied_loop_scale = applied.loops;
   result.iterations = portfolio->iterations();
   result.converged = portfolio->converged();
   Decide(options, portfolio.get(), &result);
@@ -215,15 +222,8 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
   }
   result.noise =
       EstimateNoiseScale(result.poses, result.weights, portfolio->solver());
-  for (ScaleEstimate* const scale :
-       {&result.noise.odometry, &result.noise.loops}) {
-    const double applied = scale == &result.noise.odometry
-                               ? result.applied_odometry_scale
-                               : result.applied_loop_scale;
-    scale->factor *= applied;
-    scale->low *= applied;
-    scale->high *= applied;
-  }
+  ReferToGivenMatrices(applied.odometry, &result.noise.odometry);
+  ReferToGivenMatrices(applied.loops, &result.noise.loops);
   AcceptNearLoops(portfolio.get(), &result);
   std::vector<Alternative> alternatives = portfolio->alternatives();
   for (const Portfolio::Member& member : portfolio->members()) {

@@ -219,13 +219,15 @@ bool Regrow(const LoopSupport& support, const double gate,
 bool DifferNearGateOnly(const std::vector<WhitenedEdge>& edges,
                         const std::vector<Pose2>& a,
                         const std::vector<Pose2>& b) {
-  return std::all_of(edges.begin(), edges.end(), [&](const WhitenedEdge& edge) {
-    if (!edge.is_loop) return true;
-    const double in_a = Chi2(edge, a[edge.from], a[edge.to]);
-    const double in_b = Chi2(edge, b[edge.from], b[edge.to]);
-    return std::min(in_a, in_b) >= kChi2Gate ||
-           std::max(in_a, in_b) < kDecisive * kChi2Gate;
-  });
+  const std::vector<double> in_a = Chi2OfEdges(edges, a);
+  const std::vector<double> in_b = Chi2OfEdges(edges, b);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (edges[i].is_loop && std::min(in_a[i], in_b[i]) < kChi2Gate &&
+        std::max(in_a[i], in_b[i]) >= kDecisive * kChi2Gate) {
+      return false;
+    }
+  }
+  return true;
 }
 
 int FlipLoops(const FlipOptions& options, RobustSolver* const solver,

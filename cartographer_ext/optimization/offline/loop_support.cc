@@ -25,7 +25,10 @@ UncertainPose ToUncertainPose(const PoseGraphEdge& edge) {
 class Supporter {
  public:
   Supporter(const PoseGraph& graph, const LoopSupportOptions& options)
-      : graph_(graph), options_(options), step_(graph.poses.size(), -1) {
+      : graph_(graph),
+        options_(options),
+        step_(graph.poses.size(), -1),
+        paths_(graph.poses.size()) {
     for (size_t i = 0; i != graph.edges.size(); ++i) {
       const PoseGraphEdge& edge = graph.edges[i];
       if (edge.is_loop) {
@@ -40,6 +43,7 @@ class Supporter {
     result_.agreeing.resize(graph_.edges.size());
     std::stable_sort(loops_.begin(), loops_.end(),
                      [&](int i, int j) { return Early(i) < Early(j); });
+    for (const int i : loops_) loop_poses_.push_back(Loop(i));
     for (size_t k = 0; k != loops_.size(); ++k) {
       int tested = 0;
       for (size_t l = k + 1; l != loops_.size(); ++l) {
@@ -48,7 +52,7 @@ class Supporter {
           continue;
         }
         if (tested++ == options_.max_neighbours) break;
-        Test(loops_[k], loops_[l]);
+        Test(k, l);
       }
     }
     MakeGroups();
@@ -70,26 +74,33 @@ class Supporter {
   }
 
   // (from <- to) along odometry; false where it is interrupted.
-  bool Path(const int from, const int to, UncertainPose* const path) const {
-    *path = UncertainPose();
-    for (int k = std::min(from, to); k != std::max(from, to); ++k) {
+  bool Path(const int from, const int to, UncertainPose* const path) {
+    const int first = std::min(from, to), length = std::abs(from - to);
+    std::vector<UncertainPose>& known = paths_[first];
+    if (known.empty()) known.push_back(UncertainPose());
+    while (static_cast<int>(known.size()) <= length) {
+      const int k = first + known.size() - 1;
       if (step_[k] < 0) return false;
       const PoseGraphEdge& edge = graph_.edges[step_[k]];
       const UncertainPose step = ToUncertainPose(edge);
-      *path = Compose(*path, edge.from == k ? step : Invert(step));
+      known.push_back(
+          Compose(known.back(), edge.from == k ? step : Invert(step)));
     }
-    if (from > to) *path = Invert(*path);
+    *path = from > to ? Invert(known[length]) : known[length];
     return true;
   }
 
-  void Test(const int i, const int j) {
+  // Whether the loops number k and l of loops_ agree.
+  void Test(const int k, const int l) {
+    const int i = loops_[k], j = loops_[l];
     UncertainPose path_late, path_early;
     if (!Path(Late(i), Late(j), &path_late) ||
         !Path(Early(j), Early(i), &path_early)) {
       return;
     }
     const UncertainPose cycle = Compose(
-        Compose(Compose(Loop(i), path_late), Invert(Loop(j))), path_early);
+        Compose(Compose(loop_poses_[k], path_late), Invert(loop_poses_[l])),
+        path_early);
     const Eigen::Vector3d error(cycle.pose.x, cycle.pose.y, cycle.pose.theta);
     const double chi2 = error.dot(cycle.covariance.llt().solve(error));
     result_.cycle_chi2.push_back(chi2);
@@ -119,7 +130,10 @@ class Supporter {
   const PoseGraph& graph_;
   const LoopSupportOptions options_;
   std::vector<int> step_;  // odometry edge between pose k and pose k + 1, or -1
+  // Paths from each pose to itself and to those after it, as far as needed.
+  std::vector<std::vector<UncertainPose>> paths_;
   std::vector<int> loops_;
+  std::vector<UncertainPose> loop_poses_;  // (early <- late) of loops_
   LoopSupport result_;
 };
 

@@ -63,14 +63,20 @@ bool LieBehindGate(const std::vector<double>& weights, const int accepted,
   const double many = expected + 3. * std::sqrt(expected) + 2.;
   // More than these have many wrong ones among them.
   if (rejected.size() < many || rejected.size() > 0.5 * accepted) return false;
-  int near = 0, far = 0;
+  // Evenly thinned.
+  const size_t count = std::min(rejected.size(), kMaxInnovations);
+  std::vector<int> looked_at;
+  for (size_t k = 0; k != count; ++k) {
+    looked_at.push_back(rejected[k * rejected.size() / count]);
+  }
+  double near = 0., far = 0.;
   for (const Innovation& innovation : PredictLoops(
-           rejected, weights, portfolio->best().poses, portfolio->solver())) {
+           looked_at, weights, portfolio->best().poses, portfolio->solver())) {
     const double gates = innovation.chi2 / kChi2Gate;
     near += gates < 2.;
     far += gates >= 2. && gates < 4.;
   }
-  return near > many && near > far;
+  return near * rejected.size() > many * count && near > far;
 }
 
 // Whether the noise may be larger than the matrices say.
@@ -196,27 +202,12 @@ void RoundScales(NoiseMetric* const metric) {
   metric->loops = Rounded(metric->loops);
 }
 
-}  // namespace
-
-NoiseOfMap MeasureNoise(Portfolio* const portfolio) {
-  const std::vector<WhitenedEdge>& edges = portfolio->edges();
-  const std::vector<Pose2>& poses = portfolio->best().poses;
-  NoiseOfMap result;
-  result.decisions = DecideLoops(edges, poses, kChi2Gate);
-  result.accepted = CountLoops(edges, result.decisions);
-  result.loops = CountLoops(edges, std::vector<double>(edges.size(), 1.));
-  if (result.accepted < kMinLoops) return result;
-  result.scale =
-      EstimateNoiseScale(poses, result.decisions, portfolio->solver());
-  return result;
-}
-
-bool FindLargerNoise(const PoseGraph& graph, const NoiseOfMap& map,
-                     Portfolio* const portfolio, NoiseHypothesis* const found) {
+bool FindLarger(const NoiseOfMap& map, Portfolio* const portfolio,
+                NoiseHypothesis* const found) {
   if (!IsSuspicious(map, portfolio)) return false;
   found->accepted = map.accepted;
   Trial trial;
-  trial.starts = {portfolio->best().poses, graph.poses};
+  trial.starts = {portfolio->best().poses, portfolio->graph().poses};
   trial.all_loops = portfolio->CanKeepAllLoops();
   bool any = false;
   for (const double variance : kFirstVariances) {
@@ -226,13 +217,11 @@ bool FindLargerNoise(const PoseGraph& graph, const NoiseOfMap& map,
     *found = hypothesis;
     any = true;
   }
-  if (!any) return false;
-  RoundScales(&found->metric);
-  return found->metric.odometry > 1. || found->metric.loops > 1.;
+  return any;
 }
 
-bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
-                    const Portfolio& portfolio, NoiseHypothesis* const found) {
+bool FindRatio(const NoiseMetric& applied, const NoiseOfMap& map,
+               const Portfolio& portfolio, NoiseHypothesis* const found) {
   const NoiseScale& scale = map.scale;
   if (map.accepted < kMinLoops ||
       (scale.loops.high * kMinRatio > scale.odometry.low &&
@@ -248,17 +237,23 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
                      {applied.odometry * scale.odometry.factor,
                       applied.loops * scale.loops.factor},
                      trial);
-  if (!found->valid || found->accepted < kMostly * map.accepted) return false;
-  RoundScales(&found->metric);
-  return found->metric.odometry != applied.odometry ||
-         found->metric.loops != applied.loops;
+  return found->valid && found->accepted >= kMostly * map.accepted;
 }
 
-bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
-                      const Portfolio& portfolio,
-                      NoiseHypothesis* const found) {
+bool FindSmaller(const NoiseMetric& applied, const NoiseOfMap& map,
+                 const Portfolio& portfolio, NoiseHypothesis* const found) {
   if (map.accepted < kMinLoops ||
       std::min(map.scale.odometry.high, map.scale.loops.high) >= kSmaller) {
+    return false;
+  }
+  const auto is_another = [&](const std::vector<Pose2>& poses) {
+    return !DifferNearGateOnly(portfolio.edges(), poses,
+                               portfolio.best().poses);
+  };
+  if (std::none_of(portfolio.members().begin(), portfolio.members().end(),
+                   [&](const Portfolio::Member& member) {
+                     return is_another(member.poses);
+                   })) {
     return false;
   }
   // In relation to that of the portfolio.
@@ -279,9 +274,8 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
       other = &member;
     }
     if (other == nullptr) {
-      found->valid = lowest < ours - kAnother * kChi2Gate &&
-                     !DifferNearGateOnly(portfolio.edges(), found->poses,
-                                         portfolio.best().poses);
+      found->valid =
+          lowest < ours - kAnother * kChi2Gate && is_another(found->poses);
       break;
     }
     // What it says about the noise itself.
@@ -295,9 +289,35 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
     metric.odometry *= noise.odometry.factor;
     metric.loops *= noise.loops.factor;
   }
-  if (!found->valid) return false;
   found->metric = {applied.odometry * std::min(1., metric.odometry),
                    applied.loops * std::min(1., metric.loops)};
+  return found->valid;
+}
+
+}  // namespace
+
+NoiseOfMap MeasureNoise(Portfolio* const portfolio) {
+  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+  const std::vector<Pose2>& poses = portfolio->best().poses;
+  NoiseOfMap result;
+  result.decisions = DecideLoops(edges, poses, kChi2Gate);
+  result.accepted = CountLoops(edges, result.decisions);
+  result.loops = CountLoops(edges, std::vector<double>(edges.size(), 1.));
+  if (result.accepted < kMinLoops) return result;
+  result.scale =
+      EstimateNoiseScale(poses, result.decisions, portfolio->solver());
+  return result;
+}
+
+bool FindNoise(const NoiseChange change, const NoiseMetric& applied,
+               const NoiseOfMap& map, Portfolio* const portfolio,
+               NoiseHypothesis* const found) {
+  const bool is_found = change == NoiseChange::kLarger
+                            ? FindLarger(map, portfolio, found)
+                        : change == NoiseChange::kRatio
+                            ? FindRatio(applied, map, *portfolio, found)
+                            : FindSmaller(applied, map, *portfolio, found);
+  if (!is_found) return false;
   RoundScales(&found->metric);
   return found->metric.odometry != applied.odometry ||
          found->metric.loops != applied.loops;

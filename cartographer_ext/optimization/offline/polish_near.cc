@@ -14,8 +14,8 @@ namespace {
 
 // Information of a tie as a share of that of the positions of a typical edge.
 constexpr double kStrongest = 1e2;
-constexpr double kWeakest = 1e-8;
 constexpr double kWeaker = 0.2;
+constexpr int kNumStrengths = 15;
 constexpr int kRounds = 30;
 
 double MeanInformation(const std::vector<WhitenedEdge>& edges) {
@@ -35,6 +35,7 @@ SolverSummary PolishNear(const std::vector<WhitenedEdge>& edges,
   CHECK_EQ(target.size(), poses->size());
   const double start = ThreadCpuSeconds();
   SolverSummary total;
+  total.final_cost = TruncatedCost(edges, *poses);
   std::vector<WhitenedEdge> tied = edges;
   // To the first pose, which is held, so that the ties need no fill.
   for (size_t i = 1; i < target.size(); ++i) {
@@ -47,27 +48,36 @@ SolverSummary PolishNear(const std::vector<WhitenedEdge>& edges,
   }
   const double information = MeanInformation(edges);
   RobustSolver solver(tied);
-  for (double share = kStrongest; share >= kWeakest; share *= kWeaker) {
+  // The strongest ties within the limit, by bisection: stronger ones cost more.
+  const std::vector<Pose2> start_poses = *poses;
+  int first = 0, last = kNumStrengths;
+  while (first != last) {
+    const int middle = (first + last) / 2;
+    const double share = kStrongest * std::pow(kWeaker, middle);
     const double strength = std::sqrt(share * information);
     for (size_t i = edges.size(); i != tied.size(); ++i) {
       tied[i].whitening = Eigen::Vector3d(strength, strength, 0.).asDiagonal();
     }
-    std::vector<Pose2> tried = *poses;
+    std::vector<Pose2> tried = start_poses;
     std::vector<double> decisions;
     const SolverSummary summary =
         PolishTruncated(kChi2Gate, kRounds, &solver, &tried, &decisions);
     total.iterations += summary.iterations;
     total.analyses += summary.analyses;
     total.factor_blocks = summary.factor_blocks;
-    total.final_cost = TruncatedCost(edges, tried);
-    if (!(total.final_cost <= limit)) continue;
+    const double cost = TruncatedCost(edges, tried);
+    if (!(cost <= limit)) {
+      first = middle + 1;
+      continue;
+    }
+    last = middle;
+    total.final_cost = cost;
     total.converged = summary.converged;
     *poses = std::move(tried);
     if (weights != nullptr) {
       decisions.resize(edges.size());
       *weights = std::move(decisions);
     }
-    break;
   }
   total.cpu_seconds = ThreadCpuSeconds() - start;
   return total;

@@ -29,21 +29,15 @@ constexpr double kNearlySame = 3.;
 constexpr double kFewByChance = 1.;
 // Rejected loops whose innovation is looked at.
 constexpr size_t kMaxInnovations = 200;
-// Loops that agree with one that is relied on without regard to the rest.
-constexpr size_t kSupported = 2;
 // Kernels that have to agree.
 constexpr size_t kQuickKernels = 3;
-// Share of the supported loops that a map in which they agree keeps.
-constexpr double kNearlyAll = 0.98;
 // Groups that are forced in: of a large graph, and where the kernels agree on a
 // map that these contradict, which may be folded.
 constexpr int kMaxTrialsOnLargeGraph = 4;
 constexpr int kMaxTrialsOfSettled = 3;
 // A graph of fewer poses times loops is searched from all starts in any case.
 constexpr double kSmallGraph = 2.5e5;
-// Multiplications of one factorisation that are worth it while the search is
-// open, and those that cost nothing worth mentioning.
-constexpr double kAffordableWork = 6e7;
+// Multiplications of one factorisation that cost nothing worth mentioning.
 constexpr double kLittleWork = 3e6;
 
 std::vector<int> Thinned(const std::vector<int>& values, const size_t limit) {
@@ -62,10 +56,10 @@ std::string Suffixed(const std::string& name, const std::string& suffix) {
 
 }  // namespace
 
-Portfolio::Portfolio(const PoseGraph& graph, const PortfolioOptions& options)
-    : graph_(graph),
+Portfolio::Portfolio(PoseGraph graph, const PortfolioOptions& options)
+    : graph_(std::move(graph)),
       options_(options),
-      edges_(Whiten(graph.edges)),
+      edges_(Whiten(graph_.edges)),
       solver_(edges_),
       lowest_of_solvers_(std::numeric_limits<double>::infinity()) {
   for (const WhitenedEdge& edge : edges_) num_loops_ += edge.is_loop;
@@ -120,10 +114,16 @@ size_t Portfolio::AddKernels(const std::string& start_name,
                              const bool with_full_kernels) {
   const size_t first = members_.size();
   AddKernel(start_name, KernelType::kDcs, start);
+  AddOtherKernels(start_name, start, with_full_kernels);
+  return first;
+}
+
+void Portfolio::AddOtherKernels(const std::string& start_name,
+                                const std::vector<Pose2>& start,
+                                const bool with_full_kernels) {
   AddKernel(start_name, KernelType::kGemanMcClure, start);
   AddKernel(start_name, KernelType::kAcs, start);
   if (with_full_kernels) AddFullKernels(start_name, start);
-  return first;
 }
 
 void Portfolio::AddFullKernels(const std::string& start_name,
@@ -171,13 +171,13 @@ const LoopSupport& Portfolio::support() {
 }
 
 size_t Portfolio::RunQuick() {
-  const size_t first = AddKernels("", graph_.poses, false);
+  quick_ = AddKernels("", graph_.poses, false);
   // With few wrong loops the solvers that keep all of them cost little more.
   if (!continued_ && CountRejected() <= 0.1 * num_loops_ &&
       FullWork() <= kLittleWork) {
     AddFullKernels("", graph_.poses);
   }
-  return first;
+  return *quick_;
 }
 
 bool Portfolio::DecideAlike(const size_t first) const {
@@ -185,6 +185,15 @@ bool Portfolio::DecideAlike(const size_t first) const {
     if (!DifferNearGateOnly(edges_, best().poses, members_[m].poses)) {
       return false;
     }
+  }
+  return true;
+}
+
+bool Portfolio::EndsAsFromGivenPoses(const size_t first) const {
+  if (!quick_.has_value() || *quick_ == first) return false;
+  for (size_t k = 0; k != kQuickKernels; ++k) {
+    const double cost = members_[*quick_ + k].cost;
+    if (std::abs(members_[first + k].cost - cost) > kSame * cost) return false;
   }
   return true;
 }
@@ -197,14 +206,15 @@ bool Portfolio::IsSettled(const size_t first) {
   const auto same_cost = [&] {
     return highest <= best().cost * (1. + kSame) + kNearlySame * kChi2Gate;
   };
+  const bool alike = EndsAsFromGivenPoses(first);
   if (!same_cost()) {
-    if (!DecideAlike(first)) return false;
+    if (!alike && !DecideAlike(first)) return false;
     Graduate(kNear);
   }
   Improve();
   // What softer kernels have found may be another map than that agreed on, and
   // where most loops are wrong, one of many.
-  return (!MostAreRejected() || same_cost() || DecideAlike(first)) &&
+  return (!MostAreRejected() || alike || same_cost() || DecideAlike(first)) &&
          RejectedContradict();
 }
 
@@ -264,15 +274,24 @@ bool Portfolio::RejectsAGroup() {
   return false;
 }
 
-bool Portfolio::ReplayIsLower() {
+bool Portfolio::OtherStartIsLower() {
   if (continued_ || replayed_) return false;
-  if (!MostAreRejected() && !RejectsAGroup()) return false;
+  if (!RejectsAGroup()) return false;
   const double before = best().cost;
-  ReplayResult replay;
-  if (!AddReplay(&replay)) return false;
-  AddKernel("r_isam, ", KernelType::kDcs, replay.poses);
-  return best().cost < before - kNearlySame * kChi2Gate &&
-         !IsSettled(AddKernels("r_isam, ", replay.poses, false));
+  std::string name = "supported, ";
+  std::vector<double> supported;
+  std::vector<Pose2> start;
+  if (!StartFromSupport(&supported, &start)) {
+    ReplayResult replay;
+    if (!AddReplay(&replay)) return false;
+    name = "r_isam, ";
+    start = replay.poses;
+  }
+  const size_t first = members_.size();
+  AddKernel(name, KernelType::kDcs, start);
+  if (best().cost >= before - kNearlySame * kChi2Gate) return false;
+  AddOtherKernels(name, start, false);
+  return !IsSettled(first);
 }
 
 bool Portfolio::RejectedContradict() {
@@ -308,61 +327,23 @@ bool Portfolio::AddCertain() {
   return true;
 }
 
-std::vector<double> Portfolio::SupportedLoops() {
-  std::vector<double> result(edges_.size(), 1.);
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    if (!edges_[i].is_loop) continue;
-    result[i] = support().agreeing[i].size() >= kSupported ? 1. : 0.;
-  }
-  return result;
-}
-
-void Portfolio::DropContradicted(const std::vector<Pose2>& chained,
-                                 std::vector<double>* const weights) const {
-  const std::vector<Eigen::Matrix3d> covariances =
-      PredictAlongChain(graph_, edges_, chained);
-  for (size_t i = 0; i != covariances.size(); ++i) {
-    const WhitenedEdge& edge = edges_[i];
-    if (!edge.is_loop || (*weights)[i] == 0.) continue;
-    const Eigen::Vector3d residual =
-        Residual(edge, chained[edge.from], chained[edge.to]);
-    if (residual.dot(covariances[i].llt().solve(residual)) >= kChi2Gate) {
-      (*weights)[i] = 0.;
-    }
-  }
-}
-
-bool Portfolio::SettleBySupport() {
-  std::vector<double> supported = SupportedLoops();
-  std::vector<Pose2> poses = ChainOdometry(graph_);
-  if (WorkOf(supported) > kAffordableWork) {
-    // Wrong loops that agree with each other fill the factor, for the quick
-    // solvers, too; a replay lets few of them in.
-    DropContradicted(poses, &supported);
-    if (WorkOf(supported) > kAffordableWork) return SettleByReplay();
-  }
-  if (!ChordalPoses(edges_, supported, &poses)) return false;
-  Add("supported", poses);
-  if (!IsSettled(AddKernels("supported, ", poses, false))) return false;
-  size_t loops = 0, in_force = 0;
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    if (!edges_[i].is_loop || supported[i] == 0.) continue;
-    ++loops;
-    in_force += Chi2(edges_[i], best().poses[edges_[i].from],
-                     best().poses[edges_[i].to]) < kChi2Gate;
-  }
-  return in_force >= kNearlyAll * loops;
-}
-
 void Portfolio::Run() {
   const double size = Size();
   // What else there is would take minutes on a large graph.
   if (graph_.poses.size() > kLargeGraph && AddCertain()) return;
   const bool large = size > options_.large_search;
   if (large && SettleBySupport()) return;
+  if (continued_ && size > kMaxGrowthWork) {
+    // Other starts have had their part in the last search.
+    RunQuick();
+    Graduate(kNear);
+    Graduate(kFar);
+    Improve();
+    return;
+  }
   bool settled = IsSettled(RunQuick());
   if (settled) {
-    settled = size > kMaxGrowthWork ? !ReplayIsLower()
+    settled = size > kMaxGrowthWork ? !OtherStartIsLower()
                                     : !FindsLostGroup() && !GncFindsAnother();
   }
   if (settled && (continued_ || size > kMaxGrowthWork ||
@@ -370,11 +351,13 @@ void Portfolio::Run() {
     if (size <= kMaxGrowthWork) Graduate(kNear);
     return;
   }
-  if (large && !replayed_ && SettleByReplay()) return;
-  // Where many loops contradict a map that the robust kernels agree on, the
-  // solvers that keep them all are far off.
+  if (size > kMaxGrowthWork && (SettleBySupport() || SettleByReplay())) return;
+  // Where many loops contradict a map that the robust kernels agree on, or that
+  // is the best so far of a graph on which each solution counts, the solvers
+  // that keep them all are far off.
   RunStarts(!continued_ && CanKeepAllLoops() &&
-            (!settled || CountRejected() <= 0.25 * num_loops_));
+            ((!settled && size <= kMaxGrowthWork) ||
+             CountRejected() <= 0.25 * num_loops_));
   if (!settled && size <= kMaxGrowthWork) {
     RunGroups();
   } else {

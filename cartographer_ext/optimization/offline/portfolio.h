@@ -30,8 +30,16 @@
 //
 // A large graph is first solved with the loops that agree with others over
 // short stretches, where those do not fill the factor; if the kernels agree
-// from there and hardly any of these loops is rejected, the search ends. After
-// the quick solvers it also ends where the kernels agree from a replay.
+// from there and hardly any of these loops is rejected, the search ends.
+//
+// What is too large for the search by groups is compared, after the quick
+// solvers, with a map from the supported loops, and where wrong ones among them
+// spoil that, with a replay: where the quick solvers agree but reject loops that
+// agree with each other, and where they do not agree. The search ends where the
+// kernels agree from there, with each other or each with what it has found from
+// the given poses. Otherwise starts that lead to a folded map are given up after
+// one kernel. With other information matrices the quick solvers alone are added
+// to what is known.
 //
 // A graph of tens of thousands of poses is grown by the loops that are certain
 // (certain_growth.h) and polished, and that is all. Where a smaller one has too
@@ -72,7 +80,7 @@ class Portfolio {
     double cost = 0.;  // truncated, after the polish
   };
 
-  Portfolio(const PoseGraph& graph, const PortfolioOptions& options);
+  Portfolio(PoseGraph graph, const PortfolioOptions& options);
 
   // Adds poses found elsewhere.
   void Add(const std::string& name, std::vector<Pose2> poses);
@@ -89,6 +97,7 @@ class Portfolio {
   // one, and lowest_of_solvers() is that of both.
   void AddSolversOf(const Portfolio& other);
 
+  const PoseGraph& graph() const { return graph_; }
   const std::vector<Member>& members() const { return members_; }
   const Member& best() const { return members_[best_]; }
   // What groups that were forced in and given up led to.
@@ -115,15 +124,25 @@ class Portfolio {
   // Gates up to which loops count where non-convexity is graduated from a map.
   static constexpr double kNear = 10.;
   static constexpr double kFar = 100.;
-  // Share of rejected loops from which kernels that agree are doubted, and asked
-  // whether a replay, which does not start from the same poses, ends lower:
-  // where more loops are wrong than right, a rough start may fold them all in
-  // the same way.
+  // Loops that agree with one that is relied on without regard to the rest.
+  static constexpr size_t kSupported = 2;
+  // Share of rejected loops from which kernels that agree are doubted: where
+  // more loops are wrong than right, a rough start may fold them all in the same
+  // way.
   static constexpr double kMostlyWrong = 0.6;
+  // Gates that a folded map costs more than the best: the loops that it loses.
+  static constexpr double kFolded = 20.;
+  // Multiplications of one factorisation that are worth it while the search is
+  // open.
+  static constexpr double kAffordableWork = 6e7;
 
   // Returns the first of the members that have to agree.
   size_t RunQuick();
-  // Whether the quick members, from `first` on, agree.
+  // Whether each of the kernels ends, from `first` on, in the optimum where it
+  // has ended from the given poses.
+  bool EndsAsFromGivenPoses(size_t first) const;
+  // Whether the quick members, from `first` on, agree with each other or, one by
+  // one, with those from the given poses.
   bool IsSettled(size_t first);
   // Whether they differ from the best in loops near the gate only.
   bool DecideAlike(size_t first) const;
@@ -139,9 +158,10 @@ class Portfolio {
   // Whether more loops that agree with each other are rejected than wrong ones
   // agree by chance.
   bool RejectsAGroup();
-  // Whether, where most loops or a group of them are rejected, a replay ends
-  // lower and nothing is settled by it.
-  bool ReplayIsLower();
+  // Whether, where a group of loops is rejected, a start from the supported
+  // loops ends lower, or where these are no start, a replay, and nothing is
+  // settled by it.
+  bool OtherStartIsLower();
   // Whether the rejected loops lie beyond the uncertainty of the best map.
   bool RejectedContradict();
   void RunStarts(bool with_full_kernels);
@@ -155,6 +175,12 @@ class Portfolio {
   // Returns the first member, which kQuickKernels begin with.
   size_t AddKernels(const std::string& start_name,
                     const std::vector<Pose2>& start, bool with_full_kernels);
+  void AddOtherKernels(const std::string& start_name,
+                       const std::vector<Pose2>& start, bool with_full_kernels);
+  // All, from a start that on a large graph is given up if it leads to a folded
+  // map.
+  void AddSolvers(const std::string& start_name,
+                  const std::vector<Pose2>& start, bool with_full_kernels);
   // Those that keep all loops.
   void AddFullKernels(const std::string& start_name,
                       const std::vector<Pose2>& start);
@@ -177,6 +203,13 @@ class Portfolio {
   // a chain.
   void DropContradicted(const std::vector<Pose2>& chained,
                         std::vector<double>* weights) const;
+  // Of the loops with weight, the share that the best map keeps.
+  double ShareInForce(const std::vector<double>& weights) const;
+  // A chordal relaxation of the supported loops, once. If there are members, it
+  // is solved for a few steps. False where it is not possible, where these loops
+  // fill the factor, or where it leads to a folded map compared with the best.
+  bool StartFromSupport(std::vector<double>* supported,
+                        std::vector<Pose2>* start);
   // Whether the supported loops alone lead to a map that ends the search.
   bool SettleBySupport();
   // The same for the incremental replay.
@@ -191,7 +224,7 @@ class Portfolio {
     return CountRejected() > kMostlyWrong * num_loops_;
   }
 
-  const PoseGraph& graph_;
+  const PoseGraph graph_;
   const PortfolioOptions options_;
   std::vector<WhitenedEdge> edges_;
   RobustSolver solver_;
@@ -201,6 +234,7 @@ class Portfolio {
   double lowest_of_solvers_;
   std::vector<std::vector<Pose2>> results_of_solvers_;
   std::vector<Alternative> alternatives_;
+  absl::optional<size_t> quick_;  // first member from the given poses
   absl::optional<double> full_work_;
   absl::optional<LoopSupport> support_;
   int iterations_ = 0;
@@ -210,6 +244,7 @@ class Portfolio {
   bool ran_gnc_ = false;  // from the given poses
   bool ran_all_solvers_ = false;
   bool replayed_ = false;
+  bool tried_support_ = false;
   bool starts_alone_ = true;  // from starts that no search has found
 };
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "Eigen/Cholesky"
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/portfolio.h"
@@ -18,6 +20,10 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
+// Share of the supported loops that a map in which they agree keeps.
+constexpr double kNearlyAll = 0.98;
+// Of a solver that is near the optimum.
+constexpr int kFewIterations = 15;
 // chi2 of an odometry edge that the digits of a file leave.
 constexpr double kRounding = 1e-3;
 // Poses times loops up to which groups are forced in more than once: at the end
@@ -62,9 +68,83 @@ bool Portfolio::AddReplay(ReplayResult* const replay) {
   return true;
 }
 
+std::vector<double> Portfolio::SupportedLoops() {
+  std::vector<double> result(edges_.size(), 1.);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (!edges_[i].is_loop) continue;
+    result[i] = support().agreeing[i].size() >= kSupported ? 1. : 0.;
+  }
+  return result;
+}
+
+void Portfolio::DropContradicted(const std::vector<Pose2>& chained,
+                                 std::vector<double>* const weights) const {
+  const std::vector<Eigen::Matrix3d> covariances =
+      PredictAlongChain(graph_, edges_, chained);
+  for (size_t i = 0; i != covariances.size(); ++i) {
+    const WhitenedEdge& edge = edges_[i];
+    if (!edge.is_loop || (*weights)[i] == 0.) continue;
+    const Eigen::Vector3d residual =
+        Residual(edge, chained[edge.from], chained[edge.to]);
+    if (residual.dot(covariances[i].llt().solve(residual)) >= kChi2Gate) {
+      (*weights)[i] = 0.;
+    }
+  }
+}
+
+bool Portfolio::StartFromSupport(std::vector<double>* const supported,
+                                 std::vector<Pose2>* const start) {
+  if (tried_support_) return false;
+  tried_support_ = true;
+  *supported = SupportedLoops();
+  std::vector<Pose2> poses = ChainOdometry(graph_);
+  // Wrong loops that agree with each other fill the factor, for the quick
+  // solvers, too, and are many among few.
+  if (Size() <= options_.large_search || WorkOf(*supported) > kAffordableWork) {
+    DropContradicted(poses, supported);
+    if (WorkOf(*supported) > kAffordableWork) return false;
+  }
+  if (!ChordalPoses(edges_, *supported, &poses)) return false;
+  if (!members_.empty()) {
+    // From a start without wrong loops few steps lead near the optimum, from one
+    // with many nowhere.
+    SolverOptions options;
+    options.kernel = DefaultKernel(KernelType::kDcs);
+    options.max_iterations = kFewIterations;
+    Count(solver_.Solve(options, &poses));
+    if (TruncatedCost(edges_, poses) > best().cost + kFolded * kChi2Gate) {
+      return false;
+    }
+  }
+  *start = std::move(poses);
+  return true;
+}
+
+double Portfolio::ShareInForce(const std::vector<double>& weights) const {
+  const std::vector<double> decisions =
+      DecideLoops(edges_, best().poses, kChi2Gate);
+  double loops = 0., in_force = 0.;
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (!edges_[i].is_loop || weights[i] == 0.) continue;
+    ++loops;
+    in_force += decisions[i];
+  }
+  return loops == 0. ? 1. : in_force / loops;
+}
+
+bool Portfolio::SettleBySupport() {
+  std::vector<double> supported;
+  std::vector<Pose2> poses;
+  // A replay lets few of the loops in that fill the factor.
+  if (!StartFromSupport(&supported, &poses)) return SettleByReplay();
+  const size_t first = AddKernels("supported, ", poses, false);
+  return IsSettled(first) &&
+         (EndsAsFromGivenPoses(first) || ShareInForce(supported) >= kNearlyAll);
+}
+
 bool Portfolio::SettleByReplay() {
   ReplayResult replay;
-  return AddReplay(&replay) &&
+  return !replayed_ && AddReplay(&replay) &&
          IsSettled(AddKernels("r_isam, ", replay.poses, false));
 }
 
@@ -93,6 +173,19 @@ void Portfolio::AddGrowth(const std::vector<Pose2>& start) {
   AddKernel("growth, ", KernelType::kDcs, poses);
 }
 
+void Portfolio::AddSolvers(const std::string& start_name,
+                           const std::vector<Pose2>& start,
+                           const bool with_full_kernels) {
+  AddKernel(start_name, KernelType::kDcs, start);
+  if (Size() > kMaxGrowthWork &&
+      members_.back().cost > best().cost + kFolded * kChi2Gate) {
+    ran_all_solvers_ = false;
+    return;
+  }
+  AddOtherKernels(start_name, start, with_full_kernels);
+  AddGnc(start_name, start);
+}
+
 void Portfolio::RunStarts(const bool with_full_kernels) {
   if (with_full_kernels && !ran_full_kernels_) {
     AddFullKernels("", graph_.poses);
@@ -106,16 +199,14 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
   if (!same) AddGnc("odometry, ", chained);
   if (continued_) return;
   std::vector<Pose2> chordal = chained;
-  if (RobustChordalPoses(edges_, &chordal)) {
-    AddKernels("chordal, ", chordal, with_full_kernels);
-    AddGnc("chordal, ", chordal);
-  }
-  const std::vector<Pose2> tree =
-      SpanningTree(graph_, std::vector<double>(edges_.size(), 1.));
-  AddKernels("tree of all, ", tree, with_full_kernels);
-  AddGnc("tree of all, ", tree);
   // R-iSAM alone readmits groups in larger graphs than here.
   ran_all_solvers_ = Size() <= kMaxRepeatedWork || Size() > kMaxGrowthWork;
+  if (RobustChordalPoses(edges_, &chordal)) {
+    AddSolvers("chordal, ", chordal, with_full_kernels);
+  }
+  AddSolvers("tree of all, ",
+             SpanningTree(graph_, std::vector<double>(edges_.size(), 1.)),
+             with_full_kernels);
 }
 
 void Portfolio::RunGroups() {

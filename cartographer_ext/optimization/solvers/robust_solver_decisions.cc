@@ -183,10 +183,10 @@ SolverSummary PolishAdapted(const int max_rounds, RobustSolver* const solver,
 
 double TruncatedCost(const std::vector<WhitenedEdge>& edges,
                      const std::vector<Pose2>& poses, const double gate) {
+  const std::vector<double> chi2 = Chi2OfEdges(edges, poses);
   double cost = 0.;
-  for (const WhitenedEdge& edge : edges) {
-    const double chi2 = Chi2(edge, poses[edge.from], poses[edge.to]);
-    cost += edge.is_loop ? std::min(chi2, gate) : chi2;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    cost += edges[i].is_loop ? std::min(chi2[i], gate) : chi2[i];
   }
   return cost;
 }

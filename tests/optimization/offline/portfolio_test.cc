@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/portfolio.h"
 
+#include <algorithm>
+#include <string>
+
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/noise_scale.h"
 #include "cartographer_ext/optimization/offline/optimize.h"
 #include "gmock/gmock.h"
@@ -57,7 +61,7 @@ TEST(PortfolioTest, ALargeGraphIsSettledByLoopsThatAgree) {
     Portfolio settled(world.graph, options);
     settled.Run();
     EXPECT_LT(settled.members().size(), whole.members().size());
-    EXPECT_EQ(settled.members().front().name, "supported");
+    EXPECT_EQ(settled.members().front().name, "supported, dcs");
     EXPECT_NEAR(settled.best().cost, whole.best().cost,
                 1e-6 * whole.best().cost);
   }
@@ -80,11 +84,60 @@ TEST(PortfolioTest, ALargeGraphWithWrongGroupsIsSettledAtOnce) {
     Portfolio portfolio(world.graph, options);
     ASSERT_FALSE(portfolio.CanKeepAllLoops());
     portfolio.Run();
-    EXPECT_EQ(portfolio.members().front().name, local ? "supported" : "r_isam");
+    EXPECT_EQ(portfolio.members().front().name,
+              local ? "supported, dcs" : "r_isam");
     EXPECT_FALSE(portfolio.ran_all_solvers());
     EXPECT_LT(AbsoluteTrajectoryError(portfolio.best().poses, world.truth),
               0.2);
   }
+}
+
+bool HasMember(const Portfolio& portfolio, const std::string& name) {
+  return std::any_of(
+      portfolio.members().begin(), portfolio.members().end(),
+      [&](const Portfolio::Member& member) { return member.name == name; });
+}
+
+// Where rejected loops agree with each other, the map that the kernels agree on
+// is compared with that of the supported loops, and only where wrong groups
+// spoil these with a replay.
+TEST(PortfolioTest, AReplayIsAskedWhereSupportedLoopsAreNoStart) {
+  for (const bool local : {false, true}) {
+    test::GridWorld world = test::MakeGridWorld(900, 10, 1);
+    OutlierOptions outliers;
+    outliers.type = local ? OutlierType::kLocal : OutlierType::kRandomGrouped;
+    outliers.count = 4000;
+    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    for (PoseGraphEdge& edge : world.graph.edges) edge.information /= 100.;
+    Portfolio portfolio(world.graph, PortfolioOptions());
+    ASSERT_GT(portfolio.Size(), kMaxGrowthWork);
+    portfolio.Run();
+    EXPECT_EQ(HasMember(portfolio, "supported, dcs"), local);
+    EXPECT_EQ(HasMember(portfolio, "r_isam"), !local);
+    EXPECT_LT(AbsoluteTrajectoryError(portfolio.best().poses, world.truth),
+              0.2);
+  }
+}
+
+// A start that folds such a graph is noticed by starts that do not depend on it,
+// and what keeps all loops is not waited for.
+TEST(PortfolioTest, UnfoldsALargerGraphWithoutAllSolvers) {
+  test::GridWorld world = test::MakeGridWorld(900, 10, 1);
+  OutlierOptions outliers;
+  outliers.count = 4000;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  for (PoseGraphEdge& edge : world.graph.edges) edge.information /= 100.;
+  // The second half is turned over.
+  for (size_t i = world.graph.poses.size() / 2; i != world.graph.poses.size();
+       ++i) {
+    world.graph.poses[i] = Pose2(20., 10., 2.) * world.graph.poses[i];
+  }
+  Portfolio portfolio(world.graph, PortfolioOptions());
+  ASSERT_GT(portfolio.Size(), kMaxGrowthWork);
+  portfolio.Run();
+  EXPECT_LT(AbsoluteTrajectoryError(portfolio.best().poses, world.truth), 0.2);
+  EXPECT_FALSE(HasMember(portfolio, "none"));
+  EXPECT_FALSE(HasMember(portfolio, "chordal, gnc_tls"));
 }
 
 // Where the gate is nearly as wide as the map, many maps fit; that solvers agree
