@@ -59,6 +59,13 @@ void Conclude(const bool keep_frame, MapRepair* const repair) {
         "Poses defined in the old map (docks, waypoints) have moved: ",
         keep_frame ? "" : "run with -keep_frame and ",
         "look them up in the table of poses."));
+    if (!repair->after.pbstream->odometry_data.empty()) {
+      repair->advice.push_back(
+          "Cartographer optimises the map again unless it is loaded frozen, by "
+          "default with the odometry as strong as local SLAM, which can break "
+          "it again: load it frozen, set odometry_translation_weight and "
+          "odometry_rotation_weight to 0, or repair with -drop_odometry.");
+    }
     return;
   }
   repair->conclusion =

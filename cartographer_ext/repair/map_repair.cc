@@ -97,7 +97,7 @@ class Repairer {
     const double severe = 100. * result_.after.quality.severe_share;
     const bool is_given_up = IsStillBroken();
     if (is_given_up) result_.after = result_.before;
-    if (result_.changed()) KeepFrame();
+    if (result_.changed()) Finish();
     Conclude(options_.keep_frame, &result_);
     if (is_given_up) {
       absl::StrAppendFormat(&result_.conclusion,
@@ -219,14 +219,17 @@ class Repairer {
     absl::StrAppend(&result_.steps.back().reason, "; not accepted: ", refused);
   }
 
-  void KeepFrame() {
+  // Puts the map into its frame and leaves out what is not wanted.
+  void Finish() {
     const Pose2 old_from_new =
         options_.keep_frame
             ? OldFromNewByNodes(result_.before.graph, result_.after.graph)
             : OldFromNewByStart(result_.before.graph, result_.after.graph);
     auto pbstream = std::make_shared<io::Pbstream>(*result_.after.pbstream);
     MoveMap(old_from_new, pbstream.get());
-    result_.after = Assess(std::move(pbstream));
+    result_.after = Assess(pbstream);
+    // The verdict has used it.
+    if (options_.drop_odometry) pbstream->odometry_data.clear();
     result_.faults = FindLocalFaults(result_.before.graph, result_.after.graph,
                                      LocalFaultOptions());
   }

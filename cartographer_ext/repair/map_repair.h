@@ -51,6 +51,10 @@ struct RepairOptions {
   // The repaired map keeps the frame of the map by a robust fit of its nodes;
   // otherwise its first node is fixed.
   bool keep_frame = false;
+  // Leave the odometry readings out of the repaired map. Cartographer optimises
+  // a map again unless it is loaded frozen, and its default weights make the
+  // odometry as strong as local SLAM.
+  bool drop_odometry = false;
   int max_rounds = 3;  // of local SLAM along the best version so far
   int num_background_threads = 2;
   // Called at the start of a step, with its name.

@@ -43,6 +43,10 @@ DEFINE_bool(
     keep_frame, false,
     "Keep the frame of the map by a robust fit of its nodes, so that unchanged "
     "parts keep their coordinates. Otherwise the first node is fixed.");
+DEFINE_bool(
+    drop_odometry, false,
+    "Leave the odometry readings out of the repaired map, so that they do not "
+    "pull on it where Cartographer optimises it again.");
 DEFINE_bool(dry_run, false, "Try all steps and report, without writing a map.");
 DEFINE_string(drop_loops, "",
               "Loops to remove, comma separated: "
@@ -112,6 +116,7 @@ absl::StatusOr<repair::RepairOptions> MakeOptions(
   if (!added.ok()) return added.status();
   options.added_loops = *added;
   options.keep_frame = FLAGS_keep_frame;
+  options.drop_odometry = FLAGS_drop_odometry;
   options.num_background_threads = FLAGS_num_background_threads;
   return options;
 }

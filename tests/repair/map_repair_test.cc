@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "cartographer/mapping/trajectory_node.h"
@@ -115,6 +116,23 @@ TEST_F(MapRepairTest, WrongLoopsAreTakenOut) {
   const auto page = MakeRepairReport(*repair, "room", "");
   ASSERT_TRUE(page.ok()) << page.status();
   EXPECT_THAT(*page, HasSubstr("What to do"));
+}
+
+TEST_F(MapRepairTest, OdometryIsLeftOutOnRequest) {
+  const io::Pbstream broken = Broken();
+  ASSERT_FALSE(broken.odometry_data.empty());
+  RepairOptions options = Options();
+  for (const bool drop : {false, true}) {
+    options.drop_odometry = drop;
+    const auto repair = RepairMap(broken, options);
+    ASSERT_TRUE(repair.ok()) << repair.status();
+    EXPECT_EQ(repair->after.quality.verdict, "sound");
+    EXPECT_EQ(repair->after.pbstream->odometry_data.empty(), drop);
+    EXPECT_TRUE(io::FindPbstreamProblems(*repair->after.pbstream).empty());
+    const bool warns =
+        ToText(*repair).find("loaded frozen") != std::string::npos;
+    EXPECT_EQ(warns, !drop);
+  }
 }
 
 TEST_F(MapRepairTest, AnyNumberOfThreadsGivesTheSameBytes) {
