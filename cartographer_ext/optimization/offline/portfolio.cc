@@ -193,7 +193,10 @@ bool Portfolio::EndsAsFromGivenPoses(const size_t first) const {
   if (!quick_.has_value() || *quick_ == first) return false;
   for (size_t k = 0; k != kQuickKernels; ++k) {
     const double cost = members_[*quick_ + k].cost;
-    if (std::abs(members_[first + k].cost - cost) > kSame * cost) return false;
+    if (std::abs(members_[first + k].cost - cost) >
+        kSame * cost + kNearlySame * kChi2Gate) {
+      return false;
+    }
   }
   return true;
 }

@@ -138,8 +138,8 @@ class Portfolio {
 
   // Returns the first of the members that have to agree.
   size_t RunQuick();
-  // Whether each of the kernels ends, from `first` on, in the optimum where it
-  // has ended from the given poses.
+  // Whether each of the kernels ends, from `first` on, where it has ended from
+  // the given poses, up to a few loops near the gate.
   bool EndsAsFromGivenPoses(size_t first) const;
   // Whether the quick members, from `first` on, agree with each other or, one by
   // one, with those from the given poses.
