@@ -101,8 +101,8 @@ class CarmenLine:
 
     def __init__(self, line):
         self.words = line.split()
-        odometry = self.words[0] == "ODOM"
-        self.poses = (slice(1, 4),) if odometry else (slice(-11, -8), slice(-14, -11))
+        self.poses = {"ODOM": (slice(1, 4),), "FLASER": (slice(-6, -3), slice(-9, -6)),
+                      "ROBOTLASER1": (slice(-11, -8), slice(-14, -11))}[self.words[0]]
         self.time = float(self.words[-3])
 
     def odometry(self):
@@ -117,7 +117,7 @@ class CarmenLine:
 
 
 def carmen_lines(path):
-    return [CarmenLine(line) for line in path.read_text().splitlines() if line.startswith(("ODOM ", "ROBOTLASER1 "))]
+    return [CarmenLine(line) for line in path.read_text().splitlines() if line.startswith(("ODOM ", "FLASER ", "ROBOTLASER1 "))]
 
 
 def odometry_at(lines, time):

@@ -2,22 +2,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/repair/map_quality.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/map/verdict/loop_statistics.h"
 
 namespace cartographer_ext {
 namespace repair {
 namespace {
 
-// Shares that differ by less are alike; what is alike is decided by the next
-// measure.
+// Evidence of a contradicted node, in agreeing nodes (map_quality.h).
+constexpr double kContradictedWeight = 3.;
+// Evidence that differs by less than this share of the nodes that are judged is
+// alike.
+constexpr double kSameEvidence = 0.01;
+// Measures that differ by less are alike; what is alike is decided by the next
+// one.
 constexpr double kSameSevere = 0.005;
 constexpr double kSameRays = 0.01;
 constexpr double kSameCycles = 0.05;
+constexpr double kSameResidual = 0.02;  // metres
 constexpr double kSameEntropy = 0.02;
-// Share of the agreeing nodes that must remain.
-constexpr double kKeptAgreement = 0.8;
 
 int Rank(const std::string& verdict) {
   if (verdict == "sound") return 0;
@@ -27,32 +34,66 @@ int Rank(const std::string& verdict) {
 
 }  // namespace
 
-MapQuality QualityOf(const evaluation::SelfConsistency& consistency) {
+int MapQuality::num_contradicted() const {
+  return static_cast<int>(
+      std::count_if(is_contradicted.begin(), is_contradicted.end(),
+                    [](const std::pair<const evaluation::GraphId, bool>& node) {
+                      return node.second;
+                    }));
+}
+
+int MapQuality::num_agreeing() const {
+  return static_cast<int>(is_contradicted.size()) - num_contradicted();
+}
+
+MapQuality QualityOf(const evaluation::MapGraph& graph,
+                     const evaluation::SelfConsistency& consistency) {
   MapQuality quality;
   quality.verdict = consistency.word;
   quality.severe_share = consistency.severe_share;
   quality.contradicted_rays = consistency.contradictions.ray_fraction();
   quality.open_cycles = consistency.cycles.fraction();
+  quality.loop_residual =
+      evaluation::ComputeLoopStatistics(graph).residual_translation.mean;
   quality.entropy = consistency.sharpness.mean_entropy;
-  quality.agreeing_nodes =
-      static_cast<double>(consistency.contradictions.judged_nodes -
-                          consistency.contradictions.conflict_nodes);
+  for (const auto& node : consistency.contradictions.nodes) {
+    if (node.judged > 0) {
+      quality.is_contradicted[node.node_id] = node.in_conflict;
+    }
+  }
   return quality;
+}
+
+double GainOfEvidence(const MapQuality& current, const MapQuality& candidate) {
+  int lost = 0;  // contradicted before, not judged now
+  for (const auto& node : current.is_contradicted) {
+    if (node.second && candidate.is_contradicted.count(node.first) == 0) {
+      ++lost;
+    }
+  }
+  const double contradicted = candidate.num_contradicted() + lost;
+  return candidate.num_agreeing() - current.num_agreeing() -
+         kContradictedWeight * (contradicted - current.num_contradicted());
 }
 
 std::string WhyNotBetter(const MapQuality& current,
                          const MapQuality& candidate) {
-  if (candidate.agreeing_nodes < kKeptAgreement * current.agreeing_nodes) {
+  const double gain = GainOfEvidence(current, candidate);
+  const double same = kSameEvidence * static_cast<double>(std::max(
+                                          current.is_contradicted.size(),
+                                          candidate.is_contradicted.size()));
+  if (gain < -same) {
     return absl::StrFormat(
-        "it tears the map apart: only %.0f nodes agree with scans of another "
-        "time, before %.0f",
-        candidate.agreeing_nodes, current.agreeing_nodes);
+        "fewer places agree: %d nodes agree with scans of another time and %d "
+        "contradict them, before %d and %d",
+        candidate.num_agreeing(), candidate.num_contradicted(),
+        current.num_agreeing(), current.num_contradicted());
   }
   if (candidate.verdict == "unknown" && current.verdict != "unknown") {
     return absl::StrFormat(
-        "it tears the map apart: hardly any place is mapped twice, only %.0f "
+        "it tears the map apart: hardly any place is mapped twice, only %d "
         "nodes agree with scans of another time",
-        candidate.agreeing_nodes);
+        candidate.num_agreeing());
   }
   const int rank = Rank(candidate.verdict), before = Rank(current.verdict);
   if (rank != before) {
@@ -60,6 +101,7 @@ std::string WhyNotBetter(const MapQuality& current,
                          : absl::StrFormat("the map would be %s, it is %s",
                                            candidate.verdict, current.verdict);
   }
+  if (gain > same) return "";
   struct Measure {
     const char* name;
     double before, after, same;
@@ -71,6 +113,8 @@ std::string WhyNotBetter(const MapQuality& current,
                 candidate.contradicted_rays, kSameRays},
         Measure{"share of open cycles", current.open_cycles,
                 candidate.open_cycles, kSameCycles},
+        Measure{"distance of the loops from the map", current.loop_residual,
+                candidate.loop_residual, kSameResidual},
         Measure{"map entropy", current.entropy, candidate.entropy,
                 kSameEntropy}}) {
     if (std::abs(measure.after - measure.before) <= measure.same) continue;
@@ -81,13 +125,21 @@ std::string WhyNotBetter(const MapQuality& current,
   return "the map would not change in quality";
 }
 
+std::string WhyNotWritten(const MapQuality& input, const MapQuality& result) {
+  if (result.verdict == "broken") {
+    return absl::StrFormat("the best version is still broken (%.1f %%)",
+                           100. * result.severe_share);
+  }
+  return WhyNotBetter(input, result);
+}
+
 std::string ToText(const MapQuality& quality) {
   return absl::StrFormat(
       "%s, %.1f %% severe, %.1f %% of rays contradicted, %.1f %% of cycles "
-      "open, entropy %.3f, %.0f nodes agree",
+      "open, entropy %.3f, %d nodes agree, %d contradict",
       quality.verdict, 100. * quality.severe_share,
       100. * quality.contradicted_rays, 100. * quality.open_cycles,
-      quality.entropy, quality.agreeing_nodes);
+      quality.entropy, quality.num_agreeing(), quality.num_contradicted());
 }
 
 }  // namespace repair

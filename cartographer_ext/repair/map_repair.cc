@@ -81,7 +81,7 @@ class Repairer {
       : options_(options),
         original_(std::make_shared<const io::Pbstream>(std::move(pbstream))) {
     result_.before = Assess(original_);
-    result_.after = result_.before;
+    best_ = result_.after = result_.before;
   }
 
   MapRepair Run() {
@@ -94,37 +94,35 @@ class Repairer {
     RunLoopClosure(false);
     is_local_ = true;
     RepeatAlongBest();
-    const double severe = 100. * result_.after.quality.severe_share;
-    const bool is_given_up = IsStillBroken();
-    if (is_given_up) result_.after = result_.before;
+    const std::string why_not =
+        is_by_hand() ? ""
+                     : WhyNotWritten(result_.before.quality, best_.quality);
+    const bool is_better = best_.pbstream != original_;
+    if (is_better && why_not.empty()) result_.after = best_;
     if (result_.changed()) Finish();
     Conclude(options_.keep_frame, &result_);
-    if (is_given_up) {
-      absl::StrAppendFormat(&result_.conclusion,
-                            "; the best version is still broken (%.1f %%)",
-                            severe);
+    if (is_better && !why_not.empty()) {
+      absl::StrAppend(&result_.conclusion, "; ", why_not);
     }
     return std::move(result_);
   }
 
  private:
   bool is_sound() const {
-    const std::string& word = result_.after.consistency.word;
+    const std::string& word = best_.consistency.word;
     return word == "sound" || word == "unknown";
   }
 
-  // Of two broken maps the one with fewer contradictions need not be nearer to
-  // the truth. Who names loops by hand gets there in several runs.
-  bool IsStillBroken() const {
-    return result_.changed() && result_.after.quality.verdict == "broken" &&
-           options_.dropped_loops.empty() && options_.added_loops.empty();
+  // Who names loops by hand gets to a sound map in several runs.
+  bool is_by_hand() const {
+    return !options_.dropped_loops.empty() || !options_.added_loops.empty();
   }
 
   // New loops over bent submaps can make a map just sound; local SLAM has its
   // turn even then.
   bool done() const {
     return is_sound() &&
-           (best_is_local_ || !options_.local || !result_.changed());
+           (best_is_local_ || !options_.local || best_.pbstream == original_);
   }
 
   void Begin(const std::string& name) {
@@ -135,8 +133,6 @@ class Repairer {
     if (options_.on_step) options_.on_step(name);
   }
 
-  bool step_kept() const { return result_.steps.back().kept; }
-
   void Skip(const std::string& reason) { result_.steps.back().reason = reason; }
 
   // Keeps the version if it is better.
@@ -144,22 +140,21 @@ class Repairer {
     const auto problems = io::FindPbstreamProblems(*pbstream, 1);
     if (!problems.empty()) {
       Skip(absl::StrCat("its map is not valid: ", problems.front()));
-      return result_.after;
+      return best_;
     }
     MapVersion version = Assess(std::move(pbstream));
     RepairStep& step = result_.steps.back();
     step.has_quality = true;
     step.quality = version.quality;
     step.loops = version.graph.num_loops();
-    const std::string why_not =
-        WhyNotBetter(result_.after.quality, version.quality);
+    const std::string why_not = WhyNotBetter(best_.quality, version.quality);
     step.kept = why_not.empty();
     step.reason =
         step.kept ? absl::StrCat("the map is better: ", ToText(version.quality))
                   : absl::StrCat(why_not, " (", ToText(version.quality), ")");
     LOG(INFO) << (step.kept ? "kept: " : "dropped: ") << step.reason;
     if (step.kept) {
-      result_.after = version;
+      best_ = version;
       best_is_local_ = is_local_;
     }
     return version;
@@ -183,7 +178,7 @@ class Repairer {
     Begin("loops added by hand");
     HandMatchOptions match;
     match.builder = options_.configuration.stock.constraint_builder_options();
-    evaluation::MapGraph graph = result_.after.graph;
+    evaluation::MapGraph graph = best_.graph;
     std::string refused;
     for (const LoopByHand& loop : options_.added_loops) {
       const auto matched = MatchByHand(loop, graph, *original_, match);
@@ -202,11 +197,11 @@ class Repairer {
       constraint.is_loop = true;
       graph.constraints.push_back(constraint);
     }
-    if (graph.constraints.size() == result_.after.graph.constraints.size()) {
+    if (graph.constraints.size() == best_.graph.constraints.size()) {
       Skip(refused);
       return;
     }
-    auto pbstream = std::make_shared<io::Pbstream>(*result_.after.pbstream);
+    auto pbstream = std::make_shared<io::Pbstream>(*best_.pbstream);
     StoreGraph(graph, pbstream.get());
     std::string reason;
     const PbstreamPointer solved = Optimize(graph, *pbstream, "huber", &reason);
@@ -238,7 +233,7 @@ class Repairer {
     if (!options_.loops) return;
     Begin("loops re-evaluated");
     std::string reason;
-    const PbstreamPointer judged = JudgeLoops(result_.after, &reason);
+    const PbstreamPointer judged = JudgeLoops(best_, &reason);
     if (judged == nullptr) {
       Skip(reason);
     } else {
@@ -267,7 +262,6 @@ class Repairer {
     auto pbstream = std::make_shared<io::Pbstream>(*base);
     StoreGraph(rerun->graph, pbstream.get());
     MapVersion version = Consider(pbstream);
-    if (is_sound() && step_kept()) return version;
     Begin(absl::StrCat(result_.steps.back().name, ", its loops re-evaluated"));
     std::string reason;
     const PbstreamPointer judged = JudgeLoops(version, &reason);
@@ -335,17 +329,18 @@ class Repairer {
   void RepeatAlongBest() {
     if (!options_.local) return;
     for (int i = 0; i < options_.max_rounds && !done(); ++i) {
-      const PbstreamPointer before = result_.after.pbstream;
-      const MotionChain best = GlobalChain(*original_, result_.after.graph);
+      const PbstreamPointer before = best_.pbstream;
+      const MotionChain best = GlobalChain(*original_, best_.graph);
       RerunAlong("submaps rebuilt along the best map so far", best,
                  NodeMatching::kNone);
-      if (before == result_.after.pbstream) break;
+      if (before == best_.pbstream) break;
     }
   }
 
   const RepairOptions options_;
   const PbstreamPointer original_;
   MapRepair result_;
+  MapVersion best_;        // so far
   bool is_local_ = false;  // the steps that run now
   bool best_is_local_ = false;
   // Of local SLAM run again with our loop closure.
@@ -362,7 +357,7 @@ MapVersion Assess(PbstreamPointer pbstream) {
   version.consistency = evaluation::AssessSelfConsistency(
       version.graph, evaluation::ReadMapContents(*pbstream, {}),
       evaluation::ReadOdometry(*pbstream), {});
-  version.quality = QualityOf(version.consistency);
+  version.quality = QualityOf(version.graph, version.consistency);
   version.pbstream = std::move(pbstream);
   return version;
 }

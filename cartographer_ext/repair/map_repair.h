@@ -11,11 +11,14 @@
 //   local SLAM re-run      node clouds matched and submaps rebuilt, along the
 //                          stored chain of poses, along the odometry, and
 //                          with odometry where the two differ; then loop
-//                          closure and re-evaluation of its loops for each
+//                          closure for each
 //   submaps rebuilt        along the best version so far
 //
-// The steps stop as soon as the map is sound. The result is the best version,
-// or the input if nothing was better.
+// After each run of loop closure its loops are re-evaluated and the remaining ones
+// optimised at full weight: the host's Huber loss limits the force of a single
+// loop and leaves a part of large errors. The steps stop as soon as the map is
+// sound. The result is the best version, or the input if none may be written
+// (WhyNotWritten).
 #ifndef CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_
 #define CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_
 

@@ -28,8 +28,10 @@ ordered_json QualityJson(const MapQuality& quality) {
           {"severe_share", quality.severe_share},
           {"contradicted_rays", quality.contradicted_rays},
           {"open_cycles", quality.open_cycles},
+          {"loop_residual", quality.loop_residual},
           {"mean_map_entropy", quality.entropy},
-          {"agreeing_nodes", quality.agreeing_nodes}};
+          {"agreeing_nodes", quality.num_agreeing()},
+          {"contradicted_nodes", quality.num_contradicted()}};
 }
 
 ordered_json VersionJson(const MapVersion& version) {

@@ -11,14 +11,25 @@ namespace {
 
 using testing::HasSubstr;
 
+// Nodes [begin, end) see a place again.
+void Judge(const int begin, const int end, const bool contradicted,
+           MapQuality* const quality) {
+  for (int i = begin; i < end; ++i) {
+    quality->is_contradicted[{0, i}] = contradicted;
+  }
+}
+
+// Nodes 0 to 99 agree, 100 to 149 contradict.
 MapQuality Broken() {
   MapQuality quality;
   quality.verdict = "broken";
   quality.severe_share = 0.3;
   quality.contradicted_rays = 0.2;
   quality.open_cycles = 0.1;
+  quality.loop_residual = 0.5;
   quality.entropy = -1.;
-  quality.agreeing_nodes = 100.;
+  Judge(0, 100, false, &quality);
+  Judge(100, 150, true, &quality);
   return quality;
 }
 
@@ -36,6 +47,11 @@ TEST(MapQualityTest, TheFirstMeasureThatDiffersDecides) {
   better.open_cycles = 0.9;
   EXPECT_EQ(WhyNotBetter(Broken(), better), "");
   better = Broken();
+  better.loop_residual = 0.1;
+  better.entropy = 0.;
+  EXPECT_EQ(WhyNotBetter(Broken(), better), "");
+  EXPECT_THAT(WhyNotBetter(better, Broken()), HasSubstr("distance"));
+  better = Broken();
   better.entropy = -1.1;
   EXPECT_EQ(WhyNotBetter(Broken(), better), "");
   EXPECT_THAT(WhyNotBetter(better, Broken()), HasSubstr("entropy"));
@@ -50,16 +66,46 @@ TEST(MapQualityTest, TheVerdictGoesBeforeTheMeasures) {
               HasSubstr("would be broken, it is doubtful"));
 }
 
+TEST(MapQualityTest, PlacesThatComeToAgreeAreEvidence) {
+  MapQuality better = Broken();
+  better.severe_share = 0.5;
+  Judge(100, 110, false, &better);
+  EXPECT_EQ(GainOfEvidence(Broken(), better), 10 + 3 * 10);
+  EXPECT_EQ(GainOfEvidence(better, Broken()), -(10 + 3 * 10));
+  EXPECT_EQ(WhyNotBetter(Broken(), better), "");
+  EXPECT_THAT(WhyNotBetter(better, Broken()), HasSubstr("fewer places agree"));
+  // Places seen twice only now.
+  better = Broken();
+  Judge(200, 210, false, &better);
+  EXPECT_EQ(GainOfEvidence(Broken(), better), 10.);
+  Judge(210, 220, true, &better);
+  EXPECT_EQ(GainOfEvidence(Broken(), better), 10. - 3. * 10.);
+}
+
+// All contradictions are gone because nothing overlaps there any more.
 TEST(MapQualityTest, AMapTornApartIsNotBetter) {
   MapQuality torn = Broken();
   torn.verdict = "sound";
   torn.severe_share = 0.;
-  torn.agreeing_nodes = 79.;
-  EXPECT_THAT(WhyNotBetter(Broken(), torn), HasSubstr("apart"));
-  torn.agreeing_nodes = 81.;
+  for (int i = 95; i < 150; ++i) torn.is_contradicted.erase({0, i});
+  EXPECT_EQ(GainOfEvidence(Broken(), torn), -5.);
+  EXPECT_THAT(WhyNotBetter(Broken(), torn), HasSubstr("fewer places agree"));
+  Judge(95, 110, false, &torn);
   EXPECT_EQ(WhyNotBetter(Broken(), torn), "");
   torn.verdict = "unknown";
   EXPECT_THAT(WhyNotBetter(Broken(), torn), HasSubstr("apart"));
+}
+
+TEST(MapQualityTest, ABrokenMapIsNotWritten) {
+  MapQuality better = Broken();
+  Judge(100, 140, false, &better);
+  better.severe_share = 0.06;
+  EXPECT_EQ(WhyNotBetter(Broken(), better), "");
+  EXPECT_THAT(WhyNotWritten(Broken(), better),
+              HasSubstr("still broken (6.0 %)"));
+  better.verdict = "doubtful";
+  EXPECT_EQ(WhyNotWritten(Broken(), better), "");
+  EXPECT_NE(WhyNotWritten(better, better), "");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ constexpr size_t kMaxNamedTurns = 3;
 // Share of the nodes that must revisit a place before a map without
 // contradictions is called sound. A map torn apart has hardly any overlap, and
 // so no contradictions.
-constexpr double kMinJudgedShare = 0.05;
+constexpr double kMinJudgedShare = 0.15;
 
 io::TimeNs StartTime(const MapGraph& graph) {
   io::TimeNs start = std::numeric_limits<io::TimeNs>::max();
