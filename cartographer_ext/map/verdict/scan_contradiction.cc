@@ -157,8 +157,6 @@ void FindPieces(const MapGraph& graph, const ContradictionOptions& options,
         submaps.insert(open[i]->worst_submap_id);
         piece.fraction +=
             open[i]->worst_fraction / static_cast<double>(open.size());
-        piece.overall_fraction +=
-            open[i]->fraction / static_cast<double>(open.size());
       }
       piece.submaps.assign(submaps.begin(), submaps.end());
       result->conflict_nodes += piece.num_nodes;

@@ -72,7 +72,6 @@ struct ConflictPiece {
   double metres = 0.;              // of path
   std::vector<GraphId> submaps;    // that are contradicted, by id
   double fraction = 0.;            // mean worst share
-  double overall_fraction = 0.;    // mean share over all submaps
 };
 
 struct Contradictions {

@@ -97,12 +97,11 @@ void Explain(const MapGraph& graph, SelfConsistency* const result) {
     const ConflictPiece& piece = result->severe[i];
     result->reasons.push_back(absl::StrFormat(
         "near x = %.1f m, y = %.1f m: nodes %s to %s (%.1f s to %.1f s after "
-        "the start) contradict %s by %.0f %% of their rays, all submaps there "
-        "by %.0f %%",
+        "the start) contradict %s by %.0f %% of their rays",
         piece.center.x(), piece.center.y(), ToString(piece.first_node),
         ToString(piece.last_node), io::ToSeconds(piece.begin - start),
         io::ToSeconds(piece.end - start), Submaps(piece.submaps),
-        100. * piece.fraction, 100. * piece.overall_fraction));
+        100. * piece.fraction));
   }
   for (size_t i = 0; i < std::min(result->wrong_turns.size(), kMaxNamedTurns);
        ++i) {
@@ -165,16 +164,13 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
   result.sharpness = ComputeSharpness(graph, contents, options.sharpness);
   result.motion = CompareMotions(graph, odometry);
   result.cycles = ComputeLoopCycles(graph, options.cycles);
-  int64_t severe_nodes = 0, overall_nodes = 0;
+  int64_t severe_nodes = 0;
   for (const ConflictPiece& piece : result.contradictions.pieces) {
     if (piece.fraction < options.severe_fraction ||
         piece.num_nodes < options.min_severe_nodes) {
       continue;
     }
     severe_nodes += piece.num_nodes;
-    if (piece.overall_fraction >= options.severe_overall_fraction) {
-      overall_nodes += piece.num_nodes;
-    }
     result.severe.push_back(piece);
   }
   std::stable_sort(result.severe.begin(), result.severe.end(),
@@ -196,11 +192,9 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
   if (judged > 0) {
     result.severe_share =
         static_cast<double>(severe_nodes) / static_cast<double>(judged);
-    result.severe_overall_share =
-        static_cast<double>(overall_nodes) / static_cast<double>(judged);
   }
   const bool turned = !result.wrong_turns.empty();
-  if (result.severe_overall_share >= options.broken_share ||
+  if (result.severe_share >= options.broken_share ||
       (result.severe_share >= options.doubtful_share && turned)) {
     result.word = "broken";
   } else if (result.severe_share >= options.doubtful_share || turned) {
@@ -221,7 +215,6 @@ ordered_json ToJson(const SelfConsistency& consistency) {
   json["verdict"] = consistency.word;
   json["reasons"] = consistency.reasons;
   json["severe_share"] = consistency.severe_share;
-  json["severe_overall_share"] = consistency.severe_overall_share;
   json["judged_nodes"] = contradictions.judged_nodes;
   json["conflict_nodes"] = contradictions.conflict_nodes;
   json["contradicted_rays"] = contradictions.ray_fraction();
@@ -238,7 +231,6 @@ ordered_json ToJson(const SelfConsistency& consistency) {
                               {"nodes", piece.num_nodes},
                               {"metres", piece.metres},
                               {"fraction", piece.fraction},
-                              {"overall_fraction", piece.overall_fraction},
                               {"submaps", submaps}});
   }
   json["wrong_turns"] = ordered_json::array();

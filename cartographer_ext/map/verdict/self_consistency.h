@@ -18,9 +18,7 @@
 //   (lasting_rotation). Either may be wrong, so this alone means doubtful.
 // A map is broken if contradicted path pieces make up `broken_share` of the
 // nodes that revisit a place, or `doubtful_share` of them together with a wrong
-// turn. Towards `broken_share` only pieces count that also contradict the map as
-// a whole, all submaps of other times together. Where the others agree, a single
-// submap is wrong inside, and the path is right: that is doubtful.
+// turn.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_SELF_CONSISTENCY_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_SELF_CONSISTENCY_H_
 
@@ -44,12 +42,9 @@ struct SelfConsistencyOptions {
   LoopCycleOptions cycles;
   double severe_fraction = 0.6;
   int min_severe_nodes = 8;
-  // Share of the rays against all submaps of other times from which a piece
-  // contradicts the map as a whole.
-  double severe_overall_fraction = 0.25;
   double wrong_turn = DegToRad(30.);          // radians
   io::TimeNs same_turn = 5LL * 1000000000LL;  // closer steps are one event
-  double broken_share = 0.05;
+  double broken_share = 0.08;
   double doubtful_share = 0.01;
 };
 
@@ -61,8 +56,6 @@ struct SelfConsistency {
   // The severe path pieces, worst (most nodes) first.
   std::vector<ConflictPiece> severe;
   double severe_share = 0.;  // of the nodes that revisit a place
-  // The same, of pieces that contradict the map as a whole.
-  double severe_overall_share = 0.;
   std::vector<MotionStep> wrong_turns;
 
   // "sound", "doubtful", "broken", or "unknown" if no place was seen twice.

@@ -62,47 +62,6 @@ TEST(SelfConsistencyTest, FoldedMapIsBrokenAndNamesThePlace) {
   EXPECT_THAT(ToText(result), HasSubstr("Self-consistency"));
 }
 
-// Four submaps of the end of the drive, some of them drawn from wrong poses: the
-// nodes agree with the others there.
-TEST(SelfConsistencyTest, OneWrongSubmapAmongOthersIsDoubt) {
-  for (const int wrong : {0, 1, 3}) {
-    test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
-    const auto constraints = world.graph.constraints;
-    world.graph.constraints.clear();
-    for (GraphConstraint constraint : constraints) {
-      const bool is_last = constraint.submap_id.index == 1;
-      const Pose2 pose = constraint.relative_pose;
-      for (const int index : {1, 2, 3, 4}) {
-        if (!is_last && index > 1) break;
-        if (is_last) constraint.submap_id.index = index;
-        constraint.relative_pose = is_last && index <= wrong
-                                       ? Pose2(1.5, 1.2, DegToRad(20.)) * pose
-                                       : pose;
-        world.graph.constraints.push_back(constraint);
-      }
-    }
-    for (const int index : {2, 3, 4}) {
-      world.graph.submaps[{0, index}] = world.graph.submaps.at({0, 1});
-      world.contents.submaps.emplace(GraphId{0, index},
-                                     world.contents.submaps.at({0, 1}));
-    }
-    const SelfConsistency result =
-        AssessSelfConsistency(world.graph, world.contents, {}, {});
-    EXPECT_EQ(result.word, wrong == 0   ? "sound"
-                           : wrong == 1 ? "doubtful"
-                                        : "broken");
-    if (wrong == 0) continue;
-    EXPECT_GT(result.severe_share, 0.3);
-    ASSERT_EQ(result.severe.size(), 1u);
-    // What sticks out of the wrong submaps is not judged.
-    EXPECT_GT(result.severe.front().overall_fraction, 0.);
-    EXPECT_LT(result.severe.front().overall_fraction,
-              result.severe.front().fraction * wrong / 4.);
-    EXPECT_EQ(result.severe_overall_share,
-              wrong == 1 ? 0. : result.severe_share);
-  }
-}
-
 TEST(SelfConsistencyTest, WrongTurnAloneIsDoubt) {
   const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
   const SelfConsistency result =
