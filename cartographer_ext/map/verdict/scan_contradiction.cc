@@ -50,7 +50,7 @@ struct PlacedSubmap {
   int first_node, last_node;    // inserted
   Box box;                      // by the pose of the submap
 
-  // As inserted nodes nearest to a place saw it.
+  // As the inserted node nearest to a place saw it.
   const Pose2& LocalFromMap(const Eigen::Vector2d& place) const {
     const auto distance = [&place](const Anchor& anchor) {
       return (anchor.place - place).squaredNorm();

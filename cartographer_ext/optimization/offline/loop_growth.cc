@@ -9,6 +9,7 @@
 
 #include "Eigen/Cholesky"
 #include "Eigen/LU"
+#include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
 
@@ -66,15 +67,7 @@ class Growth {
     for (const int i : open_) {
       if (weights_[i] == 0. && !banned_[i]) result.push_back(i);
     }
-    const size_t limit = options_.max_candidates;
-    if (result.size() > limit) {
-      std::vector<int> thinned;
-      for (size_t k = 0; k != limit; ++k) {
-        thinned.push_back(result[k * result.size() / limit]);
-      }
-      result = std::move(thinned);
-    }
-    return result;
+    return Thinned(result, options_.max_candidates);
   }
 
   // The loops to bring in next.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
@@ -63,12 +64,7 @@ bool LieBehindGate(const std::vector<double>& weights, const int accepted,
   const double many = expected + 3. * std::sqrt(expected) + 2.;
   // More than these have many wrong ones among them.
   if (rejected.size() < many || rejected.size() > 0.5 * accepted) return false;
-  // Evenly thinned.
-  const size_t count = std::min(rejected.size(), kMaxInnovations);
-  std::vector<int> looked_at;
-  for (size_t k = 0; k != count; ++k) {
-    looked_at.push_back(rejected[k * rejected.size() / count]);
-  }
+  const std::vector<int> looked_at = Thinned(rejected, kMaxInnovations);
   double near = 0., far = 0.;
   for (const Innovation& innovation : PredictLoops(
            looked_at, weights, portfolio->best().poses, portfolio->solver())) {
@@ -76,7 +72,7 @@ bool LieBehindGate(const std::vector<double>& weights, const int accepted,
     near += gates < 2.;
     far += gates >= 2. && gates < 4.;
   }
-  return near * rejected.size() > many * count && near > far;
+  return near * rejected.size() > many * looked_at.size() && near > far;
 }
 
 // Whether the noise may be larger than the matrices say.

@@ -7,6 +7,7 @@
 
 #include "Eigen/Cholesky"
 #include "cartographer_ext/common/squared.h"
+#include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
 
 namespace cartographer_ext {
@@ -41,9 +42,8 @@ std::vector<Prediction> Predict(const std::vector<Pose2>& poses,
   if (factorised == nullptr) return result;
   IncrementalFactor factor;
   factor.Reset(*factorised, rhs);
-  const size_t count = std::min(limit, loops.size());
-  for (size_t k = 0; k != count; ++k) {
-    const WhitenedEdge& edge = edges[loops[k * loops.size() / count]];
+  for (const int i : Thinned(loops, limit)) {
+    const WhitenedEdge& edge = edges[i];
     LinearFactor linear;
     linear.a = edge.from - 1;
     linear.b = edge.to - 1;

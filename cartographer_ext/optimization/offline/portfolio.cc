@@ -10,6 +10,7 @@
 #include "Eigen/Cholesky"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
@@ -39,15 +40,6 @@ constexpr int kMaxTrialsOfSettled = 3;
 constexpr double kSmallGraph = 2.5e5;
 // Multiplications of one factorisation that cost nothing worth mentioning.
 constexpr double kLittleWork = 3e6;
-
-std::vector<int> Thinned(const std::vector<int>& values, const size_t limit) {
-  if (values.size() <= limit) return values;
-  std::vector<int> result;
-  for (size_t k = 0; k != limit; ++k) {
-    result.push_back(values[k * values.size() / limit]);
-  }
-  return result;
-}
 
 // Names what was improved in the same way twice only once.
 std::string Suffixed(const std::string& name, const std::string& suffix) {
