@@ -3,24 +3,92 @@
 #include "cartographer_ext/optimization/offline/loop_support.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <numeric>
 
 #include "Eigen/Cholesky"
 #include "Eigen/LU"
-#include "cartographer_ext/uncertainty/uncertain_pose.h"
+#include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-using uncertainty::Compose;
-using uncertainty::Invert;
-using uncertainty::UncertainPose;
+// A relative pose with the covariance of its error and the cosine and sine of
+// its angle (uncertain_pose.h), which compositions would mostly go into.
+struct Link {
+  double x = 0.;
+  double y = 0.;
+  double theta = 0.;
+  double cos = 1.;
+  double sin = 0.;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
 
-UncertainPose ToUncertainPose(const PoseGraphEdge& edge) {
-  return {edge.measurement, edge.information.inverse()};
+Link ToLink(const PoseGraphEdge& edge) {
+  Link result;
+  result.x = edge.measurement.x;
+  result.y = edge.measurement.y;
+  result.theta = edge.measurement.theta;
+  result.cos = std::cos(result.theta);
+  result.sin = std::sin(result.theta);
+  result.covariance = edge.information.inverse();
+  return result;
 }
+
+// Ad(z) C Ad(z)' for the pose of `z`, whose covariance is not used.
+Eigen::Matrix3d Carried(const Eigen::Matrix3d& covariance, const Link& z) {
+  Eigen::Matrix2d rotation;
+  rotation << z.cos, -z.sin, z.sin, z.cos;
+  const Eigen::Vector2d lever(z.y, -z.x);
+  const double heading = covariance(2, 2);
+  const Eigen::Vector2d turned = rotation * covariance.topRightCorner<2, 1>();
+  const Eigen::Vector2d with_heading = turned + heading * lever;
+  Eigen::Matrix3d result;
+  result.topLeftCorner<2, 2>() =
+      rotation * covariance.topLeftCorner<2, 2>() * rotation.transpose() +
+      turned * lever.transpose() + lever * with_heading.transpose();
+  result.topRightCorner<2, 1>() = with_heading;
+  result.bottomLeftCorner<1, 2>() = with_heading.transpose();
+  result(2, 2) = heading;
+  return result;
+}
+
+// Pose only.
+Link InversePose(const Link& z) {
+  Link result;
+  result.x = -z.cos * z.x - z.sin * z.y;
+  result.y = z.sin * z.x - z.cos * z.y;
+  result.theta = -z.theta;
+  result.cos = z.cos;
+  result.sin = -z.sin;
+  return result;
+}
+
+Link Invert(const Link& z) {
+  Link result = InversePose(z);
+  result.covariance = Carried(z.covariance, z);
+  return result;
+}
+
+Link Compose(const Link& lhs, const Link& rhs) {
+  Link result;
+  result.x = lhs.x + lhs.cos * rhs.x - lhs.sin * rhs.y;
+  result.y = lhs.y + lhs.sin * rhs.x + lhs.cos * rhs.y;
+  result.theta = NormalizeAngle(lhs.theta + rhs.theta);
+  result.cos = lhs.cos * rhs.cos - lhs.sin * rhs.sin;
+  result.sin = lhs.sin * rhs.cos + lhs.cos * rhs.sin;
+  result.covariance =
+      Carried(lhs.covariance, InversePose(rhs)) + rhs.covariance;
+  return result;
+}
+
+// Paths from a pose to itself and to those after it, as far as needed.
+struct Paths {
+  int first = -1;
+  std::vector<Link> known;
+};
 
 class Supporter {
  public:
@@ -28,7 +96,8 @@ class Supporter {
       : graph_(graph),
         options_(options),
         step_(graph.poses.size(), -1),
-        paths_(graph.poses.size()) {
+        paths_(std::max<size_t>(
+            1, std::min<size_t>(options.max_paths, graph.poses.size()))) {
     for (size_t i = 0; i != graph.edges.size(); ++i) {
       const PoseGraphEdge& edge = graph.edges[i];
       if (edge.is_loop) {
@@ -43,14 +112,17 @@ class Supporter {
     result_.agreeing.resize(graph_.edges.size());
     std::stable_sort(loops_.begin(), loops_.end(),
                      [&](int i, int j) { return Early(i) < Early(j); });
-    for (const int i : loops_) loop_poses_.push_back(Loop(i));
+    for (const int i : loops_) {
+      early_.push_back(Early(i));
+      late_.push_back(Late(i));
+      links_.push_back(Loop(i));
+      inverse_links_.push_back(Invert(links_.back()));
+    }
     for (size_t k = 0; k != loops_.size(); ++k) {
       int tested = 0;
       for (size_t l = k + 1; l != loops_.size(); ++l) {
-        if (Early(loops_[l]) - Early(loops_[k]) > options_.window) break;
-        if (std::abs(Late(loops_[l]) - Late(loops_[k])) > options_.window) {
-          continue;
-        }
+        if (early_[l] - early_[k] > options_.window) break;
+        if (std::abs(late_[l] - late_[k]) > options_.window) continue;
         if (tested++ == options_.max_neighbours) break;
         Test(k, l);
       }
@@ -68,40 +140,42 @@ class Supporter {
   }
 
   // (early <- late).
-  UncertainPose Loop(const int i) const {
-    const UncertainPose loop = ToUncertainPose(graph_.edges[i]);
+  Link Loop(const int i) const {
+    const Link loop = ToLink(graph_.edges[i]);
     return graph_.edges[i].from < graph_.edges[i].to ? loop : Invert(loop);
   }
 
   // (from <- to) along odometry; false where it is interrupted.
-  bool Path(const int from, const int to, UncertainPose* const path) {
+  bool Path(const int from, const int to, Link* const path) {
     const int first = std::min(from, to), length = std::abs(from - to);
-    std::vector<UncertainPose>& known = paths_[first];
-    if (known.empty()) known.push_back(UncertainPose());
-    while (static_cast<int>(known.size()) <= length) {
-      const int k = first + known.size() - 1;
+    Paths& paths = paths_[first % paths_.size()];
+    if (paths.first != first) {
+      paths.first = first;
+      paths.known.assign(1, Link());
+    }
+    while (static_cast<int>(paths.known.size()) <= length) {
+      const int k = first + paths.known.size() - 1;
       if (step_[k] < 0) return false;
       const PoseGraphEdge& edge = graph_.edges[step_[k]];
-      const UncertainPose step = ToUncertainPose(edge);
-      known.push_back(
-          Compose(known.back(), edge.from == k ? step : Invert(step)));
+      const Link step = ToLink(edge);
+      paths.known.push_back(
+          Compose(paths.known.back(), edge.from == k ? step : Invert(step)));
     }
-    *path = from > to ? Invert(known[length]) : known[length];
+    *path = from > to ? Invert(paths.known[length]) : paths.known[length];
     return true;
   }
 
   // Whether the loops number k and l of loops_ agree.
   void Test(const int k, const int l) {
     const int i = loops_[k], j = loops_[l];
-    UncertainPose path_late, path_early;
-    if (!Path(Late(i), Late(j), &path_late) ||
-        !Path(Early(j), Early(i), &path_early)) {
+    Link path_late, path_early;
+    if (!Path(late_[k], late_[l], &path_late) ||
+        !Path(early_[l], early_[k], &path_early)) {
       return;
     }
-    const UncertainPose cycle = Compose(
-        Compose(Compose(loop_poses_[k], path_late), Invert(loop_poses_[l])),
-        path_early);
-    const Eigen::Vector3d error(cycle.pose.x, cycle.pose.y, cycle.pose.theta);
+    const Link cycle = Compose(
+        Compose(Compose(links_[k], path_late), inverse_links_[l]), path_early);
+    const Eigen::Vector3d error(cycle.x, cycle.y, cycle.theta);
     const double chi2 = error.dot(cycle.covariance.llt().solve(error));
     result_.cycle_chi2.push_back(chi2);
     if (!(chi2 < options_.gate)) return;
@@ -130,10 +204,12 @@ class Supporter {
   const PoseGraph& graph_;
   const LoopSupportOptions options_;
   std::vector<int> step_;  // odometry edge between pose k and pose k + 1, or -1
-  // Paths from each pose to itself and to those after it, as far as needed.
-  std::vector<std::vector<UncertainPose>> paths_;
+  // By the number of their first pose modulo the size.
+  std::vector<Paths> paths_;
   std::vector<int> loops_;
-  std::vector<UncertainPose> loop_poses_;  // (early <- late) of loops_
+  std::vector<int> early_, late_;  // ends of loops_
+  // (early <- late) of loops_, and (late <- early).
+  std::vector<Link> links_, inverse_links_;
   LoopSupport result_;
 };
 

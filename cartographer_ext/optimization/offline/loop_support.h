@@ -27,6 +27,8 @@ struct LoopSupportOptions {
   int window = 15;  // poses between the ends of neighbours
   double gate = kChi2Gate;
   int max_neighbours = 30;  // tested per loop
+  // Poses from which the paths are kept; those from others are composed again.
+  int max_paths = 10000;
 };
 
 // Agreement of loops and their groups.

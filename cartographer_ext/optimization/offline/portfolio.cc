@@ -278,8 +278,13 @@ bool Portfolio::OtherStartIsLower() {
   std::vector<Pose2> start;
   if (!StartFromSupport(&supported, &start)) {
     ReplayResult replay;
-    if (!AddReplay(&replay)) return false;
-    name = "r_isam, ";
+    if (!AddShortReplay(&replay)) return false;
+    // A folded map says nothing about another one.
+    if (members_.back().cost > before + kFolded * kChi2Gate &&
+        !AddReplay(&replay)) {
+      return false;
+    }
+    name = replayed_ ? "r_isam, " : "r_isam, short, ";
     start = replay.poses;
   }
   const size_t first = members_.size();

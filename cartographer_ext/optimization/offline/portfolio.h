@@ -34,8 +34,10 @@
 //
 // What is too large for the search by groups is compared, after the quick
 // solvers, with a map from the supported loops, and where wrong ones among them
-// spoil that, with a replay: where the quick solvers agree but reject loops that
-// agree with each other, and where they do not agree. The search ends where the
+// spoil that, with a short replay (of epochs alone, each of a tenth of the poses
+// so far), and where that does not lead there, with a whole one: where the quick
+// solvers agree but reject loops that agree with each other, and where they do
+// not agree. The search ends where the
 // kernels agree from there, with each other or each with what it has found from
 // the given poses. Otherwise starts that lead to a folded map are given up after
 // one kernel. With other information matrices the quick solvers alone are added
@@ -187,6 +189,8 @@ class Portfolio {
   void AddGnc(const std::string& start_name, const std::vector<Pose2>& start);
   // The incremental replay itself; false where it is not possible.
   bool AddReplay(ReplayResult* replay);
+  // The same by its epochs alone.
+  bool AddShortReplay(ReplayResult* replay);
   void AddReplays();
   // From the best, kernels as wide as the gate.
   void Soften();
@@ -212,7 +216,7 @@ class Portfolio {
                         std::vector<Pose2>* start);
   // Whether the supported loops alone lead to a map that ends the search.
   bool SettleBySupport();
-  // The same for the incremental replay.
+  // The same for the incremental replay: a short one, or else a whole one.
   bool SettleByReplay();
   void AddGrowth(const std::vector<Pose2>& start);
   // Work of one factorisation with these edges and with all, in
@@ -243,7 +247,8 @@ class Portfolio {
   bool ran_full_kernels_ = false;
   bool ran_gnc_ = false;  // from the given poses
   bool ran_all_solvers_ = false;
-  bool replayed_ = false;
+  bool replayed_ = false;  // as a whole
+  bool shortly_replayed_ = false;
   bool tried_support_ = false;
   bool starts_alone_ = true;  // from starts that no search has found
 };

@@ -29,6 +29,8 @@ constexpr double kRounding = 1e-3;
 // Poses times loops up to which groups are forced in more than once: at the end
 // of a replay, and from chordal relaxations.
 constexpr double kMaxRepeatedWork = 2e6;
+// Poses of an epoch of a short replay, up to ten times as many in all.
+constexpr int kShortEpoch = 50;
 // Rounds of the search by groups, as long as each finds a loop.
 constexpr int kMaxGroupRounds = 4;
 
@@ -65,6 +67,19 @@ bool Portfolio::AddReplay(ReplayResult* const replay) {
     NoteSolver(replay->poses);
     Add("r_isam, readmitted", replay->poses);
   }
+  return true;
+}
+
+bool Portfolio::AddShortReplay(ReplayResult* const replay) {
+  // The batch at the end of an epoch weighs all of its loops anyway.
+  SmootherOptions options = options_.smoother;
+  options.max_loops_per_step = 0;
+  options.epoch_poses = kShortEpoch;
+  options.large_map = 10 * kShortEpoch;
+  if (!Replay(graph_, options, replay).ok()) return false;
+  shortly_replayed_ = true;
+  NoteSolver(replay->poses);
+  Add("r_isam, short", replay->poses);
   return true;
 }
 
@@ -144,6 +159,10 @@ bool Portfolio::SettleBySupport() {
 
 bool Portfolio::SettleByReplay() {
   ReplayResult replay;
+  if (!shortly_replayed_ && !replayed_ && AddShortReplay(&replay) &&
+      IsSettled(AddKernels("r_isam, short, ", replay.poses, false))) {
+    return true;
+  }
   return !replayed_ && AddReplay(&replay) &&
          IsSettled(AddKernels("r_isam, ", replay.poses, false));
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/loop_support.h"
 
+#include "Eigen/LU"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
 
@@ -87,6 +89,58 @@ TEST(LoopSupportTest, ChiSquareOfCyclesIsHonest) {
   }
   ASSERT_EQ(count, 400);
   EXPECT_NEAR(sum / count, 3., 0.4);
+}
+
+// What is kept of the paths costs memory and saves time.
+TEST(LoopSupportTest, IsTheSameHoweverManyPathsAreKept) {
+  test::GridWorld world = test::MakeGridWorld(300, 8, 3);
+  OutlierOptions outliers;
+  outliers.type = OutlierType::kLocalGrouped;
+  outliers.count = 200;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  const LoopSupport support =
+      FindLoopSupport(world.graph, LoopSupportOptions());
+  ASSERT_GT(support.cycle_chi2.size(), 500u);
+  ASSERT_LT(support.groups.size(), support.cycle_chi2.size());
+  for (const int max_paths : {0, 1, 7}) {
+    LoopSupportOptions options;
+    options.max_paths = max_paths;
+    const LoopSupport other = FindLoopSupport(world.graph, options);
+    EXPECT_EQ(other.cycle_chi2, support.cycle_chi2);
+    EXPECT_EQ(other.agreeing, support.agreeing);
+    EXPECT_EQ(other.groups, support.groups);
+  }
+}
+
+// The same as by the composition of uncertain poses.
+TEST(LoopSupportTest, ChiSquareIsThatOfUncertainPoses) {
+  using uncertainty::Compose;
+  using uncertainty::Invert;
+  using uncertainty::UncertainPose;
+  const auto pose = [](const PoseGraphEdge& edge) -> UncertainPose {
+    return {edge.measurement, edge.information.inverse()};
+  };
+  Random random(3);
+  PoseGraph graph = TwoPasses();
+  const int a = AddLoop(3, 23, Pose2(0.1, -0.2, 0.7), &graph);
+  const int b = AddLoop(25, 4, Pose2(-1., 0.3, -2.9), &graph);
+  for (PoseGraphEdge& edge : graph.edges) {
+    const Eigen::Matrix3d root =
+        Eigen::Matrix3d::NullaryExpr([&] { return random.Normal(0., 1.); });
+    edge.information = root * root.transpose() + Eigen::Matrix3d::Identity();
+    edge.measurement = edge.measurement * Pose2(0.3, random.Normal(0., 0.2),
+                                                random.Normal(0., 0.5));
+  }
+  const UncertainPose late =
+      Compose(pose(graph.edges[23]), pose(graph.edges[24]));
+  const UncertainPose cycle = Compose(
+      Compose(Compose(pose(graph.edges[a]), late), pose(graph.edges[b])),
+      Invert(pose(graph.edges[3])));
+  const Eigen::Vector3d error(cycle.pose.x, cycle.pose.y, cycle.pose.theta);
+  const LoopSupport support = FindLoopSupport(graph, LoopSupportOptions());
+  ASSERT_EQ(support.cycle_chi2.size(), 1u);
+  const double expected = error.dot(cycle.covariance.inverse() * error);
+  EXPECT_NEAR(support.cycle_chi2[0], expected, 1e-9 * expected);
 }
 
 TEST(LoopSupportTest, NoAgreementAcrossAGapOfOdometry) {
