@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "camd.h"
+#include "cartographer_ext/optimization/solvers/block_kernels.h"
 #include "cartographer_ext/optimization/solvers/block_product.h"
 #include "glog/logging.h"
 
@@ -233,6 +234,7 @@ void BlockLdlt::AddOffDiagonal(const int pair, const Eigen::Matrix3d& block) {
 }
 
 bool BlockLdlt::Factorize(const double lambda) {
+  const BlockKernels& kernels = BestBlockKernels();
   const int n = size();
   for (Eigen::Matrix3d& block : blocks_) block.setZero();
   for (size_t k = 0; k != matrix_.size(); ++k) {
@@ -253,14 +255,12 @@ bool BlockLdlt::Factorize(const double lambda) {
       const int next_in_list = link[k];
       const int p0 = reached[k], end = starts_[k + 1];
       factor.noalias() = pivots_[k] * blocks_[p0].transpose();
-      const RightFactor right(factor);
-      right.SubtractedFrom(PackedBlock(pivot), PackedBlock(blocks_[p0]))
+      RightFactor(factor)
+          .SubtractedFrom(PackedBlock(pivot), PackedBlock(blocks_[p0]))
           .CopyTo(&pivot);
-      for (int p = p0 + 1; p < end; ++p) {
-        Eigen::Matrix3d& block = blocks_[index_of_row[rows_[p]]];
-        right.SubtractedFrom(PackedBlock(block), PackedBlock(blocks_[p]))
-            .CopyTo(&block);
-      }
+      kernels.subtract_products(factor, &blocks_[p0] + 1, &rows_[p0] + 1,
+                                end - p0 - 1, index_of_row.data(),
+                                blocks_.data());
       if (p0 + 1 < end) {
         reached[k] = p0 + 1;
         const int row = rows_[p0 + 1];

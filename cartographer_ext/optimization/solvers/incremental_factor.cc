@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "cartographer_ext/optimization/solvers/block_product.h"
+#include "cartographer_ext/optimization/solvers/block_kernels.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -62,6 +62,7 @@ int IncrementalFactor::Append() {
 
 bool IncrementalFactor::Update(const LinearFactor& factor,
                                const double weight) {
+  const BlockKernels& kernels = BestBlockKernels();
   last_update_blocks_ = 0;
   if (weight == 0. || (factor.a < 0 && factor.b < 0)) return true;
   ++version_;
@@ -119,15 +120,8 @@ bool IncrementalFactor::Update(const LinearFactor& factor,
       break;
     }
     const Eigen::Matrix3d gain = middle_head * column.pivot_inverse;
-    const RightFactor of_head(head), of_gain(gain);
-    for (size_t k = 0; k != column.rows.size(); ++k) {
-      Eigen::Matrix3d& work = work_[column.rows[k]];
-      const PackedBlock block(column.blocks[k]);
-      const PackedBlock below =
-          of_head.SubtractedFrom(PackedBlock(work), block);
-      below.CopyTo(&work);
-      of_gain.AddedTo(block, below).CopyTo(&column.blocks[k]);
-    }
+    kernels.update_column(head, gain, column.rows.data(), column.rows.size(),
+                          column.blocks.data(), work_.data());
     work_rhs.noalias() -= column.rhs.transpose() * head;
     column.rhs.noalias() += gain.transpose() * work_rhs.transpose();
     middle.noalias() -= gain * middle_head.transpose();
@@ -141,6 +135,7 @@ bool IncrementalFactor::Update(const LinearFactor& factor,
 
 Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
     const LinearFactor& factor) const {
+  const BlockKernels& kernels = BestBlockKernels();
   Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
   // Two paths to the root, walked together in ascending order.
   int a = kEnd, b = kEnd;
@@ -158,12 +153,8 @@ Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
     const Eigen::Matrix3d head = work_[j];
     work_[j].setZero();
     result.noalias() += head.transpose() * column.pivot_inverse * head;
-    const RightFactor of_head(head);
-    for (size_t k = 0; k != column.rows.size(); ++k) {
-      Eigen::Matrix3d& work = work_[column.rows[k]];
-      of_head.SubtractedFrom(PackedBlock(work), PackedBlock(column.blocks[k]))
-          .CopyTo(&work);
-    }
+    kernels.subtract_products(head, column.blocks.data(), column.rows.data(),
+                              column.rows.size(), nullptr, work_.data());
     const int parent = column.rows.empty() ? kEnd : column.rows.front();
     if (a == j) a = parent;
     if (b == j) b = parent;
