@@ -19,6 +19,10 @@ constexpr double kLeastClusterWeight = 0.1;
 constexpr double kRivalScore = 0.5;
 // Of a cluster that may confirm others: rather true than false.
 constexpr double kConfirmingScore = 0.5;
+// After a clique search that reached its limit, the next ones continue from its
+// subset, to which little has been added, and get this part of the limit.
+// Otherwise a building of equal places costs the whole limit for each revisit.
+constexpr int64_t kContinuedPart = 10;
 
 uncertainty::LoopEdge Reversed(const uncertainty::LoopEdge& edge) {
   uncertainty::LoopEdge reversed;
@@ -155,26 +159,39 @@ double CompatibleSubset::Weight(const Cluster& cluster) const {
   return cluster.accepted ? options_.accepted_weight * by_score : by_score;
 }
 
-void CompatibleSubset::Solve() {
+void CompatibleSubset::FindSubset() {
   const int n = num_clusters();
-  const auto relation = [this](const int i, const int j) {
-    return relations_[std::max(i, j)][std::min(i, j)];
-  };
   CompatibilityGraph graph(n);
   std::vector<double> weights(n);
   for (int i = 0; i < n; ++i) {
     weights[i] = Weight(clusters_[i]);
     for (int j = 0; j < i; ++j) {
-      if (relation(i, j) != Relation::kContradicts) graph.AddEdge(i, j);
+      if (relations_[i][j] != Relation::kContradicts) graph.AddEdge(i, j);
     }
   }
-  const MaxCliqueResult clique =
-      MaxWeightClique(graph, weights, options_.clique);
+  MaxCliqueOptions limits = options_.clique;
+  std::vector<int> start;
+  if (!exact_) {
+    limits.max_steps /= kContinuedPart;
+    for (int i = 0; i < n; ++i) {
+      if (clusters_[i].in_subset) start.push_back(i);
+    }
+  }
+  const MaxCliqueResult clique = MaxWeightClique(graph, weights, limits, start);
   exact_ = clique.exact;
+  num_clique_steps_ += clique.steps;
   subset_size_ = static_cast<int>(clique.vertices.size());
-  num_overturned_ = 0;
   for (Cluster& cluster : clusters_) cluster.in_subset = false;
   for (const int v : clique.vertices) clusters_[v].in_subset = true;
+}
+
+void CompatibleSubset::Solve() {
+  FindSubset();
+  const int n = num_clusters();
+  const auto relation = [this](const int i, const int j) {
+    return relations_[std::max(i, j)][std::min(i, j)];
+  };
+  num_overturned_ = 0;
   std::vector<int> total_support(n, 0);
   for (int i = 0; i < n; ++i) {
     Cluster& cluster = clusters_[i];

@@ -170,6 +170,8 @@ class CompatibleSubset {
   int num_overturned() const { return num_overturned_; }
   // Whether the last clique search was exact.
   bool exact() const { return exact_; }
+  // Steps of all clique searches, MaxCliqueResult.
+  int64_t num_clique_steps() const { return num_clique_steps_; }
 
  private:
   enum class Relation : char {
@@ -198,6 +200,7 @@ class CompatibleSubset {
   int Support(int index, bool of_subset) const;
   // Weight of a cluster in the clique, by the best score of its loops.
   double Weight(const Cluster& cluster) const;
+  void FindSubset();
   void Solve();
   bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;
   // Whether a loop of an accepted cluster may be accepted itself.
@@ -221,6 +224,7 @@ class CompatibleSubset {
   std::vector<SubsetDecision> overflow_;  // decided by MakeRoom
   bool changed_ = false;
   bool exact_ = true;
+  int64_t num_clique_steps_ = 0;
   int subset_size_ = 0;
   int num_overturned_ = 0;
 };

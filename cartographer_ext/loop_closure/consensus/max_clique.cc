@@ -22,7 +22,7 @@ class Search {
          const MaxCliqueOptions& options)
       : graph_(graph), weights_(weights), options_(options) {}
 
-  MaxCliqueResult Run() {
+  MaxCliqueResult Run(const std::vector<int>& start) {
     const int n = graph_.num_vertices();
     std::vector<int> order(n);
     std::iota(order.begin(), order.end(), 0);
@@ -38,7 +38,9 @@ class Search {
                  ? neighbourhood[a] > neighbourhood[b]
                  : a < b;
     });
-    Greedy(order);
+    if (!start.empty()) Grow(start, order);
+    const size_t starts = std::min<size_t>(order.size(), 32);
+    for (size_t s = 0; s < starts; ++s) Grow({order[s]}, order);
     std::vector<int> current;
     Expand(order, 0., &current);
     result_.exact = !stopped_;
@@ -47,24 +49,22 @@ class Search {
   }
 
  private:
-  // A clique grown in the given order from each of the first few vertices.
-  void Greedy(const std::vector<int>& order) {
-    const size_t starts = std::min<size_t>(order.size(), 32);
-    for (size_t s = 0; s < starts; ++s) {
-      std::vector<int> clique = {order[s]};
-      double weight = weights_[order[s]];
-      for (const int v : order) {
-        bool joins = v != order[s];
-        for (size_t i = 0; joins && i < clique.size(); ++i) {
-          joins = graph_.HasEdge(v, clique[i]);
-        }
-        if (joins) {
+  // Offers the clique of the vertices of `start` that are joined to all before
+  // them, grown in the given order.
+  void Grow(const std::vector<int>& start, const std::vector<int>& order) {
+    std::vector<int> clique;
+    double weight = 0.;
+    for (const std::vector<int>* const vertices : {&start, &order}) {
+      for (const int v : *vertices) {
+        // A vertex is not joined to itself.
+        if (std::all_of(clique.begin(), clique.end(),
+                        [&](const int u) { return graph_.HasEdge(v, u); })) {
           clique.push_back(v);
           weight += weights_[v];
         }
       }
-      Offer(clique, weight);
     }
+    Offer(clique, weight);
   }
 
   void Offer(const std::vector<int>& clique, const double weight) {
@@ -191,7 +191,8 @@ void CompatibilityGraph::AddEdge(const int u, const int v) {
 
 MaxCliqueResult MaxWeightClique(const CompatibilityGraph& graph,
                                 const std::vector<double>& weights,
-                                const MaxCliqueOptions& options) {
+                                const MaxCliqueOptions& options,
+                                const std::vector<int>& start) {
   CHECK_EQ(weights.size(), static_cast<size_t>(graph.num_vertices()));
   for (const double weight : weights) CHECK_GT(weight, 0.);
   std::vector<std::vector<int>> sets = SplitByConflicts(graph);
@@ -213,7 +214,15 @@ MaxCliqueResult MaxWeightClique(const CompatibilityGraph& graph,
         if (graph.HasEdge(set[i], set[j])) part.AddEdge(i, j);
       }
     }
-    const MaxCliqueResult clique = Search(part, part_weights, left).Run();
+    std::vector<int> part_start;
+    for (const int v : start) {
+      const auto it = std::lower_bound(set.begin(), set.end(), v);
+      if (it != set.end() && *it == v) {
+        part_start.push_back(static_cast<int>(it - set.begin()));
+      }
+    }
+    const MaxCliqueResult clique =
+        Search(part, part_weights, left).Run(part_start);
     for (const int v : clique.vertices) result.vertices.push_back(set[v]);
     result.weight += clique.weight;
     result.exact = result.exact && clique.exact;

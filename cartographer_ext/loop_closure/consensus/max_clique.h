@@ -61,10 +61,14 @@ struct MaxCliqueResult {
 };
 
 // `weights[v]` > 0. Of several maximum cliques the one found first in the fixed
-// search order is returned; the order depends on the input only.
+// search order is returned; the order depends on the input only. The search
+// starts from the clique `start`, grown greedily, where that is heavier than
+// the greedy ones; vertices of it that are not joined to those before are left
+// out.
 MaxCliqueResult MaxWeightClique(const CompatibilityGraph& graph,
                                 const std::vector<double>& weights,
-                                const MaxCliqueOptions& options);
+                                const MaxCliqueOptions& options,
+                                const std::vector<int>& start = {});
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

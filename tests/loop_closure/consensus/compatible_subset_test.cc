@@ -358,6 +358,37 @@ TEST_F(CompatibleSubsetTest, BoundedAndNothingIsLost) {
   for (const auto& entry : seen) EXPECT_EQ(entry.second, 1) << entry.first;
 }
 
+// Half of the loops are one to four places of 0.8 m off. Searches after one that
+// reached its limit get a tenth of it, and accept nearly what exact ones do.
+TEST_F(CompatibleSubsetTest, LaterSearchesContinueAndCostLess) {
+  constexpr int kNumLoops = 150;
+  // A search is stopped by the step after its limit, which counts by its size.
+  constexpr int64_t kLastStep = 1 + kNumLoops * kNumLoops / 1024;
+  std::map<int64_t, int> num_stopped, num_right, num_wrong;
+  for (const int64_t limit : {10, 1000}) {
+    options_.clique.max_steps = limit;
+    CompatibleSubset subset(options_, &paths_);
+    Random random(3);
+    std::vector<bool> is_true;
+    for (int id = 0; id < kNumLoops; ++id) {
+      is_true.push_back(random.Uniform() < 0.5);
+      const double offset = is_true.back() ? 0. : 0.8 * random.UniformInt(1, 4);
+      subset.Add(Loop(id, static_cast<int>(random.UniformInt(0, 90)), offset));
+      const int64_t before = subset.num_clique_steps();
+      const int64_t bound = (subset.exact() ? limit : limit / 10) + kLastStep;
+      for (const int64_t accepted : Accepted(subset.Decide())) {
+        ++(is_true[accepted] ? num_right : num_wrong)[limit];
+      }
+      EXPECT_LE(subset.num_clique_steps() - before, bound) << id;
+      num_stopped[limit] += !subset.exact();
+    }
+  }
+  EXPECT_EQ(num_stopped[1000], 0);
+  EXPECT_GT(num_stopped[10], 20);
+  EXPECT_GT(num_right[10], 0.9 * num_right[1000]);
+  EXPECT_LE(num_wrong[10], num_wrong[1000] + 2);
+}
+
 TEST_F(CompatibleSubsetTest, SeparatesTrueFromRandomFalseLoops) {
   for (int seed = 0; seed < 5; ++seed) {
     std::vector<int64_t> first_run;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/consensus/max_clique.h"
 
+#include <vector>
+
 #include "cartographer_ext/common/random.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -33,6 +35,29 @@ TEST(MaxCliqueTest, WeightsCountRevisitsNotLoops) {
               ElementsAre(0, 1, 2));
   EXPECT_THAT(MaxWeightClique(graph, {1., 1., 1., 2., 2.}, {}).vertices,
               ElementsAre(3, 4));
+}
+
+// Pairs of many neighbours hide a clique of five from the greedy start.
+TEST(MaxCliqueTest, BeginsWithAGivenClique) {
+  CompatibilityGraph graph(45);
+  for (int u = 0; u < 20; ++u) {
+    for (int v = 20; v < 40; ++v) graph.AddEdge(u, v);
+  }
+  for (int u = 40; u < 45; ++u) {
+    for (int v = 40; v < u; ++v) graph.AddEdge(u, v);
+  }
+  const std::vector<double> weights(45, 1.);
+  MaxCliqueOptions none;
+  none.max_steps = 0;
+  EXPECT_EQ(MaxWeightClique(graph, weights, none).weight, 2.);
+  // It is grown, and what is not joined to it is left out.
+  const MaxCliqueResult grown =
+      MaxWeightClique(graph, weights, none, {40, 41, 7, 42});
+  EXPECT_THAT(grown.vertices, ElementsAre(40, 41, 42, 43, 44));
+  EXPECT_FALSE(grown.exact);
+  const MaxCliqueResult exact = MaxWeightClique(graph, weights, {}, {3, 25});
+  EXPECT_THAT(exact.vertices, ElementsAre(40, 41, 42, 43, 44));
+  EXPECT_TRUE(exact.exact);
 }
 
 TEST(MaxCliqueTest, EqualsExhaustiveSearchOnRandomGraphs) {
