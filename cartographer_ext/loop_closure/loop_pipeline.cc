@@ -86,7 +86,8 @@ void LoopPipeline::Process(LoopCandidate candidate) {
 
   // How much local SLAM drifts, whether or not this one turns out right.
   if (!candidate.is_inter_trajectory()) {
-    drift_.Add(CandidateEdge(options_, paths_, candidate));
+    drift_.Add(CandidateEdge(options_, paths_, candidate),
+               candidate.plan.linear_window);
   }
   Veto(std::move(candidate));
 }

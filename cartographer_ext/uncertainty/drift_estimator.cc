@@ -16,11 +16,11 @@ namespace cartographer_ext {
 namespace uncertainty {
 namespace {
 
-// Levels of the logarithm of a factor on the grid; at first from a quarter to
-// sixteen in steps of two.
+// Levels of the logarithm of a factor on the grid; at first from a twelfth to
+// eighteen.
 constexpr int kLevels = 7;
-constexpr double kFirstCenter = 0.6931471805599453;
-constexpr double kFirstStep = 0.6931471805599453;
+constexpr double kFirstCenter = 0.2;
+constexpr double kFirstStep = 0.9;
 // Later in steps of this many standard deviations of the posterior before.
 constexpr double kStepInSigmas = 0.75;
 constexpr double kLeastStep = 0.03;
@@ -29,7 +29,12 @@ constexpr double kLeastStep = 0.03;
 constexpr int kShares = 8;
 
 constexpr int kReweightings = 5;
-constexpr int kAlternations = 3;
+constexpr int kAlternations = 5;
+
+// Range of the headings of wrong loops that are not aligned, radians.
+constexpr double kHeadings = 1.;
+// Wrong cycles that the prior of the share of aligned ones is worth.
+constexpr double kPriorWrong = 2.;
 
 constexpr double kLogTwoPi = 1.8378770664093453;
 
@@ -93,6 +98,7 @@ DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path) {
 DriftEstimator::DriftEstimator(const DriftEstimatorOptions& options)
     : options_(options) {
   CHECK_GT(options.prior_sigma, 0.);
+  CHECK_GT(options.least_window, 0.);
   CHECK_GT(options.max_cycles, 0u);
 }
 
@@ -103,10 +109,27 @@ void DriftEstimator::Add(const DriftCycle& cycle) {
   if (cycles_.size() > options_.max_cycles) cycles_.pop_front();
 }
 
-CommonDrift DriftEstimator::FitCommon(const DriftFactors& factors,
-                                      const double wrong_share) const {
-  const double log_right = std::log1p(-wrong_share);
-  const double log_wrong = std::log(wrong_share * options_.outlier_density);
+DriftEstimator::WrongDensity DriftEstimator::DensityOfWrong(
+    const DriftCycle& cycle, const double aligned_share) const {
+  const double window = std::min(options_.largest_window,
+                                 std::max(options_.least_window, cycle.window));
+  const double of_translation = 1. / Squared(2. * window);
+  const CovarianceParts& parts = cycle.parts;
+  const double variance =
+      parts.rotation(2, 2) + parts.turning(2, 2) + parts.other(2, 2);
+  WrongDensity density;
+  density.anywhere = (1. - aligned_share) * of_translation / kHeadings;
+  if (variance > 0.) {
+    density.aligned =
+        aligned_share * of_translation *
+        std::exp(-0.5 * (Squared(cycle.error.z()) / variance + kLogTwoPi)) /
+        std::sqrt(variance);
+  }
+  return density;
+}
+
+CommonDrift DriftEstimator::FitCommon(const DriftFit& fit) const {
+  const double log_right = std::log1p(-fit.wrong_share);
   const Eigen::Vector3d prior_sigma(
       options_.prior_heading, options_.prior_turning, options_.prior_scale);
   CommonDrift common;
@@ -116,13 +139,15 @@ CommonDrift DriftEstimator::FitCommon(const DriftFactors& factors,
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
     for (const DriftCycle& cycle : cycles_) {
       const Eigen::LLT<Eigen::Matrix3d> factor(
-          Symmetric(cycle.parts.Total(factors, Eigen::Matrix3d::Zero())));
+          Symmetric(cycle.parts.Total(fit.mean, Eigen::Matrix3d::Zero())));
       if (factor.info() != Eigen::Success) continue;
       const double density =
           log_right +
           LogNormalDensity(cycle.error + cycle.parts.common * common.mean,
                            factor);
-      const double weight = 1. / (1. + std::exp(log_wrong - density));
+      const double wrong =
+          fit.wrong_share * DensityOfWrong(cycle, fit.aligned_share).Sum();
+      const double weight = 1. / (1. + wrong * std::exp(-density));
       const Eigen::Matrix3d effects =
           cycle.parts.common * prior_sigma.asDiagonal();
       information += weight * effects.transpose() * factor.solve(effects);
@@ -166,25 +191,30 @@ double DriftEstimator::Marginal::Quantile(const double quantile) const {
   return LogFactor(kLevels - 1) + 0.5 * step;
 }
 
-double DriftEstimator::FitFactors(const CommonDrift& common,
+double DriftEstimator::FitFactors(const DriftFit& fit,
                                   std::array<Marginal, 3>* const grid) const {
+  const CommonDrift& common = fit.common;
   std::vector<DriftCycle> residuals(cycles_.begin(), cycles_.end());
+  std::vector<double> wrong;
   for (DriftCycle& cycle : residuals) {
     cycle.error += cycle.parts.common * common.mean;
+    wrong.push_back(DensityOfWrong(cycle, fit.aligned_share).Sum());
   }
+  const Eigen::Vector3d prior_mean(options_.prior_translation, 0., 0.);
   // Of one point of the grid: for each share, the logarithm.
   const auto log_posterior = [&](const Eigen::Vector3d& logarithms) {
     const DriftFactors factors = FactorsOf(logarithms);
     std::array<double, kShares> sums;
-    sums.fill(-0.5 * logarithms.squaredNorm() / Squared(options_.prior_sigma));
-    for (const DriftCycle& cycle : residuals) {
+    sums.fill(-0.5 * (logarithms - prior_mean).squaredNorm() /
+              Squared(options_.prior_sigma));
+    for (size_t i = 0; i < residuals.size(); ++i) {
+      const DriftCycle& cycle = residuals[i];
       const Eigen::LLT<Eigen::Matrix3d> factor(
           Symmetric(cycle.parts.Total(factors, common.covariance)));
       const double density = std::exp(LogNormalDensity(cycle.error, factor));
       for (int k = 0; k < kShares; ++k) {
         const double share = ShareOf(k);
-        sums[k] +=
-            std::log((1. - share) * density + share * options_.outlier_density);
+        sums[k] += std::log((1. - share) * density + share * wrong[i]);
       }
     }
     return sums;
@@ -226,6 +256,24 @@ double DriftEstimator::FitFactors(const CommonDrift& common,
   return share / total;
 }
 
+double DriftEstimator::FitAlignedShare(const DriftFit& fit) const {
+  double aligned = 0.5 * kPriorWrong;
+  double total = kPriorWrong;
+  for (DriftCycle cycle : cycles_) {
+    cycle.error += cycle.parts.common * fit.common.mean;
+    const Eigen::LLT<Eigen::Matrix3d> factor(
+        Symmetric(cycle.parts.Total(fit.mean, fit.common.covariance)));
+    const double right = (1. - fit.wrong_share) *
+                         std::exp(LogNormalDensity(cycle.error, factor));
+    const WrongDensity wrong = DensityOfWrong(cycle, fit.aligned_share);
+    const double sum = right + fit.wrong_share * wrong.Sum();
+    if (sum <= 0.) continue;
+    aligned += fit.wrong_share * wrong.aligned / sum;
+    total += fit.wrong_share * wrong.Sum() / sum;
+  }
+  return aligned / total;
+}
+
 DriftFit DriftEstimator::Fit() const {
   DriftFit fit;
   std::array<Marginal, 3> grid;
@@ -237,10 +285,11 @@ DriftFit DriftEstimator::Fit() const {
                         : std::max(kLeastStep, kStepInSigmas * axis.Sigma());
       axis.center = center;
     }
-    fit.common = FitCommon(fit.mean, fit.wrong_share);
-    fit.wrong_share = FitFactors(fit.common, &grid);
+    fit.common = FitCommon(fit);
+    fit.wrong_share = FitFactors(fit, &grid);
     fit.mean = FactorsOf(
         Eigen::Vector3d(grid[0].Mean(), grid[1].Mean(), grid[2].Mean()));
+    fit.aligned_share = FitAlignedShare(fit);
   }
   const double quantile = options_.upper_quantile;
   fit.upper = FactorsOf(Eigen::Vector3d(grid[0].Quantile(quantile),

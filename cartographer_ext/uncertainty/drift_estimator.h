@@ -13,19 +13,35 @@
 // where C_t, C_r and C_u are the prior covariances from translation, rotation
 // per metre and rotation while turning, and C_other is the noise of the loops.
 // The unknowns are c and the factors f. Some of the loops are wrong, so the
-// likelihood of a cycle is a mixture with a uniform density:
+// likelihood of a cycle is a mixture with the density u of a wrong one:
 //
-//   p(E | c, f, w) = (1 - w) N(E; -A c, C(f)) + w u.
+//   p(E | c, f, w, h) = (1 - w) N(E; -A c, C(f)) + w u(E | h),
+//   u(E | h) = ((1 - h) / 1 rad + h N(E_theta; 0, s^2)) / (2 W)^2.
 //
-// The share w of wrong cycles is unknown as well: in a blurred map most may be
-// wrong. Assuming too small a share would inflate the noise to explain them.
+// A wrong loop lies anywhere in the window that was searched, of half width W.
+// In buildings of equal parallel places (shelves, rooms along a corridor) it
+// has the right heading, so that s is that of a right cycle for factors of one.
+// Without this share h, a drift of metres would explain loops one place off
+// better than u does. It does not depend on f: otherwise large factors of the
+// rotation could explain wrong loops of any heading.
 //
-// Given f and w, c has a normal prior and is found by reweighted least squares,
-// where the weight of a cycle is its probability of being right. Given c, the
-// posterior of (ln f_t, ln f_r, ln f_u, w) is computed on a grid, with a normal
-// prior around zero that allows for a factor of ten within two standard
-// deviations, and a uniform one of w. Both steps alternate a fixed number of
-// times, while the grid of the factors is narrowed to the posterior.
+// The share w of wrong cycles and h are unknown as well: in a blurred map most
+// may be wrong. Assuming too small a share would inflate the noise to explain
+// them.
+//
+// Given f, w and h, c has a normal prior and is found by reweighted least
+// squares, where the weight of a cycle is its probability of being right. Given
+// c and h, the posterior of (ln f_t, ln f_r, ln f_u, w) is computed on a grid,
+// with a normal prior of the logarithms that allows for a factor of ten within
+// two standard deviations, and a uniform one of w; given those, h is the mean
+// probability of the wrong cycles to be aligned. The steps alternate a fixed
+// number of times, while the grid of the factors is narrowed to the posterior.
+//
+// The prior noise of the translation is an upper bound on that of a local SLAM
+// that works, so the 90 percent point of the prior of its factor is one. A prior
+// centred at one would quadruple the bound with the first cycle, however well it
+// closes. That of the rotation is centred: turns drift more than assumed where
+// they drift, and few cycles tell it.
 //
 // The upper bound is a quantile of each factor: far above the mean with few
 // cycles, close to it later.
@@ -48,6 +64,8 @@ namespace uncertainty {
 struct DriftCycle {
   Eigen::Vector3d error;  // metres, metres, radians
   CovarianceParts parts;  // of the error; loops are in `other`
+  // Half width of the window in which its loops were searched, metres, > 0.
+  double window = 5.;
 };
 
 // A piece of the path of local SLAM, not corrected.
@@ -66,16 +84,22 @@ DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path);
 
 // Priors of the estimation.
 struct DriftEstimatorOptions {
-  // Standard deviation of the logarithm of a factor.
+  // Mean of the logarithm of the factor of the translation; zero for the
+  // others. Standard deviation of all three.
+  double prior_translation = -1.28 * 1.15;
   double prior_sigma = 1.15;  // > 0
   // Standard deviations of the errors that are constant along the run, > 0, for
   // uncalibrated wheels and lasers.
   double prior_heading = 0.002;  // radians per metre
   double prior_turning = 0.03;
   double prior_scale = 0.02;
-  double outlier_density = 0.01;  // u, over 10 m by 10 m by 1 rad
-  double upper_quantile = 0.9;    // in (0.5, 1)
-  size_t max_cycles = 400;        // the oldest are dropped, > 0
+  // Limits of W above, metres, > 0. A narrower window would explain drift by
+  // wrong loops. A wider one would explain wrong loops by drift: they are denser
+  // in it than evenly spread (docs/benchmarks/any_building.md, "Equal places").
+  double least_window = 2.;
+  double largest_window = 5.;
+  double upper_quantile = 0.9;  // in (0.5, 1)
+  size_t max_cycles = 400;      // the oldest are dropped, > 0
 };
 
 // Result of the estimation.
@@ -84,7 +108,8 @@ struct DriftFit {
   DriftFactors mean;
   DriftFactors upper;
   CommonDrift common;
-  double wrong_share = 0.5;  // w, of the cycles
+  double wrong_share = 0.5;    // w, of the cycles
+  double aligned_share = 0.5;  // h, of the wrong ones
 };
 
 // Collects cycles of a trajectory and fits the drift, see above. Bounded by
@@ -112,10 +137,19 @@ class DriftEstimator {
     double Quantile(double quantile) const;
   };
 
-  CommonDrift FitCommon(const DriftFactors& factors, double wrong_share) const;
+  // u(E | h) and its two parts, already multiplied by their shares.
+  struct WrongDensity {
+    double anywhere = 0.;
+    double aligned = 0.;
+    double Sum() const { return anywhere + aligned; }
+  };
+  WrongDensity DensityOfWrong(const DriftCycle& cycle,
+                              double aligned_share) const;
+  // With the drift and the shares of `fit`.
+  CommonDrift FitCommon(const DriftFit& fit) const;
   // Updates the masses of the levels in `grid`. Returns the mean of w.
-  double FitFactors(const CommonDrift& common,
-                    std::array<Marginal, 3>* grid) const;
+  double FitFactors(const DriftFit& fit, std::array<Marginal, 3>* grid) const;
+  double FitAlignedShare(const DriftFit& fit) const;
 
   const DriftEstimatorOptions options_;
   std::deque<DriftCycle> cycles_;

@@ -96,15 +96,15 @@ absl::optional<DriftCycle> DriftLearner::CycleWithLoop(
   return CycleOfLoops(u.pose, path_b, v.pose, path_a);
 }
 
-void DriftLearner::Add(const LoopEdge& loop) {
+void DriftLearner::Add(const LoopEdge& loop, const double window) {
   if (!loop.a.InSequenceWith(loop.b)) return;
   Trajectory& trajectory = trajectories_[loop.b.trajectory_id()];
   // The nearest loop of the same revisit.
-  const LoopEdge* nearest = nullptr;
+  const FoundLoop* nearest = nullptr;
   double nearest_distance = kFarthestLoop;
-  for (const LoopEdge& other : trajectory.loops) {
-    const absl::optional<double> a = paths_->Travelled(other.a, loop.a);
-    const absl::optional<double> b = paths_->Travelled(other.b, loop.b);
+  for (const FoundLoop& other : trajectory.loops) {
+    const absl::optional<double> a = paths_->Travelled(other.edge.a, loop.a);
+    const absl::optional<double> b = paths_->Travelled(other.edge.b, loop.b);
     if (!a.has_value() || !b.has_value()) continue;
     const double distance = std::max(*a, *b);
     if (distance >= nearest_distance) continue;
@@ -113,13 +113,14 @@ void DriftLearner::Add(const LoopEdge& loop) {
   }
   if (nearest != nullptr && nearest_distance < kNearestLoop) return;
   absl::optional<DriftCycle> cycle = CycleWithPath(loop);
-  if (!cycle.has_value() && nearest != nullptr && !Overlap(*nearest, loop)) {
-    cycle = CycleWithLoop(*nearest, loop);
-  }
   if (cycle.has_value()) {
-    trajectory.estimator.Add(*cycle);
+    cycle->window = window;
+  } else if (nearest != nullptr && !Overlap(nearest->edge, loop)) {
+    cycle = CycleWithLoop(nearest->edge, loop);
+    if (cycle.has_value()) cycle->window = std::max(nearest->window, window);
   }
-  trajectory.loops.push_back(loop);
+  if (cycle.has_value()) trajectory.estimator.Add(*cycle);
+  trajectory.loops.push_back(FoundLoop{loop, window});
   if (trajectory.loops.size() > kMaxLoops) trajectory.loops.pop_front();
 }
 

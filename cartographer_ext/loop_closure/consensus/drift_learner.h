@@ -42,8 +42,8 @@ class DriftLearner {
                uncertainty::PathUncertainty* paths);
 
   // Adds a possibly true loop between nodes of one trajectory; others are
-  // ignored.
-  void Add(const uncertainty::LoopEdge& loop);
+  // ignored. `window`: half width of the search that found it, metres.
+  void Add(const uncertainty::LoopEdge& loop, double window);
   // Passes the estimates to the paths; returns whether that changed them.
   bool Update();
   uncertainty::DriftEstimate Estimate(int trajectory_id) const;
@@ -52,11 +52,15 @@ class DriftLearner {
   void DeleteTrajectory(int trajectory_id);
 
  private:
+  struct FoundLoop {
+    uncertainty::LoopEdge edge;
+    double window;
+  };
   struct Trajectory {
     Trajectory();
 
     uncertainty::DriftEstimator estimator;
-    std::deque<uncertainty::LoopEdge> loops;  // that closed or begin cycles
+    std::deque<FoundLoop> loops;  // that closed or begin cycles
     uncertainty::DriftFit fit;
     int num_fitted = 0;  // cycles
   };

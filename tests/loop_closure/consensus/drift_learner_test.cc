@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "cartographer_ext/common/random.h"
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/common/random.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -23,6 +23,7 @@ using uncertainty::PathUncertainty;
 
 constexpr int kNodesPerLap = 200;
 constexpr int kNumNodes = 3 * kNodesPerLap;
+constexpr double kWindow = 8.;
 
 // Laps of a square of 25 m, a node every half metre, as local SLAM sees them
 // whose noise is some factors times what it is taken for.
@@ -85,7 +86,8 @@ class DriftLearnerTest : public testing::Test {
     for (int b = kNodesPerLap; b < kNumNodes; ++b) {
       const bool wrong = random.Uniform() < share_wrong;
       learner_->Add(
-          Loop(b % kNodesPerLap, b, wrong ? random.Uniform(-8., 8.) : 0.));
+          Loop(b % kNodesPerLap, b, wrong ? random.Uniform(-8., 8.) : 0.),
+          kWindow);
     }
   }
 
@@ -155,13 +157,26 @@ TEST_F(DriftLearnerTest, NeverBelowThePrior) {
   EXPECT_EQ(paths_->Drift(0).translation, 1.);
 }
 
+// The first cycle used to quadruple the noise, and with it the windows in which
+// the next loops are searched.
+TEST_F(DriftLearnerTest, FirstClosedCycleDoesNotWiden) {
+  DriftFactors factors;
+  factors.translation = factors.rotation = factors.turning = 0.3;
+  Drive(factors);
+  learner_->Add(Loop(10, 210, 0.), kWindow);
+  learner_->Add(Loop(30, 230, 0.), kWindow);
+  learner_->Update();
+  EXPECT_EQ(learner_->Estimate(0).num_cycles, 1);
+  EXPECT_LT(paths_->Drift(0).translation, 1.1);
+}
+
 TEST_F(DriftLearnerTest, LoopsOfOneScanSayNothing) {
   Drive(DriftFactors());
-  for (int k = 0; k < 5; ++k) learner_->Add(Loop(10 + k, 210 + k, 0.));
+  for (int k = 0; k < 5; ++k) learner_->Add(Loop(10 + k, 210 + k, 0.), kWindow);
   // A second one without a path to speak of, one between trajectories.
   LoopEdge other = Loop(10, 210, 0.);
   other.a = NodeId{1, 10};
-  learner_->Add(other);
+  learner_->Add(other, kWindow);
   EXPECT_EQ(learner_->Estimate(0).num_cycles, 0);
   EXPECT_FALSE(learner_->Update());
   EXPECT_EQ(learner_->Estimate(5).num_cycles, 0);
