@@ -190,14 +190,14 @@ std::unique_ptr<Portfolio> Search(const PoseGraph& graph,
     return portfolio;
   }
   NoiseOfMap map = MeasureNoise(portfolio.get());
-  for (const NoiseChange change :
-       {NoiseChange::kLarger, NoiseChange::kRatio, NoiseChange::kSmaller}) {
+  for (const auto find :
+       {&FindLargerNoise, &FindNoiseRatio, &FindSmallerNoise}) {
     NoiseHypothesis noise;
-    if (!FindNoise(change, *applied, map, portfolio.get(), &noise)) continue;
+    if (!find(*applied, map, portfolio.get(), &noise)) continue;
     // Only where the matrices claim too little is another map to be expected
     // than those that are known.
-    portfolio = SearchWithNoise(graph, noise, change == NoiseChange::kLarger,
-                                options, *portfolio);
+    portfolio = SearchWithNoise(graph, noise, find == &FindLargerNoise, options,
+                                *portfolio);
     *applied = noise.metric;
     map = MeasureNoise(portfolio.get());
   }

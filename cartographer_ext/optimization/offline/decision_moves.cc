@@ -271,7 +271,8 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
   LowestCost lowest(*edges, options.gate, kProgress, poses, alternatives);
   int kept = 0, trials = 0;
   std::vector<bool> tried(support.groups.size(), false);
-  while (trials < options.max_trials) {
+  const double most_work = solver->work() + options.max_work;
+  while (trials < options.max_trials && solver->work() < most_work) {
     // The largest group with most of its loops rejected.
     const std::vector<double> chi2 = Chi2OfEdges(*edges, *poses);
     int best = -1;
@@ -318,7 +319,11 @@ int RegrowGroups(const LoopSupport& support, const RegrowOptions& options,
   LowestCost lowest(edges, options.gate, kLargeProgress, poses, alternatives);
   int kept = 0, trials = 0;
   std::set<int> tried;
-  for (bool progress = true; progress && trials < options.max_trials;) {
+  const double most_work = solver->work() + options.max_work;
+  const auto may_try = [&] {
+    return trials < options.max_trials && solver->work() < most_work;
+  };
+  for (bool progress = true; progress && may_try();) {
     const std::vector<double> weights =
         DecideLoops(edges, *poses, options.gate);
     const std::vector<GroupInForce> groups = ReleasableGroups(support, weights);
@@ -332,10 +337,7 @@ int RegrowGroups(const LoopSupport& support, const RegrowOptions& options,
     progress = is_better(nullptr);
     int failures = 0;
     for (const GroupInForce& released : groups) {
-      if (progress || trials >= options.max_trials ||
-          failures >= options.max_failures) {
-        break;
-      }
+      if (progress || !may_try() || failures >= options.max_failures) break;
       if (!tried.insert(released.group).second) continue;
       ++failures;
       ++trials;

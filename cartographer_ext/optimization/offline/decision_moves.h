@@ -55,12 +55,18 @@ struct FlipOptions {
 int FlipLoops(const FlipOptions& options, RobustSolver* solver,
               std::vector<Pose2>* poses);
 
+// RobustSolver::work() after which no other group is tried, some seconds: three
+// times what all trials take on graphs of ordinary size. Where everything fits
+// within the gate, the factor is full, and a trial may take a second.
+constexpr double kMaxMoveWork = 1e10;
+
 // Limits of ForceGroups.
 struct ForceOptions {
   double gate = kChi2Gate;
   int max_trials = 30;
   int min_members = 1;  // of a group
   bool relax = true;    // try from a chordal relaxation, too
+  double max_work = kMaxMoveWork;
   // Gates per rejected loop of the group by which the cost may rise while the
   // group is in force; a map that costs more is given up before the group is
   // released.
@@ -86,6 +92,7 @@ struct RegrowOptions {
   double gate = kChi2Gate;
   int max_trials = 40;
   int max_failures = 5;  // in succession
+  double max_work = kMaxMoveWork;
 };
 
 // The same by growth. Odometry must reach all poses. Groups of each size in

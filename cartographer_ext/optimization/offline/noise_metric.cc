@@ -193,13 +193,17 @@ double Rounded(const double scale) {
   return std::exp2(std::round(4. * std::log2(scale)) / 4.);
 }
 
-void RoundScales(NoiseMetric* const metric) {
+// Rounds the metric and returns whether it differs from that applied.
+bool IsAnother(const NoiseMetric& applied, NoiseMetric* const metric) {
   metric->odometry = Rounded(metric->odometry);
   metric->loops = Rounded(metric->loops);
+  return metric->odometry != applied.odometry || metric->loops != applied.loops;
 }
 
-bool FindLarger(const NoiseOfMap& map, Portfolio* const portfolio,
-                NoiseHypothesis* const found) {
+}  // namespace
+
+bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
+                     Portfolio* const portfolio, NoiseHypothesis* const found) {
   if (!IsSuspicious(map, portfolio)) return false;
   found->accepted = map.accepted;
   Trial trial;
@@ -213,11 +217,11 @@ bool FindLarger(const NoiseOfMap& map, Portfolio* const portfolio,
     *found = hypothesis;
     any = true;
   }
-  return any;
+  return any && IsAnother(applied, &found->metric);
 }
 
-bool FindRatio(const NoiseMetric& applied, const NoiseOfMap& map,
-               const Portfolio& portfolio, NoiseHypothesis* const found) {
+bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
+                    Portfolio* const portfolio, NoiseHypothesis* const found) {
   const NoiseScale& scale = map.scale;
   if (map.accepted < kMinLoops ||
       (scale.loops.high * kMinRatio > scale.odometry.low &&
@@ -226,27 +230,29 @@ bool FindRatio(const NoiseMetric& applied, const NoiseOfMap& map,
   }
   Trial trial;
   trial.floor = Floor::kLargest;
-  trial.starts = {portfolio.best().poses};
+  trial.starts = {portfolio->best().poses};
   *found =
-      EstimateMetric(WithNoiseScale(portfolio.edges(), 1. / applied.odometry,
+      EstimateMetric(WithNoiseScale(portfolio->edges(), 1. / applied.odometry,
                                     1. / applied.loops),
                      {applied.odometry * scale.odometry.factor,
                       applied.loops * scale.loops.factor},
                      trial);
-  return found->valid && found->accepted >= kMostly * map.accepted;
+  return found->valid && found->accepted >= kMostly * map.accepted &&
+         IsAnother(applied, &found->metric);
 }
 
-bool FindSmaller(const NoiseMetric& applied, const NoiseOfMap& map,
-                 const Portfolio& portfolio, NoiseHypothesis* const found) {
+bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
+                      Portfolio* const portfolio,
+                      NoiseHypothesis* const found) {
   if (map.accepted < kMinLoops ||
       std::min(map.scale.odometry.high, map.scale.loops.high) >= kSmaller) {
     return false;
   }
   const auto is_another = [&](const std::vector<Pose2>& poses) {
-    return !DifferNearGateOnly(portfolio.edges(), poses,
-                               portfolio.best().poses);
+    return !DifferNearGateOnly(portfolio->edges(), poses,
+                               portfolio->best().poses);
   };
-  if (std::none_of(portfolio.members().begin(), portfolio.members().end(),
+  if (std::none_of(portfolio->members().begin(), portfolio->members().end(),
                    [&](const Portfolio::Member& member) {
                      return is_another(member.poses);
                    })) {
@@ -254,16 +260,16 @@ bool FindSmaller(const NoiseMetric& applied, const NoiseOfMap& map,
   }
   // In relation to that of the portfolio.
   NoiseMetric metric = {map.scale.odometry.factor, map.scale.loops.factor};
-  found->poses = portfolio.best().poses;
+  found->poses = portfolio->best().poses;
   found->valid = false;
   for (int k = 0; k != kMaxMaps; ++k) {
     const std::vector<WhitenedEdge> edges =
-        WithNoiseScale(portfolio.edges(), metric.odometry, metric.loops);
+        WithNoiseScale(portfolio->edges(), metric.odometry, metric.loops);
     RobustSolver solver(edges);
-    const double ours = TruncatedCost(edges, portfolio.best().poses);
+    const double ours = TruncatedCost(edges, portfolio->best().poses);
     double lowest = TruncatedCost(edges, found->poses) * (1. - 1e-6);
     const Portfolio::Member* other = nullptr;
-    for (const Portfolio::Member& member : portfolio.members()) {
+    for (const Portfolio::Member& member : portfolio->members()) {
       const double cost = TruncatedCost(edges, member.poses);
       if (cost >= lowest) continue;
       lowest = cost;
@@ -287,10 +293,8 @@ bool FindSmaller(const NoiseMetric& applied, const NoiseOfMap& map,
   }
   found->metric = {applied.odometry * std::min(1., metric.odometry),
                    applied.loops * std::min(1., metric.loops)};
-  return found->valid;
+  return found->valid && IsAnother(applied, &found->metric);
 }
-
-}  // namespace
 
 NoiseOfMap MeasureNoise(Portfolio* const portfolio) {
   const std::vector<WhitenedEdge>& edges = portfolio->edges();
@@ -303,20 +307,6 @@ NoiseOfMap MeasureNoise(Portfolio* const portfolio) {
   result.scale =
       EstimateNoiseScale(poses, result.decisions, portfolio->solver());
   return result;
-}
-
-bool FindNoise(const NoiseChange change, const NoiseMetric& applied,
-               const NoiseOfMap& map, Portfolio* const portfolio,
-               NoiseHypothesis* const found) {
-  const bool is_found = change == NoiseChange::kLarger
-                            ? FindLarger(map, portfolio, found)
-                        : change == NoiseChange::kRatio
-                            ? FindRatio(applied, map, *portfolio, found)
-                            : FindSmaller(applied, map, *portfolio, found);
-  if (!is_found) return false;
-  RoundScales(&found->metric);
-  return found->metric.odometry != applied.odometry ||
-         found->metric.loops != applied.loops;
 }
 
 }  // namespace optimization

@@ -42,28 +42,24 @@ struct NoiseOfMap {
 // Measures the noise of the best map of a portfolio.
 NoiseOfMap MeasureNoise(Portfolio* portfolio);
 
-// How the noise may differ from that which the search has applied, in the order
-// in which `auto` asks.
-enum class NoiseChange {
-  // Larger than the matrices of the graph claim: a noise that explains the loops
-  // better. Only where these are applied as they are.
-  kLarger,
-  // The actual ratio of the noise of odometry and loops, if it differs from that
-  // of their matrices. The best map has to be explained as well.
-  kRatio,
-  // Smaller, where another map of the portfolio costs less with it than its best
-  // and decides loops differently that are not near the gate. A gate that is too
-  // wide lets groups of wrong loops bend odometry that is better than it claims.
-  // Where the same map is the best in both metrics, the given one is as good.
-  kSmaller
-};
+// Each finds a noise of the graph that differs in its way from `applied`, the
+// metric of the portfolio; false if there is none. `map` is that of the portfolio.
+// In the order in which `auto` asks:
 
-// Finds the noise of the graph that differs in this way from `applied`, the
-// metric of the portfolio; false if there is none. `map` is that of the
-// portfolio.
-bool FindNoise(NoiseChange change, const NoiseMetric& applied,
-               const NoiseOfMap& map, Portfolio* portfolio,
-               NoiseHypothesis* found);
+// Larger than the matrices of the graph claim: a noise that explains the loops
+// better. Only where these are applied as they are.
+bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
+                     Portfolio* portfolio, NoiseHypothesis* found);
+// The actual ratio of the noise of odometry and loops, if it differs from that of
+// their matrices. The best map has to be explained as well.
+bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
+                    Portfolio* portfolio, NoiseHypothesis* found);
+// Smaller, where another map of the portfolio costs less with it than its best
+// and decides loops differently that are not near the gate. A gate that is too
+// wide lets groups of wrong loops bend odometry that is better than it claims.
+// Where the same map is the best in both metrics, the given one is as good.
+bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
+                      Portfolio* portfolio, NoiseHypothesis* found);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

@@ -192,6 +192,11 @@ void BlockLdlt::AnalyzeInOrder(const std::vector<std::pair<int, int>>& pairs) {
   ReserveForMore(slot_of_matrix_.size(), &matrix_);
   matrix_.resize(slot_of_matrix_.size());
   diagonal_.resize(size);
+  work_ = 0.;
+  for (int j = 0; j != size; ++j) {
+    const double rows = starts_[j + 1] - starts_[j];
+    work_ += 27. * (0.5 * rows * rows + rows + 1.);
+  }
 }
 
 bool BlockLdlt::Extend(const std::vector<std::pair<int, int>>& pairs) {

@@ -63,6 +63,8 @@ class BlockLdlt {
   void Solve(Columns* rhs) const;
 
   int size() const { return order_.size(); }
+  // Multiplications of one factorisation.
+  double work() const { return work_; }
   // Blocks below the diagonal of L.
   size_t num_blocks() const { return rows_.size(); }
   const std::vector<int>& order() const { return order_; }
@@ -98,6 +100,7 @@ class BlockLdlt {
   std::vector<Eigen::Matrix3d> matrix_;  // their values
   std::vector<int> matrix_of_pair_;
   std::vector<Eigen::Matrix3d> diagonal_;  // by position
+  double work_ = 0.;
 };
 
 }  // namespace optimization

@@ -24,12 +24,7 @@ double FactorWork(const std::vector<WhitenedEdge>& edges,
   if (num_poses < 2) return 0.;
   BlockLdlt factor;
   factor.Analyze(num_poses - 1, PairsInForce(edges, weights), {});
-  double work = 0.;
-  for (int c = 0; c != factor.size(); ++c) {
-    const double rows = factor.start(c + 1) - factor.start(c);
-    work += 27. * (0.5 * rows * rows + rows + 1.);
-  }
-  return work;
+  return factor.work();
 }
 
 }  // namespace optimization

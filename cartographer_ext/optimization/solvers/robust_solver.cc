@@ -31,6 +31,9 @@ constexpr double kRoom = 1e-2;
 // then.
 constexpr size_t kFewChanges = 5;
 constexpr double kMaxGrowth = 1.1;
+// What an edge takes of the work of an iteration, in multiplications of the
+// factorisation.
+constexpr double kWorkOfEdge = 200.;
 
 std::vector<Pose2> Stepped(const std::vector<Pose2>& poses,
                            const Eigen::VectorXd& step) {
@@ -110,7 +113,7 @@ bool RobustSolver::TryStep(const std::vector<Pose2>& from,
   Eigen::VectorXd& step = descent->step;
   Evaluation& now = descent->now;
   Evaluation& next = descent->next;
-  if (!factor_.Factorize(lambda)) {
+  if (!Factorize(lambda)) {
     lambda = std::max(10. * lambda, 1e-8);
     descent->done = lambda > kMaxLambda;
     return false;
@@ -183,7 +186,12 @@ const BlockLdlt* RobustSolver::Factor(const std::vector<Pose2>& poses,
   UpdatePattern(weights);
   Assemble(weights);
   *rhs = -gradient_;
-  return factor_.Factorize(0.) ? &factor_ : nullptr;
+  return Factorize(0.) ? &factor_ : nullptr;
+}
+
+bool RobustSolver::Factorize(const double lambda) {
+  work_ += factor_.work() + kWorkOfEdge * edges_.size();
+  return factor_.Factorize(lambda);
 }
 
 void RobustSolver::SetPoses(const std::vector<Pose2>& poses) {

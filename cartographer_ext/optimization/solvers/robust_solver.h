@@ -96,6 +96,10 @@ class RobustSolver {
 
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
 
+  // What all solutions and factors so far have taken, in multiplications: unlike
+  // time the same on every machine.
+  double work() const { return work_; }
+
  private:
   // Weights and shapes of all edges at given poses.
   struct Evaluation {
@@ -126,6 +130,7 @@ class RobustSolver {
                                   const std::vector<double>& now) const;
   bool CarryToTheLimit(const std::vector<int>& loops, const Evaluation& now,
                        Eigen::VectorXd* step) const;
+  bool Factorize(double lambda);
   bool UpdatePattern(const std::vector<double>& weights);
   void AddToPattern(const std::vector<int>& edges,
                     std::vector<std::pair<int, int>>* pairs);
@@ -145,6 +150,7 @@ class RobustSolver {
   int num_pairs_ = 0;
   BlockLdlt factor_;
   size_t ordered_blocks_ = 0;  // of the factor when it was last ordered
+  double work_ = 0.;
   Eigen::VectorXd gradient_;
   Eigen::VectorXd diagonal_;
 };

@@ -137,6 +137,47 @@ TEST(DecisionMovesTest, WhatRaisesTheCostTooMuchIsGivenUp) {
   EXPECT_GT(ForceGroups(support, options, &edges, &solver, &poses, nullptr), 0);
 }
 
+// Of the first trial nobody knows beforehand what it takes; then work counts.
+TEST(DecisionMovesTest, NoGroupIsTriedBeyondTheLimitOfWork) {
+  test::GridWorld world = test::MakeWeakRing(6, 0.2, true);
+  OutlierOptions outliers;
+  outliers.type = OutlierType::kRandomGrouped;
+  outliers.count = 20;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  std::vector<Pose2> start = world.graph.poses;
+  PolishTruncated(edges, kChi2Gate, 30, &start, nullptr);
+  const LoopSupport support =
+      FindLoopSupport(world.graph, LoopSupportOptions());
+  const auto work_of = [&](const bool regrow, const int max_trials,
+                           const double max_work) {
+    RobustSolver solver(edges);
+    std::vector<Pose2> poses = start;
+    if (regrow) {
+      RegrowOptions options;
+      options.max_trials = max_trials;
+      options.max_work = max_work;
+      RegrowGroups(support, options, &solver, &poses, nullptr);
+    } else {
+      ForceOptions options;
+      options.max_trials = max_trials;
+      options.max_work = max_work;
+      ForceGroups(support, options, &edges, &solver, &poses, nullptr);
+    }
+    return solver.work();
+  };
+  for (const bool regrow : {false, true}) {
+    EXPECT_EQ(work_of(regrow, 40, 0.), 0.);
+    const double one = work_of(regrow, 1, kMaxMoveWork);
+    const double two = work_of(regrow, 2, kMaxMoveWork);
+    ASSERT_GT(one, 0.);
+    ASSERT_GT(two, one);
+    EXPECT_EQ(work_of(regrow, 40, 0.5 * one), one);
+    EXPECT_EQ(work_of(regrow, 40, 0.5 * (one + two)), two);
+    EXPECT_EQ(work_of(regrow, 40, one), one);
+  }
+}
+
 TEST(DecisionMovesTest, AChordalRelaxationUnfoldsARing) {
   int unfolded = 0;
   for (const uint64_t seed : {1, 6, 8, 10, 12, 14, 16}) {

@@ -13,12 +13,6 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-// With the matrices applied as they are.
-bool Find(const NoiseChange change, const NoiseOfMap& map,
-          Portfolio* const portfolio, NoiseHypothesis* const found) {
-  return FindNoise(change, NoiseMetric(), map, portfolio, found);
-}
-
 // What a search has found, once and for all questions about the noise.
 TEST(NoiseMetricTest, MeasuresTheBestMap) {
   const test::GridWorld world = test::MakeGridWorld(300, 5, 3);
@@ -31,8 +25,8 @@ TEST(NoiseMetricTest, MeasuresTheBestMap) {
   // In a map that weighs the loops too little.
   EXPECT_LT(map.scale.loops.high, 0.5);
   NoiseHypothesis found;
-  EXPECT_FALSE(Find(NoiseChange::kLarger, map, &portfolio, &found));
-  ASSERT_TRUE(Find(NoiseChange::kRatio, map, &portfolio, &found));
+  EXPECT_FALSE(FindLargerNoise(NoiseMetric(), map, &portfolio, &found));
+  ASSERT_TRUE(FindNoiseRatio(NoiseMetric(), map, &portfolio, &found));
   EXPECT_EQ(found.metric.odometry, 1.);
   EXPECT_NEAR(found.metric.loops, 0.2, 0.05);
 }
@@ -47,8 +41,8 @@ TEST(NoiseMetricTest, TheRatioRefersToTheGivenMatrices) {
   Portfolio portfolio(scaled, PortfolioOptions());
   portfolio.Run();
   NoiseHypothesis found;
-  ASSERT_TRUE(FindNoise(NoiseChange::kRatio, applied, MeasureNoise(&portfolio),
-                        &portfolio, &found));
+  ASSERT_TRUE(
+      FindNoiseRatio(applied, MeasureNoise(&portfolio), &portfolio, &found));
   EXPECT_NEAR(found.metric.odometry, 1., 0.2);
   EXPECT_NEAR(found.metric.loops, 6., 1.2);
 }
@@ -66,8 +60,8 @@ TEST(NoiseMetricTest, AMapOfFewLoopsSaysNothing) {
   portfolio.Run();
   const NoiseOfMap map = MeasureNoise(&portfolio);
   NoiseHypothesis found;
-  EXPECT_FALSE(Find(NoiseChange::kLarger, map, &portfolio, &found));
-  EXPECT_FALSE(Find(NoiseChange::kRatio, map, &portfolio, &found));
+  EXPECT_FALSE(FindLargerNoise(NoiseMetric(), map, &portfolio, &found));
+  EXPECT_FALSE(FindNoiseRatio(NoiseMetric(), map, &portfolio, &found));
 }
 
 // A robot walks 200 m straight on and back, with right loops between both ways,
@@ -122,12 +116,12 @@ TEST(NoiseMetricTest, ASmallerNoiseDecidesBetweenMaps) {
   portfolio.Add("straight", graph.poses);
   NoiseHypothesis noise;
   // There is no other map.
-  EXPECT_FALSE(Find(NoiseChange::kSmaller, MeasureNoise(&portfolio), &portfolio,
-                    &noise));
+  EXPECT_FALSE(FindSmallerNoise(NoiseMetric(), MeasureNoise(&portfolio),
+                                &portfolio, &noise));
   portfolio.Add("circle", circle);
   ASSERT_EQ(portfolio.best().name, "circle");
-  ASSERT_TRUE(Find(NoiseChange::kSmaller, MeasureNoise(&portfolio), &portfolio,
-                   &noise));
+  ASSERT_TRUE(FindSmallerNoise(NoiseMetric(), MeasureNoise(&portfolio),
+                               &portfolio, &noise));
   // With few loops the prior holds it back.
   EXPECT_LT(noise.metric.odometry, 0.1);
   EXPECT_LT(AbsoluteTrajectoryError(noise.poses, graph.poses), 0.5);
@@ -138,8 +132,8 @@ TEST(NoiseMetricTest, ASmallerNoiseDecidesBetweenMaps) {
   careful.Add("straight", honest.poses);
   careful.Add("circle", circle);
   EXPECT_EQ(careful.best().name, "straight");
-  EXPECT_FALSE(
-      Find(NoiseChange::kSmaller, MeasureNoise(&careful), &careful, &noise));
+  EXPECT_FALSE(FindSmallerNoise(NoiseMetric(), MeasureNoise(&careful), &careful,
+                                &noise));
 }
 
 }  // namespace
