@@ -21,8 +21,8 @@ std::string WhyBroken(const MapRepair& repair) {
         "and no loop repairs that",
         RadToDeg(step.odometry_rotation), evaluation::ToString(step.node_id));
   }
-  if (!after.severe.empty()) {
-    const evaluation::ConflictPiece& piece = after.severe.front();
+  if (!after.places.empty()) {
+    const evaluation::PathPiece& piece = after.places.front();
     return absl::StrFormat(
         "no step makes nodes %s to %s (near x = %.1f m, y = %.1f m) consistent "
         "with what was mapped there at another time",
@@ -39,6 +39,15 @@ void Conclude(const bool keep_frame, MapRepair* const repair) {
   const std::string& before = repair->before.quality.verdict;
   const std::string& after = repair->after.quality.verdict;
   const bool is_fine = after == "sound" || after == "unknown";
+  if (!repair->changed() && after == "unknown") {
+    repair->conclusion =
+        absl::StrCat("not repaired, because it cannot be judged: ",
+                     repair->before.consistency.reasons.front());
+    repair->advice.push_back(
+        "If you record again: come back to places where you have been, early "
+        "and more than once, so that loops tie the parts together.");
+    return;
+  }
   if (!repair->changed() && is_fine) {
     repair->conclusion = absl::StrCat(
         "nothing to repair: ", repair->before.consistency.reasons.front());

@@ -61,6 +61,12 @@ MapQuality QualityOf(const evaluation::MapGraph& graph,
       quality.is_contradicted[node.node_id] = node.in_conflict;
     }
   }
+  for (const auto& piece : consistency.displacements.pieces) {
+    for (auto node = quality.is_contradicted.lower_bound(piece.first_node);
+         node != quality.is_contradicted.upper_bound(piece.last_node); ++node) {
+      node->second = true;
+    }
+  }
   return quality;
 }
 
@@ -129,6 +135,9 @@ std::string WhyNotWritten(const MapQuality& input, const MapQuality& result) {
   if (result.verdict == "broken") {
     return absl::StrFormat("the best version is still broken (%.1f %%)",
                            100. * result.severe_share);
+  }
+  if (result.verdict == "unknown") {
+    return "nothing tells whether the best version is right";
   }
   return WhyNotBetter(input, result);
 }

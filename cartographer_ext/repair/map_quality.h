@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Compares two versions of a map, first by evidence. A node that sees a place
-// mapped at another time either agrees with it or contradicts it; the others
-// say nothing. The evidence is the logarithm of the likelihood ratio of a right
+// mapped at another time either agrees with it or contradicts it (also where it
+// is displaced); the others say nothing. The evidence is the logarithm of the likelihood ratio of a right
 // map to a wrong one, in units of one agreeing node:
 //
 //   agreeing nodes - w * contradicted nodes
@@ -58,8 +58,8 @@ std::string WhyNotBetter(const MapQuality& current,
                          const MapQuality& candidate);
 
 // Empty if the result of a repair is to be written, otherwise a clause. It must
-// be better than the input, and not broken: of two broken maps the one with more
-// evidence need not be nearer to the truth.
+// be better than the input, and neither broken (of two broken maps the one with
+// more evidence need not be nearer to the truth) nor unknown.
 std::string WhyNotWritten(const MapQuality& input, const MapQuality& result);
 
 // "broken, 12.3 % severe, 4.5 % of rays contradicted, entropy -1.52".

@@ -59,8 +59,8 @@ Attributes LoopAttributes(const LoopEvidence& loop,
 void AddTrouble(const ReportData& data, const ReportRun& run,
                 MapFigure* const figure) {
   if (run.evaluation.consistency.has_value() &&
-      !run.evaluation.consistency->severe.empty()) {
-    for (const auto& piece : run.evaluation.consistency->severe) {
+      !run.evaluation.consistency->places.empty()) {
+    for (const auto& piece : run.evaluation.consistency->places) {
       std::vector<Eigen::Vector2d> path;
       for (auto node = run.graph.nodes.find(piece.first_node);
            node != run.graph.nodes.end() && !(piece.last_node < node->first);

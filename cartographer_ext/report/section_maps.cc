@@ -17,10 +17,10 @@ namespace cartographer_ext {
 namespace report {
 namespace {
 
-using evaluation::ConflictPiece;
 using evaluation::GraphId;
 using evaluation::MapGraph;
 using evaluation::MotionStep;
+using evaluation::PathPiece;
 using evaluation::SelfConsistency;
 using evaluation::ToString;
 
@@ -46,29 +46,48 @@ std::vector<Eigen::Vector2d> PathOfNodes(const MapGraph& graph,
 
 using InsertedNodes = std::map<GraphId, std::vector<GraphId>>;  // by submap
 
-// The worst node of the piece, and of the submap that it contradicts most the
-// nearest node.
+// A node, and the submap of another time that it disagrees with.
+struct Disagreement {
+  GraphId node_id, submap_id;
+  double amount = -1.;
+};
+
+// The worst node of the piece.
+Disagreement WorstOf(const SelfConsistency& consistency,
+                     const PathPiece& piece) {
+  Disagreement worst;
+  const auto consider = [&](const GraphId& node_id, const GraphId& submap_id,
+                            const double amount) {
+    if (node_id < piece.first_node || piece.last_node < node_id) return;
+    if (amount > worst.amount) worst = {node_id, submap_id, amount};
+  };
+  if (piece.fraction > 0.) {
+    for (const auto& node : consistency.contradictions.nodes) {
+      consider(node.node_id, node.worst_submap_id, node.worst_fraction);
+    }
+  } else {
+    for (const auto& node : consistency.displacements.nodes) {
+      consider(node.node_id, node.submap_id, node.displacement);
+    }
+  }
+  return worst;
+}
+
+// The worst node of the piece, and of the submap that it disagrees with most
+// the nearest node.
 absl::optional<ScanPair> PairOf(const MapGraph& graph,
                                 const InsertedNodes& inserted,
                                 const SelfConsistency& consistency,
-                                const ConflictPiece& piece) {
-  const evaluation::NodeContradiction* worst = nullptr;
-  for (const auto& node : consistency.contradictions.nodes) {
-    if (node.node_id < piece.first_node || piece.last_node < node.node_id) {
-      continue;
-    }
-    if (worst == nullptr || node.worst_fraction > worst->worst_fraction) {
-      worst = &node;
-    }
-  }
-  if (worst == nullptr || graph.nodes.count(worst->node_id) == 0) {
+                                const PathPiece& piece) {
+  const Disagreement worst = WorstOf(consistency, piece);
+  if (worst.amount < 0. || graph.nodes.count(worst.node_id) == 0) {
     return absl::nullopt;
   }
   const Eigen::Vector2d place =
-      graph.nodes.at(worst->node_id).global_pose.translation();
+      graph.nodes.at(worst.node_id).global_pose.translation();
   absl::optional<GraphId> nearest;
   double least = std::numeric_limits<double>::infinity();
-  const auto others = inserted.find(worst->worst_submap_id);
+  const auto others = inserted.find(worst.submap_id);
   if (others == inserted.end()) return absl::nullopt;
   for (const GraphId& id : others->second) {
     const auto node = graph.nodes.find(id);
@@ -81,11 +100,11 @@ absl::optional<ScanPair> PairOf(const MapGraph& graph,
   }
   if (!nearest.has_value()) return absl::nullopt;
   return ScanPair{
-      worst->node_id, *nearest,
-      absl::StrCat("Scans in the map: orange of node ",
-                   ToString(worst->node_id), ", blue of node ",
-                   ToString(*nearest), " of the contradicted submap ",
-                   ToString(worst->worst_submap_id), ".")};
+      worst.node_id, *nearest,
+      absl::StrCat("Scans in the map: orange of node ", ToString(worst.node_id),
+                   ", blue of node ", ToString(*nearest),
+                   " of the contradicted submap ", ToString(worst.submap_id),
+                   ".")};
 }
 
 absl::optional<ScanPair> PairOf(const MapGraph& graph, const MotionStep& step) {
@@ -106,7 +125,7 @@ std::vector<absl::optional<ScanPair>> PairsOf(
     const MapGraph& graph, const SelfConsistency& consistency) {
   std::vector<absl::optional<ScanPair>> pairs;
   const InsertedNodes inserted = graph.InsertedNodes();
-  for (const ConflictPiece& piece : consistency.severe) {
+  for (const PathPiece& piece : consistency.places) {
     pairs.push_back(PairOf(graph, inserted, consistency, piece));
   }
   const size_t count = std::min(kMaxLetters, consistency.wrong_turns.size());
@@ -138,15 +157,15 @@ void AddPieces(const ReportRun& stored, const SelfConsistency& consistency,
                const std::vector<absl::optional<ScanPair>>& pairs,
                const io::TimeNs start, MapFigure* const figure,
                Table* const table) {
-  if (!consistency.severe.empty()) {
+  if (!consistency.places.empty()) {
     figure->Legend("nodes whose scans contradict the map", "s2");
   }
-  for (const ConflictPiece& piece : consistency.severe) {
+  for (const PathPiece& piece : consistency.places) {
     figure->Path(PathOfNodes(stored.graph, piece.first_node, piece.last_node),
                  "s2");
   }
   int number = 0;
-  for (const ConflictPiece& piece : consistency.severe) {
+  for (const PathPiece& piece : consistency.places) {
     ++number;
     std::string submaps;
     for (const GraphId& id : piece.submaps) {
@@ -159,16 +178,22 @@ void AddPieces(const ReportRun& stored, const SelfConsistency& consistency,
                                            ToString(piece.last_node));
     figure->Ring(
         piece.center, 0.5 * piece.metres + 1., absl::StrCat(number),
-        absl::StrFormat(
-            "place %d: nodes %s\n%s\n%.0f %% of the rays contradict submaps %s",
-            number, nodes, seconds, 100. * piece.fraction, submaps),
+        absl::StrFormat("place %d: nodes %s\n%s\n%s submaps %s", number, nodes,
+                        seconds,
+                        piece.fraction > 0.
+                            ? absl::StrFormat("%.0f %% of the rays contradict",
+                                              100. * piece.fraction)
+                            : absl::StrFormat("%.1f m from where they fit",
+                                              piece.displacement),
+                        submaps),
         RingAttributes(stored.graph, absl::StrCat("nodes ", nodes, " ("), begin,
                        pairs[number - 1]));
-    table->AddRow({absl::StrCat(number),
-                   absl::StrFormat("%.1f m", piece.center.x()),
-                   absl::StrFormat("%.1f m", piece.center.y()), nodes, seconds,
-                   absl::StrFormat("%.0f %%", 100. * piece.fraction),
-                   absl::StrCat("submaps ", submaps)});
+    table->AddRow(
+        {absl::StrCat(number), absl::StrFormat("%.1f m", piece.center.x()),
+         absl::StrFormat("%.1f m", piece.center.y()), nodes, seconds,
+         piece.fraction > 0. ? absl::StrFormat("%.0f %%", 100. * piece.fraction)
+                             : absl::StrFormat("%.1f m", piece.displacement),
+         absl::StrCat("submaps ", submaps)});
   }
 }
 
@@ -190,7 +215,7 @@ void AddTurns(const ReportRun& stored, const SelfConsistency& consistency,
                         "after the start",
                         RadToDeg(step.odometry_rotation), name, seconds),
         RingAttributes(stored.graph, absl::StrCat(name, " ("), seconds,
-                       pairs[consistency.severe.size() + i]));
+                       pairs[consistency.places.size() + i]));
     table->AddRow({letter, absl::StrFormat("%.1f m", node.global_pose.x),
                    absl::StrFormat("%.1f m", node.global_pose.y),
                    ToString(step.node_id), absl::StrFormat("%.1f s", seconds),

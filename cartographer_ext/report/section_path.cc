@@ -52,7 +52,7 @@ void AddContradiction(const ReportData& data, const Prepared& prepared,
   Chart chart("Contradiction along the path", time,
               {"share of rays contradicted the worst submap", 0., 1.}, kWidth,
               kHeight);
-  for (const auto& piece : data.runs[0].evaluation.consistency->severe) {
+  for (const auto& piece : data.runs[0].evaluation.consistency->places) {
     chart.Band(io::ToSeconds(piece.begin - prepared.start),
                io::ToSeconds(piece.end - prepared.start), "s2",
                absl::StrCat("nodes ", evaluation::ToString(piece.first_node),

@@ -96,6 +96,35 @@ TEST(MapQualityTest, AMapTornApartIsNotBetter) {
   EXPECT_THAT(WhyNotBetter(Broken(), torn), HasSubstr("apart"));
 }
 
+TEST(MapQualityTest, DisplacedNodesDoNotAgree) {
+  evaluation::SelfConsistency consistency;
+  for (int i = 0; i < 10; ++i) {
+    evaluation::NodeContradiction node;
+    node.node_id = {0, i};
+    node.judged = i == 5 ? 0 : 100;
+    consistency.contradictions.nodes.push_back(node);
+  }
+  EXPECT_EQ(QualityOf({}, consistency).num_agreeing(), 9);
+  evaluation::PathPiece piece;
+  piece.first_node = {0, 4};
+  piece.last_node = {0, 6};
+  consistency.displacements.pieces = {piece};
+  const MapQuality quality = QualityOf({}, consistency);
+  EXPECT_EQ(quality.num_agreeing(), 7);
+  EXPECT_EQ(quality.num_contradicted(), 2);
+}
+
+TEST(MapQualityTest, AMapThatCannotBeJudgedIsNotWritten) {
+  MapQuality unknown = Broken();
+  unknown.verdict = "unknown";
+  MapQuality better = unknown;
+  Judge(100, 150, false, &better);
+  EXPECT_EQ(WhyNotBetter(unknown, better), "");
+  EXPECT_THAT(WhyNotWritten(unknown, better), HasSubstr("nothing tells"));
+  better.verdict = "sound";
+  EXPECT_EQ(WhyNotWritten(unknown, better), "");
+}
+
 TEST(MapQualityTest, ABrokenMapIsNotWritten) {
   MapQuality better = Broken();
   Judge(100, 140, false, &better);

@@ -97,7 +97,7 @@ inline evaluation::SelfConsistency ExampleConsistency() {
   consistency.word = "broken";
   consistency.reasons = {"nodes contradict the map"};
   consistency.severe_share = 0.4;
-  evaluation::ConflictPiece piece;
+  evaluation::PathPiece piece;
   piece.first_node = {0, 1};
   piece.last_node = {0, 2};
   piece.begin = 101 * kSecond;
@@ -107,7 +107,7 @@ inline evaluation::SelfConsistency ExampleConsistency() {
   piece.metres = 1.;
   piece.submaps = {{0, 1}};
   piece.fraction = 0.75;
-  consistency.severe = {piece};
+  consistency.places = {piece};
   for (int i = 0; i < 5; ++i) {
     evaluation::NodeContradiction node;
     node.node_id = {0, i};

@@ -329,11 +329,11 @@ document.body.appendChild(answers); });
 TEST_F(ReportTest, AnswersMouseTouchAndKeys) {
   ReportData data = *data_;
   auto& consistency = *data.runs[0].evaluation.consistency;
-  evaluation::ConflictPiece piece;
+  evaluation::PathPiece piece;
   piece.first_node = {0, 30};
   piece.last_node = {0, 40};
   piece.submaps = {{0, 0}};
-  consistency.severe = {piece};
+  consistency.places = {piece};
   consistency.word = "broken";
   consistency.reasons.push_back("nodes (0, 30) to (0, 40) (1.0 s) contradict");
   data.runs[0].evaluation.trajectory.reset();

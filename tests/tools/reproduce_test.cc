@@ -92,16 +92,18 @@ TEST(ReproduceTest, CasesOfVerdicts) {
       "runs = m['cases'](54); "
       "print([len({c[4] for c in runs if c[3] % 2 == i}) for i in (0, 1)], "
       "[len({c[i] for c in runs}) for i in (0, 1, 2)]); "
-      "of = lambda loop, top, loops=1, t='ours': m['truth'](dict("
-      "treatment=t, loops=loops, loop_error=loop, max=top)); "
+      "of = lambda loop, top, loops=1, t='ours', pair=0.1: m['truth'](dict("
+      "treatment=t, loops=loops, loop_error=loop, max=top, pair_error=pair)); "
       "print(of(0.1, 0.4), of(0.3, 0.4), of(0.1, 0.6), of(None, 0.1, 0), "
-      "of(0.1, 0.1, 1, 'floors')); "
+      "of(0.1, 0.1, 1, 'floors'), of(0.1, 0.4, pair=0.3), "
+      "of(0.3, 0.4, pair=0.3)); "
       "a = (1., 2., 0.5); "
       "print(all(abs(v) < 1e-9 for v in "
       "m['compose'](a, m['inverse'](a))))\"");
   EXPECT_EQ(result.exit_code, 0) << result.out;
   EXPECT_EQ(result.out,
-            "[7, 7] [3, 6, 2]\nsound broken broken unknown broken\nTrue\n");
+            "[7, 7] [3, 6, 2]\n"
+            "sound broken broken unknown broken bent broken\nTrue\n");
 }
 
 TEST(ReproduceTest, OutcomesOfRepairs) {

@@ -18,6 +18,7 @@
 
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/map/verdict/path_piece.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -31,10 +32,7 @@ struct ContradictionOptions {
   int min_judged = 25;
   // A pair of scan and submap is in conflict above this share of rays.
   double conflict_fraction = 0.35;
-  // Conflicts with fewer consecutive nodes are ignored.
-  int min_piece_nodes = 3;
-  // Number of nodes without conflict that do not end a path piece.
-  int piece_break = 5;
+  PathPieceOptions pieces;
 };
 
 // Result of one scan against one submap of another time.
@@ -57,27 +55,19 @@ struct NodeContradiction {
   int judged = 0;
   int contradicted = 0;
   double fraction = 0.;  // contradicted / judged
-  // The submap with the largest share; undefined if nothing was judged.
+  // The submap that has data for most of the rays, and the one with the largest
+  // share; undefined if nothing was judged.
+  GraphId widest_submap_id;
+  int widest_judged = 0;
   GraphId worst_submap_id;
   double worst_fraction = 0.;
   bool in_conflict = false;
 };
 
-// Consecutive nodes in conflict with the map.
-struct ConflictPiece {
-  GraphId first_node, last_node;
-  io::TimeNs begin = 0, end = 0;
-  int num_nodes = 0;               // in conflict
-  Eigen::Vector2d center{0., 0.};  // mean position of the nodes, map frame
-  double metres = 0.;              // of path
-  std::vector<GraphId> submaps;    // that are contradicted, by id
-  double fraction = 0.;            // mean worst share
-};
-
 struct Contradictions {
   std::vector<NodeContradiction> nodes;  // by id
   std::vector<ScanConflict> conflicts;   // pairs above the share, by node
-  std::vector<ConflictPiece> pieces;
+  std::vector<PathPiece> pieces;
   int64_t judged_nodes = 0;    // nodes that see a place mapped at another time
   int64_t conflict_nodes = 0;  // in path pieces
   int64_t judged_rays = 0;

@@ -19,11 +19,6 @@ using nlohmann::ordered_json;
 constexpr size_t kMaxNamedPlaces = 5;
 constexpr size_t kMaxNamedTurns = 3;
 
-// Share of the nodes that must revisit a place before a map without
-// contradictions is called sound. A map torn apart has hardly any overlap, and
-// so no contradictions.
-constexpr double kMinJudgedShare = 0.15;
-
 io::TimeNs StartTime(const MapGraph& graph) {
   io::TimeNs start = std::numeric_limits<io::TimeNs>::max();
   for (const auto& node : graph.nodes) {
@@ -50,24 +45,41 @@ std::string Place(const Eigen::Vector2d& place) {
 }
 
 // The verdict in a sentence.
-std::string Headline(const MapGraph& graph, const SelfConsistency& result) {
+std::string Headline(const MapGraph& graph, const SelfConsistency& result,
+                     const SelfConsistencyOptions& options) {
   const io::TimeNs start = StartTime(graph);
   if (result.word == "unknown") {
-    return result.contradictions.judged_nodes == 0
-               ? "no place was mapped twice, so consistency cannot be checked"
-               : "hardly any place was mapped twice, so consistency can hardly "
-                 "be checked";
+    const auto judged = static_cast<double>(result.contradictions.judged_nodes);
+    if (judged == 0.) {
+      return "no place was mapped twice, so consistency cannot be checked";
+    }
+    if (judged <
+        options.judged_share * static_cast<double>(graph.nodes.size())) {
+      return "hardly any place was mapped twice, so consistency can hardly be "
+             "checked";
+    }
+    return absl::StrFormat(
+        "loops and places that were mapped twice tie no more than %.0f %% of "
+        "the path together; nothing tells whether its parts are in place",
+        100. * result.displacements.tied_share);
   }
   if (result.word == "sound") {
     return "the map is self-consistent: places that were mapped twice coincide";
   }
   std::string sentence;
-  if (!result.severe.empty()) {
-    sentence =
-        absl::StrCat(result.word == "broken"
-                         ? "parts of the map overlap inconsistently, worst at "
-                         : "parts of the map overlap inconsistently at ",
-                     Place(result.severe.front().center));
+  if (!result.places.empty()) {
+    const PathPiece& worst = result.places.front();
+    if (worst.fraction > 0.) {
+      sentence = absl::StrCat(
+          result.word == "broken"
+              ? "parts of the map overlap inconsistently, worst at "
+              : "parts of the map overlap inconsistently at ",
+          Place(worst.center));
+    } else {
+      sentence = absl::StrFormat(
+          "parts of the map are displaced against each other, by %.1f m at %s",
+          worst.displacement, Place(worst.center));
+    }
   }
   if (!result.wrong_turns.empty()) {
     const MotionStep& step = result.wrong_turns.front();
@@ -81,10 +93,26 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result) {
   return sentence;
 }
 
+bool IsDisplaced(const SelfConsistency& result,
+                 const SelfConsistencyOptions& options) {
+  return !result.displacements.pieces.empty() &&
+         result.displacements.displaced_share() >= options.displaced_share;
+}
+
+// Near which place, which nodes, when.
+std::string Where(const PathPiece& piece, const io::TimeNs start) {
+  return absl::StrFormat(
+      "near %s: nodes %s to %s (%.1f s to %.1f s after the start)",
+      Place(piece.center), ToString(piece.first_node),
+      ToString(piece.last_node), io::ToSeconds(piece.begin - start),
+      io::ToSeconds(piece.end - start));
+}
+
 // What is wrong, in order of weight.
-void Explain(const MapGraph& graph, SelfConsistency* const result) {
+void Explain(const MapGraph& graph, const SelfConsistencyOptions& options,
+             SelfConsistency* const result) {
   const io::TimeNs start = StartTime(graph);
-  result->reasons.push_back(Headline(graph, *result));
+  result->reasons.push_back(Headline(graph, *result, options));
   const Contradictions& contradictions = result->contradictions;
   if (contradictions.judged_nodes > 0) {
     result->reasons.push_back(absl::StrFormat(
@@ -92,16 +120,25 @@ void Explain(const MapGraph& graph, SelfConsistency* const result) {
         "in free space or behind walls mapped there at another time",
         100. * result->severe_share, contradictions.judged_nodes));
   }
-  for (size_t i = 0; i < std::min(result->severe.size(), kMaxNamedPlaces);
+  if (IsDisplaced(*result, options)) {
+    result->reasons.push_back(
+        absl::StrFormat("%.1f %% of the nodes that revisit a place fit what "
+                        "was mapped there at "
+                        "another time better more than %.1f m away",
+                        100. * result->displacements.displaced_share(),
+                        options.displacement.limit));
+  }
+  for (size_t i = 0; i < std::min(result->places.size(), kMaxNamedPlaces);
        ++i) {
-    const ConflictPiece& piece = result->severe[i];
-    result->reasons.push_back(absl::StrFormat(
-        "near x = %.1f m, y = %.1f m: nodes %s to %s (%.1f s to %.1f s after "
-        "the start) contradict %s by %.0f %% of their rays",
-        piece.center.x(), piece.center.y(), ToString(piece.first_node),
-        ToString(piece.last_node), io::ToSeconds(piece.begin - start),
-        io::ToSeconds(piece.end - start), Submaps(piece.submaps),
-        100. * piece.fraction));
+    const PathPiece& piece = result->places[i];
+    const std::string where = Where(piece, start);
+    const std::string submaps = Submaps(piece.submaps);
+    result->reasons.push_back(
+        piece.fraction > 0.
+            ? absl::StrFormat("%s contradict %s by %.0f %% of their rays",
+                              where, submaps, 100. * piece.fraction)
+            : absl::StrFormat("%s lie %.1f m from where they fit %s", where,
+                              piece.displacement, submaps));
   }
   for (size_t i = 0; i < std::min(result->wrong_turns.size(), kMaxNamedTurns);
        ++i) {
@@ -133,6 +170,22 @@ void Explain(const MapGraph& graph, SelfConsistency* const result) {
   }
 }
 
+std::string WordOf(const SelfConsistency& result, const size_t num_nodes,
+                   const SelfConsistencyOptions& options) {
+  const bool turned = !result.wrong_turns.empty();
+  const bool contradicts = result.severe_share >= options.doubtful_share;
+  if (result.severe_share >= options.broken_share || (contradicts && turned)) {
+    return "broken";
+  }
+  if (contradicts || turned || IsDisplaced(result, options)) return "doubtful";
+  const auto judged = static_cast<double>(result.contradictions.judged_nodes);
+  const bool is_checked =
+      judged >=
+          std::max(1., options.judged_share * static_cast<double>(num_nodes)) &&
+      result.displacements.tied_share >= options.tied_share;
+  return is_checked ? "sound" : "unknown";
+}
+
 // Of steps within this time of each other, in order of time, the largest one.
 void KeepWorstOfEach(const io::TimeNs span, std::vector<MotionStep>* steps) {
   std::vector<MotionStep> kept;
@@ -161,22 +214,34 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
   SelfConsistency result;
   result.contradictions =
       FindContradictions(graph, contents, options.contradiction);
+  result.displacements = FindDisplacements(
+      graph, contents, result.contradictions, options.displacement);
   result.sharpness = ComputeSharpness(graph, contents, options.sharpness);
   result.motion = CompareMotions(graph, odometry);
   result.cycles = ComputeLoopCycles(graph, options.cycles);
   int64_t severe_nodes = 0;
-  for (const ConflictPiece& piece : result.contradictions.pieces) {
+  for (const PathPiece& piece : result.contradictions.pieces) {
     if (piece.fraction < options.severe_fraction ||
         piece.num_nodes < options.min_severe_nodes) {
       continue;
     }
     severe_nodes += piece.num_nodes;
-    result.severe.push_back(piece);
+    result.places.push_back(piece);
   }
-  std::stable_sort(result.severe.begin(), result.severe.end(),
-                   [](const ConflictPiece& a, const ConflictPiece& b) {
+  std::stable_sort(result.places.begin(), result.places.end(),
+                   [](const PathPiece& a, const PathPiece& b) {
                      return a.num_nodes * a.fraction > b.num_nodes * b.fraction;
                    });
+  if (IsDisplaced(result, options)) {
+    std::vector<PathPiece> displaced = result.displacements.pieces;
+    std::stable_sort(displaced.begin(), displaced.end(),
+                     [](const PathPiece& a, const PathPiece& b) {
+                       return a.num_nodes * a.displacement >
+                              b.num_nodes * b.displacement;
+                     });
+    result.places.insert(result.places.end(), displaced.begin(),
+                         displaced.end());
+  }
   for (const MotionStep& step : result.motion.steps) {
     if (step.has_odometry && step.odometry_rotation > options.wrong_turn &&
         step.lasting_rotation > 0.5 * step.odometry_rotation) {
@@ -193,19 +258,8 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
     result.severe_share =
         static_cast<double>(severe_nodes) / static_cast<double>(judged);
   }
-  const bool turned = !result.wrong_turns.empty();
-  if (result.severe_share >= options.broken_share ||
-      (result.severe_share >= options.doubtful_share && turned)) {
-    result.word = "broken";
-  } else if (result.severe_share >= options.doubtful_share || turned) {
-    result.word = "doubtful";
-  } else {
-    const auto nodes = static_cast<double>(result.contradictions.nodes.size());
-    const bool is_checked =
-        static_cast<double>(judged) >= std::max(1., kMinJudgedShare * nodes);
-    result.word = is_checked ? "sound" : "unknown";
-  }
-  Explain(graph, &result);
+  result.word = WordOf(result, graph.nodes.size(), options);
+  Explain(graph, options, &result);
   return result;
 }
 
@@ -218,8 +272,10 @@ ordered_json ToJson(const SelfConsistency& consistency) {
   json["judged_nodes"] = contradictions.judged_nodes;
   json["conflict_nodes"] = contradictions.conflict_nodes;
   json["contradicted_rays"] = contradictions.ray_fraction();
+  json["displaced_share"] = consistency.displacements.displaced_share();
+  json["tied_share"] = consistency.displacements.tied_share;
   json["places"] = ordered_json::array();
-  for (const ConflictPiece& piece : consistency.severe) {
+  for (const PathPiece& piece : consistency.places) {
     ordered_json submaps = ordered_json::array();
     for (const GraphId& id : piece.submaps) submaps.push_back(ToString(id));
     json["places"].push_back({{"x", piece.center.x()},
@@ -231,6 +287,7 @@ ordered_json ToJson(const SelfConsistency& consistency) {
                               {"nodes", piece.num_nodes},
                               {"metres", piece.metres},
                               {"fraction", piece.fraction},
+                              {"displacement", piece.displacement},
                               {"submaps", submaps}});
   }
   json["wrong_turns"] = ordered_json::array();

@@ -16,9 +16,13 @@
 // * wrong turns: from one node to the next local SLAM and odometry differ by
 //   more than `wrong_turn`, and at least half of it is left some seconds later
 //   (lasting_rotation). Either may be wrong, so this alone means doubtful.
+// * displaced nodes: at least `displaced_share` of the nodes that revisit a place
+//   fit it better some decimetres away (revisit_displacement.h). Doubtful.
 // A map is broken if contradicted path pieces make up `broken_share` of the
 // nodes that revisit a place, or `doubtful_share` of them together with a wrong
-// turn.
+// turn. Without any of this it is sound if `judged_share` of the nodes revisit a
+// place and `tied_share` of the path is tied together; otherwise unknown, for a
+// map torn apart has hardly any overlap, and so no contradictions.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_SELF_CONSISTENCY_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_SELF_CONSISTENCY_H_
 
@@ -30,6 +34,7 @@
 #include "cartographer_ext/map/verdict/loop_cycles.h"
 #include "cartographer_ext/map/verdict/map_sharpness.h"
 #include "cartographer_ext/map/verdict/motion_disagreement.h"
+#include "cartographer_ext/map/verdict/revisit_displacement.h"
 #include "cartographer_ext/map/verdict/scan_contradiction.h"
 #include "nlohmann/json.hpp"
 
@@ -38,6 +43,7 @@ namespace evaluation {
 
 struct SelfConsistencyOptions {
   ContradictionOptions contradiction;
+  DisplacementOptions displacement;
   SharpnessOptions sharpness;
   LoopCycleOptions cycles;
   double severe_fraction = 0.6;
@@ -46,19 +52,24 @@ struct SelfConsistencyOptions {
   io::TimeNs same_turn = 5LL * 1000000000LL;  // closer steps are one event
   double broken_share = 0.08;
   double doubtful_share = 0.01;
+  double displaced_share = 0.07;
+  double judged_share = 0.15;
+  double tied_share = 0.5;
 };
 
 struct SelfConsistency {
   Contradictions contradictions;
+  RevisitDisplacements displacements;
   Sharpness sharpness;
   MotionDisagreement motion;
   LoopCycles cycles;
-  // The severe path pieces, worst (most nodes) first.
-  std::vector<ConflictPiece> severe;
+  // What decides the verdict: the severe path pieces, worst (most nodes) first;
+  // then, if there are enough, the displaced ones, which contradict no rays.
+  std::vector<PathPiece> places;
   double severe_share = 0.;  // of the nodes that revisit a place
   std::vector<MotionStep> wrong_turns;
 
-  // "sound", "doubtful", "broken", or "unknown" if no place was seen twice.
+  // "sound", "doubtful", "broken" or "unknown".
   std::string word;
   // Sentences without full stop: what, how much, where and when.
   std::vector<std::string> reasons;

@@ -55,7 +55,7 @@ TEST(ScanContradictionTest, NodesMovedAwayContradictTheFirstSubmap) {
       FindContradictions(world.graph, world.contents, {});
   ASSERT_GE(result.pieces.size(), 1u);
   // Those are nodes 60 to 99, and nodes 0 to 49 against the second submap.
-  const ConflictPiece& last = result.pieces.back();
+  const PathPiece& last = result.pieces.back();
   EXPECT_EQ(last.first_node, (GraphId{0, 60}));
   EXPECT_EQ(last.last_node, (GraphId{0, 99}));
   EXPECT_EQ(last.num_nodes, 40);

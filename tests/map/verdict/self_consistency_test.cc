@@ -40,7 +40,7 @@ TEST(SelfConsistencyTest, RightMapIsSound) {
   const SelfConsistency result =
       AssessSelfConsistency(world.graph, world.contents, {}, {});
   EXPECT_EQ(result.word, "sound");
-  EXPECT_TRUE(result.severe.empty());
+  EXPECT_TRUE(result.places.empty());
   EXPECT_THAT(result.reasons.front(), HasSubstr("the map is self-consistent"));
 }
 
@@ -111,6 +111,51 @@ TEST(SelfConsistencyTest, HardlyAnythingSeenTwiceIsUnknown) {
   EXPECT_TRUE(is_enough);
 }
 
+// 0.6 m contradict less than 60 % of the rays.
+TEST(SelfConsistencyTest, DisplacedMapIsDoubtfulAndNamesThePlace) {
+  const test::BoxWorld world = test::MakeBoxWorld(60, Pose2(0., 0.6, 0.));
+  SelfConsistencyOptions options;
+  SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents, {}, options);
+  EXPECT_EQ(result.severe_share, 0.);
+  EXPECT_EQ(result.word, "doubtful");
+  EXPECT_THAT(
+      result.reasons.front(),
+      HasSubstr("parts of the map are displaced against each other, by 0."));
+  EXPECT_THAT(result.reasons, Contains(HasSubstr("m from where they fit")));
+  EXPECT_EQ(result.places.size(), 2u);
+  EXPECT_GT(ToJson(result)["places"][0]["displacement"], 0.3);
+  options.displaced_share = 1.1;
+  result = AssessSelfConsistency(world.graph, world.contents, {}, options);
+  EXPECT_NE(result.word, "doubtful");
+  EXPECT_TRUE(result.places.empty());
+}
+
+TEST(SelfConsistencyTest, PartsThatNothingTiesTogetherAreUnknown) {
+  test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  // Nodes 0 to 9 and 60 to 99 remain, and the first submap sees none again.
+  for (int i = 10; i < 60; ++i) world.graph.nodes.erase({0, i});
+  for (int i = 60; i < 100; ++i) {
+    GraphNode& node = world.graph.nodes.at({0, i});
+    node.global_pose = Pose2(100., 0., 0.) * node.global_pose;
+  }
+  world.graph.submaps.at({0, 1}).global_pose = Pose2(100., 0., 0.);
+  SelfConsistencyOptions options;
+  // So that nodes 60 to 89 see the second submap again.
+  options.contradiction.min_node_gap = 1;
+  options.displacement.free_length = 2.;
+  SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents, {}, options);
+  // They tie nodes 60 to 99 together, 40 of 50.
+  EXPECT_EQ(result.displacements.tied_share, 0.8);
+  EXPECT_EQ(result.word, "sound");
+  options.tied_share = 0.9;
+  result = AssessSelfConsistency(world.graph, world.contents, {}, options);
+  EXPECT_EQ(result.word, "unknown");
+  EXPECT_THAT(result.reasons.front(),
+              HasSubstr("tie no more than 80 % of the path together"));
+}
+
 TEST(SelfConsistencyTest, TruthGoesBeforeTheMapsOwnWord) {
   const test::BoxWorld world =
       test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
@@ -137,7 +182,7 @@ TEST_P(SharedMapsTest, VerdictWithoutTruth) {
       ReadOdometry(*pbstream), {});
   if (std::string(GetParam().second) == "broken") {
     EXPECT_EQ(result.word, "broken");
-    EXPECT_FALSE(result.severe.empty());
+    EXPECT_FALSE(result.places.empty());
   } else {
     EXPECT_NE(result.word, "broken");
   }

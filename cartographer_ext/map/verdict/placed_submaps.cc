@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/map/verdict/placed_submaps.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+Box BoxOf(const std::vector<Eigen::Vector2d>& points) {
+  Box box{points.front(), points.front()};
+  for (const Eigen::Vector2d& point : points) {
+    box.min = box.min.cwiseMin(point);
+    box.max = box.max.cwiseMax(point);
+  }
+  return box;
+}
+
+Box SubmapBox(const SubmapCells& cells, const Pose2& map_from_local) {
+  const Eigen::Vector2d low = cells.min_corner(), high = cells.max_corner();
+  return BoxOf({map_from_local * low,
+                map_from_local * Eigen::Vector2d(low.x(), high.y()),
+                map_from_local * Eigen::Vector2d(high.x(), low.y()),
+                map_from_local * high});
+}
+
+Box ScanBox(const std::vector<Eigen::Vector2d>& scan, const Pose2& pose) {
+  std::vector<Eigen::Vector2d> points = {pose.translation()};
+  for (const Eigen::Vector2d& point : scan) points.push_back(pose * point);
+  return BoxOf(points);
+}
+
+}  // namespace
+
+const Pose2& PlacedSubmap::LocalFromMap(const Eigen::Vector2d& place) const {
+  const auto distance = [&place](const Anchor& anchor) {
+    return (anchor.place - place).squaredNorm();
+  };
+  return std::min_element(anchors.begin(), anchors.end(),
+                          [&distance](const Anchor& a, const Anchor& b) {
+                            return distance(a) < distance(b);
+                          })
+      ->local_from_map;
+}
+
+bool PlacedSubmap::IsOfAnotherTime(const GraphId& node_id,
+                                   const int min_node_gap) const {
+  return id.trajectory_id != node_id.trajectory_id ||
+         node_id.index <= anchors.front().node_id.index - min_node_gap ||
+         node_id.index >= anchors.back().node_id.index + min_node_gap;
+}
+
+std::vector<PlacedSubmap> PlaceSubmaps(const MapGraph& graph,
+                                       const MapContents& contents) {
+  std::map<GraphId, std::vector<Anchor>> anchors;
+  for (const GraphConstraint& constraint : graph.constraints) {
+    if (constraint.is_loop) continue;
+    const auto submap = graph.submaps.find(constraint.submap_id);
+    const auto node = graph.nodes.find(constraint.node_id);
+    if (submap == graph.submaps.end() || node == graph.nodes.end()) continue;
+    const Pose2& pose = node->second.global_pose;
+    anchors[constraint.submap_id].push_back(
+        {constraint.node_id, pose.translation(),
+         submap->second.local_pose * constraint.relative_pose *
+             pose.Inverse()});
+  }
+  std::vector<PlacedSubmap> placed;
+  for (auto& entry : anchors) {
+    const auto cells = contents.submaps.find(entry.first);
+    if (cells == contents.submaps.end()) continue;
+    std::sort(
+        entry.second.begin(), entry.second.end(),
+        [](const Anchor& a, const Anchor& b) { return a.node_id < b.node_id; });
+    placed.push_back({entry.first, &cells->second, std::move(entry.second),
+                      SubmapBox(cells->second,
+                                MapFromLocal(graph.submaps.at(entry.first)))});
+  }
+  return placed;
+}
+
+void ForEachSubmapOfAnotherTime(
+    const std::vector<PlacedSubmap>& submaps, const MapContents& contents,
+    const GraphId& node_id, const Pose2& pose, const int min_node_gap,
+    const std::function<void(const PlacedSubmap&)>& visit) {
+  const auto scan = contents.scans.find(node_id);
+  if (scan == contents.scans.end() || scan->second.empty()) return;
+  const Box box = ScanBox(scan->second, pose);
+  for (const PlacedSubmap& submap : submaps) {
+    if (submap.IsOfAnotherTime(node_id, min_node_gap) &&
+        box.Meets(submap.box)) {
+      visit(submap);
+    }
+  }
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
