@@ -329,7 +329,7 @@ void AddPlaces(const ReportData& data, const Prepared& prepared,
   figure.Legend("path of the robot, from start (blue) to end (magenta)",
                 "by-time");
   Table table({"place", "x", "y", "nodes", "after the start",
-               "rays contradicted", "contradicts"});
+               "rays contradicted, or displacement", "against"});
   if (stored.evaluation.consistency.has_value()) {
     const SelfConsistency& consistency = *stored.evaluation.consistency;
     const auto pairs = PairsOf(stored.graph, consistency);
@@ -341,9 +341,10 @@ void AddPlaces(const ReportData& data, const Prepared& prepared,
   page->Element(
       "figcaption", {},
       "The map as stored. Numbers: path pieces whose scans are in free space "
-      "or behind walls mapped by another visit. Letters: places where the "
-      "rotation of local SLAM differs from that of the wheels. Click a ring to "
-      "see the two scans that do not agree.");
+      "or behind walls mapped by another visit, or would fit it better some "
+      "decimetres away. Letters: places where the rotation of local SLAM "
+      "differs from that of the wheels. Click a ring to see the two scans that "
+      "do not agree.");
   page->Close();
   if (!table.empty()) page->Raw(table.ToHtml("Places that contradict the map"));
 }

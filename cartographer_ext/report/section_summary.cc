@@ -99,6 +99,9 @@ void AddConsistencyRows(std::vector<Row>* const rows) {
   rows->push_back(
       {"severely contradicted nodes",
        consistency([](const auto& c) { return Percent(c.severe_share); })});
+  rows->push_back({"displaced nodes", consistency([](const auto& c) {
+                     return Percent(c.displacements.displaced_share());
+                   })});
   rows->push_back({"rays contradicted", consistency([](const auto& c) {
                      return Percent(c.contradictions.ray_fraction());
                    })});
