@@ -94,6 +94,26 @@ bool SubmapCells::NearOccupied(const Eigen::Vector2d& point) const {
   return offset >= 0 && to_occupied_[offset] <= radius_;
 }
 
+std::vector<int> SubmapCells::CountNearOccupied(
+    const std::vector<Eigen::Vector2d>& points,
+    const std::vector<Eigen::Vector2d>& shifts, const double tolerance) const {
+  std::vector<Eigen::Vector2d> cells;
+  for (const Eigen::Vector2d& point : points) cells.push_back(Cell(point));
+  const Eigen::Vector2d origin = Cell(Eigen::Vector2d::Zero());
+  const double limit = tolerance / resolution_;
+  std::vector<int> counts;
+  for (const Eigen::Vector2d& shift : shifts) {
+    const Eigen::Vector2d moved = Cell(shift) - origin;
+    int count = 0;
+    for (const Eigen::Vector2d& cell : cells) {
+      const int offset = Offset(cell + moved);
+      count += offset >= 0 && to_occupied_[offset] <= limit;
+    }
+    counts.push_back(count);
+  }
+  return counts;
+}
+
 double SubmapCells::Score(const std::vector<Eigen::Vector2d>& points,
                           const Pose2& local_from_node) const {
   if (points.empty()) return 0.;

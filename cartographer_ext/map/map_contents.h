@@ -66,12 +66,12 @@ class SubmapCells {
   }
   // Occupied, or within the margin of an occupied cell.
   bool NearOccupied(const Eigen::Vector2d& point) const;
-  // Cells to the nearest occupied one (chessboard distance, at most 255); 255
-  // outside.
-  int DistanceToOccupied(const Eigen::Vector2d& point) const {
-    const int offset = Offset(Cell(point));
-    return offset < 0 ? 255 : to_occupied_[offset];
-  }
+  // For each shift, how many of the points come to lie at most `tolerance`
+  // (metres, in whole cells, each axis) from an occupied cell. `points` and
+  // `shifts` in the local frame.
+  std::vector<int> CountNearOccupied(const std::vector<Eigen::Vector2d>& points,
+                                     const std::vector<Eigen::Vector2d>& shifts,
+                                     double tolerance) const;
   // Mean probability of occupancy under the points, as the loop search scores a
   // match (0.1 for unknown cells); accurate to a few thousandths. `points` in
   // the frame of a node, `local_from_node` places them in the local frame.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <utility>
@@ -38,8 +39,10 @@ Shares SharesOf(const std::vector<Eigen::Vector2d>& scan,
                 const SubmapCells& cells, const DisplacementOptions& options) {
   const size_t stride =
       (scan.size() + options.max_points - 1) / options.max_points;
-  const double tolerance = options.tolerance / cells.resolution();
-  const Pose2 rotation(0., 0., local_from_map.theta);
+  std::vector<Eigen::Vector2d> local_shifts;
+  for (const Eigen::Vector2d& shift : shifts) {
+    local_shifts.push_back(Pose2(0., 0., local_from_map.theta) * shift);
+  }
   std::vector<int> most(shifts.size(), 0);
   std::vector<Eigen::Vector2d> points;
   for (int k = -options.num_rotations; k <= options.num_rotations; ++k) {
@@ -50,13 +53,10 @@ Shares SharesOf(const std::vector<Eigen::Vector2d>& scan,
     for (size_t i = 0; i < scan.size(); i += stride) {
       points.push_back(local_from_node * scan[i]);
     }
-    for (size_t i = 0; i < shifts.size(); ++i) {
-      const Eigen::Vector2d shift = rotation * shifts[i];
-      int hits = 0;
-      for (const Eigen::Vector2d& point : points) {
-        hits += cells.DistanceToOccupied(point + shift) <= tolerance;
-      }
-      most[i] = std::max(most[i], hits);
+    const std::vector<int> hits =
+        cells.CountNearOccupied(points, local_shifts, options.tolerance);
+    for (size_t i = 0; i < hits.size(); ++i) {
+      most[i] = std::max(most[i], hits[i]);
     }
   }
   Shares shares;
@@ -194,6 +194,9 @@ RevisitDisplacements FindDisplacements(const MapGraph& graph,
   const std::vector<PlacedSubmap> placed = PlaceSubmaps(graph, contents);
   const Order order(graph, placed);
   const std::vector<Eigen::Vector2d> shifts = ShiftsOf(options);
+  const int stride = static_cast<int>(std::max<int64_t>(
+      options.stride,
+      (contradictions.judged_nodes - 1) / options.max_nodes + 1));
   RevisitDisplacements result;
   std::vector<Look> run;
   int skipped = 0;
@@ -203,10 +206,10 @@ RevisitDisplacements FindDisplacements(const MapGraph& graph,
     if (!run.empty()) {
       const GraphId& last = run.back().node.node_id;
       if (last.trajectory_id != id.trajectory_id ||
-          id.index - last.index > 2 * options.stride) {
+          id.index - last.index > 2 * stride) {
         JudgeRun(run, shifts, options, &result);
         run.clear();
-      } else if (++skipped < options.stride) {
+      } else if (++skipped < stride) {
         continue;
       }
     }

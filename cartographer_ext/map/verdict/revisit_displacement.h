@@ -35,8 +35,9 @@ struct DisplacementOptions {
   int max_points = 60;  // of a scan
   // Of the nodes that see a place again every second is looked at, and so many
   // of them together (fewer where fewer see it); no more than twice the stride
-  // apart.
+  // apart. In large maps the stride is larger, for no more than `max_nodes`.
   int stride = 2;
+  int max_nodes = 1000;
   int nodes_together = 5;
   // Shifts fit as well as the best if their share of returns is at most so much
   // smaller.

@@ -105,6 +105,18 @@ TEST(RevisitDisplacementTest, LoopsTieThePathToo) {
   EXPECT_NEAR(Displacements(world).tied_share, 0.70, 1e-9);
 }
 
+TEST(RevisitDisplacementTest, LooksAtFewerNodesOfLargeMaps) {
+  const test::BoxWorld world = test::MakeBoxWorld(60, Pose2(0., 0.6, 0.));
+  const Contradictions contradictions =
+      FindContradictions(world.graph, world.contents, {});
+  DisplacementOptions options;
+  options.max_nodes = 20;
+  const RevisitDisplacements result =
+      FindDisplacements(world.graph, world.contents, contradictions, options);
+  EXPECT_LE(result.nodes.size(), 22u);  // a run begins with the first node
+  EXPECT_GT(result.displaced_share(), 0.7);
+}
+
 TEST(RevisitDisplacementTest, AShortPathNeedsNoTies) {
   test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
   world.contents.scans.clear();

@@ -28,6 +28,20 @@ TEST(MapContentsTest, CellsSayWhatTheGridSays) {
   EXPECT_EQ(cells.OccupiedCells().size(), 640u);
 }
 
+TEST(MapContentsTest, CountsPointsNearWallsUnderShifts) {
+  const SubmapCells cells(test::BoxGrid(), 0.15);
+  // Walls from 3.9 to 4.1 m in cells of 0.1 m; the grid ends at 5 m.
+  const std::vector<Eigen::Vector2d> points = {
+      {3.95, 0.}, {3.75, 0.}, {3., 0.}, {-3.95, 0.}};
+  const std::vector<Eigen::Vector2d> shifts = {
+      {0., 0.}, {0.1, 0.}, {0.9, 0.}, {0., -8.}, {2., 2.}};
+  EXPECT_THAT(cells.CountNearOccupied(points, shifts, 0.1),
+              ElementsAre(2, 3, 1, 0, 0));
+  EXPECT_THAT(cells.CountNearOccupied(points, shifts, 0.2),
+              ElementsAre(3, 3, 1, 0, 0));
+  EXPECT_THAT(cells.CountNearOccupied({}, {{0., 0.}}, 0.1), ElementsAre(0));
+}
+
 TEST(MapContentsTest, ScoresWhereTheScanFits) {
   const SubmapCells cells(test::BoxGrid(), 0.15);
   const Pose2 pose(1., -0.5, 0.3);
