@@ -177,13 +177,13 @@ std::string WordOf(const SelfConsistency& result, const size_t num_nodes,
   if (result.severe_share >= options.broken_share || (contradicts && turned)) {
     return "broken";
   }
-  if (contradicts || turned || IsDisplaced(result, options)) return "doubtful";
+  if (contradicts || turned) return "doubtful";
   const auto judged = static_cast<double>(result.contradictions.judged_nodes);
-  const bool is_checked =
-      judged >=
-          std::max(1., options.judged_share * static_cast<double>(num_nodes)) &&
-      result.displacements.tied_share >= options.tied_share;
-  return is_checked ? "sound" : "unknown";
+  const auto nodes = static_cast<double>(num_nodes);
+  if (judged < std::max(1., options.judged_share * nodes)) return "unknown";
+  if (IsDisplaced(result, options)) return "doubtful";
+  return result.displacements.tied_share < options.tied_share ? "unknown"
+                                                              : "sound";
 }
 
 // Of steps within this time of each other, in order of time, the largest one.

@@ -125,6 +125,12 @@ TEST(SelfConsistencyTest, DisplacedMapIsDoubtfulAndNamesThePlace) {
   EXPECT_THAT(result.reasons, Contains(HasSubstr("m from where they fit")));
   EXPECT_EQ(result.places.size(), 2u);
   EXPECT_GT(ToJson(result)["places"][0]["displacement"], 0.3);
+  // So few that the map may be torn apart.
+  options.judged_share = 1.01;
+  EXPECT_EQ(
+      AssessSelfConsistency(world.graph, world.contents, {}, options).word,
+      "unknown");
+  options.judged_share = 0.15;
   options.displaced_share = 1.1;
   result = AssessSelfConsistency(world.graph, world.contents, {}, options);
   EXPECT_NE(result.word, "doubtful");
