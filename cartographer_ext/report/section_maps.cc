@@ -61,13 +61,13 @@ Disagreement WorstOf(const SelfConsistency& consistency,
     if (node_id < piece.first_node || piece.last_node < node_id) return;
     if (amount > worst.amount) worst = {node_id, submap_id, amount};
   };
-  if (piece.fraction > 0.) {
-    for (const auto& node : consistency.contradictions.nodes) {
-      consider(node.node_id, node.worst_submap_id, node.worst_fraction);
-    }
-  } else {
+  if (piece.is_displaced()) {
     for (const auto& node : consistency.displacements.nodes) {
       consider(node.node_id, node.submap_id, node.displacement);
+    }
+  } else {
+    for (const auto& node : consistency.contradictions.nodes) {
+      consider(node.node_id, node.worst_submap_id, node.worst_fraction);
     }
   }
   return worst;
@@ -176,24 +176,24 @@ void AddPieces(const ReportRun& stored, const SelfConsistency& consistency,
         "%.1f to %.1f s", begin, io::ToSeconds(piece.end - start));
     const std::string nodes = absl::StrCat(ToString(piece.first_node), " to ",
                                            ToString(piece.last_node));
+    const std::string amount =
+        piece.is_displaced()
+            ? absl::StrFormat("%.1f m", piece.displacement)
+            : absl::StrFormat("%.0f %%", 100. * piece.fraction);
     figure->Ring(
         piece.center, 0.5 * piece.metres + 1., absl::StrCat(number),
         absl::StrFormat("place %d: nodes %s\n%s\n%s submaps %s", number, nodes,
                         seconds,
-                        piece.fraction > 0.
-                            ? absl::StrFormat("%.0f %% of the rays contradict",
-                                              100. * piece.fraction)
-                            : absl::StrFormat("%.1f m from where they fit",
-                                              piece.displacement),
+                        absl::StrCat(amount, piece.is_displaced()
+                                                 ? " from where they fit"
+                                                 : " of the rays contradict"),
                         submaps),
         RingAttributes(stored.graph, absl::StrCat("nodes ", nodes, " ("), begin,
                        pairs[number - 1]));
-    table->AddRow(
-        {absl::StrCat(number), absl::StrFormat("%.1f m", piece.center.x()),
-         absl::StrFormat("%.1f m", piece.center.y()), nodes, seconds,
-         piece.fraction > 0. ? absl::StrFormat("%.0f %%", 100. * piece.fraction)
-                             : absl::StrFormat("%.1f m", piece.displacement),
-         absl::StrCat("submaps ", submaps)});
+    table->AddRow({absl::StrCat(number),
+                   absl::StrFormat("%.1f m", piece.center.x()),
+                   absl::StrFormat("%.1f m", piece.center.y()), nodes, seconds,
+                   amount, absl::StrCat("submaps ", submaps)});
   }
 }
 

@@ -31,6 +31,12 @@ struct PathPiece {
   // Means over the nodes.
   double fraction = 0.;
   double displacement = 0.;
+  // Or else contradicted.
+  bool is_displaced() const { return displacement > 0.; }
+  // The larger the worse, among pieces of the same kind.
+  double severity() const {
+    return num_nodes * (is_displaced() ? displacement : fraction);
+  }
 };
 
 struct PathPieceOptions {

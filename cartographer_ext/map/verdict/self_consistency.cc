@@ -44,17 +44,21 @@ std::string Place(const Eigen::Vector2d& place) {
   return absl::StrFormat("x = %.1f m, y = %.1f m", place.x(), place.y());
 }
 
+bool HardlyRevisits(const SelfConsistency& result, const size_t num_nodes,
+                    const SelfConsistencyOptions& options) {
+  return static_cast<double>(result.contradictions.judged_nodes) <
+         std::max(1., options.judged_share * static_cast<double>(num_nodes));
+}
+
 // The verdict in a sentence.
 std::string Headline(const MapGraph& graph, const SelfConsistency& result,
                      const SelfConsistencyOptions& options) {
   const io::TimeNs start = StartTime(graph);
   if (result.word == "unknown") {
-    const auto judged = static_cast<double>(result.contradictions.judged_nodes);
-    if (judged == 0.) {
+    if (result.contradictions.judged_nodes == 0) {
       return "no place was mapped twice, so consistency cannot be checked";
     }
-    if (judged <
-        options.judged_share * static_cast<double>(graph.nodes.size())) {
+    if (HardlyRevisits(result, graph.nodes.size(), options)) {
       return "hardly any place was mapped twice, so consistency can hardly be "
              "checked";
     }
@@ -69,7 +73,7 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result,
   std::string sentence;
   if (!result.places.empty()) {
     const PathPiece& worst = result.places.front();
-    if (worst.fraction > 0.) {
+    if (!worst.is_displaced()) {
       sentence = absl::StrCat(
           result.word == "broken"
               ? "parts of the map overlap inconsistently, worst at "
@@ -91,6 +95,13 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result,
         Place(graph.nodes.at(step.node_id).global_pose.translation()));
   }
   return sentence;
+}
+
+void SortWorstFirst(std::vector<PathPiece>* const pieces) {
+  std::stable_sort(pieces->begin(), pieces->end(),
+                   [](const PathPiece& a, const PathPiece& b) {
+                     return a.severity() > b.severity();
+                   });
 }
 
 bool IsDisplaced(const SelfConsistency& result,
@@ -134,7 +145,7 @@ void Explain(const MapGraph& graph, const SelfConsistencyOptions& options,
     const std::string where = Where(piece, start);
     const std::string submaps = Submaps(piece.submaps);
     result->reasons.push_back(
-        piece.fraction > 0.
+        !piece.is_displaced()
             ? absl::StrFormat("%s contradict %s by %.0f %% of their rays",
                               where, submaps, 100. * piece.fraction)
             : absl::StrFormat("%s lie %.1f m from where they fit %s", where,
@@ -178,9 +189,7 @@ std::string WordOf(const SelfConsistency& result, const size_t num_nodes,
     return "broken";
   }
   if (contradicts || turned) return "doubtful";
-  const auto judged = static_cast<double>(result.contradictions.judged_nodes);
-  const auto nodes = static_cast<double>(num_nodes);
-  if (judged < std::max(1., options.judged_share * nodes)) return "unknown";
+  if (HardlyRevisits(result, num_nodes, options)) return "unknown";
   if (IsDisplaced(result, options)) return "doubtful";
   return result.displacements.tied_share < options.tied_share ? "unknown"
                                                               : "sound";
@@ -228,17 +237,10 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
     severe_nodes += piece.num_nodes;
     result.places.push_back(piece);
   }
-  std::stable_sort(result.places.begin(), result.places.end(),
-                   [](const PathPiece& a, const PathPiece& b) {
-                     return a.num_nodes * a.fraction > b.num_nodes * b.fraction;
-                   });
+  SortWorstFirst(&result.places);
   if (IsDisplaced(result, options)) {
     std::vector<PathPiece> displaced = result.displacements.pieces;
-    std::stable_sort(displaced.begin(), displaced.end(),
-                     [](const PathPiece& a, const PathPiece& b) {
-                       return a.num_nodes * a.displacement >
-                              b.num_nodes * b.displacement;
-                     });
+    SortWorstFirst(&displaced);
     result.places.insert(result.places.end(), displaced.begin(),
                          displaced.end());
   }
