@@ -197,6 +197,9 @@ constexpr int kFullPolishRounds = 30;
 // outside) and solving with those weights, until the decisions no longer
 // change. Each half-step lowers the truncated cost, so this terminates;
 // rejected loops are accepted again when the poses have moved towards them.
+// Where a fold opens, each round takes in the next few loops only; from the
+// sixth on they come in together, by a Geman-McClure kernel as wide as the gate,
+// if that lowers the cost.
 // `weights`, if not null, receives one value per edge.
 SolverSummary PolishTruncated(const std::vector<WhitenedEdge>& edges,
                               double gate, int max_rounds,

@@ -5,12 +5,35 @@
 // polish by it.
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
 namespace optimization {
+namespace {
+
+// Rounds of a polish after which loops are taken to come in one by one.
+constexpr int kSlowPolish = 5;
+
+// Solves with a kernel as wide as the gate, and keeps that where it lowers the
+// truncated cost.
+SolverSummary Soften(const double gate, RobustSolver* const solver,
+                     std::vector<Pose2>* const poses) {
+  SolverOptions options;
+  options.kernel = DefaultKernel(KernelType::kGemanMcClure);
+  options.kernel.parameter = gate;
+  std::vector<Pose2> softened = *poses;
+  const SolverSummary summary = solver->Solve(options, &softened);
+  if (TruncatedCost(solver->edges(), softened, gate) <
+      TruncatedCost(solver->edges(), *poses, gate)) {
+    *poses = std::move(softened);
+  }
+  return summary;
+}
+
+}  // namespace
 
 SolverSummary SolveGnc(const std::vector<WhitenedEdge>& edges,
                        const GncOptions& options,
@@ -118,8 +141,10 @@ SolverSummary PolishTruncated(const double gate, const int max_rounds,
       total.converged = true;
       break;
     }
-    options.edge_weights = decisions;
-    const SolverSummary summary = solver->Solve(options, poses);
+    const bool soften = round == kSlowPolish && round + 1 < max_rounds;
+    if (!soften) options.edge_weights = decisions;
+    const SolverSummary summary =
+        soften ? Soften(gate, solver, poses) : solver->Solve(options, poses);
     total.iterations += summary.iterations;
     total.analyses += summary.analyses;
     total.factor_blocks = summary.factor_blocks;

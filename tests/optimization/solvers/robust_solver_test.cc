@@ -229,6 +229,42 @@ TEST_F(RobustSolverTest, PolishLowersTheTruncatedCost) {
   }
 }
 
+// There and back along a street, whose loops close one after the other, from the
+// turn on, as each of them brings the next within the gate.
+TEST(PolishTest, LoopsThatCloseLikeAZipComeInTogether) {
+  constexpr int kLength = 300;
+  const auto edge = [](const int from, const int to, const Pose2& measurement,
+                       const bool is_loop) {
+    PoseGraphEdge result;
+    result.from = from;
+    result.to = to;
+    result.measurement = measurement;
+    result.is_loop = is_loop;
+    result.information.diagonal() << 2500., 2500., 10000.;
+    return result;
+  };
+  PoseGraph graph;
+  graph.poses.push_back(Pose2());
+  for (int i = 1; i <= 2 * kLength; ++i) {
+    const double turn = i == kLength ? kPi : 0.;
+    graph.edges.push_back(
+        edge(i - 1, i, Pose2(1., 0., NormalizeAngle(turn + 2e-3)), false));
+    graph.poses.push_back(graph.poses.back() * graph.edges.back().measurement);
+  }
+  for (int i = 0; i < kLength - 1; i += 2) {
+    graph.edges.push_back(edge(i, 2 * kLength - i, Pose2(0., 0., kPi), true));
+  }
+  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  std::vector<double> weights;
+  const SolverSummary summary =
+      PolishTruncated(edges, kChi2Gate, 30, &graph.poses, &weights);
+  double in_force = 0.;
+  for (const double weight : weights) in_force += weight;
+  EXPECT_TRUE(summary.converged);
+  EXPECT_EQ(in_force, edges.size());
+  EXPECT_LE(summary.iterations, 80);
+}
+
 TEST_F(RobustSolverTest, AdaptiveGateFollowsTheScaleOfTheLoops) {
   // Honest information: the gate stays.
   EXPECT_DOUBLE_EQ(AdaptiveGate(clean_, optimum_), kChi2Gate);
