@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "Eigen/Cholesky"
@@ -33,11 +34,38 @@ Eigen::Matrix3d Adjoint(const Pose2& pose) {
       .finished();
 }
 
+// Multiplications with a block.
+constexpr double kWorkOfBlock = 27.;
+// Predictions that one is worth which makes a loop certain.
+constexpr double kWorthOfCertain = 4.;
+// A step that lowers the cost by less than this fraction is the last of a round.
+constexpr double kRoundTolerance = 1e-2;
+
 struct Candidate {
   int edge = 0;
   double score = 0.;  // log likelihood ratio
   double chi2 = 0.;   // of the innovation
+  // Poses along the path from its ends to those of what has come in.
+  int distance = 0;
 };
+
+// For each pose how many poses along the path the nearest of the `touched` is
+// away.
+std::vector<int> DistancesAlongPath(const std::vector<bool>& touched) {
+  const int n = touched.size();
+  std::vector<int> result(n, n);
+  for (int i = 0; i != n; ++i) {
+    if (touched[i]) {
+      result[i] = 0;
+    } else if (i > 0) {
+      result[i] = std::min(n, result[i - 1] + 1);
+    }
+  }
+  for (int i = n - 1; i > 0; --i) {
+    result[i - 1] = std::min(result[i - 1], result[i] + 1);
+  }
+  return result;
+}
 
 class CertainGrowth {
  public:
@@ -58,6 +86,7 @@ class CertainGrowth {
     }
     if (covariances_.empty()) return 0;
     given_up_.assign(edges_.size(), 0);
+    touched_.assign(poses_.size(), false);
     int in_force = 0;
     double log_odds = kFirstLogOdds;
     bool predicted = true;
@@ -78,30 +107,40 @@ class CertainGrowth {
         if (log_odds <= 0.) break;
         log_odds -= 0.5 * kFirstLogOdds;
       }
-      if (!predicted) PredictByFactor();
+      if (!predicted) PredictByFactor(log_odds);
       predicted = true;
     }
     return in_force;
   }
 
  private:
+  Candidate Weigh(const int edge, const double log_area) const {
+    const WhitenedEdge& loop = edges_[edge];
+    const Eigen::Vector3d residual =
+        Residual(loop, poses_[loop.from], poses_[loop.to]);
+    const Eigen::LLT<Eigen::Matrix3d> root(covariances_[edge]);
+    const double log_determinant =
+        2. * root.matrixLLT().diagonal().array().log().sum();
+    Candidate result;
+    result.edge = edge;
+    result.chi2 = residual.dot(root.solve(residual));
+    result.score =
+        LogVolume(loop, log_area) - 0.5 * (result.chi2 + log_determinant);
+    return result;
+  }
+
   std::vector<Candidate> OpenLoops() const {
     const double log_area = LogArea(poses_);
     std::vector<Candidate> result;
     for (size_t i = 0; i != edges_.size(); ++i) {
       if (!edges_[i].is_loop || weights_[i] > 0. || given_up_[i] > 1) continue;
-      const Eigen::Vector3d residual =
-          Residual(edges_[i], poses_[edges_[i].from], poses_[edges_[i].to]);
-      const Eigen::LLT<Eigen::Matrix3d> root(covariances_[i]);
-      const double chi2 = residual.dot(root.solve(residual));
-      const double log_determinant =
-          2. * root.matrixLLT().diagonal().array().log().sum();
-      result.push_back(
-          {static_cast<int>(i),
-           LogVolume(edges_[i], log_area) - 0.5 * (chi2 + log_determinant),
-           chi2});
+      result.push_back(Weigh(i, log_area));
     }
     return result;
+  }
+
+  bool IsCertain(const Candidate& candidate, const double enough) const {
+    return candidate.chi2 < options_.gate && candidate.score >= enough;
   }
 
   int TakeInCertain(const double log_odds) {
@@ -109,10 +148,8 @@ class CertainGrowth {
     const double enough = std::log(candidates.size()) + log_odds;
     int entered = 0;
     for (const Candidate& candidate : candidates) {
-      if (!(candidate.chi2 < options_.gate) || candidate.score < enough) {
-        continue;
-      }
-      weights_[candidate.edge] = 1.;
+      if (!IsCertain(candidate, enough)) continue;
+      TakeIn(candidate.edge);
       ++entered;
     }
     return entered;
@@ -132,8 +169,13 @@ class CertainGrowth {
       }
     }
     if (fitting.size() < std::exp(log_odds) * by_chance) return 0;
-    for (const int i : fitting) weights_[i] = 1.;
+    for (const int i : fitting) TakeIn(i);
     return fitting.size();
+  }
+
+  void TakeIn(const int edge) {
+    weights_[edge] = 1.;
+    touched_[edges_[edge].from] = touched_[edges_[edge].to] = true;
   }
 
   void Solve() {
@@ -142,7 +184,7 @@ class CertainGrowth {
     options.kernel.parameter = options_.gate;
     options.edge_weights = weights_;
     options.max_iterations = 10;
-    options.cost_tolerance = 1e-3;
+    options.cost_tolerance = kRoundTolerance;
     options.initial_lambda = 1e-8;
     solver_.Solve(options, &poses_);
   }
@@ -163,30 +205,39 @@ class CertainGrowth {
     return result;
   }
 
-  // Covariances of those open loops that contradict the last ones least.
-  void PredictByFactor() {
+  // Covariances of open loops that do not contradict their last ones, first of
+  // those near what has come in since, which it makes sharper: as far as that
+  // takes no more work than allowed, and on as long as they become certain.
+  void PredictByFactor(const double log_odds) {
+    const std::vector<int> distances = DistancesAlongPath(touched_);
+    touched_.assign(touched_.size(), false);
     std::vector<Candidate> candidates = OpenLoops();
+    const double enough = std::log(candidates.size()) + log_odds;
     candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
                                     [this](const Candidate& candidate) {
                                       return candidate.chi2 >=
                                              options_.max_gates * options_.gate;
                                     }),
                      candidates.end());
-    const size_t limit = options_.max_predictions;
-    if (candidates.size() > limit) {
-      std::nth_element(
-          candidates.begin(), candidates.begin() + limit, candidates.end(),
-          [](const Candidate& a, const Candidate& b) {
-            return a.chi2 != b.chi2 ? a.chi2 < b.chi2 : a.edge < b.edge;
-          });
-      candidates.resize(limit);
+    for (Candidate& candidate : candidates) {
+      const WhitenedEdge& edge = edges_[candidate.edge];
+      candidate.distance = std::max(distances[edge.from], distances[edge.to]);
     }
+    std::sort(candidates.begin(), candidates.end(),
+              [](const Candidate& a, const Candidate& b) {
+                return std::tie(a.distance, a.chi2, a.edge) <
+                       std::tie(b.distance, b.chi2, b.edge);
+              });
     Eigen::VectorXd rhs;
     const BlockLdlt* const factorised = solver_.Factor(poses_, weights_, &rhs);
     if (factorised == nullptr) return;
+    double left = std::max(options_.min_prediction_work,
+                           options_.prediction_work * factorised->work());
     IncrementalFactor factor;
     factor.Reset(*factorised, rhs);
+    const double log_area = LogArea(poses_);
     for (const Candidate& candidate : candidates) {
+      if (left <= 0.) return;
       const WhitenedEdge& edge = edges_[candidate.edge];
       LinearFactor linear;
       linear.a = edge.from - 1;
@@ -195,6 +246,10 @@ class CertainGrowth {
                 &linear.jacobian_b);
       covariances_[candidate.edge] =
           Eigen::Matrix3d::Identity() + factor.PredictedCovariance(linear);
+      const double work = kWorkOfBlock * factor.last_prediction_blocks();
+      left += IsCertain(Weigh(candidate.edge, log_area), enough)
+                  ? kWorthOfCertain * work
+                  : -work;
     }
   }
 
@@ -205,6 +260,8 @@ class CertainGrowth {
   std::vector<double>& weights_;
   std::vector<Eigen::Matrix3d> covariances_;  // S per edge
   std::vector<int> given_up_;                 // how often, per edge
+  // Poses whose loops have come in since the last predictions by the factor.
+  std::vector<bool> touched_;
 };
 
 }  // namespace

@@ -22,9 +22,10 @@
 //   W_k = sum_(i <= k) Ad_i C_i Ad_i'
 //
 // W_b - W_a is the covariance of (a <- b) as a twist of the map. Later S comes
-// from the factor, for the open loops that contradict their last S least: over
-// long chains, where headings are lost, the first one is only roughly right,
-// and most wrong loops contradict any.
+// from the factor, for the open loops that do not contradict their last S. As a
+// prediction costs as much as a thousandth of a factorisation, only some are
+// made in one round, first where loops have come in: these are the ones that
+// they make sharper.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_CERTAIN_GROWTH_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_CERTAIN_GROWTH_H_
 
@@ -43,10 +44,12 @@ struct CertainGrowthOptions {
   double gate = kChi2Gate;  // of the innovation
   // Ends earlier if no more loops are accepted.
   int max_rounds = 100;
-  // Open loops that are predicted by the factor in one round, and the chi2 of
-  // their last prediction, which further loops only make sharper, in gates; poses
-  // may have moved since.
-  int max_predictions = 2000;
+  // What the predictions by the factor may take in one round, in factorisations,
+  // and at least in multiplications.
+  double prediction_work = 2.;
+  double min_prediction_work = 3e8;
+  // chi2 of a loop's last prediction, which further loops only make sharper, in
+  // gates, up to which it is predicted anew; poses may have moved since.
   double max_gates = 10.;
 };
 

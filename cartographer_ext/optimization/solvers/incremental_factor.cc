@@ -137,6 +137,7 @@ Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
     const LinearFactor& factor) const {
   const BlockKernels& kernels = BestBlockKernels();
   Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  last_prediction_blocks_ = 0;
   // Two paths to the root, walked together in ascending order.
   int a = kEnd, b = kEnd;
   if (factor.a >= 0) {
@@ -155,6 +156,7 @@ Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
     result.noalias() += head.transpose() * column.pivot_inverse * head;
     kernels.subtract_products(head, column.blocks.data(), column.rows.data(),
                               column.rows.size(), nullptr, work_.data());
+    last_prediction_blocks_ += column.rows.size() + 1;
     const int parent = column.rows.empty() ? kEnd : column.rows.front();
     if (a == j) a = parent;
     if (b == j) b = parent;

@@ -67,6 +67,8 @@ class IncrementalFactor {
   size_t num_blocks() const;
   // Length of the path of the last update, in blocks, at most size().
   size_t last_update_blocks() const { return last_update_blocks_; }
+  // The same of the last predicted covariance.
+  size_t last_prediction_blocks() const { return last_prediction_blocks_; }
 
  private:
   struct Column {
@@ -87,6 +89,7 @@ class IncrementalFactor {
   mutable std::vector<int64_t> solution_version_;
   int64_t version_ = 0;
   size_t last_update_blocks_ = 0;
+  mutable size_t last_prediction_blocks_ = 0;
 };
 
 }  // namespace optimization

@@ -61,32 +61,45 @@ TEST(CertainGrowthTest, SumsAlongTheChainPredictAsTheFactorDoes) {
   }
 }
 
+// As many wrong loops as right ones.
+void ExpectFindsTheRightLoops(const uint64_t seed,
+                              const CertainGrowthOptions& options) {
+  const size_t clean = test::MakeGridWorld(1500, 14, seed).graph.edges.size();
+  const test::GridWorld world = GridWithOutliers(seed, clean - 1499);
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  std::vector<Pose2> poses = DeadReckoning(world.graph);
+  std::vector<double> weights;
+  const int in_force =
+      GrowCertainLoops(world.graph, options, &solver, &poses, &weights);
+  int right = 0, right_in_force = 0, wrong_in_force = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop) {
+      EXPECT_EQ(weights[i], 1.);
+    } else if (i < clean) {
+      ++right;
+      right_in_force += weights[i] > 0.;
+    } else {
+      wrong_in_force += weights[i] > 0.;
+    }
+  }
+  EXPECT_EQ(in_force, right_in_force + wrong_in_force);
+  EXPECT_GE(right_in_force, 0.95 * right) << seed;
+  EXPECT_LE(wrong_in_force, 0.01 * in_force) << seed;
+  EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 0.3) << seed;
+}
+
 TEST(CertainGrowthTest, FindsTheRightLoopsAmongAsManyWrongOnes) {
   for (const uint64_t seed : {1, 2, 3}) {
-    const size_t clean = test::MakeGridWorld(1500, 14, seed).graph.edges.size();
-    const test::GridWorld world = GridWithOutliers(seed, clean - 1499);
-    const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
-    RobustSolver solver(edges);
-    std::vector<Pose2> poses = DeadReckoning(world.graph);
-    std::vector<double> weights;
-    const int in_force = GrowCertainLoops(world.graph, CertainGrowthOptions(),
-                                          &solver, &poses, &weights);
-    int right = 0, right_in_force = 0, wrong_in_force = 0;
-    for (size_t i = 0; i != edges.size(); ++i) {
-      if (!edges[i].is_loop) {
-        EXPECT_EQ(weights[i], 1.);
-      } else if (i < clean) {
-        ++right;
-        right_in_force += weights[i] > 0.;
-      } else {
-        wrong_in_force += weights[i] > 0.;
-      }
-    }
-    EXPECT_EQ(in_force, right_in_force + wrong_in_force);
-    EXPECT_GE(right_in_force, 0.95 * right) << seed;
-    EXPECT_LE(wrong_in_force, 0.01 * in_force) << seed;
-    EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 0.3) << seed;
+    ExpectFindsTheRightLoops(seed, CertainGrowthOptions());
   }
+}
+
+TEST(CertainGrowthTest, PredictsOnAsLongAsLoopsBecomeCertain) {
+  CertainGrowthOptions options;
+  options.prediction_work = 0.;
+  options.min_prediction_work = 1e4;  // one or two predictions
+  for (const uint64_t seed : {1, 2, 3}) ExpectFindsTheRightLoops(seed, options);
 }
 
 TEST(CertainGrowthTest, NeedsAChain) {

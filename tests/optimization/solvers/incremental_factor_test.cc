@@ -105,7 +105,11 @@ TEST_F(IncrementalFactorTest, PredictedCovariance) {
     const Eigen::Matrix3d expected = dense_.Predicted(probe);
     EXPECT_LT((factor_.PredictedCovariance(probe) - expected).norm(),
               1e-8 * expected.norm());
+    EXPECT_LE(factor_.last_prediction_blocks(), factor_.num_blocks() + 20);
   }
+  // The last pose is the root.
+  factor_.PredictedCovariance(RandomFactor(-1, 19, &random_));
+  EXPECT_EQ(factor_.last_prediction_blocks(), 1);
   // The work space is clean again.
   ExpectEqual(1e-8);
 }
