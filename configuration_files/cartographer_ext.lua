@@ -266,4 +266,10 @@ CARTOGRAPHER_EXT.optimization_problem = {
   -- solve again from the previous poses. The new result is kept only if it
   -- passes the check.
   odometry_check = true,
+  -- In graphs with more nodes than this, optimise this many of the newest
+  -- nodes during the run and hold the rest, for a cost per node that does not
+  -- grow with the run. The whole graph is optimised when it has grown by a
+  -- tenth, when new loops move the newest nodes by much, and in the end. 0:
+  -- always the whole graph, as Cartographer does. [>= 0 and <= 1000000]
+  recent_nodes = 0,
 }

@@ -11,7 +11,9 @@
 
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
+#include "cartographer_ext/common/loop_information.h"
 #include "cartographer_ext/common/pose_graph_context.h"
+#include "cartographer_ext/optimization/dropin/recent_solve.h"
 #include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
 #include "cartographer_ext/optimization/dropin/stock_solve.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
@@ -32,6 +34,15 @@ LoopId LoopIdOf(const Constraint& constraint) {
 
 // Of the number of nodes until the next thorough selection.
 constexpr double kThoroughGrowth = 2.;
+// Of the number of nodes until the next optimisation of the whole graph: in any
+// case, and where one of the newest part has moved a node by more than what
+// local SLAM drifts between two optimisations, metres and radians, or
+// contradicts more than a share of the loops.
+constexpr double kWholeGrowth = 1.1;
+constexpr double kLeastWholeGrowth = 1.01;
+constexpr double kLargestMove = 0.25;
+constexpr double kLargestTurn = 0.05;
+constexpr double kContradictedShare = 0.05;
 
 }  // namespace
 
@@ -39,9 +50,7 @@ RobustOptimizationProblem2D::RobustOptimizationProblem2D(
     const mapping::optimization::proto::OptimizationProblemOptions& options,
     const proto::RobustOptimizationOptions& extension)
     : extension_(extension),
-      local_slam_translation_weight_(
-          options.local_slam_pose_translation_weight()),
-      local_slam_rotation_weight_(options.local_slam_pose_rotation_weight()),
+      options_(options),
       stock_(options),
       stock_iterations_(options.ceres_solver_options().max_num_iterations()) {}
 
@@ -80,8 +89,10 @@ SlamPoseGraph RobustOptimizationProblem2D::MakeProblem(
   }
   SlamPoseGraphOptions options;
   options.loop_sigma = extension_.loop_sigma();
-  options.local_slam_translation_weight = local_slam_translation_weight_;
-  options.local_slam_rotation_weight = local_slam_rotation_weight_;
+  options.local_slam_translation_weight =
+      options_.local_slam_pose_translation_weight();
+  options.local_slam_rotation_weight =
+      options_.local_slam_pose_rotation_weight();
   return MakeSlamPoseGraph(slam, options);
 }
 
@@ -89,6 +100,28 @@ void RobustOptimizationProblem2D::Solve(
     const std::vector<Constraint>& constraints,
     const std::map<int, TrajectoryState>& trajectories_state,
     const std::map<std::string, LandmarkNode>& landmark_nodes) {
+  const std::shared_ptr<PoseGraphContext> context = PoseGraphContext::Current();
+  if (SolveRecentPart(constraints, trajectories_state, landmark_nodes,
+                      context.get())) {
+    return;
+  }
+  SolveWhole(constraints, trajectories_state, landmark_nodes, context.get());
+  if (recent_nodes() == 0) return;
+  for (const auto& node : stock_.node_data()) {
+    nodes_.at(node.id).global_pose_2d = node.data.global_pose_2d;
+  }
+  for (const auto& submap : stock_.submap_data()) {
+    submaps_.at(submap.id).global_pose = submap.data.global_pose;
+  }
+  nodes_when_whole_ = static_cast<int>(nodes_.size());
+  grown_.clear();
+}
+
+void RobustOptimizationProblem2D::SolveWhole(
+    const std::vector<Constraint>& constraints,
+    const std::map<int, TrajectoryState>& trajectories_state,
+    const std::map<std::string, LandmarkNode>& landmark_nodes,
+    PoseGraphContext* const context) {
   const double start = ThreadCpuSeconds();
   std::vector<SwitchedLoop> off;
   const std::vector<Constraint> kept =
@@ -100,11 +133,50 @@ void RobustOptimizationProblem2D::Solve(
   LOG_IF(INFO, !off.empty())
       << off.size() << " of " << loops << " loop constraints are switched off";
   const double selected = ThreadCpuSeconds();
-  const std::shared_ptr<PoseGraphContext> context = PoseGraphContext::Current();
-  StockSolve(kept, trajectories_state, landmark_nodes, context.get(), &stock_);
+  StockSolve(kept, trajectories_state, landmark_nodes, context, &stock_);
   if (context == nullptr) return;
   context->Get<SwitchedLoopRecorder>()->Record(
       loops, std::move(off), selected - start, ThreadCpuSeconds() - selected);
+}
+
+bool RobustOptimizationProblem2D::SolveRecentPart(
+    const std::vector<Constraint>& constraints,
+    const std::map<int, TrajectoryState>& trajectories_state,
+    const std::map<std::string, LandmarkNode>& landmark_nodes,
+    PoseGraphContext* const context) {
+  const int num_nodes = static_cast<int>(nodes_.size());
+  if (recent_nodes() == 0 || num_nodes <= recent_nodes() ||
+      num_nodes >= kWholeGrowth * nodes_when_whole_ || grown_.size() != 1 ||
+      !landmark_nodes.empty()) {
+    return false;
+  }
+  const int trajectory_id = *grown_.begin();
+  const auto state = trajectories_state.find(trajectory_id);
+  if ((state != trajectories_state.end() &&
+       state->second == TrajectoryState::FROZEN) ||
+      stock_.fixed_frame_pose_data().HasTrajectory(trajectory_id) ||
+      (context != nullptr && context->Get<LoopInformation>()->size() != 0)) {
+    return false;
+  }
+  auto first = nodes_.EndOfTrajectory(trajectory_id);
+  for (int i = 0;
+       i < recent_nodes() && first != nodes_.BeginOfTrajectory(trajectory_id);
+       ++i) {
+    --first;
+  }
+  const RecentResult result = SolveRecent(
+      options_, constraints,
+      [this](const Constraint& constraint) {
+        return constraint.tag != Constraint::INTER_SUBMAP ||
+               switched_off_.count(LoopIdOf(constraint)) == 0;
+      },
+      (*first).id, GraphPoses{&nodes_, &submaps_});
+  if (!result.usable) return false;
+  // Wrong loops are contradicted for ever, so even then not each time.
+  return (result.largest_move <= kLargestMove &&
+          result.largest_turn <= kLargestTurn &&
+          result.num_contradicted <= kContradictedShare * result.num_loops) ||
+         num_nodes < kLeastWholeGrowth * nodes_when_whole_;
 }
 
 std::vector<RobustOptimizationProblem2D::Constraint>
