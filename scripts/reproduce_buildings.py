@@ -25,6 +25,7 @@ SEED = 1000  # of the first run
 # A map is right where at least nine of ten true revisits lie together.
 OPEN_SHARE = 0.1
 WRONG_LOOPS = 0.05
+SAMPLES_PER_BIN = 50  # fewer say little about the calibration
 
 FIELDS = ["kind", "laser", "odometry", "seed", "method", "outcome", "metres", "ate", "ate_per_metre", "loop_error", "loops_apart",
           "sequential_error", "sequential_degrees", "precision", "recall", "accepted", "verdict", "cpu_seconds", "front_end_cpu_seconds",
@@ -100,6 +101,11 @@ def map_case(commands, case, method):
                      "-json", str(stem) + ".json")
         with open(str(stem) + ".json") as evaluation, open(str(stem) + ".slam.json") as slam:
             run.update(figures(json.load(evaluation), json.load(slam)))
+        if method == "ours" and run["searches"]:
+            commands.run("label_loops", "-pbstream_filename", str(stem) + ".pbstream", "-reference_trajectory_filename",
+                         str(stem) + ".tum", "-json", str(stem) + ".labels.json")
+            with open(str(stem) + ".labels.json") as labels:
+                run["reliability"] = [[b["count"], b["mean_score"], b["true_share"]] for b in json.load(labels)["calibration"]["bins"]]
     except common.Failed as error:
         run["error"] = str(error)
     finally:
@@ -179,6 +185,35 @@ def tables(runs, methods, grouping):
             lines += [summary(value, [r for r in own if r[field] == value]) for value in values]
         text += "**%s** (`%s`)\n\n%s\n" % (method, CONFIGURATIONS[method], common.table(HEADER, [l for l in lines if l[1]]))
     return text
+
+
+def pooled(runs):
+    """Reliability diagrams of several runs as one: (candidates, mean probability, share of true ones) of each tenth."""
+    bins = []
+    for i in range(10):
+        parts = [run["reliability"][i] for run in runs if run.get("reliability")]
+        count = sum(part[0] for part in parts)
+        bins.append((count,) + tuple(sum(part[0] * part[j] for part in parts) / count if count else None for j in (1, 2)))
+    return bins
+
+
+def calibration(runs, lasers):
+    """Whether candidates are right as often as their probabilities say: reliability diagrams as a table."""
+    lines = []
+    for label, group in [("**all**", runs)] + [(laser, [r for r in runs if r["laser"] == laser]) for laser in lasers]:
+        bins = [b for b in pooled(group) if b[0]]
+        total = sum(b[0] for b in bins)
+        if not total:
+            continue
+        error = sum(b[0] * abs(b[1] - b[2]) for b in bins) / total
+        worst = max([abs(b[1] - b[2]) for b in bins if b[0] >= SAMPLES_PER_BIN], default=None)
+        lines.append([label, total, "%.3f" % error, common.number(worst)] +
+                     ["%.2f / %.2f (%d)" % (b[1], b[2], b[0]) if b[0] else "-" for b in pooled(group)])
+    if not lines:
+        return ""
+    header = ["candidates of", "n", "calibration error", "worst bin"] + ["%.1f-%.1f" % (i / 10., (i + 1) / 10.) for i in range(10)]
+    return ("Mean probability / share of true candidates (number) by tenths of the probability. The calibration error is the mean of the "
+            "difference, the worst bin that with at least %d candidates.\n\n%s" % (SAMPLES_PER_BIN, common.table(header, lines)))
 
 
 def failures(runs):
@@ -263,7 +298,7 @@ def any_building(commands, options):
     methods = [m for m in CONFIGURATIONS if any(r["method"] == m for r in runs)]
     write(commands.out / "runs.json", json.dumps(runs, indent=1))
     with open(str(commands.out / "runs.csv.tmp"), "w", newline="") as stream:
-        writer = csv.DictWriter(stream, FIELDS)
+        writer = csv.DictWriter(stream, FIELDS, extrasaction="ignore")
         writer.writeheader()
         writer.writerows(runs)
     os.replace(str(commands.out / "runs.csv.tmp"), str(commands.out / "runs.csv"))
@@ -271,6 +306,7 @@ def any_building(commands, options):
     bad = [run for run in runs if run["outcome"] != "right"]
     text = tables(runs, methods, [("odometry", grades), ("laser", lasers), ("kind", kinds)])
     text += "Runs that are not right: %s.\n\n%s" % (share(len(bad), len(runs)), failures(runs))
+    text += calibration([run for run in runs if run["method"] == "ours"], lasers)
     return ("Any building",
             "Right: at most a tenth of the true revisits lie more than half a metre apart. Folded: not right, and more than a twentieth "
             "of the accepted loops are wrong; open: not right because loops are missing. Precision is that of all loops of a group together. "

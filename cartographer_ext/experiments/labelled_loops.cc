@@ -3,6 +3,7 @@
 #include "cartographer_ext/experiments/labelled_loops.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -213,10 +214,46 @@ std::vector<ScoredLabel> Scores(const std::vector<LabelledLoop>& loops,
         if (!decision.has_fusion()) continue;
         label.score = decision.fusion().final_score();
         break;
+      case ScoreKind::kProbability:
+        if (!(decision.fusion().probability() > 0.)) continue;
+        label.score = decision.fusion().probability();
+        break;
     }
     labels.push_back(label);
   }
   return labels;
+}
+
+std::array<ReliabilityBin, 10> ReliabilityDiagram(
+    const std::vector<ScoredLabel>& labels) {
+  std::array<ReliabilityBin, 10> bins;
+  for (const ScoredLabel& label : labels) {
+    const double place = label.score * static_cast<double>(bins.size());
+    ReliabilityBin& bin = bins[static_cast<size_t>(
+        std::min(std::max(place, 0.), static_cast<double>(bins.size()) - 1.))];
+    ++bin.count;
+    bin.mean_score += label.score;
+    bin.true_share += label.is_true ? 1. : 0.;
+  }
+  for (ReliabilityBin& bin : bins) {
+    const double count = std::max<double>(1., bin.count);
+    bin.mean_score /= count;
+    bin.true_share /= count;
+  }
+  return bins;
+}
+
+absl::optional<double> ExpectedCalibrationError(
+    const std::array<ReliabilityBin, 10>& bins) {
+  double total = 0.;
+  double error = 0.;
+  for (const ReliabilityBin& bin : bins) {
+    const double count = static_cast<double>(bin.count);
+    total += count;
+    error += count * std::abs(bin.mean_score - bin.true_share);
+  }
+  if (total == 0.) return absl::nullopt;
+  return error / total;
 }
 
 absl::optional<double> ChainRates::precision() const {
@@ -261,12 +298,14 @@ std::string LabelledCsv(const std::vector<LabelledLoop>& loops) {
 std::string CurvesSvg(const std::vector<LabelledLoop>& loops,
                       const std::string& title) {
   constexpr double kMargin = 60.;
-  const double width = 2. * Diagram::kSize + 3. * kMargin;
+  const double width = 3. * Diagram::kSize + 4. * kMargin;
   const double height = Diagram::kSize + 2. * kMargin + 20.;
   Diagram roc(kMargin, kMargin + 20., "ROC", "share of false loops accepted",
               "");
   Diagram recall(Diagram::kSize + 2. * kMargin, kMargin + 20.,
                  "precision and recall", "recall", "");
+  Diagram reliability(2. * Diagram::kSize + 3. * kMargin, kMargin + 20.,
+                      "share of true loops", "probability", "");
   struct Kind {
     ScoreKind kind;
     const char* name;
@@ -274,7 +313,8 @@ std::string CurvesSvg(const std::vector<LabelledLoop>& loops,
   };
   const Kind kinds[] = {{ScoreKind::kGrid, "grid score", "#0072b2"},
                         {ScoreKind::kTemporal, "temporal score", "#d55e00"},
-                        {ScoreKind::kFused, "fused score", "#009e73"}};
+                        {ScoreKind::kFused, "fused score", "#009e73"},
+                        {ScoreKind::kProbability, "probability", "#cc79a7"}};
   int row = 0;
   for (const Kind& kind : kinds) {
     const std::vector<ScoredLabel> labels = Scores(loops, kind.kind);
@@ -305,12 +345,20 @@ std::string CurvesSvg(const std::vector<LabelledLoop>& loops,
     recall.Dot(*chain.recall(), *chain.precision(), "black");
   }
   roc.Legend(row, "whole chain", "black");
+  reliability.Line({{0., 0.}, {1., 1.}}, "#999999");
+  for (const ReliabilityBin& bin :
+       ReliabilityDiagram(Scores(loops, ScoreKind::kProbability))) {
+    if (bin.count > 0) {
+      reliability.Dot(bin.mean_score, bin.true_share, "#cc79a7");
+    }
+  }
   return absl::StrFormat(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"%g\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n"
       "<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n"
-      "<text x=\"%g\" y=\"24\" font-size=\"16\">%s</text>\n%s%s</svg>\n",
-      width, height, kMargin, title, roc.svg(), recall.svg());
+      "<text x=\"%g\" y=\"24\" font-size=\"16\">%s</text>\n%s%s%s</svg>\n",
+      width, height, kMargin, title, roc.svg(), recall.svg(),
+      reliability.svg());
 }
 
 }  // namespace evaluation

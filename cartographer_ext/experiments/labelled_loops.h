@@ -7,6 +7,8 @@
 #ifndef CARTOGRAPHER_EXT_EXPERIMENTS_LABELLED_LOOPS_H_
 #define CARTOGRAPHER_EXT_EXPERIMENTS_LABELLED_LOOPS_H_
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -61,9 +63,24 @@ absl::optional<double> AreaUnderCurve(std::vector<ScoredLabel> labels);
 
 // Labelled candidates with the score that `kind` names; those without it are
 // skipped.
-enum class ScoreKind { kGrid, kTemporal, kFused };
+enum class ScoreKind { kGrid, kTemporal, kFused, kProbability };
 std::vector<ScoredLabel> Scores(const std::vector<LabelledLoop>& loops,
                                 ScoreKind kind);
+
+// Candidates whose score lies in a tenth of [0, 1].
+struct ReliabilityBin {
+  int64_t count = 0;
+  double mean_score = 0.;
+  double true_share = 0.;  // equal to the mean if scores are probabilities
+};
+
+// The reliability diagram: ten bins, the score 1 in the last one.
+std::array<ReliabilityBin, 10> ReliabilityDiagram(
+    const std::vector<ScoredLabel>& labels);
+
+// Mean of |mean_score - true_share| over the candidates; absent without any.
+absl::optional<double> ExpectedCalibrationError(
+    const std::array<ReliabilityBin, 10>& bins);
 
 struct ChainRates {
   int64_t true_candidates = 0;
@@ -80,8 +97,8 @@ ChainRates RatesOfChain(const std::vector<LabelledLoop>& loops);
 // columns of the decision log.
 std::string LabelledCsv(const std::vector<LabelledLoop>& loops);
 
-// ROC and precision-recall curves of the three scores and the point of the
-// whole chain, side by side, as SVG.
+// ROC and precision-recall curves of the scores and the point of the whole chain,
+// and the reliability diagram of the probability, side by side, as SVG.
 std::string CurvesSvg(const std::vector<LabelledLoop>& loops,
                       const std::string& title);
 

@@ -25,7 +25,7 @@ constexpr char kHead[] =
     "refined_x,"
     "refined_y,refined_theta,temporal_outcome,temporal_score,window,num_query,"
     "num_reference,travelled,threshold,score_variance,lambda,final_score,"
-    "false_weight,false_mean_grid,false_mean_temporal,true_weight,"
+    "probability,false_weight,false_mean_grid,false_mean_temporal,true_weight,"
     "true_mean_grid,true_mean_temporal,innovation_x,innovation_y,"
     "innovation_theta,innovation_chi_square,innovation_bound,support,"
     "contradictions,subset_size,num_tests,exact,translation_weight,"
@@ -54,6 +54,22 @@ class Line {
 // Also for values that a newer version may have written.
 std::string EnumText(const std::string& name, const int value) {
   return name.empty() ? absl::StrCat(value) : absl::AsciiStrToLower(name);
+}
+
+void AddFusion(const LoopDecision& decision, Line* const line) {
+  const auto& fusion = decision.fusion();
+  line->Begin(decision.has_fusion());
+  line->Number(fusion.lambda());
+  line->Number(fusion.final_score());
+  line->Begin(fusion.probability() > 0.);
+  line->Number(fusion.probability());
+  for (const auto* const component :
+       {&fusion.false_loops(), &fusion.true_loops()}) {
+    line->Begin(fusion.has_true_loops());
+    line->Number(component->weight());
+    line->Number(component->mean_grid());
+    line->Number(component->mean_temporal());
+  }
 }
 
 std::string CsvLine(const LoopDecision& decision) {
@@ -98,17 +114,7 @@ std::string CsvLine(const LoopDecision& decision) {
   line.Number(temporal.travelled());
   line.Number(temporal.threshold());
   line.Number(temporal.score_variance());
-  const auto& fusion = decision.fusion();
-  line.Begin(decision.has_fusion());
-  line.Number(fusion.lambda());
-  line.Number(fusion.final_score());
-  for (const auto* const component :
-       {&fusion.false_loops(), &fusion.true_loops()}) {
-    line.Begin(fusion.has_true_loops());
-    line.Number(component->weight());
-    line.Number(component->mean_grid());
-    line.Number(component->mean_temporal());
-  }
+  AddFusion(decision, &line);
   const auto& innovation = decision.innovation();
   line.Begin(decision.has_innovation());
   line.Number(innovation.pose().x());

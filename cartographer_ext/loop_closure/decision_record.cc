@@ -71,6 +71,7 @@ void RecordFusion(const ScoreFusionResult& fusion,
                   LoopDecision::Fusion* const record) {
   record->set_lambda(fusion.lambda);
   record->set_final_score(fusion.final_score);
+  record->set_probability(fusion.probability);
   if (!fusion.mixture.has_value()) return;
   ToProto((*fusion.mixture)[0], record->mutable_false_loops());
   ToProto((*fusion.mixture)[1], record->mutable_true_loops());

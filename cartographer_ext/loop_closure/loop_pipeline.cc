@@ -95,6 +95,7 @@ void LoopPipeline::Process(LoopCandidate candidate) {
 void LoopPipeline::Veto(LoopCandidate candidate) {
   // Could odometry have drifted so far: chi^2 (G section 3.4).
   VetoByInnovation(options_, paths_, &candidate);
+  EstimateProbability(options_.search, &candidate);
   if (candidate.is_rejected()) {
     candidate.verdict = LoopDecision::UNDECIDED;
     vetoed_.push_back(std::move(candidate));

@@ -156,6 +156,10 @@ std::string Describe(const LoopEvidence& evidence) {
   if (decision.has_fusion()) {
     absl::StrAppendFormat(&text, "\nfused score %.3f",
                           decision.fusion().final_score());
+    if (decision.fusion().probability() > 0.) {
+      absl::StrAppendFormat(&text, ", right with probability %.3f",
+                            decision.fusion().probability());
+    }
   }
   if (decision.has_innovation()) {
     absl::StrAppendFormat(&text, "\ninnovation %.1f of %.1f",

@@ -57,7 +57,8 @@ DEFINE_int32(num_background_threads, 0,
 DEFINE_uint64(seed, 0, "Worlds: seed of noise and faults.");
 DEFINE_string(csv_filename, "", "Output: every candidate with its label.");
 DEFINE_string(picture_filename, "",
-              "Output: ROC and precision-recall curves (.svg).");
+              "Output: ROC and precision-recall curves of the scores, and "
+              "reliability of the probability (.svg).");
 DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
 
 namespace cartographer_ext {
@@ -75,7 +76,9 @@ constexpr char kDescription[] =
 
 Runs the recording with our loop closure and, for comparison, with
 Cartographer's. Precision is the share of true loops among the accepted ones
-that ground truth covers, recall the share of revisits closed by a true loop.)";
+that ground truth covers, recall the share of revisits closed by a true loop.
+The reliability diagram compares the probability of candidates with the share of
+true ones, in ten bins.)";
 
 struct Truth {
   absl::optional<std::vector<evaluation::Relation>> relations;
@@ -139,6 +142,23 @@ nlohmann::ordered_json ToJson(const LoopStatistics& loops,
           {"revisits_closed", loops.revisits_closed},
           {"searches", searches},
           {"search_cpu_seconds", search_cpu_seconds}};
+}
+
+// Whether candidates are right as often as their probabilities say.
+nlohmann::ordered_json CalibrationJson(
+    const std::vector<evaluation::LabelledLoop>& loops) {
+  const auto bins = evaluation::ReliabilityDiagram(
+      evaluation::Scores(loops, evaluation::ScoreKind::kProbability));
+  nlohmann::ordered_json json = {
+      {"expected_calibration_error",
+       Number(evaluation::ExpectedCalibrationError(bins))},
+      {"bins", nlohmann::ordered_json::array()}};
+  for (const evaluation::ReliabilityBin& bin : bins) {
+    json["bins"].push_back({{"count", bin.count},
+                            {"mean_score", bin.mean_score},
+                            {"true_share", bin.true_share}});
+  }
+  return json;
 }
 
 // The map of a run and why its loop candidates were accepted or not.
@@ -222,7 +242,9 @@ absl::Status Run() {
   };
   json["auc"] = {{"grid", auc(evaluation::ScoreKind::kGrid)},
                  {"temporal", auc(evaluation::ScoreKind::kTemporal)},
-                 {"fused", auc(evaluation::ScoreKind::kFused)}};
+                 {"fused", auc(evaluation::ScoreKind::kFused)},
+                 {"probability", auc(evaluation::ScoreKind::kProbability)}};
+  json["calibration"] = CalibrationJson(loops);
   json["chain"] = {{"precision", Number(chain.precision())},
                    {"recall", Number(chain.recall())},
                    {"true_accepted", chain.true_accepted},

@@ -2,13 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/uncertainty/uncertain_pose.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "Eigen/Cholesky"
+#include "Eigen/Eigenvalues"
 #include "cartographer_ext/common/planar_matrix.h"
 
 namespace cartographer_ext {
 namespace uncertainty {
+
+double WorstTranslationSigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
+      Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()),
+      Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0., solver.eigenvalues()(1)));
+}
 
 Eigen::Matrix3d Adjoint(const Pose2& pose) {
   const double c = std::cos(pose.theta), s = std::sin(pose.theta);

@@ -44,6 +44,9 @@ struct UncertainPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
+// Standard deviation of the translation of a pose in the worst direction, metres.
+double WorstTranslationSigma(const Eigen::Matrix3d& covariance);
+
 // The adjoint of (a <- b): maps an error in frame b to the same error in frame
 // a.
 Eigen::Matrix3d Adjoint(const Pose2& pose);

@@ -75,6 +75,21 @@ TEST(LabelledLoopsTest, ChainCountsWhatTruthCanJudge) {
   EXPECT_FALSE(ChainRates().recall().has_value());
 }
 
+TEST(LabelledLoopsTest, ReliabilityByHand) {
+  const std::vector<ScoredLabel> labels = {
+      {0.02, false}, {0.04, true}, {0.55, true}, {0.95, true}, {1., true}};
+  const auto bins = ReliabilityDiagram(labels);
+  EXPECT_EQ(bins[0].count, 2);
+  EXPECT_NEAR(bins[0].mean_score, 0.03, 1e-12);
+  EXPECT_NEAR(bins[0].true_share, 0.5, 1e-12);
+  EXPECT_EQ(bins[1].count, 0);
+  EXPECT_EQ(bins[5].count, 1);
+  EXPECT_EQ(bins[9].count, 2);
+  // (2 * 0.47 + 0.45 + 2 * 0.025) / 5
+  EXPECT_NEAR(*ExpectedCalibrationError(bins), 0.288, 1e-12);
+  EXPECT_FALSE(ExpectedCalibrationError(ReliabilityDiagram({})).has_value());
+}
+
 TEST(LabelledLoopsTest, CandidatesTakeThePlaceOfLoops) {
   MapGraph graph;
   graph.submaps[{0, 0}];
@@ -108,6 +123,7 @@ TEST(LabelledLoopsTest, TableAndPicture) {
   EXPECT_EQ(svg.find("<svg"), 0u);
   EXPECT_THAT(svg, HasSubstr("a title"));
   EXPECT_THAT(svg, HasSubstr("temporal score, area 0.750"));
+  EXPECT_THAT(svg, HasSubstr("share of true loops"));
   EXPECT_THAT(svg, HasSubstr("</svg>"));
 }
 

@@ -130,6 +130,7 @@ TEST(DecisionLogTest, TableHasOneLineForEachCandidate) {
   EXPECT_EQ(row["temporal_score"], "0.25");
   EXPECT_EQ(row["threshold"], "0.5");
   EXPECT_EQ(row["final_score"], "");
+  EXPECT_EQ(row["probability"], "");
   EXPECT_EQ(row["support"], "");
   row = Row(csv, 2);
   EXPECT_EQ(row["reason"], "skipped_budget");

@@ -54,6 +54,7 @@ TEST(DecisionRecordTest, EveryStageHasItsMessage) {
   candidate.temporal->threshold = 0.5;
   candidate.fusion = ScoreFusionResult();
   candidate.fusion->final_score = 0.9;
+  candidate.fusion->probability = 0.75;
   candidate.fusion->mixture = std::array<MixtureDescription, 2>();
   (*candidate.fusion->mixture)[1].mean_grid = 0.6;
   candidate.innovation = InnovationResult();
@@ -72,6 +73,7 @@ TEST(DecisionRecordTest, EveryStageHasItsMessage) {
   EXPECT_EQ(record.temporal().score(), 0.8);
   EXPECT_EQ(record.temporal().threshold(), 0.5);
   EXPECT_EQ(record.fusion().final_score(), 0.9);
+  EXPECT_EQ(record.fusion().probability(), 0.75);
   EXPECT_EQ(record.fusion().true_loops().mean_grid(), 0.6);
   EXPECT_EQ(record.innovation().bound(), 21.);
   EXPECT_EQ(record.information().rotation_weight(), 200.);

@@ -83,6 +83,18 @@ TEST(ReproduceTest, OutcomesOfBuildings) {
   EXPECT_EQ(result.out, "right open folded open not judged failed\n");
 }
 
+TEST(ReproduceTest, ReliabilityOfBuildingsIsPooled) {
+  const ShellResult result = Shell(
+      "python3 -c \"m = {}; "
+      "exec(open('scripts/reproduce_buildings.py').read(), m); "
+      "none = [[0, 0., 0.]]; "
+      "bins = m['pooled']([{'reliability': none * 9 + [[3, 0.96, 1.]]}, {}, "
+      "{'reliability': none * 9 + [[1, 1., 0.]]}]); "
+      "print(bins[0], bins[9][0], '%.2f %.2f' % bins[9][1:])\"");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_EQ(result.out, "(0, None, None) 4 0.97 0.75\n");
+}
+
 // Each half of the seeds has every treatment; what is sound follows from the
 // relations, but for floors over each other.
 TEST(ReproduceTest, CasesOfVerdicts) {

@@ -54,6 +54,14 @@ UncertainPose Make(const Pose2& pose, const Eigen::Matrix3d& covariance) {
 const Pose2 kFirst(3., -1., 0.8);
 const Pose2 kSecond(-0.5, 2., -2.1);
 
+TEST(UncertainPoseTest, WorstTranslationSigmaByHand) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  // Deviations of 2 and 1 m along the diagonals.
+  covariance << 2.5, 1.5, 0.7, 1.5, 2.5, 0.2, 0.7, 0.2, 9.;
+  EXPECT_NEAR(WorstTranslationSigma(covariance), 2., 1e-12);
+  EXPECT_EQ(WorstTranslationSigma(Eigen::Matrix3d::Zero()), 0.);
+}
+
 TEST(UncertainPoseTest, HeadingErrorGrowsWithTheLeverArm) {
   const UncertainPose turn =
       Make(Pose2(), Eigen::Vector3d(0., 0., 1e-4).asDiagonal());

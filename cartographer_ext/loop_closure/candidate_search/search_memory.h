@@ -53,7 +53,7 @@ struct SearchMemory {
   RememberedNodes accepted;
   // Searches since the last accepted loop.
   size_t num_unanswered = 0;
-  // Nodes before the submap that were in its reach.
+  // Nodes before the submap that were not known to be out of its reach.
   size_t num_older_nodes = 0;
   absl::optional<FarNode> far;
 

@@ -9,7 +9,6 @@
 #include <tuple>
 #include <utility>
 
-#include "Eigen/Eigenvalues"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -26,18 +25,10 @@ constexpr double kLoopSpacing = 3.;
 // an accepted loop. Loops are accepted in rounds, within which there are a dozen
 // of searches.
 constexpr size_t kPatience = 24;
-// A new submap meets the nodes of all earlier visits at once. Of those in its
-// reach so many are considered for each loop that it needs, the oldest first:
-// about one in ten will be searched and found. In a corridor these are the nodes
-// of three visits.
+// A new submap meets the nodes of all earlier visits at once. Of those that are
+// not known to be out of its reach so many are considered for each loop that it
+// needs, the oldest first.
 constexpr size_t kOlderNodes = 10;
-
-double WorstSigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
-      Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()),
-      Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0., solver.eigenvalues()(1)));
-}
 
 // (anchor <- tracking frame of the node).
 Pose2 HostPrediction(const uncertainty::PathUncertainty& paths,
@@ -88,7 +79,8 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate, const Root root,
     plan->angular_window = default_angular_window_;
     return false;
   }
-  plan->translation_sigma = WorstSigma(path->covariance);
+  plan->translation_sigma =
+      uncertainty::WorstTranslationSigma(path->covariance);
   plan->rotation_sigma = std::sqrt(std::max(0., path->covariance(2, 2)));
   const double wanted = options_.window_sigmas * plan->translation_sigma;
   plan->full_submap =
@@ -167,7 +159,8 @@ bool SearchPlanner::IsSaturated(const uncertainty::SubmapId& submap) const {
 double SearchPlanner::Promise(const LoopCandidate& candidate,
                               const SearchPlan& plan) const {
   const double sigma = std::max(plan.translation_sigma, 1e-3);
-  const double gain = std::log1p(sigma / WorstSigma(loop_covariance_));
+  const double gain =
+      std::log1p(sigma / uncertainty::WorstTranslationSigma(loop_covariance_));
   const double beyond = std::max(
       0., candidate.SearchCenter().translation().norm() - 0.5 * reach_);
   const double scale = sigma + 0.25 * reach_;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "cartographer_ext/loop_closure/consensus/candidate_edge.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
@@ -24,6 +27,9 @@ InnovationResult TestInnovation(const InnovationOptions& options,
   result.chi_square = test.chi_square;
   result.bound = options.chi_square_bound;
   result.vetoed = !test.compatible;
+  result.translation_sigma =
+      uncertainty::WorstTranslationSigma(test.covariance);
+  result.rotation_sigma = std::sqrt(std::max(0., test.covariance(2, 2)));
   return result;
 }
 

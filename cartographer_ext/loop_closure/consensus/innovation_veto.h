@@ -36,6 +36,10 @@ struct InnovationResult {
   double chi_square = 0.;  // infinity when E is not zero but certain to be
   double bound = 0.;       // on chi_square
   bool vetoed = false;
+  // Standard deviations of `innovation`, in the worst direction in metres, and
+  // in radians.
+  double translation_sigma = 0.;
+  double rotation_sigma = 0.;
 };
 
 // Tests a loop (a <- b) against the prior (a <- b) from the path.

@@ -39,6 +39,15 @@ class Density {
   const double log_factor_;
 };
 
+// Up to a constant, log of weight times density of S_g alone.
+double LogWeightedGridDensity(const MixtureComponent& component,
+                              const double grid_score) {
+  const double difference = grid_score - component.mean.x();
+  const double variance = component.covariance(0, 0);
+  return std::log(component.weight) - 0.5 * std::log(variance) -
+         0.5 * difference * difference / variance;
+}
+
 MixtureComponent Component(const Eigen::Vector2d& mean, const double sigma_grid,
                            const double sigma_temporal,
                            const double correlation) {
@@ -74,10 +83,16 @@ double LogWeightedDensity(const MixtureComponent& component,
 }
 
 LoopMixture::LoopMixture(const LoopMixtureOptions& options)
-    : options_(options), prior_(options.prior), components_(options.prior) {
+    : options_(options),
+      prior_(options.prior),
+      components_(options.prior),
+      clutter_density_(options.clutter_density) {
   CHECK_GT(options.capacity, 0);
   CHECK_GT(options.prior_strength, 0.);
   CHECK_GT(options.certain_prior_strength, 0.);
+  CHECK_GT(options.clutter_density, 0.);
+  CHECK_GT(options.clutter_prior_strength, 0.);
+  CHECK_GT(options.likelihood_exponent, 0.);
 }
 
 double LoopMixture::ProbabilityTrue(const double grid_score,
@@ -88,20 +103,43 @@ double LoopMixture::ProbabilityTrue(const double grid_score,
 }
 
 double LoopMixture::ProbabilityTrue(const double grid_score) const {
-  const auto log_density = [grid_score](const MixtureComponent& component) {
-    const double difference = grid_score - component.mean.x();
-    const double variance = component.covariance(0, 0);
-    return std::log(component.weight) - 0.5 * std::log(variance) -
-           0.5 * difference * difference / variance;
-  };
-  return 1. / (1. + std::exp(log_density(components_[0]) -
-                             log_density(components_[1])));
+  return 1. /
+         (1. + std::exp(LogWeightedGridDensity(components_[0], grid_score) -
+                        LogWeightedGridDensity(components_[1], grid_score)));
 }
 
-void LoopMixture::Add(const double grid_score, const double temporal_score) {
+double LoopMixture::WrongDensity(const double grid_score,
+                                 const double temporal_score) const {
+  return clutter_density_ *
+         TemperedRatio(
+             Eigen::Vector2d(grid_score, TemporalCoordinate(temporal_score)));
+}
+
+double LoopMixture::WrongDensity(const double grid_score) const {
+  const double log_ratio = LogWeightedGridDensity(components_[0], grid_score) -
+                           LogWeightedGridDensity(components_[1], grid_score) -
+                           LogWeightRatio();
+  return clutter_density_ * std::exp(options_.likelihood_exponent * log_ratio);
+}
+
+double LoopMixture::LogWeightRatio() const {
+  return std::log(components_[0].weight / components_[1].weight);
+}
+
+double LoopMixture::TemperedRatio(const Eigen::Vector2d& scores) const {
+  const double log_ratio = LogWeightedDensity(components_[0], scores) -
+                           LogWeightedDensity(components_[1], scores) -
+                           LogWeightRatio();
+  return std::exp(options_.likelihood_exponent * log_ratio);
+}
+
+void LoopMixture::Add(const double grid_score, const double temporal_score,
+                      const double volume) {
   scores_.emplace_back(grid_score, TemporalCoordinate(temporal_score));
+  volumes_.push_back(volume);
   if (scores_.size() > static_cast<size_t>(options_.capacity)) {
     scores_.pop_front();
+    volumes_.pop_front();
   }
 }
 
@@ -156,12 +194,46 @@ void LoopMixture::UpdatePrior() {
           .cwiseMin(wrong);
 }
 
+void LoopMixture::FitClutterDensity() {
+  // A search of volume V ends at a wrong place with the probability
+  // c V / (1 + c V), and r_i is the probability that candidate i is true.
+  // Fixed-point iteration for the zero of the derivative of the log-posterior
+  // by c,
+  //   sum_i ((1 - r_i) / c - V_i / (1 + c V_i)) + a / c - a / c_0.
+  constexpr int kIterations = 20;
+  std::vector<double> ratios;
+  for (const Eigen::Vector2d& scores : scores_) {
+    ratios.push_back(TemperedRatio(scores));
+  }
+  const double a = options_.clutter_prior_strength;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    double wrong = a;
+    double exposure = a / options_.clutter_density;
+    for (size_t i = 0; i < scores_.size(); ++i) {
+      const double expected = clutter_density_ * volumes_[i];
+      wrong += 1. - 1. / (1. + expected * ratios[i]);
+      exposure += volumes_[i] / (1. + expected);
+    }
+    const double before = clutter_density_;
+    clutter_density_ = wrong / exposure;
+    if (std::abs(clutter_density_ - before) < options_.tolerance * before) {
+      return;
+    }
+  }
+}
+
 int LoopMixture::Fit() {
-  const double strength = options_.prior_strength;
-  const double n = static_cast<double>(scores_.size());
   if (scores_.empty() && certain_scores_.empty() && own_scores_.empty()) {
     return 0;
   }
+  const int iterations = FitComponents();
+  FitClutterDensity();
+  return iterations;
+}
+
+int LoopMixture::FitComponents() {
+  const double strength = options_.prior_strength;
+  const double n = static_cast<double>(scores_.size());
   UpdatePrior();
   std::vector<double> of_true(scores_.size());
   double last = -std::numeric_limits<double>::infinity();

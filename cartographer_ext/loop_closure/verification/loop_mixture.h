@@ -15,6 +15,22 @@
 //   P(true | s) = pi_1 N(s; m_1, Sigma_1)
 //                 / (pi_1 N(s; m_1, Sigma_1) + pi_0 N(s; m_0, Sigma_0))
 //
+// That score ranks and decides; it is no frequency, since the weights of the
+// components are those of all candidates alike. How often a match is right
+// depends on the search as well (search_prior.h). Wrong places that match are
+// clutter with a density c per square metre and radian, and a true match has the
+// density g where this one lies, so that, as in the probabilistic data
+// association filter (IEEE Control Systems Magazine 29(6), 2009),
+//
+//   P(true | s, search) = g / (g + c (N_0 / N_1)^t)
+//
+// c is estimated from the run: look-alike buildings have more clutter, lasers
+// that see far have less. The estimate shall not depend on how far local SLAM is
+// believed to drift, so for it g = 1 / V in a search of volume V. The exponent
+// t < 1 tempers the ratio of the Gaussians: scores have heavier tails than these,
+// and both are computed from the same scan, so far from the means a ratio taken
+// literally claims a certainty that it does not have.
+//
 // The fit is the maximum a posteriori estimate by expectation maximisation over
 // a bounded window of candidates. Normal-inverse-Wishart priors (strength in
 // pseudo-observations) keep the components in place with few candidates, keep
@@ -65,8 +81,13 @@ struct LoopMixtureOptions {
   // The same for the weight of `prior` itself against scores at certain places,
   // > 0.
   double certain_prior_strength = 20.;
-  int capacity = 500;       // of candidates, and of certain ones, > 0
-  int max_iterations = 50;  // of EM per fit
+  // c before the run says otherwise, per square metre and radian, > 0.
+  double clutter_density = 0.05;
+  // What that is worth, in wrong matches, > 0.
+  double clutter_prior_strength = 20.;
+  double likelihood_exponent = 0.4;  // t, > 0
+  int capacity = 500;                // of candidates, and of certain ones, > 0
+  int max_iterations = 50;           // of EM per fit
   double tolerance = 1e-6;  // change of the mean log-posterior that stops EM
 
   // For scores by beams (temporal_verification.h).
@@ -82,8 +103,14 @@ class LoopMixture {
   double ProbabilityTrue(double grid_score, double temporal_score) const;
   // The same if only S_g is known.
   double ProbabilityTrue(double grid_score) const;
-  // Adds a candidate for `Fit`.
-  void Add(double grid_score, double temporal_score);
+  // Density of wrong matches with the scores (S_g, S_t), relative to how probable
+  // these are of true ones: c (N_0 / N_1)^t above, per m^2 rad.
+  double WrongDensity(double grid_score, double temporal_score) const;
+  // The same if only S_g is known.
+  double WrongDensity(double grid_score) const;
+  // Adds a candidate for `Fit`, the best match in a search of `volume` (m^2 rad,
+  // > 0).
+  void Add(double grid_score, double temporal_score, double volume);
   // The same for one that is certainly true. If compared scans are part of the
   // submap themselves (`has_own_scans`), scores are too high: such samples are
   // used only while there are hardly any others.
@@ -94,6 +121,7 @@ class LoopMixture {
   const std::array<MixtureComponent, 2>& components() const {
     return components_;
   }
+  double clutter_density() const { return clutter_density_; }  // c
   int size() const { return static_cast<int>(scores_.size()); }
   // S_t at right places of this run relative to that of the prior, in (0, 1].
   double temporal_scale() const;
@@ -101,11 +129,19 @@ class LoopMixture {
  private:
   // Updates the priors from the scores at certain places.
   void UpdatePrior();
+  int FitComponents();
+  // ln(pi_0 / pi_1).
+  double LogWeightRatio() const;
+  // (N_0 / N_1)^t.
+  double TemperedRatio(const Eigen::Vector2d& scores) const;
+  void FitClutterDensity();
 
   const LoopMixtureOptions options_;
   std::array<MixtureComponent, 2> prior_;  // of this run
   std::array<MixtureComponent, 2> components_;
   std::deque<Eigen::Vector2d> scores_;  // (S_g, u)
+  std::deque<double> volumes_;          // of their searches
+  double clutter_density_;
   std::deque<Eigen::Vector2d> certain_scores_;
   std::deque<Eigen::Vector2d> own_scores_;  // certain, with own scans
 };

@@ -39,6 +39,14 @@ struct MixtureDescription {
 struct ScoreFusionResult {
   double lambda = 0.;       // of C eq. 6; 0 for the likelihood ratio
   double final_score = 0.;  // S_final of C eq. 7
+  // Likelihood ratio only: the calibrated probability that the candidate is true,
+  // and the densities behind it per m^2 rad (search_prior.h): of wrong matches
+  // with such scores, of a true match anywhere in the search, and of one as it
+  // was predicted for the search.
+  double probability = 0.;
+  double wrong_density = 0.;
+  double search_density = 0.;
+  double predicted_density = 0.;
   // False and true loops; the mixture in force, likelihood ratio only.
   absl::optional<std::array<MixtureDescription, 2>> mixture;
 };

@@ -8,6 +8,7 @@
 
 #include "cartographer_ext/loop_closure/stage_timer.h"
 #include "cartographer_ext/loop_closure/verification/dtw.h"
+#include "cartographer_ext/loop_closure/verification/search_prior.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -24,6 +25,42 @@ constexpr double kNeutralScore = 0.5;
 
 bool IsScored(const LoopCandidate& candidate) {
   return candidate.temporal.has_value() && candidate.temporal->is_scored();
+}
+
+double VolumeOf(const SearchPlannerOptions& options, const SearchPlan& plan) {
+  return plan.full_submap
+             ? SearchVolume(
+                   std::max(plan.linear_window, options.max_linear_window), kPi)
+             : SearchVolume(
+                   std::max(plan.linear_window, options.min_linear_window),
+                   std::max(plan.angular_window, options.min_angular_window));
+}
+
+// Of a match at `displacement` from a prediction with these deviations. The search
+// does not trust small ones either.
+double Density(const SearchPlannerOptions& options, const Pose2& displacement,
+               const double translation_sigma, const double rotation_sigma) {
+  PredictedMatch match;
+  match.displacement = displacement;
+  match.translation_sigma = std::max(
+      translation_sigma, options.min_linear_window / options.window_sigmas);
+  match.rotation_sigma = std::max(
+      rotation_sigma, options.min_angular_window / options.window_sigmas);
+  return PredictedDensity(match);
+}
+
+// The window says how far off the prediction of the host may be.
+double DensityInWindow(const SearchPlannerOptions& options,
+                       const LoopCandidate& candidate) {
+  const Pose2& match = candidate.match.refined;
+  const Pose2& predicted = *candidate.predicted;
+  return Density(options,
+                 Pose2(match.x - predicted.x, match.y - predicted.y,
+                       match.theta - predicted.theta),
+                 std::max(candidate.plan.linear_window / options.window_sigmas,
+                          candidate.plan.translation_sigma),
+                 std::max(candidate.plan.angular_window / options.window_sigmas,
+                          candidate.plan.rotation_sigma));
 }
 
 MixtureDescription Describe(const MixtureComponent& component) {
@@ -98,6 +135,7 @@ void ScoreVerifier::FuseScores(LoopCandidate* const candidate) {
     FuseByLambda(*candidate, &result);
   }
   candidate->fusion = result;
+  EstimateProbability(options_.search, candidate);
   // What could not be scored is left to the stages that follow.
   const bool is_comparable = IsScored(*candidate) || !options_.temporal.enabled;
   if (!candidate->is_rejected() && is_comparable &&
@@ -119,18 +157,26 @@ void ScoreVerifier::FuseByLikelihoodRatio(const LoopCandidate& candidate,
   result->mixture = std::array<MixtureDescription, 2>{
       {Describe(mixture_.components()[0]), Describe(mixture_.components()[1])}};
   const double grid_score = candidate.match.score;
+  const double volume = VolumeOf(options_.search, candidate.plan);
+  result->search_density = 1. / volume;
+  result->predicted_density =
+      candidate.predicted.has_value() && !candidate.relocalized
+          ? DensityInWindow(options_.search, candidate)
+          : result->search_density;
   if (!IsScored(candidate)) {
     result->final_score =
         std::min(kNeutralScore, mixture_.ProbabilityTrue(grid_score));
+    result->wrong_density = mixture_.WrongDensity(grid_score);
     return;
   }
   const double temporal_score = candidate.temporal->result.score;
   result->final_score = mixture_.ProbabilityTrue(grid_score, temporal_score);
+  result->wrong_density = mixture_.WrongDensity(grid_score, temporal_score);
   if (IsCertain(candidate)) {
     mixture_.AddCertain(grid_score, temporal_score,
                         !candidate.temporal->is_beyond_submap);
   } else {
-    mixture_.Add(grid_score, temporal_score);
+    mixture_.Add(grid_score, temporal_score, volume);
   }
   if (++num_mixture_candidates_ % kFitInterval == 0) mixture_.Fit();
 }
@@ -157,6 +203,24 @@ void ScoreVerifier::FuseByLambda(const LoopCandidate& candidate,
   fusion_.AddScores(grid_score, temporal_score);
   result->lambda = fused.lambda;
   result->final_score = fused.score;
+}
+
+void EstimateProbability(const SearchPlannerOptions& options,
+                         LoopCandidate* const candidate) {
+  if (!candidate->fusion.has_value() ||
+      candidate->fusion->wrong_density == 0.) {
+    return;
+  }
+  ScoreFusionResult& fusion = *candidate->fusion;
+  double by_path = fusion.predicted_density;
+  if (candidate->innovation.has_value()) {
+    by_path = Density(options, candidate->innovation->innovation,
+                      candidate->innovation->translation_sigma,
+                      candidate->innovation->rotation_sigma);
+  }
+  const double density =
+      TrueDensity(fusion.predicted_density, by_path, fusion.search_density);
+  fusion.probability = density / (density + fusion.wrong_density);
 }
 
 }  // namespace loop_closure

@@ -72,6 +72,13 @@ class ScoreVerifier {
   int64_t num_mixture_candidates_ = 0;
 };
 
+// The probability that a candidate is true, from its scores, what was searched,
+// and how far the match lies from where the search, and the path to the node by
+// `innovation`, predicted it. For people and records: the consensus weighs the
+// prediction itself. To be called again with another `innovation`.
+void EstimateProbability(const SearchPlannerOptions& options,
+                         LoopCandidate* candidate);
+
 }  // namespace loop_closure
 }  // namespace cartographer_ext
 

@@ -35,6 +35,9 @@ TEST(InnovationVetoTest, ChiSquareByHand) {
   const InnovationResult result = TestInnovation({}, prior, loop);
   EXPECT_NEAR(result.innovation.x, 2., 1e-12);
   EXPECT_NEAR(result.chi_square, 16., 1e-9);
+  // Across, the heading of the prior adds 0.1 rad over the 2 m.
+  EXPECT_NEAR(result.translation_sigma, std::sqrt(0.25 + 0.04), 1e-12);
+  EXPECT_NEAR(result.rotation_sigma, std::sqrt(0.02), 1e-12);
   EXPECT_FALSE(result.vetoed);
   InnovationOptions strict;
   strict.chi_square_bound = 15.;

@@ -46,7 +46,7 @@ TEST(LoopMixtureTest, RecoversTwoPopulationsAndIsCalibrated) {
   };
   for (int i = 0; i < 20000; ++i) {
     const Eigen::Vector2d s = draw(random.Uniform() < 0.3);
-    mixture.Add(s.x(), s.y());
+    mixture.Add(s.x(), s.y(), 1.);
   }
   EXPECT_GT(mixture.Fit(), 1);
   EXPECT_NEAR(mixture.components()[1].weight, 0.3, 0.03);
@@ -73,7 +73,7 @@ TEST(LoopMixtureTest, RecoversTwoPopulationsAndIsCalibrated) {
 
 TEST(LoopMixtureTest, OnePopulationKeepsTheOrderOfTheComponents) {
   LoopMixture mixture((LoopMixtureOptions()));
-  for (int i = 0; i < 300; ++i) mixture.Add(0.6, 0.7);
+  for (int i = 0; i < 300; ++i) mixture.Add(0.6, 0.7, 1.);
   mixture.Fit();
   EXPECT_GE(mixture.components()[1].mean.x(), mixture.components()[0].mean.x());
   EXPECT_GE(mixture.components()[1].mean.y(), mixture.components()[0].mean.y());
@@ -133,12 +133,71 @@ TEST(LoopMixtureTest, ProbabilityOfTheGridScoreAloneByHand) {
   EXPECT_NEAR(mixture.ProbabilityTrue(0.7), right / (right + wrong), 1e-12);
 }
 
+TEST(LoopMixtureTest, DensityOfWrongMatchesByHand) {
+  const LoopMixture mixture((LoopMixtureOptions()));
+  const Eigen::Vector2d scores(0.7, TemporalCoordinate(0.9));
+  // Both components have the weight 0.5.
+  const double log_ratio = LogWeightedDensity(mixture.components()[0], scores) -
+                           LogWeightedDensity(mixture.components()[1], scores);
+  EXPECT_NEAR(mixture.WrongDensity(0.7, 0.9), 0.05 * std::exp(0.4 * log_ratio),
+              1e-12);
+  const double wrong = std::exp(-0.5 * 36. / 49.) / 0.07;
+  const double right = std::exp(-0.5 * 4. / 81.) / 0.09;
+  EXPECT_NEAR(mixture.WrongDensity(0.7), 0.05 * std::pow(wrong / right, 0.4),
+              1e-12);
+}
+
+// Searches of a small and a large volume, with wrong matches of a density that
+// is not known: of the candidates given probability p, p are true.
+TEST(LoopMixtureTest, ClutterIsLearntAndMakesCalibratedProbabilities) {
+  Random random(3);
+  LoopMixtureOptions options;
+  options.capacity = 20000;
+  options.prior_strength = 2.;
+  options.likelihood_exponent = 1.;  // the scores are Gaussian
+  LoopMixture mixture(options);
+  constexpr double kDensity = 0.2;
+  const auto is_true = [&random](const double volume) {
+    return random.Uniform() < 1. / (1. + kDensity * volume);
+  };
+  const auto draw = [&random](const bool is_true) {
+    return is_true ? Eigen::Vector2d(random.Normal(0.75, 0.05),
+                                     Score(random.Normal(2.9, 0.4)))
+                   : Eigen::Vector2d(random.Normal(0.58, 0.06),
+                                     Score(random.Normal(1.4, 0.5)));
+  };
+  for (int i = 0; i < 20000; ++i) {
+    const double volume = i % 2 == 0 ? 1. : 60.;
+    const Eigen::Vector2d s = draw(is_true(volume));
+    mixture.Add(s.x(), s.y(), volume);
+  }
+  EXPECT_EQ(mixture.clutter_density(), 0.05);
+  mixture.Fit();
+  EXPECT_NEAR(mixture.clutter_density(), kDensity, 0.02);
+  for (const double volume : {1., 60.}) {
+    double predicted = 0., actual = 0.;
+    int count = 0;
+    for (int i = 0; i < 100000; ++i) {
+      const bool truth = is_true(volume);
+      const Eigen::Vector2d s = draw(truth);
+      const double p = 1. / (1. + volume * mixture.WrongDensity(s.x(), s.y()));
+      if (p > 0.2 && p < 0.8) {
+        predicted += p;
+        actual += truth;
+        ++count;
+      }
+    }
+    ASSERT_GT(count, 150);
+    EXPECT_NEAR(predicted / count, actual / count, 0.07) << volume;
+  }
+}
+
 TEST(LoopMixtureTest, MemoryIsBounded) {
   LoopMixtureOptions options;
   options.capacity = 10;
   LoopMixture mixture(options);
   EXPECT_EQ(mixture.Fit(), 0);
-  for (int i = 0; i < 100; ++i) mixture.Add(0.5, 0.5);
+  for (int i = 0; i < 100; ++i) mixture.Add(0.5, 0.5, 1.);
   EXPECT_EQ(mixture.size(), 10);
 }
 

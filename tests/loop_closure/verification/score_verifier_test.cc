@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/verification/score_verifier.h"
 
+#include <cmath>
+
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -57,6 +59,50 @@ TEST(ScoreVerifierTest, WithoutATemporalScoreTheFinalOneIsNeutralAtBest) {
     EXPECT_EQ(candidate.fusion->mixture.has_value(),
               mode == FusionMode::kLikelihoodRatio);
   }
+}
+
+TEST(ScoreVerifierTest, ProbabilityByHand) {
+  LoopCandidate candidate = Scored(0.7, 0.9);
+  const SearchPlannerOptions options;
+  EstimateProbability(options, &candidate);  // nothing is fused
+  EXPECT_FALSE(candidate.fusion.has_value());
+  candidate.fusion = ScoreFusionResult();
+  candidate.fusion->search_density = 0.01;
+  candidate.fusion->wrong_density = 0.05;
+  candidate.fusion->predicted_density = 3.;
+  EstimateProbability(options, &candidate);  // without a path
+  EXPECT_NEAR(candidate.fusion->probability, 1. / (1. + 0.05 / 2.701), 1e-12);
+  // Certain paths have the deviations of the smallest window: 1/3 m, 0.17/3 rad.
+  candidate.innovation = InnovationResult();
+  EstimateProbability(options, &candidate);
+  const double peak = 1. / (std::pow(2. * kPi, 1.5) * (1. / 9.) * (0.17 / 3.));
+  EXPECT_NEAR(candidate.fusion->probability,
+              1. / (1. + 0.05 / (0.45 * (3. + peak) + 0.1 * 0.01)), 1e-12);
+  // Far from both predictions what is left is that the drift may be another one.
+  candidate.fusion->predicted_density = 0.;
+  candidate.innovation->innovation = Pose2(5., 0., 0.);
+  EstimateProbability(options, &candidate);
+  EXPECT_NEAR(candidate.fusion->probability, 1. / (1. + 0.05 / 0.001), 1e-9);
+  // Less, where the path is less certain.
+  candidate.innovation->translation_sigma = 5.;
+  candidate.innovation->rotation_sigma = 0.17;
+  EstimateProbability(options, &candidate);
+  const double wide = std::exp(-0.5) / (std::pow(2. * kPi, 1.5) * 25. * 0.17);
+  EXPECT_NEAR(candidate.fusion->probability,
+              1. / (1. + 0.05 / (0.45 * wide + 0.001)), 1e-12);
+}
+
+TEST(ScoreVerifierTest, WideSearchesAreLessProbablyRight) {
+  const auto probability = [](const bool full_submap) {
+    ScoreVerifier verifier(Options(FusionMode::kLikelihoodRatio));
+    LoopCandidate candidate = Scored(0.64, 0.);
+    candidate.temporal->result.outcome = TemporalOutcome::kShortHistory;
+    candidate.plan.full_submap = full_submap;
+    verifier.FuseScores(&candidate);
+    return candidate.fusion->probability;
+  };
+  EXPECT_GT(probability(false), 0.9);
+  EXPECT_LT(probability(true), 0.1);
 }
 
 TEST(ScoreVerifierTest, FusionLearnsFromRejectedCandidates) {
