@@ -62,10 +62,6 @@ class LoopPipeline {
   // For every submap proposed; the order of the calls does not matter.
   void AddSubmap(const uncertainty::SubmapId& submap, const Pose2& local_pose);
   bool HasNode(const uncertainty::NodeId& node) const;
-  // Whether a node is older than all that are kept of a full history.
-  bool IsForgotten(const uncertainty::NodeId& node) const {
-    return history_.IsForgotten(node.trajectory_id, node.node_index);
-  }
   // The options for describing the scans passed to `AddNode` (DescribeScan).
   const TemporalVerificationOptions& temporal_options() const {
     return scores_.temporal_options();

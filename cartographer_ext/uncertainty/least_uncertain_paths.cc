@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include "glog/logging.h"
@@ -13,8 +15,8 @@ namespace uncertainty {
 namespace {
 
 constexpr size_t kNone = std::numeric_limits<size_t>::max();
-// Queries come for one vertex after the other.
-constexpr size_t kMaxTrees = 4;
+// Beyond this number of trees all are searched again.
+constexpr size_t kMaxTrees = 500;
 
 double TranslationVariance(const UncertainPose& pose) {
   return pose.covariance.topLeftCorner<2, 2>().trace();
@@ -90,7 +92,7 @@ void LeastUncertainPaths::RemoveIf(
 
 void LeastUncertainPaths::BuildVertices() {
   is_built_ = true;
-  ClearTrees();
+  trees_.clear();
   vertices_.clear();
   index_of_.clear();
   for (const LoopEdge& loop : loops_) {
@@ -130,69 +132,56 @@ std::vector<size_t> LeastUncertainPaths::Adjacent(const VertexId& id) const {
   return adjacent;
 }
 
-void LeastUncertainPaths::ClearTrees() {
-  trees_.clear();
-  roots_.clear();
-}
-
 LeastUncertainPaths::Tree* LeastUncertainPaths::TreeOf(const VertexId& root) {
   const auto known = trees_.find(root);
   if (known != trees_.end()) return &known->second;
-  if (roots_.size() >= kMaxTrees) {
-    trees_.erase(roots_.front());
-    roots_.pop_front();
-  }
-  roots_.push_back(root);
+  if (trees_.size() >= kMaxTrees) trees_.clear();
   Tree& tree = trees_[root];
   tree.root = root;
-  for (const size_t vertex : Adjacent(root)) {
-    const absl::optional<double> cost =
-        paths_->PathCost(root, vertices_[vertex].id);
-    if (cost.has_value()) Reach(vertex, *cost, kNone, kNone, &tree);
-  }
+  Search(&tree);
   return &tree;
 }
 
-void LeastUncertainPaths::Reach(const size_t vertex, const double cost,
-                                const size_t from, const size_t loop,
-                                Tree* const tree) const {
-  Tree::Branch& branch = tree->branches[vertex];
-  if (!(cost < branch.cost)) return;
-  tree->queue.erase(std::make_pair(branch.cost, vertex));
-  branch.cost = cost;
-  branch.from = from;
-  branch.loop = loop;
-  tree->queue.emplace(cost, vertex);
-}
-
-bool LeastUncertainPaths::Settle(const size_t vertex, Tree* const tree) {
-  const auto known = tree->branches.find(vertex);
-  if (known != tree->branches.end() && known->second.is_settled) return true;
-  while (!tree->queue.empty()) {
-    const size_t at = tree->queue.begin()->second;
-    tree->queue.erase(tree->queue.begin());
-    tree->branches[at].is_settled = true;
-    ++num_settled_;
-    Expand(at, tree);
-    if (at == vertex) return true;
+void LeastUncertainPaths::Search(Tree* const tree) const {
+  Tree::Branch unreached;
+  unreached.cost = std::numeric_limits<double>::infinity();
+  unreached.from = kNone;
+  unreached.loop = kNone;
+  tree->branches.assign(vertices_.size(), unreached);
+  // By cost and vertex, so that the result is the same everywhere.
+  std::set<std::pair<double, size_t>> queue;
+  const auto reach = [&](const size_t vertex, const double cost,
+                         const size_t from, const size_t loop) {
+    Tree::Branch& branch = tree->branches[vertex];
+    if (!(cost < branch.cost)) return;
+    queue.erase(std::make_pair(branch.cost, vertex));
+    branch.cost = cost;
+    branch.from = from;
+    branch.loop = loop;
+    queue.emplace(cost, vertex);
+  };
+  for (const size_t vertex : Adjacent(tree->root)) {
+    const absl::optional<double> cost =
+        paths_->PathCost(tree->root, vertices_[vertex].id);
+    if (cost.has_value()) reach(vertex, *cost, kNone, kNone);
   }
-  return false;
-}
-
-void LeastUncertainPaths::Expand(const size_t at, Tree* const tree) const {
-  const double cost = tree->branches[at].cost;
-  const Vertex& vertex = vertices_[at];
-  for (const size_t next : {vertex.before, vertex.after}) {
-    if (next == kNone) continue;
-    const absl::optional<double> step =
-        paths_->PathCost(vertex.id, vertices_[next].id);
-    if (step.has_value()) Reach(next, cost + *step, at, kNone, tree);
-  }
-  for (const size_t loop : vertex.loops) {
-    const LoopEdge& edge = loops_[loop];
-    const VertexId& other = edge.a == vertex.id ? edge.b : edge.a;
-    Reach(index_of_.at(other), cost + paths_->PathCostOf(edge.pose.covariance),
-          at, loop, tree);
+  while (!queue.empty()) {
+    const size_t at = queue.begin()->second;
+    const double cost = queue.begin()->first;
+    queue.erase(queue.begin());
+    const Vertex& vertex = vertices_[at];
+    for (const size_t next : {vertex.before, vertex.after}) {
+      if (next == kNone) continue;
+      const absl::optional<double> step =
+          paths_->PathCost(vertex.id, vertices_[next].id);
+      if (step.has_value()) reach(next, cost + *step, at, kNone);
+    }
+    for (const size_t loop : vertex.loops) {
+      const LoopEdge& edge = loops_[loop];
+      const VertexId& other = edge.a == vertex.id ? edge.b : edge.a;
+      reach(index_of_.at(other),
+            cost + paths_->PathCostOf(edge.pose.covariance), at, loop);
+    }
   }
 }
 
@@ -200,20 +189,21 @@ const absl::optional<UncertainPose>& LeastUncertainPaths::PoseOf(
     const size_t vertex, Tree* const tree) const {
   // Down to what is composed already, and up again.
   std::vector<size_t> pending;
-  for (size_t at = vertex; at != kNone && !tree->branches.at(at).is_composed;
-       at = tree->branches.at(at).from) {
+  for (size_t at = vertex; at != kNone && !tree->branches[at].is_composed;
+       at = tree->branches[at].from) {
     pending.push_back(at);
   }
   for (auto it = pending.rbegin(); it != pending.rend(); ++it) {
-    Tree::Branch& branch = tree->branches.at(*it);
+    Tree::Branch& branch = tree->branches[*it];
     branch.is_composed = true;
     const VertexId& id = vertices_[*it].id;
     if (branch.from == kNone) {
+      // Empty where the search did not reach it.
       branch.pose = paths_->Between(tree->root, id);
       continue;
     }
     const absl::optional<UncertainPose>& before =
-        tree->branches.at(branch.from).pose;
+        tree->branches[branch.from].pose;
     if (!before.has_value()) continue;
     if (branch.loop != kNone) {
       const LoopEdge& loop = loops_[branch.loop];
@@ -225,7 +215,7 @@ const absl::optional<UncertainPose>& LeastUncertainPaths::PoseOf(
         paths_->Between(vertices_[branch.from].id, id);
     if (along.has_value()) branch.pose = Compose(*before, *along);
   }
-  return tree->branches.at(vertex).pose;
+  return tree->branches[vertex].pose;
 }
 
 absl::optional<UncertainPose> LeastUncertainPaths::Between(const VertexId& a,
@@ -235,11 +225,10 @@ absl::optional<UncertainPose> LeastUncertainPaths::Between(const VertexId& a,
   if (!is_built_) BuildVertices();
   if (drift_version_ != paths_->drift_version()) {
     drift_version_ = paths_->drift_version();
-    ClearTrees();
+    trees_.clear();
   }
   Tree* const tree = TreeOf(a);
   for (const size_t vertex : Adjacent(b)) {
-    if (!Settle(vertex, tree)) continue;
     const absl::optional<UncertainPose>& to = PoseOf(vertex, tree);
     if (!to.has_value()) continue;
     const absl::optional<UncertainPose> along =

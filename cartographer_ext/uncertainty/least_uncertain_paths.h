@@ -12,9 +12,7 @@
 // information.
 //
 // One search of the graph serves all queries from the same vertex, until the
-// next loop or the next change of the drift. It goes only as far as the queries
-// require: to a vertex nearby it costs the same however large the graph is.
-// The trees of the last few vertices are kept. A loop close to another one at
+// next loop or the next change of the drift. A loop close to another one at
 // both ends adds no path and is not stored; when there are too many, the spacing
 // is doubled and loops are dropped accordingly, so that memory and time are
 // bounded however long the robot drives. Not thread-safe.
@@ -22,14 +20,8 @@
 #define CARTOGRAPHER_EXT_UNCERTAINTY_LEAST_UNCERTAIN_PATHS_H_
 
 #include <cstddef>
-#include <cstdint>
-#include <deque>
 #include <functional>
-#include <limits>
 #include <map>
-#include <set>
-#include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "absl/types/optional.h"
@@ -57,8 +49,6 @@ class LeastUncertainPaths {
   absl::optional<UncertainPose> Between(const VertexId& a, const VertexId& b);
 
   size_t num_loops() const { return loops_.size(); }
-  // Vertices that all searches so far have gone to, a measure of their cost.
-  int64_t num_settled() const { return num_settled_; }
 
  private:
   struct Vertex {
@@ -68,21 +58,17 @@ class LeastUncertainPaths {
     size_t before;
     size_t after;
   };
-  // The paths from one vertex to others, as far as they were asked for.
+  // The paths from one vertex to all others.
   struct Tree {
     struct Branch {
-      double cost = std::numeric_limits<double>::infinity();
+      double cost;
       size_t from;  // vertex before, or kNone: from the root
       size_t loop;  // that leads here, or kNone: along the trajectory
-      bool is_settled = false;
       bool is_composed = false;
       absl::optional<UncertainPose> pose;  // (root <- vertex)
     };
     VertexId root;
-    std::unordered_map<size_t, Branch> branches;  // by vertex
-    // Reached, not settled; by cost and vertex, so that the result is the same
-    // everywhere.
-    std::set<std::pair<double, size_t>> queue;
+    std::vector<Branch> branches;  // by vertex
   };
 
   bool HasNear(const LoopEdge& loop) const;
@@ -91,18 +77,10 @@ class LeastUncertainPaths {
   void BuildVertices();
   // The vertex with this id, or its neighbours along the trajectory.
   std::vector<size_t> Adjacent(const VertexId& id) const;
-  // The tree of `root`, begun if necessary.
+  // The tree of `root`, computed if necessary.
   Tree* TreeOf(const VertexId& root);
-  void ClearTrees();
-  // A path to a vertex; becomes its branch if it is the best so far.
-  void Reach(size_t vertex, double cost, size_t from, size_t loop,
-             Tree* tree) const;
-  // Dijkstra's algorithm from `tree->root`, until the vertex is settled. False
-  // if no path leads there.
-  bool Settle(size_t vertex, Tree* tree);
-  // Continues the paths from a settled vertex.
-  void Expand(size_t vertex, Tree* tree) const;
-  // Of a settled vertex.
+  // Dijkstra's algorithm from `tree->root`.
+  void Search(Tree* tree) const;
   const absl::optional<UncertainPose>& PoseOf(size_t vertex, Tree* tree) const;
 
   const size_t max_loops_;
@@ -116,8 +94,6 @@ class LeastUncertainPaths {
   bool is_built_ = false;
   int drift_version_ = 0;  // of `paths_` when the trees were searched
   std::map<VertexId, Tree> trees_;
-  std::deque<VertexId> roots_;  // of `trees_`, oldest first
-  int64_t num_settled_ = 0;
 };
 
 }  // namespace uncertainty

@@ -135,7 +135,6 @@ void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose) {
   const auto place = LowerBound(entries, vertex.index());
   if (place != entries.end() && place->index == vertex.index()) return;
   if (entries.size() == max_vertices_ && place == entries.begin()) return;
-  if (place != entries.end()) ++num_inserted_;
   Entry entry;
   entry.index = vertex.index();
   entry.local_pose = local_pose;

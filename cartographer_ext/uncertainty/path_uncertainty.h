@@ -164,11 +164,6 @@ class PathUncertainty {
                                  const Eigen::Vector2d& local_position,
                                  int first, int last) const;
 
-  // Incremented with every vertex that is not the newest of its trajectory. As
-  // long as it does not change, the nearest of some nodes remains the nearest
-  // while it is kept.
-  int num_inserted() const { return num_inserted_; }
-
   void DeleteTrajectory(int trajectory_id);
 
  private:
@@ -216,7 +211,6 @@ class PathUncertainty {
   mutable std::map<SequenceKey, Sequence> sequences_;
   std::map<int, TrajectoryDrift> drift_;
   int drift_version_ = 0;
-  int num_inserted_ = 0;
 };
 
 }  // namespace uncertainty

@@ -190,28 +190,6 @@ TEST_F(LeastUncertainPathsTest, ManyLoopsAreThinnedNotForgotten) {
   }
 }
 
-// What is near costs the same however large the graph is.
-TEST_F(LeastUncertainPathsTest, SearchesGoAsFarAsTheQueriesRequire) {
-  LeastUncertainPaths large(2., &paths_);
-  for (int i = 0; i < 50; ++i) {
-    LoopEdge loop;
-    loop.a = NodeId{0, 3 * i};
-    loop.b = NodeId{0, 150 + 3 * i};
-    loop.pose.covariance = Eigen::Vector3d(0.25, 0.25, 0.).asDiagonal();
-    large.Add(loop);
-  }
-  ASSERT_EQ(large.num_loops(), 50u);
-  EXPECT_NEAR(large.Between(NodeId{0, 61}, NodeId{0, 211})->covariance(0, 0),
-              1. + 0.25 + 1., 1e-6);
-  const int64_t near = large.num_settled();
-  EXPECT_LE(near, 8);
-  // The same search goes on to what is farther away.
-  EXPECT_NEAR(large.Between(NodeId{0, 61}, NodeId{0, 281})->covariance(0, 0),
-              70. + 0.25, 1e-6);
-  EXPECT_GT(large.num_settled(), 40);
-  EXPECT_LE(large.num_settled(), 100);
-}
-
 TEST_F(LeastUncertainPathsTest, LoopsThatAreFarFromEachOtherAreForgotten) {
   // Nodes of other trajectories are at no distance from each other.
   LeastUncertainPaths bounded(2., &paths_, 4);

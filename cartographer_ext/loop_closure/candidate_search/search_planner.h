@@ -18,18 +18,9 @@
 //              overlap; wide windows only while there is credit for them
 //              (search_credit.h).
 //   saturation A submap that many loops constrain already gains little from
-//              another one, and a node needs few loops. So the saturated
-//              submaps around a node count as one: where the place is known,
-//              one of them is searched, at the spacing of a single submap. An
-//              old one is preferred, which is the same one in every visit,
-//              unless its searches have led to nothing lately. The loops per
-//              node do not grow with the number of visits.
-//              A new submap, which has no loops yet, meets the nodes of all
-//              earlier visits at once; of them it considers a limited number.
-//   far        A submap that is out of reach of a node is out of reach of the
-//              following ones too, until the robot has driven far enough. And
-//              a node or a submap so old that its path is forgotten
-//              (path_uncertainty.h) is searched only where nothing newer is.
+//              another one, and a node needs few loops. Of the saturated
+//              submaps around a node only the nearest are searched, so that its
+//              cost does not grow with the number of earlier visits.
 //
 // The plans depend only on the sequence of previous proposals and decisions.
 // Not thread-safe.
@@ -42,16 +33,13 @@
 #include <vector>
 
 #include "Eigen/Core"
-#include "absl/types/optional.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_credit.h"
-#include "cartographer_ext/loop_closure/candidate_search/search_memory.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_result.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/uncertainty/ids.h"
 #include "cartographer_ext/uncertainty/least_uncertain_paths.h"
 #include "cartographer_ext/uncertainty/loop_edge.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
-#include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -88,11 +76,12 @@ struct SearchPlannerOptions {
   // not add information.
   double informative_sigma = 0.05;
   // A submap with this many accepted loops is saturated, > 0: one more lowers
-  // the standard deviation of its pose by half a percent. The saturated submaps
-  // around a node count as one if the path to them is less uncertain than
-  // `saturated_sigma` metres, otherwise all are searched.
+  // the standard deviation of its pose by half a percent. Of the saturated
+  // submaps around a node this many are searched if the path to them is less
+  // uncertain than `saturated_sigma` metres, otherwise all.
   int saturating_loops = 100;
   double saturated_sigma = 1.;
+  int max_saturated_searches_per_node = 1;  // > 0
 };
 
 // Plans the searches of candidates, see above.
@@ -115,15 +104,6 @@ class SearchPlanner {
   std::vector<SearchPlan> Plan(
       const std::vector<const LoopCandidate*>& candidates);
 
-  // Whether a pair would not be planned, so that it need not be a candidate:
-  // submap and node are out of reach of each other, or are known to be tied by
-  // other loops. `distance`: from the origin of the submap to the node, metres.
-  // Cheap; depends on what was planned before.
-  bool CanIgnore(const uncertainty::SubmapId& submap,
-                 const absl::optional<uncertainty::VertexId>& anchor,
-                 const uncertainty::NodeId& node, int64_t node_time,
-                 double distance);
-
   // (anchor <- node) of a candidate that was accepted.
   void AddAcceptedLoop(const LoopCandidate& accepted,
                        const uncertainty::LoopEdge& loop);
@@ -135,37 +115,37 @@ class SearchPlanner {
   void DeleteTrajectory(int trajectory_id);
 
  private:
-  // Where the paths of several candidates of one node begin.
-  enum class Root { kAnchor, kNode };
+  // With their times.
+  using Nodes = std::map<uncertainty::VertexId, int64_t>;
+  struct SubmapMemory {
+    Nodes searched;
+    Nodes searched_fully;
+    Nodes accepted;
 
-  bool HasNear(const RememberedNodes& nodes, const LoopCandidate& candidate,
-               double distance, double duration) const {
-    return nodes.HasNear(*paths_, candidate.node, candidate.node_time, distance,
-                         duration);
-  }
+    Nodes* Searched(const SearchPlan& plan) {
+      return plan.full_submap ? &searched_fully : &searched;
+    }
+  };
+
+  // Whether a node of `nodes` is within `distance` metres of path and
+  // `duration` seconds of the candidate's node.
+  bool HasNear(const Nodes& nodes, const LoopCandidate& candidate,
+               double distance, double duration) const;
   // Plans a candidate independently of the other candidates of its node.
-  SearchPlan PlanAlone(const LoopCandidate& candidate, Root root);
-  // (anchor <- node), empty if unknown.
-  absl::optional<uncertainty::UncertainPose> PathOf(
-      const LoopCandidate& candidate, Root root);
+  SearchPlan PlanAlone(const LoopCandidate& candidate);
   // The window for the uncertainty of the prediction, into the plan; returns
   // whether the uncertainty is known.
-  bool PlanWindow(const LoopCandidate& candidate, Root root, SearchPlan* plan);
+  bool PlanWindow(const LoopCandidate& candidate, SearchPlan* plan);
+  // Adds a node, within the bound on memory.
+  static void Remember(const uncertainty::VertexId& node, int64_t time,
+                       Nodes* nodes);
   bool IsSaturated(const uncertainty::SubmapId& submap) const;
-  // Whether a saturated submap of a trajectory was searched right before a
-  // node, so that no other one has to be.
-  bool IsTied(int submap_trajectory_id, const uncertainty::NodeId& node,
-              int64_t node_time) const;
   // Plans a candidate and notes the search.
-  void PlanAndNote(const LoopCandidate& candidate, Root root, SearchPlan* plan);
+  void PlanAndNote(const LoopCandidate& candidate, SearchPlan* plan);
   // Plans the candidates of one node, `indices`.
   void PlanNode(const std::vector<const LoopCandidate*>& candidates,
                 const std::vector<size_t>& indices,
                 std::vector<SearchPlan>* plans);
-  // Of those, the ones with saturated submaps of one trajectory.
-  void PlanSaturated(const std::vector<const LoopCandidate*>& candidates,
-                     std::vector<size_t> indices,
-                     std::vector<SearchPlan>* plans);
   // Priority of a candidate; larger is better.
   double Promise(const LoopCandidate& candidate, const SearchPlan& plan) const;
   // Of the planned searches of one node, `of_node`, skips all but the most
@@ -180,15 +160,7 @@ class SearchPlanner {
   const double default_linear_window_;
   const double default_angular_window_;
   const uncertainty::PathUncertainty* const paths_;
-  std::map<uncertainty::SubmapId, SearchMemory> submaps_;
-  // Of the saturated submaps of each trajectory.
-  std::map<int, SearchMemory> saturated_;
-  // The last answer of `IsTied` to `CanIgnore`.
-  struct {
-    int submap_trajectory_id = -1;
-    uncertainty::NodeId node;
-    bool is_tied = false;
-  } last_tied_;
+  std::map<uncertainty::SubmapId, SubmapMemory> submaps_;
   SearchCredit credit_;
   uncertainty::LeastUncertainPaths least_uncertain_paths_;
 };

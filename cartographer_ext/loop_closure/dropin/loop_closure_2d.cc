@@ -78,16 +78,10 @@ void LoopClosure2D::AddNode(const std::vector<Proposal>& proposals,
   const StageMeter meter(ConstraintMetrics::Global()->planning_cpu);
   std::map<uncertainty::NodeId, const NodeData*> nodes;
   std::vector<LoopCandidate> proposed;
-  const NodeData* last_node = nullptr;
+  proposed.reserve(proposals.size());
   for (const Proposal& proposal : proposals) {
-    if (proposal.node != last_node) RememberNode(proposal);
-    last_node = proposal.node;
-    const std::shared_ptr<SubmapEntry> entry = RememberSubmap(proposal);
-    // The first one tells the planner which trajectory is being driven.
-    const bool is_first = &proposal == &proposals.front();
-    if (!is_first && CanIgnore(proposal, *entry)) continue;
     nodes[ToKey(proposal.node_id)] = proposal.node;
-    proposed.push_back(Propose(proposal, *entry));
+    proposed.push_back(Propose(proposal));
   }
   std::vector<LostPlace> lost;
   std::vector<LoopCandidate> planned = planner_.Plan(proposed, &lost);
@@ -120,59 +114,34 @@ void LoopClosure2D::AddNode(const std::vector<Proposal>& proposals,
   FreeDormantTrajectories();
 }
 
-std::shared_ptr<SubmapEntry> LoopClosure2D::RememberSubmap(
-    const Proposal& proposal) {
+LoopCandidate LoopClosure2D::Propose(const Proposal& proposal) {
+  RememberNode(proposal);
   const uncertainty::SubmapId submap_id = ToKey(proposal.submap_id);
-  std::shared_ptr<SubmapEntry> entry = submaps_.AddPair(
+  const std::shared_ptr<SubmapEntry> entry = submaps_.AddPair(
       submap_id, proposal.submap, proposal.node_id.trajectory_id);
-  if (!entry->has_path) {
-    pipeline_.AddSubmap(submap_id, entry->local_pose);
-    entry->has_path = true;
-  }
+  pipeline_.AddSubmap(submap_id, entry->local_pose);
   dormant_since_.erase(submap_id.trajectory_id);
   dormant_since_.erase(proposal.node_id.trajectory_id);
-  return entry;
-}
 
-bool LoopClosure2D::CanIgnore(const Proposal& proposal,
-                              const SubmapEntry& entry) {
-  // Those of other trajectories may be needed to relocalise.
-  const int trajectory_id = proposal.node_id.trajectory_id;
-  if (!proposal.initial_relative_pose.has_value() ||
-      proposal.submap_id.trajectory_id != trajectory_id) {
-    return false;
-  }
-  const uncertainty::SubmapId submap_id = ToKey(proposal.submap_id);
-  return planner_.CanIgnore(
-      submap_id,
-      submaps_.Anchor(submap_id, entry, trajectory_id, pipeline_.paths()),
-      ToKey(proposal.node_id),
-      cartographer::common::ToUniversal(proposal.node->time),
-      proposal.initial_relative_pose->translation().norm());
-}
-
-LoopCandidate LoopClosure2D::Propose(const Proposal& proposal,
-                                     const SubmapEntry& entry) {
-  const uncertainty::SubmapId submap_id = ToKey(proposal.submap_id);
   LoopCandidate candidate = submaps_.MakeCandidate(
-      submap_id, entry, proposal.node_id.trajectory_id, pipeline_.paths());
+      submap_id, *entry, proposal.node_id.trajectory_id, pipeline_.paths());
   candidate.node = ToKey(proposal.node_id);
   candidate.node_time = cartographer::common::ToUniversal(proposal.node->time);
   candidate.aligned_from_tracking = AlignedFromTracking(*proposal.node);
-  if (!candidate.is_inter_trajectory() && entry.newest_node_at_first >= 0) {
+  if (!candidate.is_inter_trajectory() && entry->newest_node_at_first >= 0) {
     candidate.submap_age =
-        1e-7 * static_cast<double>(candidate.node_time - entry.time_at_first);
+        1e-7 * static_cast<double>(candidate.node_time - entry->time_at_first);
   }
   if (proposal.initial_relative_pose.has_value()) {
     candidate.predicted = ToPose2(*proposal.initial_relative_pose);
-    MeasureFit(proposal, candidate, entry);
+    MeasureFit(proposal, candidate, *entry);
   }
   return candidate;
 }
 
 void LoopClosure2D::RememberNode(const Proposal& proposal) {
   const uncertainty::NodeId id = ToKey(proposal.node_id);
-  if (pipeline_.HasNode(id) || pipeline_.IsForgotten(id)) return;
+  if (pipeline_.HasNode(id)) return;
   HistoryNode node;
   node.node_index = id.node_index;
   node.time = cartographer::common::ToUniversal(proposal.node->time);

@@ -114,12 +114,8 @@ class LoopClosure2D {
   std::string Summary() const;
 
  private:
+  LoopCandidate Propose(const Proposal& proposal);
   void RememberNode(const Proposal& proposal);
-  std::shared_ptr<SubmapEntry> RememberSubmap(const Proposal& proposal);
-  // Whether a pair of one trajectory needs no plan: most of those of a long
-  // run.
-  bool CanIgnore(const Proposal& proposal, const SubmapEntry& entry);
-  LoopCandidate Propose(const Proposal& proposal, const SubmapEntry& entry);
   // Measures the score of a node in a submap of its trajectory that ended right
   // before it.
   void MeasureFit(const Proposal& proposal, const LoopCandidate& candidate,

@@ -62,16 +62,6 @@ class PairPlanner {
   std::vector<LoopCandidate> Plan(const std::vector<LoopCandidate>& proposed,
                                   std::vector<LostPlace>* lost);
 
-  // Whether a pair of one trajectory would not be planned
-  // (SearchPlanner::CanIgnore).
-  bool CanIgnore(const uncertainty::SubmapId& submap,
-                 const absl::optional<uncertainty::VertexId>& anchor,
-                 const uncertainty::NodeId& node, const int64_t node_time,
-                 const double distance) {
-    return extension_.search.enabled &&
-           search_planner_.CanIgnore(submap, anchor, node, node_time, distance);
-  }
-
   // Adds an accepted candidate, with its loop if the anchor is known. Returns
   // as MapLocalization::AddAcceptedLoop.
   bool AddAcceptedLoop(const LoopCandidate& accepted,

@@ -104,20 +104,11 @@ absl::optional<uncertainty::VertexId> SubmapStore::Anchor(
     return uncertainty::VertexId(id);
   }
   if (entry.newest_node_at_first < 0) return absl::nullopt;
-  const int first = OldestNode(id);
-  const bool is_known = entry.nearest_version == paths.num_inserted() &&
-                        entry.nearest_first == first &&
-                        entry.nearest_node.has_value() &&
-                        paths.LocalPose(*entry.nearest_node).has_value();
-  if (!is_known) {
-    entry.nearest_node =
-        paths.Nearest(id.trajectory_id, entry.local_pose.translation(), first,
-                      entry.newest_node_at_first);
-    entry.nearest_version = paths.num_inserted();
-    entry.nearest_first = first;
-  }
-  if (!entry.nearest_node.has_value()) return absl::nullopt;
-  return uncertainty::VertexId(*entry.nearest_node);
+  const absl::optional<uncertainty::NodeId> nearest =
+      paths.Nearest(id.trajectory_id, entry.local_pose.translation(),
+                    OldestNode(id), entry.newest_node_at_first);
+  if (!nearest.has_value()) return absl::nullopt;
+  return uncertainty::VertexId(*nearest);
 }
 
 LoopCandidate SubmapStore::MakeCandidate(

@@ -45,14 +45,9 @@ struct SubmapEntry {
   int64_t first_group = 0;
   // No node of the submap is newer.
   int newest_node_bound = kUnknownNode;
-  bool has_path = false;     // is a vertex of the paths
   bool is_searched = false;  // or has been
   bool is_compared = false;  // with scans: it, or a neighbour, was searched
   std::unique_ptr<CachedSubmap> cached;
-  // The last answer of SubmapStore::Anchor, and what it depends on.
-  mutable absl::optional<uncertainty::NodeId> nearest_node;
-  mutable int nearest_version = -1;
-  mutable int nearest_first = -1;
 };
 
 // Data of all submaps, see above.
@@ -87,12 +82,6 @@ class SubmapStore {
   LoopCandidate MakeCandidate(const uncertainty::SubmapId& id,
                               const SubmapEntry& entry, int node_trajectory_id,
                               const uncertainty::PathUncertainty& paths) const;
-  // The vertex from which paths lead to the nodes of a trajectory: the node of
-  // the submap that is nearest to its origin; the submap itself if the
-  // trajectory is another one; empty if its nodes are forgotten.
-  absl::optional<uncertainty::VertexId> Anchor(
-      const uncertainty::SubmapId& id, const SubmapEntry& entry,
-      int node_trajectory_id, const uncertainty::PathUncertainty& paths) const;
   // To be called before the submap is searched, so that it and its neighbours
   // are available for verification.
   void AnnounceSearch(const uncertainty::SubmapId& id);
@@ -110,6 +99,9 @@ class SubmapStore {
 
   // Of those that may have been inserted in the submap.
   int OldestNode(const uncertainty::SubmapId& id) const;
+  absl::optional<uncertainty::VertexId> Anchor(
+      const uncertainty::SubmapId& id, const SubmapEntry& entry,
+      int node_trajectory_id, const uncertainty::PathUncertainty& paths) const;
 
   // Whether views are needed, and of how many neighbours on either side.
   const bool with_views_;

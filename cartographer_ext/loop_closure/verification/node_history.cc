@@ -32,13 +32,6 @@ bool NodeHistory::Contains(const int trajectory_id,
   return Find(trajectory_id, node_index) != nullptr;
 }
 
-bool NodeHistory::IsForgotten(const int trajectory_id,
-                              const int node_index) const {
-  const auto nodes = trajectories_.find(trajectory_id);
-  return nodes != trajectories_.end() && nodes->second.size() == max_nodes_ &&
-         node_index < nodes->second.begin()->first;
-}
-
 const HistoryNode* NodeHistory::Find(const int trajectory_id,
                                      const int node_index) const {
   const auto nodes = trajectories_.find(trajectory_id);

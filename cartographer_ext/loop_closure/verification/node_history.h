@@ -44,8 +44,6 @@ class NodeHistory {
   // all that are kept of a full trajectory.
   bool Add(int trajectory_id, HistoryNode node);
   bool Contains(int trajectory_id, int node_index) const;
-  // Whether `Add` would ignore it, as older than all that are kept.
-  bool IsForgotten(int trajectory_id, int node_index) const;
   // Null if the node is not kept.
   const HistoryNode* Find(int trajectory_id, int node_index) const;
   int size(int trajectory_id) const;

@@ -73,12 +73,6 @@ class SearchPlannerTest : public testing::Test {
     return planner_->Plan({&pair}).front();
   }
 
-  bool CanIgnore(const LoopCandidate& pair) {
-    return planner_->CanIgnore(pair.submap, pair.anchor, pair.node,
-                               pair.node_time,
-                               pair.predicted->translation().norm());
-  }
-
   std::vector<SearchPlan> PlanAll(const std::vector<LoopCandidate>& pairs) {
     std::vector<const LoopCandidate*> candidates;
     for (const LoopCandidate& pair : pairs) candidates.push_back(&pair);
@@ -256,8 +250,8 @@ TEST_F(SearchPlannerTest, ForgottenLoopsNoLongerPredict) {
   EXPECT_EQ(plan.linear_window, 7.);
 }
 
-// Submaps that many loops constrain count as one, and share one record.
-TEST_F(SearchPlannerTest, OfSaturatedSubmapsOneIsSearched) {
+// Submaps that many loops constrain share a limit per node, and one record.
+TEST_F(SearchPlannerTest, OfSaturatedSubmapsTheNearestIsSearched) {
   options_.max_searches_per_node = 8;
   options_.saturating_loops = 3;
   options_.saturated_sigma = 2.;
@@ -274,21 +268,13 @@ TEST_F(SearchPlannerTest, OfSaturatedSubmapsOneIsSearched) {
   };
   for (const int submap : {0, 1, 2}) saturate(submap, 3);
   saturate(3, 2);
-  // The oldest of the near ones.
-  const auto plans = PlanAll({Pair(0, 0, 100, 9.), Pair(1, 0, 100, 3.),
-                              Pair(2, 0, 100, 2.), Pair(3, 0, 100, 9.)});
+  const auto plans = PlanAll({Pair(0, 0, 100, 9.), Pair(1, 0, 100, 4.),
+                              Pair(2, 0, 100, 6.), Pair(3, 0, 100, 9.)});
   EXPECT_EQ(plans[1].skipped, LoopDecision::NONE);
   EXPECT_EQ(plans[3].skipped, LoopDecision::NONE);
   EXPECT_EQ(plans[2].skipped, LoopDecision::SKIPPED_UNINFORMATIVE);
   EXPECT_FALSE(plans[2].out_of_reach);
   EXPECT_TRUE(plans[0].out_of_reach);
-  // The next node searches none of them before the spacing of one submap.
-  EXPECT_EQ(PlanOne(Pair(0, 0, 101, 3.)).skipped,
-            LoopDecision::SKIPPED_UNINFORMATIVE);
-  EXPECT_TRUE(CanIgnore(Pair(0, 0, 101, 3.)));
-  EXPECT_FALSE(CanIgnore(Pair(3, 0, 101, 3.)));
-  EXPECT_FALSE(CanIgnore(Pair(0, 0, 102, 3.)));
-  EXPECT_EQ(PlanOne(Pair(0, 0, 102, 3.)).skipped, LoopDecision::NONE);
   // While the place is uncertain (one metre), all are.
   options_.saturated_sigma = 0.9;
   MakePlanner();
@@ -298,77 +284,6 @@ TEST_F(SearchPlannerTest, OfSaturatedSubmapsOneIsSearched) {
     EXPECT_EQ(plan.skipped, LoopDecision::NONE);
     EXPECT_FALSE(plan.out_of_reach);
   }
-  EXPECT_FALSE(CanIgnore(Pair(0, 0, 101, 3.)));
-}
-
-// A saturated submap in which nothing is found any more gives way.
-TEST_F(SearchPlannerTest, ASaturatedSubmapWithoutMatchesGivesWay) {
-  options_.max_searches_per_node = 8;
-  options_.saturating_loops = 1;
-  options_.saturated_sigma = 2.;
-  options_.search_spacing = 1.;
-  MakePlanner();
-  for (const int submap : {0, 1}) {
-    uncertainty::LoopEdge loop;
-    loop.a = uncertainty::NodeId{0, 0};
-    loop.b = uncertainty::NodeId{0, 10};
-    loop.pose.covariance = LoopCovariance();
-    planner_->AddAcceptedLoop(Accepted(submap, 0), loop);
-  }
-  int searches_of_second = 0;
-  for (int node = 40; node < 100; ++node) {
-    const auto plans = PlanAll({Pair(0, 0, node, 3.), Pair(1, 0, node, 3.)});
-    EXPECT_NE(plans[0].is_searched(), plans[1].is_searched()) << node;
-    searches_of_second += plans[1].is_searched();
-    // The first is preferred for a while.
-    if (node < 60) {
-      EXPECT_TRUE(plans[0].is_searched()) << node;
-    }
-  }
-  EXPECT_GE(searches_of_second, 20);
-}
-
-TEST_F(SearchPlannerTest, WhatIsFarStaysFarForAWhile) {
-  options_.max_linear_window = 15.;
-  MakePlanner();
-  const auto pair = [](const int node, const double x) {
-    return Pair(0, 0, node, x);
-  };
-  EXPECT_FALSE(CanIgnore(pair(100, 60.)));
-  // 15 m and three times one metre.
-  EXPECT_TRUE(PlanOne(pair(100, 60.)).out_of_reach);
-  EXPECT_TRUE(CanIgnore(pair(101, 59.)));
-  EXPECT_TRUE(CanIgnore(pair(110, 50.)));
-  EXPECT_FALSE(CanIgnore(pair(130, 40.)));
-  EXPECT_FALSE(CanIgnore(pair(101, 18.)));
-  // Other submaps, and nodes of other trajectories, have to be planned.
-  EXPECT_FALSE(CanIgnore(Pair(1, 0, 101, 59.)));
-  // After a change of the drift nothing is known.
-  paths_.SetDrift(0, uncertainty::DriftFactors(), uncertainty::CommonDrift());
-  EXPECT_FALSE(CanIgnore(pair(101, 59.)));
-}
-
-// Of the nodes of all earlier visits a new submap meets some.
-TEST_F(SearchPlannerTest, ANewSubmapMeetsABoundedNumberOfOldNodes) {
-  options_.saturating_loops = 4;
-  MakePlanner();
-  int num_met = 0;
-  for (int node = 0; node < 100; ++node) {
-    num_met += !CanIgnore(Pair(0, 150, node, 3.));
-  }
-  EXPECT_EQ(num_met, 40);
-  // The following nodes are others.
-  EXPECT_FALSE(CanIgnore(Pair(0, 150, 160, 3.)));
-}
-
-TEST_F(SearchPlannerTest, NodesWhosePathIsForgottenAreIgnored) {
-  MakePlanner();
-  EXPECT_TRUE(CanIgnore(Pair(0, 0, 300, 1.)));
-  LoopCandidate pair = Pair(0, 0, 100, 15.1);
-  pair.anchor.reset();
-  EXPECT_TRUE(CanIgnore(pair));
-  pair.predicted->x = 14.9;
-  EXPECT_FALSE(CanIgnore(pair));
 }
 
 }  // namespace

@@ -74,26 +74,6 @@ TEST_F(SubmapStoreTest, AnchorsCandidatesAtANodeOrTheSubmap) {
   EXPECT_EQ(*other.anchor, uncertainty::VertexId(SubmapId{0, 3}));
 }
 
-// The anchor is remembered; it follows nodes that are added or forgotten.
-TEST_F(SubmapStoreTest, AnchorsFollowTheNodes) {
-  uncertainty::PathUncertainty paths(uncertainty::RandomWalk(), 3);
-  const auto entry = Add(3, 8);
-  const auto anchor = [&]() {
-    return store_->Anchor(SubmapId{0, 3}, *entry, 0, paths);
-  };
-  EXPECT_FALSE(anchor().has_value());
-  paths.Add(NodeId{0, 4}, Pose2(4., 0., 0.));
-  paths.Add(NodeId{0, 2}, Pose2(2., 0., 0.));
-  EXPECT_EQ(*anchor(), uncertainty::VertexId(NodeId{0, 2}));
-  EXPECT_EQ(paths.num_inserted(), 1);
-  paths.Add(NodeId{0, 1}, Pose2(1., 0., 0.));
-  EXPECT_EQ(*anchor(), uncertainty::VertexId(NodeId{0, 1}));
-  paths.Add(NodeId{0, 9}, Pose2(1., 0., 0.));
-  // Node 1 is forgotten, and node 9 is not of the submap.
-  EXPECT_EQ(*anchor(), uncertainty::VertexId(NodeId{0, 2}));
-  EXPECT_EQ(paths.num_inserted(), 2);
-}
-
 TEST_F(SubmapStoreTest, MapsAreThoseOfSubmapsNearASearch) {
   Add(3, 8);
   Add(5, 9);

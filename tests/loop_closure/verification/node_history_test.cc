@@ -65,12 +65,6 @@ TEST(NodeHistoryTest, IsBoundedPerTrajectory) {
   EXPECT_EQ(history.size(2), 0);
   EXPECT_FALSE(history.Contains(0, 6));
   EXPECT_TRUE(history.Contains(0, 7));
-  EXPECT_TRUE(history.IsForgotten(0, 6));
-  EXPECT_FALSE(history.IsForgotten(0, 7));
-  EXPECT_FALSE(history.IsForgotten(0, 10));
-  // Not full, or unknown.
-  EXPECT_FALSE(history.IsForgotten(1, -1));
-  EXPECT_FALSE(history.IsForgotten(2, 0));
   EXPECT_FALSE(history.Add(0, Node(2, 2.)));
   EXPECT_EQ(history.size(0), 3);
   history.DeleteTrajectory(0);
