@@ -201,14 +201,15 @@ def calibration(runs, lasers):
     """Whether candidates are right as often as their probabilities say: reliability diagrams as a table."""
     lines = []
     for label, group in [("**all**", runs)] + [(laser, [r for r in runs if r["laser"] == laser]) for laser in lasers]:
-        bins = [b for b in pooled(group) if b[0]]
+        tenths = pooled(group)
+        bins = [b for b in tenths if b[0]]
         total = sum(b[0] for b in bins)
         if not total:
             continue
         error = sum(b[0] * abs(b[1] - b[2]) for b in bins) / total
         worst = max([abs(b[1] - b[2]) for b in bins if b[0] >= SAMPLES_PER_BIN], default=None)
         lines.append([label, total, "%.3f" % error, common.number(worst)] +
-                     ["%.2f / %.2f (%d)" % (b[1], b[2], b[0]) if b[0] else "-" for b in pooled(group)])
+                     ["%.2f / %.2f (%d)" % (b[1], b[2], b[0]) if b[0] else "-" for b in tenths])
     if not lines:
         return ""
     header = ["candidates of", "n", "calibration error", "worst bin"] + ["%.1f-%.1f" % (i / 10., (i + 1) / 10.) for i in range(10)]

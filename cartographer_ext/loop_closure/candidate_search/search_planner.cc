@@ -82,7 +82,8 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
     plan->angular_window = default_angular_window_;
     return false;
   }
-  plan->translation_sigma = uncertainty::WorstTranslationSigma(path->covariance);
+  plan->translation_sigma =
+      uncertainty::WorstTranslationSigma(path->covariance);
   plan->rotation_sigma = std::sqrt(std::max(0., path->covariance(2, 2)));
   const double wanted = options_.window_sigmas * plan->translation_sigma;
   plan->full_submap =
@@ -151,7 +152,8 @@ bool SearchPlanner::IsSaturated(const uncertainty::SubmapId& submap) const {
 double SearchPlanner::Promise(const LoopCandidate& candidate,
                               const SearchPlan& plan) const {
   const double sigma = std::max(plan.translation_sigma, 1e-3);
-  const double gain = std::log1p(sigma / uncertainty::WorstTranslationSigma(loop_covariance_));
+  const double gain =
+      std::log1p(sigma / uncertainty::WorstTranslationSigma(loop_covariance_));
   const double beyond = std::max(
       0., candidate.SearchCenter().translation().norm() - 0.5 * reach_);
   const double scale = sigma + 0.25 * reach_;

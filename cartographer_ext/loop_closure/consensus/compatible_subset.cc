@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "Eigen/Eigenvalues"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -36,14 +35,6 @@ bool SameTrajectory(const uncertainty::LoopEdge& edge) {
   return edge.a.trajectory_id() == edge.b.trajectory_id();
 }
 
-// Standard deviation along the worst direction.
-double WorstTranslationSigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix2d translation = covariance.topLeftCorner<2, 2>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
-      translation, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0., solver.eigenvalues().maxCoeff()));
-}
-
 }  // namespace
 
 CompatibleSubset::CompatibleSubset(
@@ -66,7 +57,8 @@ CompatibleSubset::Relation CompatibleSubset::Relate(
   const uncertainty::CycleResult cycle = uncertainty::TestCycle(
       options_.cycle, u.pose, *path_b, other.pose, *path_a);
   if (!cycle.compatible) return Relation::kContradicts;
-  return WorstTranslationSigma(cycle.covariance) <= options_.informative_sigma
+  return uncertainty::WorstTranslationSigma(cycle.covariance) <=
+                 options_.informative_sigma
              ? Relation::kSupports
              : Relation::kVague;
 }

@@ -15,6 +15,14 @@ namespace {
 // The temporal score of a coordinate.
 double Score(const double coordinate) { return 1.02 - std::exp(-coordinate); }
 
+// (S_g, S_t) of true and false loops, apart from each other.
+Eigen::Vector2d DrawScores(Random* const random, const bool is_true) {
+  return is_true ? Eigen::Vector2d(random->Normal(0.75, 0.05),
+                                   Score(random->Normal(2.9, 0.4)))
+                 : Eigen::Vector2d(random->Normal(0.58, 0.06),
+                                   Score(random->Normal(1.4, 0.5)));
+}
+
 TEST(LoopMixtureTest, CoordinateByHand) {
   EXPECT_NEAR(TemporalCoordinate(0.52), std::log(2.), 1e-12);
   EXPECT_NEAR(TemporalCoordinate(1.), std::log(50.), 1e-12);
@@ -38,14 +46,8 @@ TEST(LoopMixtureTest, RecoversTwoPopulationsAndIsCalibrated) {
   // A strong prior biases the tails, where the probabilities are decided.
   options.prior_strength = 2.;
   LoopMixture mixture(options);
-  const auto draw = [&random](const bool is_true) {
-    return is_true ? Eigen::Vector2d(random.Normal(0.75, 0.05),
-                                     Score(random.Normal(2.9, 0.4)))
-                   : Eigen::Vector2d(random.Normal(0.58, 0.06),
-                                     Score(random.Normal(1.4, 0.5)));
-  };
   for (int i = 0; i < 20000; ++i) {
-    const Eigen::Vector2d s = draw(random.Uniform() < 0.3);
+    const Eigen::Vector2d s = DrawScores(&random, random.Uniform() < 0.3);
     mixture.Add(s.x(), s.y(), 1.);
   }
   EXPECT_GT(mixture.Fit(), 1);
@@ -57,7 +59,7 @@ TEST(LoopMixtureTest, RecoversTwoPopulationsAndIsCalibrated) {
   int count = 0;
   for (int i = 0; i < 100000; ++i) {
     const bool is_true = random.Uniform() < 0.3;
-    const Eigen::Vector2d s = draw(is_true);
+    const Eigen::Vector2d s = DrawScores(&random, is_true);
     const double p = mixture.ProbabilityTrue(s.x(), s.y());
     ASSERT_GE(p, 0.);
     ASSERT_LE(p, 1.);
@@ -160,15 +162,9 @@ TEST(LoopMixtureTest, ClutterIsLearntAndMakesCalibratedProbabilities) {
   const auto is_true = [&random](const double volume) {
     return random.Uniform() < 1. / (1. + kDensity * volume);
   };
-  const auto draw = [&random](const bool is_true) {
-    return is_true ? Eigen::Vector2d(random.Normal(0.75, 0.05),
-                                     Score(random.Normal(2.9, 0.4)))
-                   : Eigen::Vector2d(random.Normal(0.58, 0.06),
-                                     Score(random.Normal(1.4, 0.5)));
-  };
   for (int i = 0; i < 20000; ++i) {
     const double volume = i % 2 == 0 ? 1. : 60.;
-    const Eigen::Vector2d s = draw(is_true(volume));
+    const Eigen::Vector2d s = DrawScores(&random, is_true(volume));
     mixture.Add(s.x(), s.y(), volume);
   }
   EXPECT_EQ(mixture.clutter_density(), 0.05);
@@ -179,7 +175,7 @@ TEST(LoopMixtureTest, ClutterIsLearntAndMakesCalibratedProbabilities) {
     int count = 0;
     for (int i = 0; i < 100000; ++i) {
       const bool truth = is_true(volume);
-      const Eigen::Vector2d s = draw(truth);
+      const Eigen::Vector2d s = DrawScores(&random, truth);
       const double p = 1. / (1. + volume * mixture.WrongDensity(s.x(), s.y()));
       if (p > 0.2 && p < 0.8) {
         predicted += p;

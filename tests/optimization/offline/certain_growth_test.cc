@@ -5,6 +5,7 @@
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "gmock/gmock.h"
+#include "tests/optimization/loop_counts.h"
 #include "tests/optimization/test_graphs.h"
 
 namespace cartographer_ext {
@@ -72,20 +73,10 @@ void ExpectFindsTheRightLoops(const uint64_t seed,
   std::vector<double> weights;
   const int in_force =
       GrowCertainLoops(world.graph, options, &solver, &poses, &weights);
-  int right = 0, right_in_force = 0, wrong_in_force = 0;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    if (!edges[i].is_loop) {
-      EXPECT_EQ(weights[i], 1.);
-    } else if (i < clean) {
-      ++right;
-      right_in_force += weights[i] > 0.;
-    } else {
-      wrong_in_force += weights[i] > 0.;
-    }
-  }
-  EXPECT_EQ(in_force, right_in_force + wrong_in_force);
-  EXPECT_GE(right_in_force, 0.95 * right) << seed;
-  EXPECT_LE(wrong_in_force, 0.01 * in_force) << seed;
+  const test::LoopCounts counts = test::CountLoops(edges, clean, weights);
+  EXPECT_EQ(in_force, counts.right_in_force + counts.wrong_in_force);
+  EXPECT_GE(counts.right_in_force, 0.95 * counts.right) << seed;
+  EXPECT_LE(counts.wrong_in_force, 0.01 * in_force) << seed;
   EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 0.3) << seed;
 }
 

@@ -4,6 +4,7 @@
 
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "gmock/gmock.h"
+#include "tests/optimization/loop_counts.h"
 #include "tests/optimization/weak_ring.h"
 
 namespace cartographer_ext {
@@ -24,19 +25,9 @@ TEST(LoopGrowthTest, FindsRightLoopsWhereOdometrySaysLittle) {
     std::vector<double> weights;
     ASSERT_TRUE(GrowLoops(FindLoopSupport(world.graph, LoopSupportOptions()),
                           GrowthOptions(), &solver, &poses, &weights));
-    int right = 0, right_in_force = 0, wrong_in_force = 0;
-    for (size_t i = 0; i != edges.size(); ++i) {
-      if (!edges[i].is_loop) {
-        EXPECT_EQ(weights[i], 1.);
-      } else if (i < clean) {
-        ++right;
-        right_in_force += weights[i] > 0.;
-      } else {
-        wrong_in_force += weights[i] > 0.;
-      }
-    }
-    EXPECT_GE(right_in_force, 0.9 * right) << seed;
-    EXPECT_LE(wrong_in_force, 3) << seed;
+    const test::LoopCounts counts = test::CountLoops(edges, clean, weights);
+    EXPECT_GE(counts.right_in_force, 0.9 * counts.right) << seed;
+    EXPECT_LE(counts.wrong_in_force, 3) << seed;
   }
 }
 
