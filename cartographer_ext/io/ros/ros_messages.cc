@@ -208,7 +208,8 @@ void TakeScanHead(Decoder* decoder, RosHeader* header, LaserScan* scan) {
   scan->time_increment = decoder->Take<float>();
   decoder->Take<float>();  // scan_time, between scans
   scan->range_min = decoder->Take<float>();
-  scan->range_max = decoder->Take<float>();
+  // Simulators and some drivers report "no return" as range_max itself.
+  scan->range_max = std::nextafter(decoder->Take<float>(), 0.f);
 }
 
 // Checks the scan and moves its stamp from the first beam to the last.

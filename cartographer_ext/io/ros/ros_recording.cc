@@ -279,7 +279,8 @@ void RosRecording::CountEvents(const std::vector<EventKey>& keys) {
 void RosRecording::ChooseTrackingFrame() {
   if (frames_.Knows(tracking_frame_)) return;
   for (const RosRank rank : {kOdometryRank, kScanRank}) {
-    const std::set<std::string>& seen = seen_frames_[rank];
+    std::set<std::string> seen = seen_frames_[rank];
+    seen.erase("");  // odometry without child_frame_id
     if (seen.empty() || seen.count(tracking_frame_) > 0) continue;
     info_.warnings.push_back(
         absl::StrCat(filename_, ": tracking frame \"", tracking_frame_,
@@ -298,7 +299,11 @@ void RosRecording::CheckFrames() {
   for (const std::string& frame : frames) {
     std::vector<std::string> moving;
     const auto pose = frames_.Lookup(tracking_frame_, frame, &moving);
-    if (!pose.has_value()) {
+    if (frame.empty()) {
+      info_.warnings.push_back(absl::StrCat(
+          filename_, ": messages without a frame; taken to be at \"",
+          tracking_frame_, "\""));
+    } else if (!pose.has_value()) {
       info_.warnings.push_back(absl::StrCat(filename_, ": no transform from \"",
                                             frame, "\" to \"", tracking_frame_,
                                             "\"; assumed to coincide"));

@@ -62,6 +62,23 @@ class MemoryContainer : public RosContainer {
   int fail_after_ = -1;
 };
 
+// Twenty scans a tenth of a second apart, whose beams claim to take `sweep`.
+std::unique_ptr<MemoryContainer> TwentyScans(const double sweep) {
+  auto container = absl::make_unique<MemoryContainer>();
+  LaserScan scan;
+  scan.angle_min = -kPi;
+  scan.angle_increment = 2. * kPi / 5.;
+  scan.range_max = 10.;
+  scan.ranges = {1.f, 2.f, 3.f, 4.f, 5.f};
+  scan.time_increment = sweep / 4.;
+  for (int i = 0; i < 20; ++i) {
+    // EncodeLaserScan stamps the first beam.
+    scan.time = FromSeconds(10. + 0.1 * i + sweep);
+    container->Add("/scan", kRos2LaserScan, EncodeLaserScan(scan, "base_link"));
+  }
+  return container;
+}
+
 TEST(RosRecordingTest, TypesOfRos2) {
   EXPECT_STREQ(TypeOfRos2("sensor_msgs/msg/LaserScan").md5sum.c_str(),
                kRosLaserScan.md5sum);
@@ -170,6 +187,25 @@ TEST(RosRecordingTest, OdometryFromTransforms) {
   EXPECT_NEAR(absl::get<OdometryReading>(events[2]).pose.theta, 0.6, 1e-12);
 }
 
+TEST(RosRecordingTest, OdometryWithoutFrameIsThatOfTheLaser) {
+  auto container = TwentyScans(0.);
+  OdometryReading reading;
+  reading.time = FromSeconds(10.);
+  container->Add("/ground_truth", kRos2Odometry,
+                 EncodeOdometry(reading, 0., 0., "odom", ""));
+  SensorSourceOptions options;
+  options.tracking_frame = "nowhere";
+  auto source = OpenRosRecording("memory", std::move(container), options);
+  ASSERT_TRUE(source.ok()) << source.status();
+  const std::vector<std::string>& warnings = (*source)->info().warnings;
+  EXPECT_THAT(warnings,
+              ::testing::Contains(HasSubstr(
+                  "\"nowhere\" does not occur; taking \"base_link\"")));
+  EXPECT_THAT(warnings,
+              ::testing::Contains(HasSubstr(
+                  "messages without a frame; taken to be at \"base_link\"")));
+}
+
 TEST(RosRecordingTest, TransformsThatNeverChangeAreNoOdometry) {
   auto source =
       OpenRosRecording("memory", OdometryInTransforms(Pose2(), Pose2()), {});
@@ -218,23 +254,6 @@ TEST(RosRecordingTest, TheScanIsStampedWithItsLastPoint) {
   EXPECT_EQ(scan.time, 2100000000);
   EXPECT_THAT(scan.point_times,
               ElementsAre(0.f, ::testing::FloatNear(-0.075f, 1e-6f)));
-}
-
-// Twenty scans a tenth of a second apart, whose beams claim to take `sweep`.
-std::unique_ptr<MemoryContainer> TwentyScans(const double sweep) {
-  auto container = absl::make_unique<MemoryContainer>();
-  LaserScan scan;
-  scan.angle_min = -kPi;
-  scan.angle_increment = 2. * kPi / 5.;
-  scan.range_max = 10.;
-  scan.ranges = {1.f, 2.f, 3.f, 4.f, 5.f};
-  scan.time_increment = sweep / 4.;
-  for (int i = 0; i < 20; ++i) {
-    // EncodeLaserScan stamps the first beam.
-    scan.time = FromSeconds(10. + 0.1 * i + sweep);
-    container->Add("/scan", kRos2LaserScan, EncodeLaserScan(scan, "base_link"));
-  }
-  return container;
 }
 
 TEST(RosRecordingTest, BeamsThatTakeLongerThanThereIsTimeAreAtOnce) {

@@ -121,7 +121,7 @@ TEST_P(CompressionTest, RoundTrip) {
     EXPECT_EQ(scan->ranges, MakeScan(0, 8).ranges);
     EXPECT_NEAR(scan->angle_min, -1.5, 1e-6);
     EXPECT_NEAR(scan->angle_increment, 0.375, 1e-6);
-    EXPECT_NEAR(scan->range_max, 30., 1e-6);
+    EXPECT_EQ(scan->range_max, std::nextafter(30.f, 0.f));
     EXPECT_NEAR(scan->laser_pose.x, 0.25, 1e-12);
     EXPECT_NEAR(scan->laser_pose.y, -0.1, 1e-12);
     EXPECT_NEAR(scan->laser_pose.theta, 0.5, 1e-12);
