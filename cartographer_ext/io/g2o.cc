@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/g2o.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "Eigen/Cholesky"
@@ -18,12 +20,19 @@ constexpr size_t kMaxElements = 50000000;
 // Sums of chi-square stay finite.
 constexpr double kMaxInformation = 1e100;
 
+using InformationNumbers = std::array<double, 6>;
+
+constexpr char kNotPositiveDefinite[] =
+    "the information matrix is not positive definite";
+
 // Collects the elements; references are checked at the end, as the order of the
 // lines is free.
 class G2oParser {
  public:
   // Elements of a graph, empty lines and comments; the error lacks the place.
   absl::Status Parse(absl::string_view text, int64_t line_number);
+  // Chooses the order of the numbers of EDGE2; the error begins with the line.
+  absl::Status FinishInformation();
   absl::Status CheckReferences() const;
 
   G2oGraph graph;
@@ -35,20 +44,45 @@ class G2oParser {
   };
 
   absl::Status ParseVertex(Tokens* tokens);
-  absl::Status ParseEdge(Tokens* tokens, int64_t line_number);
+  enum class EdgeForm { kPlain, kEdge2, kSwitchable };
+  absl::Status ParseEdge(EdgeForm form, Tokens* tokens, int64_t line_number);
   absl::Status ParseFix(Tokens* tokens, int64_t line_number);
 
   std::vector<Fix> fixes_;
+  struct Edge2 {
+    size_t index = 0;  // of graph.edges
+    InformationNumbers numbers = {};
+  };
+  std::vector<Edge2> edges2_;
 };
 
-// Landmarks and sensor offsets, which a pose graph does not need.
+// Landmarks, sensor offsets, priors and switches, which a pose graph does not
+// need.
 bool IsSkipped(const absl::string_view tag) {
   for (const char* const name :
        {"VERTEX_XY", "EDGE_SE2_XY", "EDGE_SE2_POINT_XY", "EDGE_BEARING_SE2_XY",
-        "PARAMS_SE2OFFSET", "LANDMARK2"}) {
+        "PARAMS_SE2OFFSET", "LANDMARK2", "LANDMARK", "BR", "EQUIV",
+        "EDGE_PRIOR_SE2", "EDGE_SE2_PRIOR", "VERTEX_SWITCH",
+        "EDGE_SWITCH_PRIOR"}) {
     if (tag == name) return true;
   }
   return false;
+}
+
+// I11 I12 I13 I22 I23 I33.
+Eigen::Matrix3d RowByRow(const InformationNumbers& v) {
+  Eigen::Matrix3d information;
+  information << v[0], v[1], v[2], v[1], v[3], v[4], v[2], v[4], v[5];
+  return information;
+}
+
+// I11 I12 I22 I33 I13 I23.
+Eigen::Matrix3d OrderOfToro(const InformationNumbers& v) {
+  return RowByRow({v[0], v[1], v[4], v[2], v[5], v[3]});
+}
+
+bool IsPositiveDefinite(const Eigen::Matrix3d& information) {
+  return Eigen::LLT<Eigen::Matrix3d>(information).info() == Eigen::Success;
 }
 
 absl::Status Malformed(absl::string_view what) {
@@ -87,39 +121,64 @@ absl::Status G2oParser::ParseVertex(Tokens* tokens) {
   return absl::OkStatus();
 }
 
-absl::Status G2oParser::ParseEdge(Tokens* tokens, int64_t line_number) {
+absl::Status G2oParser::ParseEdge(const EdgeForm form, Tokens* tokens,
+                                  int64_t line_number) {
   G2oEdge edge;
   edge.line = line_number;
   if (!ParseInt(tokens->Next(), &edge.from) ||
       !ParseInt(tokens->Next(), &edge.to)) {
     return Malformed("the ids of the edge are not integers");
   }
+  double of_the_switch;
+  if (form == EdgeForm::kSwitchable &&
+      !ParseFinite(tokens->Next(), &of_the_switch)) {
+    return Malformed("no switch or weight behind the ids of the edge");
+  }
   if (!ParsePose(tokens, &edge.measurement)) {
     return Malformed(
         "an edge needs three finite numbers up to 1e9, dx dy dtheta");
   }
-  for (int row = 0; row < 3; ++row) {
-    for (int column = row; column < 3; ++column) {
-      double value;
-      if (!ParseFinite(tokens->Next(), &value) ||
-          std::abs(value) > kMaxInformation) {
-        return Malformed(
-            "an edge needs six finite numbers up to 1e100, I11 I12 I13 I22 I23 "
-            "I33");
-      }
-      edge.information(row, column) = edge.information(column, row) = value;
+  InformationNumbers numbers;
+  for (double& number : numbers) {
+    if (!ParseFinite(tokens->Next(), &number) ||
+        std::abs(number) > kMaxInformation) {
+      return Malformed(
+          "an edge needs six finite numbers up to 1e100, I11 I12 I13 I22 I23 "
+          "I33");
     }
   }
   if (edge.from == edge.to) {
     return Malformed(
         absl::StrCat("edge from vertex ", edge.from, " to itself"));
   }
-  const Eigen::LLT<Eigen::Matrix3d> cholesky(edge.information);
-  if (cholesky.info() != Eigen::Success) {
-    return Malformed("the information matrix is not positive definite");
+  if (form == EdgeForm::kEdge2) {
+    edges2_.push_back(Edge2{graph.edges.size(), numbers});
+  } else {
+    edge.information = RowByRow(numbers);
+    if (!IsPositiveDefinite(edge.information)) {
+      return Malformed(kNotPositiveDefinite);
+    }
   }
   graph.edges.push_back(edge);
   return absl::OkStatus();
+}
+
+absl::Status G2oParser::FinishInformation() {
+  // A matrix read in the wrong order is rarely positive definite, and never so
+  // if it is diagonal.
+  size_t first_bad = 0;
+  for (const auto order : {RowByRow, OrderOfToro}) {
+    size_t i = 0;
+    for (; i < edges2_.size(); ++i) {
+      G2oEdge& edge = graph.edges[edges2_[i].index];
+      edge.information = order(edges2_[i].numbers);
+      if (!IsPositiveDefinite(edge.information)) break;
+    }
+    if (i == edges2_.size()) return absl::OkStatus();
+    first_bad = std::max(first_bad, i);
+  }
+  return Malformed(absl::StrCat(graph.edges[edges2_[first_bad].index].line,
+                                ": ", kNotPositiveDefinite));
 }
 
 absl::Status G2oParser::ParseFix(Tokens* tokens, int64_t line_number) {
@@ -145,8 +204,12 @@ absl::Status G2oParser::Parse(absl::string_view text, int64_t line_number) {
   absl::Status status;
   if (tag == "VERTEX_SE2" || tag == "VERTEX2") {
     status = ParseVertex(&tokens);
-  } else if (tag == "EDGE_SE2" || tag == "EDGE2") {
-    status = ParseEdge(&tokens, line_number);
+  } else if (tag == "EDGE_SE2") {
+    status = ParseEdge(EdgeForm::kPlain, &tokens, line_number);
+  } else if (tag == "EDGE2") {
+    status = ParseEdge(EdgeForm::kEdge2, &tokens, line_number);
+  } else if (tag == "EDGE_SE2_SWITCHABLE" || tag == "EDGE_SE2_MAXMIX") {
+    status = ParseEdge(EdgeForm::kSwitchable, &tokens, line_number);
   } else if (tag == "FIX") {
     status = ParseFix(&tokens, line_number);
   } else if (IsSkipped(tag)) {
@@ -227,6 +290,11 @@ absl::StatusOr<G2oGraph> ReadG2o(const std::string& filename) {
     if (!status.ok()) {
       return At(filename, (*reader)->line_number(), status.message());
     }
+  }
+  const absl::Status information = parser.FinishInformation();
+  if (!information.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(filename, ":", information.message()));
   }
   G2oGraph& graph = parser.graph;
   if (graph.vertices.empty()) {

@@ -8,14 +8,19 @@
 //   FIX id [id ...]
 //
 // Metres and radians; the information matrix is in the frame of `from`, its
-// upper triangle row by row. Also read: VERTEX2 and EDGE2 of iSAM, which have
-// the same fields. Comment lines start with '#'. Files compressed by gzip, xz
-// or bzip2 are read transparently.
+// upper triangle row by row. Comment lines start with '#'. Files compressed by
+// gzip, xz or bzip2 are read transparently.
+//
+// Also read: VERTEX2 and EDGE2 of iSAM, with the same fields, and of TORO (often
+// .graph), whose EDGE2 has its information as I11 I12 I22 I33 I13 I23. The
+// order in which all matrices of the file are positive definite is taken; if
+// both are, that of g2o. EDGE_SE2_SWITCHABLE and EDGE_SE2_MAXMIX of Vertigo are
+// EDGE_SE2 with one more number behind the ids, which is not used.
 //
 // Two variants in public data sets are accepted as well: a file without any
-// vertex (its vertices are the ends of the edges), and planar landmarks
-// (VERTEX_XY, EDGE_SE2_XY, EDGE_BEARING_SE2_XY, PARAMS_SE2OFFSET), which are
-// counted and skipped.
+// vertex (its vertices are the ends of the edges), and elements other than poses
+// and what joins two of them (planar landmarks, sensor offsets, priors of single
+// poses, switches), which are counted and skipped.
 #ifndef CARTOGRAPHER_EXT_IO_G2O_H_
 #define CARTOGRAPHER_EXT_IO_G2O_H_
 

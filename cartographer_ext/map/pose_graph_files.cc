@@ -62,7 +62,8 @@ absl::StatusOr<PoseGraph> ReadPoseGraph(const std::string& filename) {
   if (!g2o.ok()) return g2o.status();
   for (const auto& element : g2o->skipped) {
     std::cerr << filename << ": skipped " << element.second << " lines of "
-              << element.first << ": landmarks are not used\n";
+              << element.first
+              << ": only poses and edges between them are used\n";
   }
   auto graph = ToPoseGraph(*g2o);
   if (!graph.ok()) {

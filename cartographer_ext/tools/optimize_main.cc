@@ -28,7 +28,8 @@
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 
-DEFINE_string(input_filename, "", "Graph: .g2o (also .gz, .xz) or .pbstream.");
+DEFINE_string(input_filename, "",
+              "Graph: .g2o or TORO .graph (also .gz, .xz), or .pbstream.");
 DEFINE_string(
     kernel, "auto",
     "none, huber, sc, gm, dcs, acs, acs_paper, gnc_tls, auto or r_isam.");

@@ -61,6 +61,46 @@ TEST(G2oTest, ReadsEdgesWithoutVerticesAndSkipsLandmarks) {
   EXPECT_EQ(graph->skipped.at("EDGE_SE2_XY"), 1);
 }
 
+TEST(G2oTest, ReadsBothOrdersOfEdge2) {
+  const std::string vertices = "VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\n";
+  Eigen::Matrix3d information;
+  information << 100., 1., 2., 1., 110., 3., 2., 3., 400.;
+  test::TemporaryFile file(".graph");
+  for (const char* const diagonal_and_full :
+       {"1 0 0 2 0 3\nEDGE2 1 0 -1 0 0 100 1 2 110 3 400\n",     // iSAM
+        "1 0 2 3 0 0\nEDGE2 1 0 -1 0 0 100 1 110 400 2 3\n"}) {  // TORO
+    test::WriteBytes(file.path(),
+                     vertices + "EDGE2 0 1 1 0 0 " + diagonal_and_full);
+    const auto graph = ReadG2o(file.path());
+    ASSERT_TRUE(graph.ok()) << graph.status();
+    ASSERT_EQ(graph->edges.size(), 2u);
+    EXPECT_EQ(graph->edges[0].information.diagonal(),
+              Eigen::Vector3d(1., 2., 3.));
+    EXPECT_EQ(graph->edges[1].information, information);
+  }
+  // The line whose matrix is right in neither order.
+  EXPECT_THAT(ErrorOf(vertices + "EDGE2 0 1 1 0 0 1 0 2 3 0 0\n" +
+                      "EDGE2 1 0 1 0 0 1 0 0 2 0 0\n"),
+              HasSubstr(":4: the information matrix is not positive"));
+}
+
+TEST(G2oTest, ReadsSwitchableEdges) {
+  test::TemporaryFile file(".g2o");
+  test::WriteBytes(file.path(),
+                   "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\n"
+                   "VERTEX_SWITCH 9 1\nEDGE_SWITCH_PRIOR 9 1 1\n"
+                   "EDGE_SE2_SWITCHABLE 0 1 9 1 2 0.5 10 0 0 20 0 30\n"
+                   "EDGE_SE2_MAXMIX 0 1 1e-5 3 4 0.25 10 0 0 20 0 30\n");
+  const auto graph = ReadG2o(file.path());
+  ASSERT_TRUE(graph.ok()) << graph.status();
+  ASSERT_EQ(graph->edges.size(), 2u);
+  EXPECT_EQ(graph->edges[0].measurement.y, 2.);
+  EXPECT_EQ(graph->edges[1].measurement.theta, 0.25);
+  EXPECT_EQ(graph->edges[1].information(2, 2), 30.);
+  EXPECT_EQ(graph->skipped.at("VERTEX_SWITCH"), 1);
+  EXPECT_EQ(graph->skipped.at("EDGE_SWITCH_PRIOR"), 1);
+}
+
 TEST(G2oTest, RoundTripIsExact) {
   Random random(3);
   G2oGraph graph;
