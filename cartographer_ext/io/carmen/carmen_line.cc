@@ -235,6 +235,8 @@ void ParseCarmenLine(absl::string_view text, CarmenLine* line) {
              absl::StartsWith(message, "RAWLASER") || message == "LASER3" ||
              message == "LASER4") {
     line->kind = CarmenKind::kRearLaser;
+  } else if (message == "NEFF") {
+    line->kind = CarmenKind::kFilterMark;
   }
 }
 

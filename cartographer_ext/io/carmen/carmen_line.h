@@ -42,6 +42,7 @@ enum class CarmenKind {
   kFrontLaser,  // FLASER
   kRobotLaser,  // ROBOTLASER1
   kRawLaser,    // RAWLASER1, without poses
+  kFilterMark,  // NEFF, of a particle filter (particle_filter_log.h)
 };
 
 struct CarmenLine {

@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/io/carmen/carmen_line.h"
 #include "cartographer_ext/io/carmen/carmen_survey.h"
+#include "cartographer_ext/io/carmen/particle_filter_log.h"
 #include "cartographer_ext/io/line_reader.h"
 
 namespace cartographer_ext {
@@ -38,7 +39,7 @@ class CarmenSource : public SensorSource {
         break;
       }
       ParseCarmenLine(text, &line_);
-      PushEvents();
+      if (ReplaceLostData()) PushEvents();
     }
     if (waiting_.empty()) return false;
     const TimeNs time = waiting_.first_key().time;
@@ -52,6 +53,26 @@ class CarmenSource : public SensorSource {
   }
 
  private:
+  // False if the line is to be dropped.
+  bool ReplaceLostData() {
+    if (!IsScanKind(line_.kind) && line_.kind != CarmenKind::kOdometry) {
+      return true;
+    }
+    if (plan_.is_filter_log && filter_log_.Repeats(line_)) {
+      filter_log_.Skip(line_);
+      return false;
+    }
+    if (plan_.remove_corrections) {
+      filter_log_.RemoveCorrection(&line_);
+    } else {
+      filter_log_.Skip(line_);
+    }
+    if (plan_.line_spacing > 0) {
+      line_.time = restamped_ += plan_.line_spacing;
+    }
+    return true;
+  }
+
   void PushEvents() {
     CarmenEvent events[2];
     const int n =
@@ -98,6 +119,8 @@ class CarmenSource : public SensorSource {
   const std::unique_ptr<LineReader> reader_;
   ReorderBuffer<SensorEvent> waiting_;
   CarmenLine line_;
+  ParticleFilterLog filter_log_;
+  TimeNs restamped_ = 0;
   int64_t ordinal_ = 0;
   size_t next_dropped_ = 0;
   TimeNs last_time_ = 0;

@@ -23,6 +23,14 @@
 // from ODOM lines interpolated at the scan against 0.039 m from scan lines;
 // Intel 0.035 m against 0.024 m.
 //
+// Logs written by a particle filter, of which many public logs exist only like
+// this: "auto" takes the corrected poses of the scan lines, with a warning;
+// "odom" the ODOM lines, without the corrections (particle_filter_log.h).
+// Stamps that do not tell the scans apart, because they are zero or were
+// printed with six digits, are replaced by one every 0.1 s in the order of the
+// lines (scan_stamps.h); so are those of a particle filter's log that often go
+// backwards, because the filter has read the lines in this order. A warning says so.
+//
 // Laser pose (robot <- laser): from the two poses of the scan lines, if these
 // differ by the same transform in 99 % of the scans; else from the parameters
 // robot_frontlaser_{offset,side_offset,angular_offset}. Where the two poses

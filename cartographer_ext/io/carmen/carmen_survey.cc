@@ -11,8 +11,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_ext/common/order_statistics.h"
+#include "cartographer_ext/io/carmen/laser_offset.h"
+#include "cartographer_ext/io/carmen/malformed_lines.h"
+#include "cartographer_ext/io/carmen/particle_filter_log.h"
 #include "cartographer_ext/io/carmen/range_histogram.h"
+#include "cartographer_ext/io/carmen/scan_stamps.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/tokens.h"
 
@@ -23,50 +26,6 @@ namespace {
 constexpr size_t kMaxLines = 20000000;
 constexpr size_t kMaxReorderWindow = 1 << 16;
 
-// Poses in logs are rounded, and some loggers interpolate one of the two.
-constexpr double kOffsetTolerance = 0.02;  // metres, radians
-constexpr double kMaxOffset = 5.;          // metres
-
-// Share of all messages; clocks that occasionally step stay below it.
-constexpr double kMaxBackwardShare = 0.01;
-
-// Messages with a gap of this length on both sides do not belong to the log,
-// if they are so few: a stamp that was cut off or is none.
-constexpr TimeNs kImplausibleGap = int64_t{3600} * 1000000000;
-constexpr int64_t kMaxImplausible = 10;
-
-struct LineKey {
-  TimeNs time = 0;
-  int64_t number = 0;  // of the line
-  CarmenKind kind = CarmenKind::kIgnored;
-  bool plausible = true;
-};
-
-// (robot <- laser) that explains 99 % of `offsets`; false if none does.
-bool FindConstantOffset(const std::vector<Pose2>& offsets, Pose2* offset) {
-  std::vector<double> x, y, sine, cosine;
-  for (const Pose2& pose : offsets) {
-    x.push_back(pose.x);
-    y.push_back(pose.y);
-    sine.push_back(std::sin(pose.theta));
-    cosine.push_back(std::cos(pose.theta));
-  }
-  *offset = Pose2(
-      UpperMedian(std::move(x)), UpperMedian(std::move(y)),
-      std::atan2(UpperMedian(std::move(sine)), UpperMedian(std::move(cosine))));
-  size_t num_close = 0;
-  for (const Pose2& pose : offsets) {
-    if (std::abs(pose.x - offset->x) <= kOffsetTolerance &&
-        std::abs(pose.y - offset->y) <= kOffsetTolerance &&
-        std::abs(NormalizeAngle(pose.theta - offset->theta)) <=
-            kOffsetTolerance) {
-      ++num_close;
-    }
-  }
-  return num_close >= 0.99 * offsets.size() &&
-         std::hypot(offset->x, offset->y) <= kMaxOffset;
-}
-
 class Survey {
  public:
   explicit Survey(const std::string& filename) : filename_(filename) {}
@@ -75,7 +34,8 @@ class Survey {
   absl::StatusOr<CarmenPlan> Plan(const std::string& odometry_source) const;
 
  private:
-  void MarkImplausible();
+  void DropRepetitions();  // particle_filter_log.h
+  void RestampIfLost();
   void WarnOfIgnored(CarmenPlan* plan) const;
   // Chooses the lines that odometry is read from; `disordered` messages have an
   // earlier stamp than the one before them.
@@ -91,26 +51,31 @@ class Survey {
   bool OdometryLinesCoverScans(CarmenKind scan_kind) const;
   Pose2 ChooseLaserPose(CarmenKind scan_kind,
                         std::vector<std::string>* warnings) const;
-  // Messages of a kind with an earlier stamp than the one before them.
-  int64_t CountBackwards(CarmenKind kind) const;
+  // Whether so many stamps that go backwards are too many to pair messages.
+  bool AreDisordered(int64_t backwards) const {
+    return backwards > kMaxBackwardShare * static_cast<double>(lines_.size());
+  }
 
   const std::string filename_;
   std::map<CarmenKind, int64_t> counts_;
+  CarmenKind scan_kind_ = CarmenKind::kFrontLaser;
+  bool is_filter_log_ = false;
+  bool stamps_lost_ = false;
   std::vector<LineKey> lines_;
   std::map<CarmenKind, std::vector<Pose2>> offsets_;  // (robot <- laser)
   std::map<CarmenKind, RangeHistogram> ranges_;
   Pose2 parameter_offset_;
-  int64_t num_malformed_ = 0;
-  std::string first_malformed_;
+  MalformedLines malformed_;
+  MalformedLines malformed_behind_scans_;
   std::map<CarmenKind, size_t> stamp_words_;  // of the last line so far
   bool is_cut_ = false;                       // the last line, behind its stamp
-  int64_t num_implausible_ = 0;
-  size_t first_implausible_ = 0;  // of lines_
+  ImplausibleLines implausible_;
 };
 
 void Survey::AddParameter(const CarmenLine& line) {
   double value;
-  if (!ParseFinite(line.value, &value) || std::abs(value) > kMaxOffset) return;
+  if (!ParseFinite(line.value, &value)) return;
+  if (std::abs(value) > kMaxLaserOffset) return;
   if (line.name == "robot_frontlaser_offset") {
     parameter_offset_.x = value;
   } else if (line.name == "robot_frontlaser_side_offset") {
@@ -124,6 +89,7 @@ absl::Status Survey::Read() {
   auto reader = LineReader::Open(filename_);
   if (!reader.ok()) return reader.status();
   CarmenLine line;
+  ParticleFilterLog repetitions;
   absl::string_view text;
   while (true) {
     const auto more = (*reader)->Next(&text);
@@ -134,15 +100,14 @@ absl::Status Survey::Read() {
       case CarmenKind::kIgnored:
         continue;
       case CarmenKind::kMalformed:
-        if (num_malformed_++ == 0) {
-          first_malformed_ =
-              absl::StrCat((*reader)->Location(), ": ", line.error);
-        }
+        (repetitions.last_was_scan() ? malformed_behind_scans_ : malformed_)
+            .Add((*reader)->Location(), line.error);
         continue;
       case CarmenKind::kParameter:
         AddParameter(line);
         continue;
       case CarmenKind::kRearLaser:
+      case CarmenKind::kFilterMark:
         ++counts_[line.kind];
         continue;
       case CarmenKind::kFrontLaser:
@@ -155,8 +120,9 @@ absl::Status Survey::Read() {
         ABSL_FALLTHROUGH_INTENDED;
       case CarmenKind::kOdometry:
         ++counts_[line.kind];
-        lines_.push_back(
-            LineKey{line.time, (*reader)->line_number(), line.kind, true});
+        lines_.push_back(LineKey{line.time, (*reader)->line_number(), line.kind,
+                                 true, repetitions.Repeats(line)});
+        repetitions.Skip(line);
         if ((*reader)->unterminated() &&
             line.num_stamp_words < stamp_words_[line.kind]) {
           lines_.back().plausible = false;
@@ -170,29 +136,35 @@ absl::Status Survey::Read() {
                                                 " messages; split the log"));
     }
   }
-  MarkImplausible();
+  scan_kind_ = ChooseScanKind();
+  DropRepetitions();
+  RestampIfLost();
+  implausible_ = MarkImplausible(&lines_);
   return absl::OkStatus();
 }
 
-void Survey::MarkImplausible() {
-  size_t begin = 0;
-  for (size_t end = 1; end <= lines_.size(); ++end) {
-    if (end != lines_.size() &&
-        std::abs(lines_[end].time - lines_[end - 1].time) <= kImplausibleGap) {
-      continue;
-    }
-    const auto count = static_cast<int64_t>(end - begin);
-    const bool is_few =
-        count <= kMaxImplausible &&
-        static_cast<double>(count) <=
-            kMaxBackwardShare * static_cast<double>(lines_.size());
-    for (size_t i = begin; is_few && i != end; ++i) {
-      if (!lines_[i].plausible) continue;  // the line that is cut off
-      lines_[i].plausible = false;
-      if (num_implausible_++ == 0) first_implausible_ = i;
-    }
-    begin = end;
+void Survey::DropRepetitions() {
+  is_filter_log_ = Count(scan_kind_) > 0 &&
+                   2 * Count(CarmenKind::kFilterMark) > Count(scan_kind_);
+  if (!is_filter_log_) {
+    malformed_.Add(malformed_behind_scans_);
+    return;
   }
+  const auto repetition =
+      std::remove_if(lines_.begin(), lines_.end(),
+                     [](const LineKey& line) { return line.repeats; });
+  counts_[CarmenKind::kOdometry] -= lines_.end() - repetition;
+  lines_.erase(repetition, lines_.end());
+}
+
+void Survey::RestampIfLost() {
+  // A particle filter has read the lines in their order.
+  stamps_lost_ = AreStampsLost(lines_, scan_kind_) ||
+                 (is_filter_log_ &&
+                  AreDisordered(CountBackwards(lines_, CarmenKind::kOdometry)));
+  if (!stamps_lost_) return;
+  TimeNs time = 0;
+  for (LineKey& line : lines_) line.time = time += kLineSpacing;
 }
 
 CarmenKind Survey::ChooseScanKind() const {
@@ -239,38 +211,34 @@ Pose2 Survey::ChooseLaserPose(CarmenKind scan_kind,
   return equal ? parameter_offset_ : offset;
 }
 
-int64_t Survey::CountBackwards(CarmenKind kind) const {
-  int64_t count = 0;
-  TimeNs last = 0;
-  for (const LineKey& line : lines_) {
-    if (line.kind != kind || !line.plausible) continue;
-    if (line.time < last) ++count;
-    last = line.time;
-  }
-  return count;
-}
-
 void Survey::WarnOfIgnored(CarmenPlan* const plan) const {
   SensorSourceInfo& info = plan->info;
-  if (num_malformed_ > 0) {
-    info.warnings.push_back(absl::StrCat(first_malformed_, "; ", num_malformed_,
-                                         num_malformed_ == 1
-                                             ? " malformed line skipped"
-                                             : " malformed lines skipped"));
+  if (stamps_lost_) {
+    info.warnings.push_back(absl::StrCat(
+        filename_,
+        ": the stamps do not put scans and odometry into an order; that of the "
+        "lines is taken, ",
+        ToSeconds(kLineSpacing), " s per line"));
+  }
+  if (malformed_.count > 0) {
+    info.warnings.push_back(
+        absl::StrCat(malformed_.first, "; ", malformed_.count,
+                     malformed_.count == 1 ? " malformed line skipped"
+                                           : " malformed lines skipped"));
   }
   if (is_cut_) {
     info.warnings.push_back(absl::StrCat(
         filename_, ":", lines_.back().number,
         ": the last line is truncated in or after its stamp; dropped"));
   }
-  if (num_implausible_ > 0) {
-    const LineKey& first = lines_[first_implausible_];
+  if (implausible_.count > 0) {
+    const LineKey& first = lines_[implausible_.first];
     info.warnings.push_back(absl::StrFormat(
         "%s:%d: the stamp %s s is more than an hour from those around it; %d "
         "%s "
         "dropped",
-        filename_, first.number, FormatTime(first.time), num_implausible_,
-        num_implausible_ == 1 ? "message" : "messages"));
+        filename_, first.number, FormatTime(first.time), implausible_.count,
+        implausible_.count == 1 ? "message" : "messages"));
   }
   int64_t num_other_lasers = Count(CarmenKind::kRearLaser);
   for (const CarmenKind kind :
@@ -290,7 +258,13 @@ void Survey::ChooseOdometry(const std::string& odometry_source,
                             CarmenPlan* const plan) const {
   SensorSourceInfo& info = plan->info;
   const bool has_poses = plan->scan_kind != CarmenKind::kRawLaser;
-  if (odometry_source == "both") {
+  if (is_filter_log_ && odometry_source == "auto" && has_poses) {
+    plan->use_scan_poses = true;
+    info.warnings.push_back(absl::StrCat(
+        filename_,
+        ": the log of a particle filter; its corrected poses are taken for "
+        "odometry (odometry source odom: without the corrections)"));
+  } else if (odometry_source == "both") {
     plan->use_odometry_lines = true;
     plan->use_scan_poses = has_poses;
   } else if (odometry_source == "odom") {
@@ -299,9 +273,8 @@ void Survey::ChooseOdometry(const std::string& odometry_source,
     plan->use_scan_poses = has_poses;
   } else {
     const bool cover = OdometryLinesCoverScans(plan->scan_kind);
-    const bool stamps_usable =
-        disordered <= kMaxBackwardShare * static_cast<double>(lines_.size());
-    plan->use_odometry_lines = !has_poses || (cover && stamps_usable);
+    plan->use_odometry_lines =
+        !has_poses || (cover && !AreDisordered(disordered));
     plan->use_scan_poses = !plan->use_odometry_lines;
     if (plan->use_scan_poses && cover) {
       info.warnings.push_back(absl::StrCat(
@@ -360,21 +333,24 @@ void Survey::OrderEvents(CarmenPlan* const plan) const {
 absl::StatusOr<CarmenPlan> Survey::Plan(
     const std::string& odometry_source) const {
   CarmenPlan plan;
-  plan.scan_kind = ChooseScanKind();
+  plan.scan_kind = scan_kind_;
+  plan.is_filter_log = is_filter_log_;
+  plan.line_spacing = stamps_lost_ ? kLineSpacing : 0;
   SensorSourceInfo& info = plan.info;
   info.format = "carmen";
   if (Count(plan.scan_kind) == 0) {
     return absl::InvalidArgumentError(absl::StrCat(
         filename_, ": no laser scan (FLASER, ROBOTLASER1 or RAWLASER1) found",
-        num_malformed_ == 0
+        malformed_.count == 0
             ? "; is this a CARMEN log?"
-            : absl::StrCat(", ", num_malformed_, " malformed lines, first ",
-                           first_malformed_)));
+            : absl::StrCat(", ", malformed_.count, " malformed lines, first ",
+                           malformed_.first)));
   }
   WarnOfIgnored(&plan);
-  const int64_t backward_scans = CountBackwards(plan.scan_kind);
-  int64_t backward_odometry = CountBackwards(CarmenKind::kOdometry);
+  const int64_t backward_scans = CountBackwards(lines_, plan.scan_kind);
+  int64_t backward_odometry = CountBackwards(lines_, CarmenKind::kOdometry);
   ChooseOdometry(odometry_source, backward_scans + backward_odometry, &plan);
+  plan.remove_corrections = is_filter_log_ && plan.use_odometry_lines;
   plan.laser_pose = ChooseLaserPose(plan.scan_kind, &info.warnings);
   plan.range_max = ranges_.at(plan.scan_kind).RangeMax();
   if (!plan.use_odometry_lines) backward_odometry = 0;

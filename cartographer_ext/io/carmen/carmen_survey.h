@@ -24,8 +24,13 @@ struct CarmenPlan {
   CarmenKind scan_kind = CarmenKind::kFrontLaser;
   bool use_odometry_lines = false;
   bool use_scan_poses = false;
-  Pose2 laser_pose;        // (robot <- laser)
-  double range_max = 80.;  // just below "no return"; infinity if unknown
+  Pose2 laser_pose;            // (robot <- laser)
+  double range_max = 80.;      // just below "no return"; infinity if unknown
+  bool is_filter_log = false;  // particle_filter_log.h
+  bool remove_corrections = false;  // of its poses
+  // Scans and ODOM lines are this far apart, in the order of the file; 0: as
+  // their stamps say.
+  TimeNs line_spacing = 0;
   ReorderPlan reordering;
   SensorSourceInfo info;
 };

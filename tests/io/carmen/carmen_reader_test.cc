@@ -185,6 +185,105 @@ TEST(CarmenReaderTest, CorrectedLogsKeepOdometry) {
   EXPECT_EQ(log->Odometry()[9].pose.x, 9.);
 }
 
+// What GMapping writes: the pose jumps by the correction at every scan.
+std::string ParticleFilterLogText(const int num_scans, const bool with_marks) {
+  std::string text;
+  double corrected = 0., stamp = 0.;
+  for (int i = 0; i < num_scans; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      corrected += 0.25;
+      absl::StrAppend(&text, "ODOM ", corrected, " 0 0 0 0 0 ", stamp += 0.5,
+                      " h 1\n");
+    }
+    corrected -= 0.5;  // the correction
+    absl::StrAppend(&text, "FLASER 2 1 2 ", corrected, " 0 0 ", corrected,
+                    " 0 0 ", stamp, " h 1\n");
+    // The repetition, whose stamp may be no stamp.
+    absl::StrAppend(&text, "ODOM ", corrected, " 0 0 0 0 0 ",
+                    i % 2 == 0 ? "0 h 0\n" : "-20.1 h -20.1\n");
+    if (with_marks) absl::StrAppend(&text, "NEFF 29.5\n");
+  }
+  return text;
+}
+
+TEST(CarmenReaderTest, CorrectedPosesOfAParticleFilterAreTaken) {
+  const auto log = ReadText(ParticleFilterLogText(20, true));
+  ASSERT_TRUE(log.ok()) << log.status();
+  EXPECT_EQ(log->info.num_scans, 20);
+  EXPECT_EQ(log->info.num_out_of_order, 0);
+  ASSERT_EQ(log->info.warnings.size(), 1u);
+  EXPECT_THAT(log->info.warnings[0], HasSubstr("the log of a particle filter"));
+  const std::vector<OdometryReading> odometry = log->Odometry();
+  ASSERT_EQ(odometry.size(), 20u);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_TRUE(odometry[i].inside_scan);
+    EXPECT_NEAR(odometry[i].pose.x, 0.25 * (i + 1), 1e-12);
+    EXPECT_NEAR(ToSeconds(odometry[i].time), 1.5 * (i + 1), 1e-9);
+  }
+  // Without the filter's marks it could be any log, and its ODOM lines count.
+  const auto other = ReadText(ParticleFilterLogText(20, false), "odom");
+  EXPECT_EQ(other->info.num_odometry, 70);
+}
+
+TEST(CarmenReaderTest, CorrectionsOfAParticleFilterAreRemovedOnRequest) {
+  const auto log = ReadText(ParticleFilterLogText(20, true), "odom");
+  ASSERT_TRUE(log.ok()) << log.status();
+  EXPECT_EQ(log->info.num_out_of_order, 0);
+  EXPECT_EQ(log->info.warnings.size(), 0u);
+  const std::vector<OdometryReading> odometry = log->Odometry();
+  ASSERT_EQ(odometry.size(), 60u);
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_NEAR(odometry[i].pose.x, 0.25 * (i + 1), 1e-12);
+    EXPECT_NEAR(ToSeconds(odometry[i].time), 0.5 * (i + 1), 1e-9);
+    EXPECT_FALSE(odometry[i].inside_scan);
+  }
+  // Where stamps go backwards, the lines are in the order of the filter.
+  std::string disordered = ParticleFilterLogText(20, true);
+  disordered.replace(disordered.find(" 10.5 h"), 5, " 9.25");
+  const auto ordered = ReadText(disordered, "odom");
+  EXPECT_EQ(ordered->info.num_out_of_order, 0);
+  ASSERT_EQ(ordered->Odometry().size(), 60u);
+  EXPECT_NEAR(ToSeconds(ordered->Odometry()[0].time), 0.1, 1e-9);
+  EXPECT_NEAR(ordered->Odometry()[20].pose.x, 5.25, 1e-12);
+}
+
+TEST(CarmenReaderTest, ScansOfAParticleFilterWithoutOdometryBetweenThem) {
+  std::string text;
+  for (int i = 0; i < 20; ++i) {
+    absl::StrAppend(&text, "FLASER 2 1 2 ", i, " 0 0 ", i, " 0 0 ", i + 1,
+                    " h 1\nODOM ", i, " 0 0 0 0 0 0 h 0\nNEFF 29\n");
+    if (i == 9) absl::StrAppend(&text, "ODOM 9.5 0 0 0 0 0 10.5 h 1\n");
+  }
+  const auto log = ReadText(text, "both");
+  ASSERT_TRUE(log.ok()) << log.status();
+  ASSERT_EQ(log->Odometry().size(), 21u);
+  EXPECT_NEAR(log->Odometry()[9].pose.x, 9., 1e-12);
+  EXPECT_NEAR(log->Odometry()[10].pose.x, 9.5, 1e-12);
+  EXPECT_NEAR(log->Odometry()[11].pose.x, 9.5, 1e-12);
+  EXPECT_NEAR(log->Odometry()[20].pose.x, 18.5, 1e-12);
+}
+
+TEST(CarmenReaderTest, LostStampsAreReplaced) {
+  for (const char* const stamp : {"0", "1.20012e+09"}) {
+    std::string text;
+    for (int i = 0; i < 20; ++i) {
+      absl::StrAppend(&text, "ODOM ", i, " 0 0 0 0 0 ", stamp, " h 1\n");
+      absl::StrAppend(&text, "FLASER 2 1 2 ", i, " 0 0 ", i, " 0 0 ", stamp,
+                      " h 1\n");
+    }
+    const auto log = ReadText(text);
+    ASSERT_TRUE(log.ok()) << log.status();
+    ASSERT_EQ(log->info.warnings.size(), 1u);
+    EXPECT_THAT(log->info.warnings[0],
+                HasSubstr("that of the lines is taken, 0.1 s per line"));
+    ASSERT_EQ(log->events.size(), 40u);
+    for (int i = 0; i < 40; ++i) {
+      EXPECT_NEAR(ToSeconds(EventTime(log->events[i])), 0.1 * (i + 1), 1e-9);
+    }
+    EXPECT_EQ(log->Odometry()[7].pose.x, 7.);
+  }
+}
+
 TEST(CarmenReaderTest, SortsStablyAndCounts) {
   // Stamps 2 1 2 1; the order of equal ones is that of the file.
   std::string text;
