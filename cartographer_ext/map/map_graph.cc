@@ -51,6 +51,16 @@ Trajectory MapGraph::LocalTrajectory(const int trajectory_id) const {
   return Trajectory(std::move(poses));
 }
 
+std::set<int> MapGraph::TiedTrajectories() const {
+  std::set<int> trajectories;
+  for (const GraphConstraint& constraint : constraints) {
+    if (submaps.count(constraint.submap_id) > 0) {
+      trajectories.insert(constraint.node_id.trajectory_id);
+    }
+  }
+  return trajectories;
+}
+
 std::map<GraphId, std::vector<GraphId>> MapGraph::InsertedNodes() const {
   std::map<GraphId, std::vector<GraphId>> inserted;
   for (const GraphConstraint& constraint : constraints) {

@@ -13,6 +13,7 @@
 #define CARTOGRAPHER_EXT_MAP_MAP_GRAPH_H_
 
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -88,6 +89,8 @@ struct MapGraph {
   Trajectory GlobalTrajectory() const;
   // (local <- node) at the nodes of one trajectory, planar.
   Trajectory LocalTrajectory(int trajectory_id) const;
+  // Trajectories of which a constraint ties a node to a submap.
+  std::set<int> TiedTrajectories() const;
   // Nodes inserted into each submap, in order of id, from the intra-submap
   // constraints.
   std::map<GraphId, std::vector<GraphId>> InsertedNodes() const;

@@ -3,7 +3,9 @@
 #include "cartographer_ext/map/verdict/self_consistency.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <set>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -214,12 +216,9 @@ void KeepWorstOfEach(const io::TimeNs span, std::vector<MotionStep>* steps) {
   steps->swap(kept);
 }
 
-}  // namespace
-
-SelfConsistency AssessSelfConsistency(const MapGraph& graph,
-                                      const MapContents& contents,
-                                      const std::map<int, Trajectory>& odometry,
-                                      const SelfConsistencyOptions& options) {
+SelfConsistency Assess(const MapGraph& graph, const MapContents& contents,
+                       const std::map<int, Trajectory>& odometry,
+                       const SelfConsistencyOptions& options) {
   SelfConsistency result;
   result.contradictions =
       FindContradictions(graph, contents, options.contradiction);
@@ -262,6 +261,36 @@ SelfConsistency AssessSelfConsistency(const MapGraph& graph,
   }
   result.word = WordOf(result, graph.nodes.size(), options);
   Explain(graph, options, &result);
+  return result;
+}
+
+}  // namespace
+
+SelfConsistency AssessSelfConsistency(const MapGraph& graph,
+                                      const MapContents& contents,
+                                      const std::map<int, Trajectory>& odometry,
+                                      const SelfConsistencyOptions& options) {
+  const std::set<int> tied = graph.TiedTrajectories();
+  std::map<int, int> untied_nodes;  // by trajectory
+  for (const auto& node : graph.nodes) {
+    const int trajectory_id = node.first.trajectory_id;
+    if (tied.count(trajectory_id) == 0) ++untied_nodes[trajectory_id];
+  }
+  if (tied.empty() || untied_nodes.empty()) {
+    return Assess(graph, contents, odometry, options);
+  }
+  MapGraph judged = graph;
+  for (auto it = judged.nodes.begin(); it != judged.nodes.end();) {
+    it = tied.count(it->first.trajectory_id) > 0 ? std::next(it)
+                                                 : judged.nodes.erase(it);
+  }
+  SelfConsistency result = Assess(judged, contents, odometry, options);
+  for (const auto& entry : untied_nodes) {
+    result.reasons.push_back(
+        absl::StrFormat("trajectory %d (%d nodes) is not judged: nothing ties "
+                        "its nodes to a submap",
+                        entry.first, entry.second));
+  }
   return result;
 }
 

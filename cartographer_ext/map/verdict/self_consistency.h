@@ -75,6 +75,8 @@ struct SelfConsistency {
   std::vector<std::string> reasons;
 };
 
+// Trajectories of which no node is tied to a submap are left out, and a reason
+// says so.
 SelfConsistency AssessSelfConsistency(const MapGraph& graph,
                                       const MapContents& contents,
                                       const std::map<int, Trajectory>& odometry,

@@ -62,6 +62,33 @@ TEST(SelfConsistencyTest, FoldedMapIsBrokenAndNamesThePlace) {
   EXPECT_THAT(ToText(result), HasSubstr("Self-consistency"));
 }
 
+// Cartographer stores the nodes of a trajectory whose submaps were deleted or
+// are not finished.
+TEST(SelfConsistencyTest, TrajectoriesWithoutSubmapsAreNotJudged) {
+  test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  const test::BoxWorld folded =
+      test::MakeBoxWorld(0, Pose2(1.5, 1.2, DegToRad(20.)));
+  for (const auto& node : folded.graph.nodes) {
+    const GraphId id{1, node.first.index};
+    world.graph.nodes[id] = node.second;
+    world.contents.scans[id] = folded.contents.scans.at(node.first);
+  }
+  const SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents, {}, {});
+  EXPECT_EQ(result.word, "sound");
+  EXPECT_EQ(result.reasons.back(),
+            "trajectory 1 (100 nodes) is not judged: nothing ties its nodes to "
+            "a submap");
+  // Tied by a single loop, they are part of the map.
+  GraphConstraint loop;
+  loop.submap_id = {0, 0};
+  loop.node_id = {1, 50};
+  loop.is_loop = true;
+  world.graph.constraints.push_back(loop);
+  EXPECT_EQ(AssessSelfConsistency(world.graph, world.contents, {}, {}).word,
+            "broken");
+}
+
 TEST(SelfConsistencyTest, WrongTurnAloneIsDoubt) {
   const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
   const SelfConsistency result =
