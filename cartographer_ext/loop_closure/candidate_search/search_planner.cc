@@ -21,6 +21,8 @@ using proto::LoopDecision;
 constexpr size_t kFullSearchesPerNode = 1;
 // Loops nearer than this to each other give the same paths, metres.
 constexpr double kLoopSpacing = 3.;
+// Standard deviations of a loop below which a path tells nearly as much.
+constexpr double kTiedSigmas = 3.;
 // Searched nodes remembered, oldest forgotten first.
 constexpr size_t kMaxNodesPerSubmap = 20000;
 
@@ -44,6 +46,7 @@ SearchPlanner::SearchPlanner(const SearchPlannerOptions& options,
                              const uncertainty::PathUncertainty* const paths)
     : options_(options),
       loop_covariance_(loop_covariance),
+      pass_limits_{options.redundant_distance, options.max_passes_per_place},
       reach_(reach),
       default_linear_window_(default_linear_window),
       default_angular_window_(default_angular_window),
@@ -138,15 +141,54 @@ SearchPlan SearchPlanner::PlanAlone(const LoopCandidate& candidate) {
     plan.skipped = LoopDecision::SKIPPED_UNINFORMATIVE;
   } else if (plan.full_submap ? near_searched_fully : near_searched) {
     plan.skipped = LoopDecision::SKIPPED_SPACING;
+  } else if (IsTied(candidate, plan)) {
+    plan.skipped = LoopDecision::SKIPPED_UNINFORMATIVE;
   }
   return plan;
 }
 
-bool SearchPlanner::IsSaturated(const uncertainty::SubmapId& submap) const {
-  const auto memory = submaps_.find(submap);
+bool SearchPlanner::HasEnoughPasses(const LoopCandidate& candidate) const {
+  const auto memory = submaps_.find(candidate.submap);
+  return candidate.predicted.has_value() && memory != submaps_.end() &&
+         memory->second.passes.Count(*candidate.predicted) >= pass_limits_.most;
+}
+
+bool SearchPlanner::IsTied(const LoopCandidate& candidate,
+                           const SearchPlan& plan) const {
+  if (plan.full_submap || plan.translation_sigma <= 0. ||
+      plan.translation_sigma >= options_.saturated_sigma) {
+    return false;
+  }
+  const auto planned = planned_passes_.find(candidate.submap);
+  if (planned != planned_passes_.end() &&
+      !planned->second.Takes(candidate.node, candidate.SearchCenter(),
+                             pass_limits_, *paths_)) {
+    return true;
+  }
+  return plan.translation_sigma <
+             kTiedSigmas *
+                 uncertainty::WorstTranslationSigma(loop_covariance_) &&
+         HasEnoughPasses(candidate);
+}
+
+bool SearchPlanner::IsSaturated(const LoopCandidate& candidate) const {
+  const auto memory = submaps_.find(candidate.submap);
   return memory != submaps_.end() &&
-         memory->second.accepted.size() >=
-             static_cast<size_t>(options_.saturating_loops);
+         (memory->second.accepted.size() >=
+              static_cast<size_t>(options_.saturating_loops) ||
+          HasEnoughPasses(candidate));
+}
+
+bool SearchPlanner::IsEnoughFor(const LoopCandidate& candidate,
+                                const SearchPlan& plan) {
+  if (plan.out_of_reach) return false;
+  if (plan.skipped == LoopDecision::SKIPPED_REDUNDANT) return true;
+  SearchPlan window = plan;
+  // Not planned where the submap was searched a moment ago.
+  if (window.translation_sigma <= 0. && !PlanWindow(candidate, &window)) {
+    return plan.is_searched();
+  }
+  return window.translation_sigma < options_.saturated_sigma;
 }
 
 double SearchPlanner::Promise(const LoopCandidate& candidate,
@@ -207,6 +249,8 @@ void SearchPlanner::PlanAndNote(const LoopCandidate& candidate,
   if (!plan->is_searched()) return;
   Remember(candidate.node, candidate.node_time,
            submaps_[candidate.submap].Searched(*plan));
+  planned_passes_[candidate.submap].Add(
+      candidate.node, candidate.SearchCenter(), pass_limits_, *paths_);
 }
 
 void SearchPlanner::PlanNode(
@@ -215,7 +259,7 @@ void SearchPlanner::PlanNode(
   // With their distances, nearest first.
   std::vector<std::pair<double, size_t>> saturated;
   for (const size_t i : indices) {
-    if (IsSaturated(candidates[i]->submap)) {
+    if (IsSaturated(*candidates[i])) {
       saturated.emplace_back(candidates[i]->SearchCenter().translation().norm(),
                              i);
     } else {
@@ -229,10 +273,7 @@ void SearchPlanner::PlanNode(
     SearchPlan& plan = (*plans)[entry.second];
     if (num_searched < options_.max_saturated_searches_per_node) {
       PlanAndNote(*candidates[entry.second], &plan);
-      if (plan.is_searched() &&
-          plan.translation_sigma < options_.saturated_sigma) {
-        ++num_searched;
-      }
+      if (IsEnoughFor(*candidates[entry.second], plan)) ++num_searched;
       continue;
     }
     // One record for all, or the records would grow with every visit.
@@ -250,6 +291,7 @@ std::vector<SearchPlan> SearchPlanner::Plan(
     of_node[candidates[i]->node].push_back(i);
   }
   std::vector<SearchPlan> plans(candidates.size());
+  planned_passes_.clear();
   // One by one, since the searches of a burst space each other out.
   for (const auto& entry : of_node) PlanNode(candidates, entry.second, &plans);
   for (const auto& entry : of_node) ApplyCap(candidates, entry.second, &plans);
@@ -259,7 +301,9 @@ std::vector<SearchPlan> SearchPlanner::Plan(
 void SearchPlanner::AddAcceptedLoop(const LoopCandidate& candidate,
                                     const uncertainty::LoopEdge& loop) {
   credit_.Reward(candidate.plan);
-  Remember(loop.b, candidate.node_time, &submaps_[candidate.submap].accepted);
+  SubmapMemory& memory = submaps_[candidate.submap];
+  Remember(loop.b, candidate.node_time, &memory.accepted);
+  memory.passes.Add(loop.b, candidate.match.refined, pass_limits_, *paths_);
   least_uncertain_paths_.Add(loop);
 }
 
@@ -275,6 +319,7 @@ void SearchPlanner::ForgetLoops(const int trajectory_id,
   });
   for (auto& submap : submaps_) {
     if (submap.first.trajectory_id != submap_trajectory_id) continue;
+    submap.second.passes.Forget(trajectory_id, last_node_index);
     Nodes& accepted = submap.second.accepted;
     for (auto it = accepted.begin(); it != accepted.end();) {
       it = is_old(it->first) ? accepted.erase(it) : std::next(it);

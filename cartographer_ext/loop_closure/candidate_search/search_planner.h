@@ -21,6 +21,11 @@
 //              another one, and a node needs few loops. Of the saturated
 //              submaps around a node only the nearest are searched, so that its
 //              cost does not grow with the number of earlier visits.
+//   passes     The same holds for a place of a submap that a few passes are tied
+//              to (place_passes.h), and where the path tells nearly as much as a
+//              loop would it is not searched at all. Of the nodes of earlier
+//              laps, all of which a new submap meets at once, a few passes at
+//              each place are searched.
 //
 // The plans depend only on the sequence of previous proposals and decisions.
 // Not thread-safe.
@@ -33,6 +38,7 @@
 #include <vector>
 
 #include "Eigen/Core"
+#include "cartographer_ext/loop_closure/candidate_search/place_passes.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_credit.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_result.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
@@ -82,6 +88,10 @@ struct SearchPlannerOptions {
   int saturating_loops = 100;
   double saturated_sigma = 1.;
   int max_saturated_searches_per_node = 1;  // > 0
+  // A place of a submap is saturated, too, with this many passes, > 0. Of the
+  // nodes that a submap meets at once as many passes are searched at each place
+  // where the path is less uncertain than `saturated_sigma`.
+  int max_passes_per_place = 3;
 };
 
 // Plans the searches of candidates, see above.
@@ -121,6 +131,7 @@ class SearchPlanner {
     Nodes searched;
     Nodes searched_fully;
     Nodes accepted;
+    PlacePasses passes;  // of accepted loops
 
     Nodes* Searched(const SearchPlan& plan) {
       return plan.full_submap ? &searched_fully : &searched;
@@ -139,7 +150,14 @@ class SearchPlanner {
   // Adds a node, within the bound on memory.
   static void Remember(const uncertainty::VertexId& node, int64_t time,
                        Nodes* nodes);
-  bool IsSaturated(const uncertainty::SubmapId& submap) const;
+  // Whether the submap, or the place in it, has enough loops.
+  bool IsSaturated(const LoopCandidate& candidate) const;
+  bool HasEnoughPasses(const LoopCandidate& candidate) const;
+  // Whether the place has enough passes for a path as uncertain as planned.
+  bool IsTied(const LoopCandidate& candidate, const SearchPlan& plan) const;
+  // Whether the node of a saturated candidate needs no other one: it is
+  // searched, or has been near it, and the path is known roughly.
+  bool IsEnoughFor(const LoopCandidate& candidate, const SearchPlan& plan);
   // Plans a candidate and notes the search.
   void PlanAndNote(const LoopCandidate& candidate, SearchPlan* plan);
   // Plans the candidates of one node, `indices`.
@@ -156,11 +174,14 @@ class SearchPlanner {
 
   const SearchPlannerOptions options_;
   const Eigen::Matrix3d loop_covariance_;
+  const PassLimits pass_limits_;
   const double reach_;
   const double default_linear_window_;
   const double default_angular_window_;
   const uncertainty::PathUncertainty* const paths_;
   std::map<uncertainty::SubmapId, SubmapMemory> submaps_;
+  // Of the searches of one call.
+  std::map<uncertainty::SubmapId, PlacePasses> planned_passes_;
   SearchCredit credit_;
   uncertainty::LeastUncertainPaths least_uncertain_paths_;
 };

@@ -286,6 +286,62 @@ TEST_F(SearchPlannerTest, OfSaturatedSubmapsTheNearestIsSearched) {
   }
 }
 
+// A place that three passes are tied to needs no fourth one.
+TEST_F(SearchPlannerTest, OfPlacesWithEnoughPassesTheNearestIsSearched) {
+  options_.max_searches_per_node = 8;
+  options_.max_passes_per_place = 3;
+  MakePlanner();
+  for (const int submap : {0, 1}) {
+    for (const int node : {20, 40, 60}) {
+      LoopCandidate accepted = Accepted(submap, 0);
+      accepted.match.refined = Pose2(3.5, 0., 0.);
+      uncertainty::LoopEdge loop;
+      loop.a = uncertainty::NodeId{0, 0};
+      loop.b = uncertainty::NodeId{0, node};
+      loop.pose.covariance = LoopCovariance();
+      planner_->AddAcceptedLoop(accepted, loop);
+    }
+  }
+  // 0.64 m: the root of the loop and 40 m.
+  std::vector<SearchPlan> plans =
+      PlanAll({Pair(0, 0, 100, 3.), Pair(1, 0, 100, 3.5), Pair(1, 0, 101, 7.)});
+  EXPECT_EQ(plans[0].skipped, LoopDecision::NONE);
+  EXPECT_EQ(plans[1].skipped, LoopDecision::SKIPPED_UNINFORMATIVE);
+  EXPECT_EQ(plans[2].skipped, LoopDecision::NONE);  // another place
+  // A node later the nearest has been searched a moment ago; that is enough.
+  plans = PlanAll({Pair(0, 0, 101, 3.), Pair(1, 0, 101, 3.5)});
+  EXPECT_EQ(plans[0].skipped, LoopDecision::SKIPPED_SPACING);
+  EXPECT_EQ(plans[1].skipped, LoopDecision::SKIPPED_UNINFORMATIVE);
+  // 0.24 m, less than three standard deviations of a loop.
+  EXPECT_EQ(PlanOne(Pair(0, 0, 65, 3.)).skipped,
+            LoopDecision::SKIPPED_UNINFORMATIVE);
+  EXPECT_EQ(PlanOne(Pair(0, 0, 65, 7.)).skipped, LoopDecision::NONE);
+}
+
+// A submap that has just been finished meets the nodes of all earlier laps.
+TEST_F(SearchPlannerTest, OfOlderNodesAFewPassesAreSearchedAtEachPlace) {
+  options_.max_passes_per_place = 3;
+  const auto num_searched = [&](const double spacing) {
+    MakePlanner();
+    std::vector<LoopCandidate> pairs;
+    for (int pass = 0; pass != 5; ++pass) {
+      // Two searches of one pass.
+      for (const int node : {20 * pass, 20 * pass + 3}) {
+        pairs.push_back(Pair(0, 120, node, 3. + spacing * pass));
+      }
+    }
+    int result = 0;
+    for (const SearchPlan& plan : PlanAll(pairs)) result += plan.is_searched();
+    return result;
+  };
+  options_.saturated_sigma = 1.2;
+  EXPECT_EQ(num_searched(0.), 6);
+  // At five places, and where nothing is known well.
+  EXPECT_EQ(num_searched(2.5), 10);
+  options_.saturated_sigma = 0.3;
+  EXPECT_EQ(num_searched(0.), 10);
+}
+
 }  // namespace
 }  // namespace loop_closure
 }  // namespace cartographer_ext
