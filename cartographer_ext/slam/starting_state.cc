@@ -44,6 +44,13 @@ absl::StatusOr<std::map<int, int>> LoadStartingState(
       return absl::InvalidArgumentError(
           absl::StrCat(state.filename, ": the map is empty"));
     }
+    for (const auto& submap : pbstream->submaps) {
+      if (submap.submap_2d().has_grid()) continue;
+      return absl::InvalidArgumentError(absl::StrCat(
+          state.filename, ": submap (", submap.submap_id().trajectory_id(),
+          ", ", submap.submap_id().submap_index(),
+          ") has no grid, so nothing can be matched with it"));
+    }
   }
   return map_builder->LoadStateFromFile(state.filename, state.frozen);
 }

@@ -42,7 +42,7 @@ class QueueWithBarriers {
 TEST(WorkQueueTest, IdleFromTheStart) {
   QueueWithBarriers queue(1);
   queue.queue().WaitUntilIdle();
-  EXPECT_EQ(queue.queue().size(), 0);
+
   EXPECT_EQ(queue.queue().DelaySeconds(), 0.);
 }
 
@@ -112,6 +112,28 @@ TEST(WorkQueueTest, Stress) {
   queue.queue().WaitUntilIdle();
   EXPECT_EQ(num_run, kNumProducers * kNumItems);
   EXPECT_EQ(queue.barriers().size(), kNumProducers * kNumItems / 50);
+}
+
+// As the wait for a short queue relies on it.
+TEST(WorkQueueTest, TellsEveryChangeOfItsSize) {
+  std::vector<size_t> sizes;
+  {
+    common::ThreadPool pool(2);
+    WorkQueue queue(
+        &pool, [](Result) { FAIL() << "no barrier is expected"; },
+        [&sizes](const size_t size) { sizes.push_back(size); });
+    for (int i = 0; i < 100; ++i) {
+      queue.Add([]() { return Result::kDoNotRunOptimization; });
+    }
+    queue.WaitUntilIdle();
+  }
+  ASSERT_EQ(sizes.size(), 200);
+  size_t last = 0;
+  for (const size_t size : sizes) {
+    EXPECT_TRUE(size == last + 1 || size + 1 == last);
+    last = size;
+  }
+  EXPECT_EQ(last, 0);
 }
 
 }  // namespace

@@ -5,11 +5,14 @@
 #include "cartographer_ext/slam/starting_state.h"
 
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cartographer/mapping/map_builder.h"
+#include "cartographer_ext/io/pbstream/pbstream_reader.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/metrics/trajectory_metrics.h"
 #include "cartographer_ext/slam/slam_runner.h"
@@ -136,6 +139,22 @@ TEST_F(StartingStateTest, ABadMapIsAnError) {
   // A file, but not a map.
   options.state.filename = "configuration_files/stock.lua";
   EXPECT_FALSE(RunSlam(Load("stock.lua"), &source, options).ok());
+}
+
+// Saving such a map would end the program.
+TEST_F(StartingStateTest, AMapWithoutAGridIsRefused) {
+  auto map = io::ReadPbstream(*filename_);
+  ASSERT_TRUE(map.ok()) << map.status();
+  map->submaps[1].mutable_submap_2d()->clear_grid();
+  SlamRunOptions options;
+  options.state.filename = testing::TempDir() + "without_grid.pbstream";
+  ASSERT_TRUE(io::WritePbstream(*map, options.state.filename).ok());
+  test::RoomSource source(3);
+  const auto run = RunSlam(Load("stock.lua"), &source, options);
+  std::remove(options.state.filename.c_str());
+  ASSERT_FALSE(run.ok());
+  EXPECT_THAT(std::string(run.status().message()),
+              testing::HasSubstr("submap (0, 1) has no grid"));
 }
 
 }  // namespace

@@ -13,8 +13,11 @@ namespace cartographer {
 namespace mapping {
 
 WorkQueue::WorkQueue(common::ThreadPoolInterface* const thread_pool,
-                     std::function<void(WorkItem::Result)> barrier_handler)
-    : thread_pool_(thread_pool), barrier_handler_(std::move(barrier_handler)) {}
+                     std::function<void(WorkItem::Result)> barrier_handler,
+                     std::function<void(size_t)> on_size)
+    : thread_pool_(thread_pool),
+      barrier_handler_(std::move(barrier_handler)),
+      on_size_(std::move(on_size)) {}
 
 WorkQueue::~WorkQueue() {
   absl::MutexLock lock(&mutex_);
@@ -26,6 +29,7 @@ void WorkQueue::Add(const std::function<WorkItem::Result()>& task) {
   {
     absl::MutexLock lock(&mutex_);
     items_.push_back(WorkItem{std::chrono::steady_clock::now(), task});
+    ReportSize();
     start = !active_;
     active_ = true;
   }
@@ -48,6 +52,7 @@ void WorkQueue::Resume() {
       }
       task = std::move(items_.front().task);
       items_.pop_front();
+      ReportSize();
     }
     const WorkItem::Result result = task();
     if (result != WorkItem::Result::kDoNotRunOptimization) {
@@ -66,9 +71,8 @@ void WorkQueue::WaitUntilIdle() {
   mutex_.Await(absl::Condition(&idle));
 }
 
-size_t WorkQueue::size() const {
-  absl::MutexLock lock(&mutex_);
-  return items_.size();
+void WorkQueue::ReportSize() const {
+  if (on_size_ != nullptr) on_size_(items_.size());
 }
 
 double WorkQueue::DelaySeconds() const {

@@ -38,9 +38,12 @@ struct WorkItem {
 class WorkQueue {
  public:
   // The handler is called on the pool, without locks, with the result that is
-  // not kDoNotRunOptimization; it must cause exactly one Resume().
+  // not kDoNotRunOptimization; it must cause exactly one Resume(). `on_size`,
+  // if any, is told the number of waiting items whenever it changes, in this
+  // order and under the lock: it must not call the queue.
   WorkQueue(common::ThreadPoolInterface* thread_pool,
-            std::function<void(WorkItem::Result)> barrier_handler);
+            std::function<void(WorkItem::Result)> barrier_handler,
+            std::function<void(size_t)> on_size = nullptr);
   // Nothing may be running: see WaitUntilIdle.
   ~WorkQueue();
   WorkQueue(const WorkQueue&) = delete;
@@ -56,13 +59,15 @@ class WorkQueue {
   // Blocks until there is nothing left to do. Not for threads of the pool.
   void WaitUntilIdle() ABSL_LOCKS_EXCLUDED(mutex_);
 
-  size_t size() const ABSL_LOCKS_EXCLUDED(mutex_);
   // How long the oldest waiting item has waited.
   double DelaySeconds() const ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
+  void ReportSize() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
   common::ThreadPoolInterface* const thread_pool_;
   const std::function<void(WorkItem::Result)> barrier_handler_;
+  const std::function<void(size_t)> on_size_;
   mutable absl::Mutex mutex_;
   std::deque<WorkItem> items_ ABSL_GUARDED_BY(mutex_);
   // True from the first item until the queue has run empty, barriers included.

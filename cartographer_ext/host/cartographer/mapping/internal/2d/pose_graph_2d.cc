@@ -38,12 +38,19 @@ PoseGraph2D::PoseGraph2D(
     : options_(options),
       optimization_problem_(std::move(optimization_problem)),
       constraint_builder_(options_.constraint_builder_options(), thread_pool),
-      work_queue_(thread_pool, [this](const WorkItem::Result barrier) {
-        using Constraints = constraints::ConstraintBuilder2D::Result;
-        constraint_builder_.WhenDone([this, barrier](const Constraints& found) {
-          HandleConstraints(barrier, found);
-        });
-      }) {
+      work_queue_(
+          thread_pool,
+          [this](const WorkItem::Result barrier) {
+            using Constraints = constraints::ConstraintBuilder2D::Result;
+            constraint_builder_.WhenDone(
+                [this, barrier](const Constraints& found) {
+                  HandleConstraints(barrier, found);
+                });
+          },
+          [](const size_t size) {
+            GetPoseGraph2DMetrics().work_queue_size->Set(
+                static_cast<double>(size));
+          }) {
   if (options_.has_overlapping_submaps_trimmer_2d()) {
     AddTrimmer(MakeTrimmer(options_.overlapping_submaps_trimmer_2d()));
   }
@@ -81,9 +88,7 @@ NodeId PoseGraph2D::AddNode(
 void PoseGraph2D::AddWorkItem(
     const std::function<WorkItem::Result()>& work_item) {
   work_queue_.Add(work_item);
-  PoseGraph2DMetrics& metrics = GetPoseGraph2DMetrics();
-  metrics.work_queue_size->Set(work_queue_.size());
-  metrics.work_queue_delay->Set(work_queue_.DelaySeconds());
+  GetPoseGraph2DMetrics().work_queue_delay->Set(work_queue_.DelaySeconds());
 }
 
 void PoseGraph2D::AddChange(const std::function<void()>& change,
@@ -138,7 +143,6 @@ WorkItem::Result PoseGraph2D::ProcessNode(
     const NodeId& node_id,
     const std::vector<std::shared_ptr<const Submap2D>>& insertion_submaps,
     const std::vector<SubmapId>& submap_ids, const bool newly_finished_submap) {
-  GetPoseGraph2DMetrics().work_queue_size->Set(work_queue_.size());
   std::vector<SubmapId> older_submap_ids;
   std::set<NodeId> nodes_in_new_submap;
   {
