@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/collection/baseline.h"
 
+#include <cerrno>
 #include <fstream>
 #include <utility>
 
@@ -14,7 +15,7 @@ absl::StatusOr<std::map<std::string, MapRecord>> ReadBaseline(
     const std::string& filename) {
   std::ifstream stream(filename);
   if (!stream) {
-    return absl::NotFoundError(absl::StrCat(filename, ": cannot be opened"));
+    return absl::ErrnoToStatus(errno, absl::StrCat("cannot open ", filename));
   }
   std::map<std::string, MapRecord> baseline;
   std::string line;

@@ -14,6 +14,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "cartographer_ext/common/bounded_read.h"
+#include "cartographer_ext/common/byte_order_mark.h"
 #include "lua.hpp"
 
 namespace cartographer_ext {
@@ -260,7 +261,9 @@ absl::StatusOr<std::string> ReadFromDirectories(
     if (!stream) continue;
     std::string content;
     if (!ReadUpTo(kMaxFileSize, &stream, &content)) continue;
-    if (content.size() <= kMaxFileSize) return content;
+    if (content.size() <= kMaxFileSize) {
+      return std::string(WithoutByteOrderMark(content));
+    }
     return absl::InvalidArgumentError(absl::StrCat(
         directory, "/", basename, " has more than ", kMaxFileSize >> 20,
         " MB, which cannot be a configuration"));

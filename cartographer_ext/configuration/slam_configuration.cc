@@ -11,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 #include "cartographer/common/configuration_file_resolver.h"
 #include "cartographer/common/lua_parameter_dictionary.h"
 #include "cartographer/mapping/map_builder.h"
@@ -234,6 +235,26 @@ absl::Status Explain(const absl::Status& status, const std::string& name,
                    absl::StrJoin(directories, ", "), "): ", status.message()));
 }
 
+// The host does not tell Lua the name of a file, so that Lua calls the code by
+// how it begins: [string "-- My robot..."]:9: unexpected symbol. With the name
+// in its place.
+absl::Status WithFileName(const absl::Status& status, const std::string& name,
+                          const std::string& code) {
+  constexpr absl::string_view kBegin = "[string \"";
+  constexpr absl::string_view kEnd = "\"]:";
+  const std::string message(status.message());
+  const size_t begin = message.find(kBegin.data());
+  const size_t end = message.find(kEnd.data(), begin);
+  if (begin == std::string::npos || end == std::string::npos) return status;
+  absl::string_view shown = absl::string_view(message).substr(
+      begin + kBegin.size(), end - begin - kBegin.size());
+  absl::ConsumeSuffix(&shown, "...");
+  if (!absl::StartsWith(code, shown)) return status;
+  return absl::Status(status.code(),
+                      absl::StrCat(message.substr(0, begin), name, ":",
+                                   message.substr(end + kEnd.size())));
+}
+
 }  // namespace
 
 absl::StatusOr<SlamConfiguration> LoadSlamConfiguration(
@@ -262,7 +283,10 @@ absl::StatusOr<SlamConfiguration> ParseSlamConfiguration(
   const std::string& host_code = IsLuaRestricted() ? ToLuaCode(*table) : code;
   valid = TryInChildProcess(
       [&] { ConstructOrDie(ParseOrDie(directories, name, host_code)); });
-  if (!valid.ok()) return Explain(Suggest(valid, *table), name, directories);
+  if (!valid.ok()) {
+    return Explain(WithFileName(Suggest(valid, *table), name, code), name,
+                   directories);
+  }
   SlamConfiguration configuration = ParseOrDie(directories, name, host_code);
   for (const std::string& warning : warnings) {
     configuration.warnings.push_back(

@@ -20,6 +20,7 @@
 #include "boost/iostreams/filter/lzma.hpp"
 #include "boost/iostreams/filtering_streambuf.hpp"
 #include "boost/iostreams/read.hpp"
+#include "cartographer_ext/common/byte_order_mark.h"
 #include "cartographer_ext/io/expansion_budget.h"
 
 namespace cartographer_ext {
@@ -169,7 +170,7 @@ absl::StatusOr<bool> LineReader::Next(absl::string_view* line) {
       length = std::min(length, kMaxLineLength);
       if (length > 0 && begin[length - 1] == '\r') --length;
       *line = absl::string_view(begin, length);
-      ++line_number_;
+      if (++line_number_ == 1) *line = WithoutByteOrderMark(*line);
       return true;
     }
     searched = end_ - begin_;

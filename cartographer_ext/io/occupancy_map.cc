@@ -9,9 +9,11 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/byte_order_mark.h"
 #include "cartographer_ext/io/line_reader.h"
 #include "cartographer_ext/io/tokens.h"
 
@@ -91,6 +93,40 @@ absl::Status ParseKey(absl::string_view key, absl::string_view value,
   return absl::OkStatus();  // Other keys are of no concern.
 }
 
+// A file name as a YAML value, in quotes where it would mean something else.
+std::string YamlString(const std::string& text) {
+  const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) {
+    return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '_' ||
+           c == '.' || c == '-' || c == '+' || (c & 0x80) != 0;
+  });
+  if (is_plain && !text.empty() && text[0] != '-') return text;
+  return absl::StrCat(
+      "\"",
+      absl::StrReplaceAll(text,
+                          {{"\\", "\\\\"}, {"\"", "\\\""}, {"\n", "\\n"}}),
+      "\"");
+}
+
+// The value of a line behind its colon: without comment, quotes and escapes.
+std::string YamlValue(absl::string_view text) {
+  text = absl::StripAsciiWhitespace(text);
+  const char quote = text.empty() ? '\0' : text[0];
+  if (quote != '"' && quote != '\'') {
+    const size_t comment = text.find(" #");
+    return std::string(absl::StripAsciiWhitespace(text.substr(0, comment)));
+  }
+  std::string value;
+  for (size_t i = 1; i < text.size() && text[i] != quote; ++i) {
+    if (quote == '"' && text[i] == '\\' && i + 1 < text.size()) {
+      ++i;
+      value.push_back(text[i] == 'n' ? '\n' : text[i]);
+    } else {
+      value.push_back(text[i]);
+    }
+  }
+  return value;
+}
+
 absl::StatusOr<Yaml> ReadYaml(const std::string& filename) {
   auto content = ReadFile(filename, kMaxYamlSize);
   if (!content.ok()) return content.status();
@@ -100,22 +136,16 @@ absl::StatusOr<Yaml> ReadYaml(const std::string& filename) {
     return absl::InvalidArgumentError(
         absl::StrCat(filename, ":", line_number, ": ", what));
   };
-  for (absl::string_view line : absl::StrSplit(*content, '\n')) {
+  for (absl::string_view line :
+       absl::StrSplit(WithoutByteOrderMark(*content), '\n')) {
     ++line_number;
-    const size_t comment = line.find(" #");
-    if (comment != absl::string_view::npos) line = line.substr(0, comment);
     line = absl::StripAsciiWhitespace(line);
     if (line.empty() || line[0] == '#' || line == "---") continue;
     const size_t colon = line.find(':');
     if (colon == absl::string_view::npos) return error("expected key: value");
-    absl::string_view value =
-        absl::StripAsciiWhitespace(line.substr(colon + 1));
-    if (value.size() >= 2 && (value[0] == '"' || value[0] == '\'') &&
-        value.back() == value[0]) {
-      value = value.substr(1, value.size() - 2);
-    }
-    const absl::Status status = ParseKey(
-        absl::StripAsciiWhitespace(line.substr(0, colon)), value, &yaml);
+    const absl::Status status =
+        ParseKey(absl::StripAsciiWhitespace(line.substr(0, colon)),
+                 YamlValue(line.substr(colon + 1)), &yaml);
     if (!status.ok()) return error(status.message());
   }
   const auto missing = [&](absl::string_view what) {
@@ -254,15 +284,16 @@ absl::Status WriteOccupancyMap(const OccupancyMap& map,
   if (!status.ok()) return status;
   return WriteFileAtomically(
       absl::StrCat(filestem, ".yaml"),
-      absl::StrFormat("image: %s.pgm\n"
+      absl::StrFormat("image: %s\n"
                       "mode: trinary\n"
                       "resolution: %s\n"
                       "origin: [%s, %s, %s]\n"
                       "negate: 0\n"
                       "occupied_thresh: 0.65\n"
                       "free_thresh: 0.196\n",
-                      BaseName(filestem), FormatDouble(map.resolution),
-                      FormatDouble(map.origin.x), FormatDouble(map.origin.y),
+                      YamlString(BaseName(filestem) + ".pgm"),
+                      FormatDouble(map.resolution), FormatDouble(map.origin.x),
+                      FormatDouble(map.origin.y),
                       FormatDouble(map.origin.theta)));
 }
 

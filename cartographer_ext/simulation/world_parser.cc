@@ -3,6 +3,7 @@
 #include "cartographer_ext/simulation/world_parser.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -14,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_ext/common/bounded_read.h"
+#include "cartographer_ext/common/byte_order_mark.h"
 #include "cartographer_ext/simulation/plan_builder.h"
 #include "cartographer_ext/simulation/statement.h"
 
@@ -290,7 +292,8 @@ absl::StatusOr<World> ParseWorld(absl::string_view text,
   Parser parser;
   parser.world()->name = FileStem(filename);
   int64_t line_number = 0;
-  for (const absl::string_view line : absl::StrSplit(text, '\n')) {
+  for (const absl::string_view line :
+       absl::StrSplit(WithoutByteOrderMark(text), '\n')) {
     ++line_number;
     Statement statement(line, absl::StrCat(filename, ":", line_number));
     if (statement.keyword().empty()) continue;
@@ -311,7 +314,7 @@ absl::StatusOr<World> ParseWorld(absl::string_view text,
 absl::StatusOr<World> LoadWorld(const std::string& filename) {
   std::ifstream file(filename, std::ios::binary);
   if (!file) {
-    return absl::NotFoundError(absl::StrCat(filename, ": cannot be opened"));
+    return absl::ErrnoToStatus(errno, absl::StrCat("cannot open ", filename));
   }
   std::string text;
   // ParseWorld reports a file that is too large.

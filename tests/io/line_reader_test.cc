@@ -61,6 +61,14 @@ TEST(LineReaderTest, SplitsLines) {
   EXPECT_THAT(*Lines(file.path()), ElementsAre(""));
 }
 
+TEST(LineReaderTest, SkipsAByteOrderMark) {
+  test::TemporaryFile file(".txt");
+  test::WriteBytes(file.path(),
+                   "\xef\xbb\xbf"
+                   "1 2\n\xef\xbb\xbf");
+  EXPECT_THAT(*Lines(file.path()), ElementsAre("1 2", "\xef\xbb\xbf"));
+}
+
 TEST(LineReaderTest, LinesLongerThanTheBuffer) {
   test::TemporaryFile file(".txt");
   const std::string a(200000, 'a'), b(70000, 'b');

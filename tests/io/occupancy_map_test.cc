@@ -136,6 +136,22 @@ TEST(OccupancyMapTest, SurvivesMutations) {
   });
 }
 
+TEST(OccupancyMapTest, AnyNameIsReadAgain) {
+  const std::string folder = testing::TempDir();
+  const OccupancyMap map = OccupancyMap::Make(3, 2, 0.05, Pose2());
+  for (const char* const name : {"plain_1", "a #1", "b: c", "it's", "\"q\"",
+                                 "back\\slash", "-dash", "two\nlines"}) {
+    const std::string stem = folder + "/" + name;
+    ASSERT_TRUE(WriteOccupancyMap(map, stem).ok()) << name;
+    EXPECT_TRUE(ReadOccupancyMap(stem + ".yaml").ok()) << name;
+    test::WriteBytes(stem + ".yaml",
+                     "\xef\xbb\xbf" + test::ReadBytes(stem + ".yaml"));
+    EXPECT_TRUE(ReadOccupancyMap(stem + ".yaml").ok()) << name;
+    std::remove((stem + ".yaml").c_str());
+    std::remove((stem + ".pgm").c_str());
+  }
+}
+
 }  // namespace
 }  // namespace io
 }  // namespace cartographer_ext

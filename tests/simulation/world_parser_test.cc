@@ -113,6 +113,10 @@ TEST(WorldParserTest, NameComesFromTheFileOtherwise) {
   EXPECT_EQ(world->name, "my_hall");
 }
 
+TEST(WorldParserTest, AByteOrderMarkIsSkipped) {
+  EXPECT_TRUE(ParseWorld(std::string("\xef\xbb\xbf") + kStart, "a.world").ok());
+}
+
 TEST(WorldParserTest, WallWithRecesses) {
   // A recess adds twice its depth; the left of +x is +y.
   const World world =

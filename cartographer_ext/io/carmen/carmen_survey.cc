@@ -283,7 +283,11 @@ void Survey::ChooseOdometry(const std::string& odometry_source,
           "is taken from the scan lines"));
     } else if (plan->use_scan_poses && Count(CarmenKind::kOdometry) > 0) {
       info.warnings.push_back(absl::StrCat(
-          filename_, ": too few ODOM lines (", Count(CarmenKind::kOdometry),
+          filename_,
+          5 * Count(CarmenKind::kOdometry) < Count(plan->scan_kind)
+              ? ": too few ODOM lines ("
+              : ": other times in the ODOM lines than in those of scans (",
+          Count(CarmenKind::kOdometry),
           "); odometry is taken from the scan lines"));
     }
   }

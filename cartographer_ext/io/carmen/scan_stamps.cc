@@ -3,6 +3,7 @@
 #include "cartographer_ext/io/carmen/scan_stamps.h"
 
 #include <cstdlib>
+#include <map>
 
 namespace cartographer_ext {
 namespace io {
@@ -37,25 +38,36 @@ int64_t CountBackwards(const std::vector<LineKey>& lines,
 }
 
 ImplausibleLines MarkImplausible(std::vector<LineKey>* const lines) {
+  // In the order of the enumeration.
+  std::map<CarmenKind, std::vector<size_t>> of_kinds;
+  for (size_t i = 0; i < lines->size(); ++i) {
+    of_kinds[(*lines)[i].kind].push_back(i);
+  }
   ImplausibleLines implausible;
-  size_t begin = 0;
-  for (size_t end = 1; end <= lines->size(); ++end) {
-    if (end != lines->size() &&
-        std::abs((*lines)[end].time - (*lines)[end - 1].time) <=
-            kImplausibleGap) {
-      continue;
+  for (const auto& kind : of_kinds) {
+    const std::vector<size_t>& own = kind.second;
+    const auto time = [&](const size_t i) { return (*lines)[own[i]].time; };
+    size_t begin = 0;
+    for (size_t end = 1; end <= own.size(); ++end) {
+      if (end != own.size() &&
+          std::abs(time(end) - time(end - 1)) <= kImplausibleGap) {
+        continue;
+      }
+      const auto count = static_cast<int64_t>(end - begin);
+      const bool is_few =
+          count <= kMaxImplausible &&
+          static_cast<double>(count) <=
+              kMaxBackwardShare * static_cast<double>(own.size());
+      for (size_t i = begin; is_few && i != end; ++i) {
+        LineKey& line = (*lines)[own[i]];
+        if (!line.plausible) continue;  // the line that is cut off
+        line.plausible = false;
+        if (implausible.count++ == 0 || own[i] < implausible.first) {
+          implausible.first = own[i];
+        }
+      }
+      begin = end;
     }
-    const auto count = static_cast<int64_t>(end - begin);
-    const bool is_few =
-        count <= kMaxImplausible &&
-        static_cast<double>(count) <=
-            kMaxBackwardShare * static_cast<double>(lines->size());
-    for (size_t i = begin; is_few && i != end; ++i) {
-      if (!(*lines)[i].plausible) continue;  // the line that is cut off
-      (*lines)[i].plausible = false;
-      if (implausible.count++ == 0) implausible.first = i;
-    }
-    begin = end;
   }
   return implausible;
 }

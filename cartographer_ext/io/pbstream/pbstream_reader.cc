@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <utility>
 
@@ -298,9 +301,13 @@ class Parser {
 
 absl::StatusOr<Pbstream> ReadPbstream(const std::string& filename,
                                       const PbstreamReaderOptions& options) {
+  struct stat info;
+  if (::stat(filename.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) {
+    return absl::InvalidArgumentError(absl::StrCat(filename, " is a folder"));
+  }
   std::ifstream file(AtomicFileSet::NameToRead(filename), std::ios::binary);
   if (!file) {
-    return absl::NotFoundError(absl::StrCat(filename, ": cannot be opened"));
+    return absl::ErrnoToStatus(errno, absl::StrCat("cannot open ", filename));
   }
   std::string content;
   // The first block tells whether this is a pbstream, before all is read.

@@ -218,6 +218,7 @@ bool FinishScan(const RosHeader& header, LaserScan* scan) {
   if (n == 0 || n > CarmenLine::kMaxReadings ||
       !(std::abs(scan->angle_min) <= 4. * kPi) ||
       !(std::abs(scan->angle_increment) * n <= 2.1 * kPi) ||
+      (scan->angle_increment == 0. && n > 1) ||
       !std::isfinite(scan->range_min) || !(scan->range_max > 0.) ||
       !(scan->time_increment >= 0.) || !(scan->time_increment * n <= 10.)) {
     return false;

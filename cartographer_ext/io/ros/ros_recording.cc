@@ -13,11 +13,13 @@
 
 #include "absl/memory/memory.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/io/reorder.h"
 #include "cartographer_ext/io/ros/ros_container.h"
 #include "cartographer_ext/io/ros/ros_event.h"
 #include "cartographer_ext/io/ros/ros_frames.h"
+#include "cartographer_ext/io/tokens.h"
 
 namespace cartographer_ext {
 namespace io {
@@ -76,6 +78,9 @@ class RosRecording : public SensorSource {
 
  private:
   absl::Status Survey();
+  std::string NoScanMessage(const std::string& topics) const;
+  // Warns of odometry and IMU that have no time in common with the scans.
+  void CheckClocks(const std::vector<EventKey>& keys);
   void CountEvents(const std::vector<EventKey>& keys);
   void ChooseTrackingFrame();
   void CheckFrames();
@@ -234,12 +239,12 @@ absl::Status RosRecording::Survey() {
     }
   }
   CountEvents(keys);
+  CheckClocks(keys);
   std::vector<std::string> scans;
   for (const auto& scan : topics_.scans) scans.push_back(scan.first);
   const std::string names = absl::StrJoin(scans, ", ");
   if (info_.num_scans == 0) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(filename_, ": no valid scan on ", names));
+    return absl::InvalidArgumentError(NoScanMessage(names));
   }
   if (scans.size() > 1) info_.lasers = std::move(scans);
   if (2 * num_planar_clouds_ < num_clouds_) {
@@ -249,6 +254,48 @@ absl::Status RosRecording::Survey() {
                      "plane are read"));
   }
   return absl::OkStatus();
+}
+
+std::string RosRecording::NoScanMessage(const std::string& topics) const {
+  int64_t num_damaged = 0;
+  for (const auto& scan : topics_.scans) {
+    const auto damaged = damaged_.find(scan.first);
+    if (damaged != damaged_.end()) num_damaged += damaged->second;
+  }
+  return absl::StrCat(
+      filename_, ": no valid scan on ", topics, ": ",
+      num_damaged == 0
+          ? "no messages"
+          : absl::StrCat(num_damaged,
+                         " messages are damaged or have no beams, or angles, "
+                         "ranges or times of beams that cannot be"));
+}
+
+void RosRecording::CheckClocks(const std::vector<EventKey>& keys) {
+  constexpr TimeNs kMax = std::numeric_limits<TimeNs>::max();
+  constexpr TimeNs kSlack = 1000000000;
+  TimeNs begin[kNumRanks], end[kNumRanks];
+  std::fill(begin, begin + kNumRanks, kMax);
+  std::fill(end, end + kNumRanks, -kMax);
+  for (const EventKey& key : keys) {
+    begin[key.rank] = std::min(begin[key.rank], key.time);
+    end[key.rank] = std::max(end[key.rank], key.time);
+  }
+  if (begin[kScanRank] > end[kScanRank]) return;
+  for (const RosRank rank : {kOdometryRank, kImuRank}) {
+    if (begin[rank] > end[rank]) continue;
+    if (begin[rank] <= end[kScanRank] + kSlack &&
+        end[rank] >= begin[kScanRank] - kSlack) {
+      continue;
+    }
+    info_.warnings.push_back(absl::StrFormat(
+        "%s: %s has stamps from %s s to %s s, scans from %s s to %s s: no time "
+        "in common, so it says nothing about them (another clock, "
+        "use_sim_time?)",
+        filename_, rank == kOdometryRank ? "odometry" : "the IMU",
+        FormatTime(begin[rank]), FormatTime(end[rank]),
+        FormatTime(begin[kScanRank]), FormatTime(end[kScanRank])));
+  }
 }
 
 void RosRecording::CountEvents(const std::vector<EventKey>& keys) {

@@ -139,9 +139,11 @@ void ReadTable(const std::string& path, LuaParameterDictionary* const table,
       LuaLiterals(table->ToString());
   for (const std::string& key : table->GetKeys()) {
     const FieldDescriptor* const found = descriptor.FindFieldByName(key);
-    CHECK(found != nullptr && key != "schema")
-        << path << "." << key << ": unknown key, " << FormerKey(descriptor, key)
-        << "allowed: " << absl::StrJoin(known, ", ");
+    if (found == nullptr || key == "schema") {
+      LOG(FATAL) << path << "." << key << ": unknown key, "
+                 << FormerKey(descriptor, key)
+                 << "allowed: " << absl::StrJoin(known, ", ");
+    }
     const FieldDescriptor& field = *found;
     const std::string key_path = absl::StrCat(path, ".", key);
     const auto literal = literals.find(key);

@@ -341,6 +341,25 @@ TEST(CarmenReaderTest, StampsThatDoNotBelongToTheLogAreDropped) {
   EXPECT_EQ(ReadText(paused)->info.num_scans, 300);
 }
 
+// The computer of the base had another idea of the time than that of the laser.
+TEST(CarmenReaderTest, OdometryMayHaveAClockOfItsOwn) {
+  std::string text;
+  for (int i = 0; i < 200; ++i) {
+    absl::StrAppend(&text, "ODOM ", i, " 0 0 0 0 0 ", 1000 + i, " h 1\n");
+    absl::StrAppend(&text, "FLASER 2 1 2 ", i, " 0 0 ", i, " 0 0 ",
+                    1134864000 + i, " h 1\n");
+  }
+  const auto log = ReadText(text);
+  ASSERT_TRUE(log.ok()) << log.status();
+  EXPECT_EQ(log->info.num_scans, 200);
+  EXPECT_EQ(log->info.num_odometry, 200);
+  EXPECT_NEAR(ToSeconds(log->info.end - log->info.begin), 199., 1e-6);
+  ASSERT_EQ(log->info.warnings.size(), 1u);
+  EXPECT_THAT(log->info.warnings[0],
+              HasSubstr("other times in the ODOM lines than in those of scans "
+                        "(200); odometry is taken from the scan lines"));
+}
+
 TEST(CarmenReaderTest, ALastLineThatIsCutOffIsDropped) {
   const std::string text = LongLog(200);
   // Whole but for the line end; cut in the logger's stamp, behind the host's

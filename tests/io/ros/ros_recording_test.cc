@@ -286,6 +286,41 @@ TEST(RosRecordingTest, MissingTimesOfBeamsAreSaid) {
               ::testing::Contains(HasSubstr("no times of beams on /scan")));
 }
 
+TEST(RosRecordingTest, ClocksThatDisagreeAreSaid) {
+  for (const double offset : {0., 1.7e9}) {
+    auto container = TwentyScans(0.);
+    OdometryReading odometry;
+    for (int i = 0; i < 3; ++i) {
+      odometry.time = FromSeconds(10. + i + offset);
+      container->Add("/odom", kRos2Odometry,
+                     EncodeOdometry(odometry, 0., 0., "odom", "base_link"));
+    }
+    auto source = OpenRosRecording("memory", std::move(container), {});
+    ASSERT_TRUE(source.ok()) << source.status();
+    const auto warned = ::testing::Contains(
+        HasSubstr("odometry has stamps from 1700000010.000000000 s"));
+    if (offset == 0.) {
+      EXPECT_THAT((*source)->info().warnings, ::testing::Not(warned));
+    } else {
+      EXPECT_THAT((*source)->info().warnings, warned);
+    }
+  }
+}
+
+TEST(RosRecordingTest, BeamsInOneDirectionAreNoScan) {
+  LaserScan scan;
+  scan.range_max = 10.;
+  scan.ranges = {1.f, 2.f};
+  scan.angle_increment = 0.;
+  auto container = absl::make_unique<MemoryContainer>();
+  container->Add("/scan", kRos2LaserScan, EncodeLaserScan(scan, "base_link"));
+  EXPECT_THAT(std::string(OpenRosRecording("memory", std::move(container), {})
+                              .status()
+                              .message()),
+              HasSubstr("no valid scan on /scan: 1 messages are damaged or "
+                        "have no beams, or angles"));
+}
+
 TEST(RosRecordingTest, PointsInSpaceAreRefused) {
   auto container = absl::make_unique<MemoryContainer>();
   container->Add("/points", "sensor_msgs/msg/PointCloud2",

@@ -91,9 +91,10 @@ class LuaParameterDictionary::State {
     const std::string basename = FileNameArgument(lua, "include");
     const std::string path = state->file_resolver_->GetFullPathOrDie(basename);
     auto& included = state->included_files_;
-    CHECK(std::find(included.begin(), included.end(), path) == included.end())
-        << "'" << path << "' is included again, after "
-        << absl::StrJoin(included, ", ");
+    if (std::find(included.begin(), included.end(), path) != included.end()) {
+      LOG(FATAL) << "'" << path << "' is included again, after "
+                 << absl::StrJoin(included, ", ");
+    }
     included.push_back(path);
     const std::string code =
         state->file_resolver_->GetFileContentOrDie(basename);
@@ -144,7 +145,9 @@ LuaParameterDictionary::~LuaParameterDictionary() {
   if (reference_counted_) {
     for (const std::string& key : GetKeys()) {
       const int count = read_counts_[key];
-      CHECK_GT(count, 0) << "Key '" << KeyPath(key) << "' is not an option";
+      if (count == 0) {
+        LOG(FATAL) << "Key '" << KeyPath(key) << "' is not an option";
+      }
       CHECK_EQ(count, 1) << "Key '" << KeyPath(key) << "' was read " << count
                          << " times";
     }
@@ -158,7 +161,9 @@ std::shared_ptr<LuaParameterDictionary::State> LuaParameterDictionary::Run(
   lua_State* const lua = state->lua();
   DieOnError(lua, luaL_loadstring(lua, code.c_str()));
   DieOnError(lua, lua_pcall(lua, 0, 1, 0));
-  CHECK(lua_istable(lua, -1)) << "The Lua code does not return a table.";
+  if (!lua_istable(lua, -1)) {
+    LOG(FATAL) << "The Lua code does not return a table.";
+  }
   return state;
 }
 
@@ -271,9 +276,10 @@ void LuaParameterDictionary::PushValueOrDie(const std::string& key) {
   PushTable();
   lua_getfield(lua, -1, key.c_str());
   lua_remove(lua, -2);
-  CHECK(!lua_isnil(lua, -1))
-      << "Key '" << KeyPath(key) << "' is missing; the table is:\n"
-      << ToString();
+  if (lua_isnil(lua, -1)) {
+    LOG(FATAL) << "Key '" << KeyPath(key) << "' is missing; the table is:\n"
+               << ToString();
+  }
   ++read_counts_[key];
 }
 

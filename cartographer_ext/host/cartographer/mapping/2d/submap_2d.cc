@@ -40,9 +40,11 @@ void CheckCanBeBuilt(const proto::SubmapsOptions2D& options) {
       options.grid_options_2d().grid_type();
   const auto inserter_type =
       options.range_data_inserter_options().range_data_inserter_type();
-  CHECK(grid_type != proto::GridOptions2D::TSDF)
-      << "submaps.grid_options_2d.grid_type: TSDF submaps can be read from "
-         "files but not built by this host; use PROBABILITY_GRID.";
+  if (grid_type == proto::GridOptions2D::TSDF) {
+    LOG(FATAL) << "submaps.grid_options_2d.grid_type: TSDF submaps can be read "
+                  "from files but not built by this host; use "
+                  "PROBABILITY_GRID.";
+  }
   CHECK(grid_type == proto::GridOptions2D::PROBABILITY_GRID &&
         inserter_type ==
             proto::RangeDataInserterOptions::PROBABILITY_GRID_INSERTER_2D)
