@@ -32,5 +32,20 @@ for document in ('docs/ros.md', 'docs/swap.md'):
             errors.append('%s: %s is missing' % (where, match.group(1)))
         elif not re.search(r'(?<![\w])%s(?![\w])' % re.escape(name), script.read_text(encoding='utf-8')):
             errors.append('%s: %s does not know %s' % (where, match.group(1), name))
+# Commands of several lines can be copied: a line that ends in the middle of one ends in a backslash.
+texts = [(path, path.read_text(encoding='utf-8')) for path in [root / 'README.md', *sorted((root / 'docs').rglob('*.md'))]]
+for path in sorted((root / 'cartographer_ext/tools').glob('*_main.cc')):
+    description = re.search(r'R"\((.*?)\)"', path.read_text(encoding='utf-8'), re.S)
+    texts.append((path, description.group(1) if description else ''))
+for path, text in texts:
+    command = None
+    for line in text.splitlines():
+        goes_on = command is not None and re.match(command + ' {4,}-[a-z]', line)
+        if goes_on and not before.endswith('\\'):
+            errors.append('%s: no backslash at the end of: %s' % (path.relative_to(root), before))
+        if not goes_on:
+            start = re.match('( +)cartographer_ext_', line)
+            command = start.group(1) if start else None
+        before = line
 print('\n'.join(errors) or '%d blocks of commands' % blocks)
 sys.exit(1 if errors or blocks < 10 else 0)

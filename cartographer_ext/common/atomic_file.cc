@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 
@@ -28,12 +30,71 @@ absl::Status WriteError(const std::string& path, int error_number) {
 }
 
 // Follows symbolic links, so that renaming replaces the file and not the link.
+// A link whose target does not exist yet leads to where it would be.
 std::string ResolveLinks(const std::string& path) {
-  char* const resolved = ::realpath(path.c_str(), nullptr);
-  if (resolved == nullptr) return path;
-  std::string result(resolved);
-  std::free(resolved);
-  return result;
+  constexpr int kMaxLinks = 40;
+  std::string result = path;
+  for (int i = 0; i < kMaxLinks; ++i) {
+    char* const resolved = ::realpath(result.c_str(), nullptr);
+    if (resolved != nullptr) {
+      result = resolved;
+      std::free(resolved);
+      return result;
+    }
+    char target[PATH_MAX];
+    const ssize_t length =
+        ::readlink(result.c_str(), target, sizeof(target) - 1);
+    if (length <= 0) return result;
+    const absl::string_view name(target, static_cast<size_t>(length));
+    const size_t slash = result.rfind('/');
+    result = absl::StartsWith(name, "/") || slash == std::string::npos
+                 ? std::string(name)
+                 : absl::StrCat(result.substr(0, slash + 1), name);
+  }
+  return path;
+}
+
+// Temporary files that exist, for the signal handler, which may neither lock
+// nor allocate. Names are never freed, so that it cannot meet one that is being
+// freed. Files beyond the table, and those of a parent process, are left alone.
+struct TemporaryName {
+  std::atomic<const char*> name{nullptr};
+  std::atomic<pid_t> process{0};
+};
+constexpr int kMaxTemporaryNames = 64;
+TemporaryName temporary_names[kMaxTemporaryNames];
+
+void RememberTemporary(const std::string& name) {
+  const char* const copy = ::strdup(name.c_str());
+  for (TemporaryName& entry : temporary_names) {
+    const char* expected = nullptr;
+    if (!entry.name.compare_exchange_strong(expected, copy)) continue;
+    entry.process = ::getpid();
+    return;
+  }
+}
+
+void ForgetTemporary(const std::string& name) {
+  for (TemporaryName& entry : temporary_names) {
+    const char* const known = entry.name;
+    if (known == nullptr || name != known) continue;
+    entry.process = 0;
+    entry.name = nullptr;
+  }
+}
+
+void RemoveTemporary(const std::string& name) {
+  std::remove(name.c_str());
+  ForgetTemporary(name);
+}
+
+void RemoveTemporariesAndEnd(const int signal_number) {
+  for (const TemporaryName& entry : temporary_names) {
+    const char* const name = entry.name;
+    if (name != nullptr && entry.process == ::getpid()) ::unlink(name);
+  }
+  // The handler is reset to the default, which ends the process.
+  ::raise(signal_number);
 }
 
 // The beginning of the temporary files of this computer for `path`.
@@ -71,9 +132,11 @@ void RemoveAbandoned(const std::string& stem) {
 }
 
 absl::Status Replace(const std::string& temporary, const std::string& path) {
-  return std::rename(temporary.c_str(), path.c_str()) == 0
-             ? absl::OkStatus()
-             : WriteError(path, errno);
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    return WriteError(path, errno);
+  }
+  ForgetTemporary(temporary);
+  return absl::OkStatus();
 }
 
 // The content reaches the disk before the name does; otherwise a power failure
@@ -120,6 +183,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
       return;
     }
     ::close(descriptor);
+    RememberTemporary(temporary_path_);
   }
   errno = 0;
   std::unique_ptr<std::ofstream> file(
@@ -134,7 +198,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
 AtomicFile::~AtomicFile() {
   stream_.reset();
   if (!committed_ && !temporary_path_.empty() && temporary_path_ != path_) {
-    std::remove(temporary_path_.c_str());
+    RemoveTemporary(temporary_path_);
   }
 }
 
@@ -174,14 +238,14 @@ AtomicFileSet::AtomicFileSet() { Current() = this; }
 AtomicFileSet::~AtomicFileSet() {
   Current() = nullptr;
   for (const auto& file : waiting_) {
-    if (!file.first.empty()) std::remove(file.first.c_str());
+    if (!file.first.empty()) RemoveTemporary(file.first);
   }
 }
 
 void AtomicFileSet::Add(const std::string& temporary, const std::string& path) {
   for (auto& file : waiting_) {
     if (file.second != path) continue;
-    if (!file.first.empty()) std::remove(file.first.c_str());
+    if (!file.first.empty()) RemoveTemporary(file.first);
     file.first = temporary;
     return;
   }
@@ -221,6 +285,20 @@ void RemoveWithSet(const std::string& path) {
     std::remove(path.c_str());
   } else {
     AtomicFileSet::Current()->Add("", ResolveLinks(path));
+  }
+}
+
+void RemoveTemporaryFilesOnSignals() {
+  for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
+    struct sigaction action;
+    // Ignored signals stay ignored, as under nohup.
+    if (::sigaction(number, nullptr, &action) != 0 ||
+        action.sa_handler != SIG_DFL) {
+      continue;
+    }
+    action.sa_handler = &RemoveTemporariesAndEnd;
+    action.sa_flags = SA_RESETHAND | SA_NODEFER;
+    ::sigaction(number, &action, nullptr);
   }
 }
 

@@ -79,6 +79,10 @@ class AtomicFileSet {
 // Removes a file if it exists; while a set exists, at its Commit.
 void RemoveWithSet(const std::string& path);
 
+// From now on, SIGHUP, SIGINT and SIGTERM remove the temporary files of this
+// process before they end it. For programs that leave these signals alone.
+void RemoveTemporaryFilesOnSignals();
+
 // Writes the whole content in one call. "-" writes to standard output.
 absl::Status WriteFileAtomically(const std::string& path,
                                  absl::string_view content);

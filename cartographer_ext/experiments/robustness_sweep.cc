@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/experiments/robustness_sweep.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <numeric>
 
 #include "absl/strings/str_cat.h"
-#include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/experiments/sweep_graphs.h"
@@ -33,16 +37,20 @@ absl::StatusOr<std::map<std::string, SweepRun>> ReadJournal(
   std::map<std::string, SweepRun> result;
   if (filename.empty()) return result;
   std::ifstream stream(filename);
-  std::string line, whole_lines;
+  std::string line;
+  size_t whole_lines = 0;  // bytes
   int number = 0;
   while (std::getline(stream, line)) {
     ++number;
     SweepRun run;
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (json.is_discarded() && number > 1 && stream.peek() == EOF) {
-      // An interrupted write leaves half a line at the end.
-      const absl::Status status = WriteFileAtomically(filename, whole_lines);
-      if (!status.ok()) return status;
+      // An interrupted write leaves half a line at the end. The file stays the
+      // same one, because it is locked.
+      if (truncate(filename.c_str(), static_cast<off_t>(whole_lines)) != 0) {
+        return absl::ErrnoToStatus(errno,
+                                   absl::StrCat("cannot write ", filename));
+      }
       break;
     }
     if (json.is_discarded() || !FromJson(json, &run)) {
@@ -50,10 +58,49 @@ absl::StatusOr<std::map<std::string, SweepRun>> ReadJournal(
           filename, ":", number, ": not a line of a robustness journal"));
     }
     result[Key(run)] = run;
-    absl::StrAppend(&whole_lines, line, "\n");
+    whole_lines += line.size() + 1;
   }
   return result;
 }
+
+// Appends lines, each on disk before the next run starts. One process at a time
+// may hold it.
+class SweepJournal {
+ public:
+  ~SweepJournal() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+
+  absl::Status Open(const std::string& filename) {
+    filename_ = filename;
+    if (filename.empty()) return absl::OkStatus();
+    descriptor_ =
+        open(filename.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) return SystemError();
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return absl::OkStatus();
+    // Some file systems and devices have no locks.
+    if (errno != EWOULDBLOCK) return absl::OkStatus();
+    return absl::InvalidArgumentError(
+        absl::StrCat(filename, ": another sweep is writing to it"));
+  }
+
+  absl::Status Append(const SweepRun& run) {
+    if (descriptor_ < 0) return absl::OkStatus();
+    const std::string line = absl::StrCat(ToJson(run).dump(), "\n");
+    const ssize_t written = write(descriptor_, line.data(), line.size());
+    if (written == static_cast<ssize_t>(line.size())) return absl::OkStatus();
+    if (written >= 0) errno = ENOSPC;
+    return SystemError();
+  }
+
+ private:
+  absl::Status SystemError() const {
+    return absl::ErrnoToStatus(errno, absl::StrCat("cannot write ", filename_));
+  }
+
+  std::string filename_;
+  int descriptor_ = -1;
+};
 
 double AteLimit(const SweepOptions& options, const SweepGraph& dataset,
                 const std::string& type) {
@@ -214,16 +261,11 @@ bool FromJson(const nlohmann::json& json, SweepRun* const run) {
 absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
   const absl::Status known = CheckSweepOptions(options);
   if (!known.ok()) return known;
+  SweepJournal append;
+  const absl::Status opened = append.Open(options.journal_filename);
+  if (!opened.ok()) return opened;
   auto journal = ReadJournal(options.journal_filename);
   if (!journal.ok()) return journal.status();
-  std::ofstream append;
-  if (!options.journal_filename.empty()) {
-    append.open(options.journal_filename, std::ios::app);
-    if (!append) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("cannot write ", options.journal_filename));
-    }
-  }
   std::vector<SweepRun> runs;
   const int64_t total = (options.datasets.size() + options.families.size()) *
                         options.types.size() * options.counts.size() *
@@ -252,9 +294,9 @@ absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
         runs.back().outlier_share = run.outlier_share;
         runs.back().requested_count = count_text;
       } else {
-        const absl::Status status = RunOne(options, dataset, &run);
+        absl::Status status = RunOne(options, dataset, &run);
+        if (status.ok()) status = append.Append(run);
         if (!status.ok()) return status;
-        if (append.is_open()) append << ToJson(run).dump() << std::endl;
         runs.push_back(run);
       }
       progress.Update(runs.size(), Key(run));

@@ -247,7 +247,7 @@ absl::Status WriteTruth(const Simulation& simulation,
   write(".relations", [&](const std::string& filename) {
     return io::WriteRelations(stamped, filename);
   });
-  write_text(".loops.csv", LoopsCsv(loops));
+  write_text(".truth.loops.csv", LoopsCsv(loops));
   write_text(".places.csv", PlacesCsv(visits));
   write_text(".distances.csv",
              DistancesCsv(KeyDistanceViews(simulation, trajectory)));

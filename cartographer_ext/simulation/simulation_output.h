@@ -7,7 +7,7 @@
 //   .mcap, .db3      ROS 2 recordings with the IMU
 //   .tum             true pose of the robot at every scan
 //   .relations       true relations, sequential and loop pairs
-//   .loops.csv       the loop pairs alone
+//   .truth.loops.csv the loop pairs alone
 //   .places.csv      visits of the marked places
 //   .distances.csv   key distances and the scans that see their ends
 //   .faults.csv      odometry faults: kind, from, to, size

@@ -20,15 +20,14 @@
 #include "nlohmann/json.hpp"
 
 DEFINE_string(pbstream_filename, "",
-              "the state that the golden vectors were made from");
+              "The map that the golden vectors were made from.");
 DEFINE_string(golden_filename, "",
-              "CSV of search and refinement results of the real Cartographer");
+              "CSV of search and refinement results of the real Cartographer.");
 DEFINE_string(matcher, "both",
-              "matcher to run: stock (the host's), ours, or both in turn");
-DEFINE_int32(repeat, 1, "repetitions per pair; the smallest CPU time counts");
-DEFINE_bool(all, false, "print every pair, not only those that differ");
-DEFINE_string(json, "",
-              "write the results to this file as JSON; - is standard output");
+              "Matcher to run: stock (the host's), ours, or both in turn.");
+DEFINE_int32(repeat, 1, "Repetitions per pair; the smallest CPU time counts.");
+DEFINE_bool(all, false, "Print every pair, not only those that differ.");
+DEFINE_string(json, "", "Output: all numbers as JSON; - is standard output.");
 
 namespace cartographer_ext {
 namespace tools {
@@ -249,8 +248,8 @@ int main(int argc, char** argv) {
       "end within 1 mm, 1 mrad and 1 % of cost. CPU\ntimes are printed beside "
       "the golden ones, which are from another machine.\n\n  "
       "cartographer_ext_benchmark_search -pbstream_filename map.pbstream \\\n  "
-      "    -golden_filename map.search.csv -matcher both -repeat 3\n\nExit "
-      "codes: 0 no mismatch, 1 mismatches or bad input, 2 wrong usage.");
+      "    -golden_filename map.search.csv -matcher both -repeat 3\n\n"
+      "Mismatches give exit code 1.");
   command_line.Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty()) {
     return tools::UsageError("-pbstream_filename is missing");

@@ -3,10 +3,10 @@
 #include "cartographer_ext/tools/command_line.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -14,7 +14,6 @@
 #include <system_error>
 
 #include "absl/strings/match.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
@@ -22,8 +21,8 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/lua_value.h"
-#include "cartographer_ext/configuration/option_ranges.h"
 #include "cartographer_ext/io/expansion_budget.h"
+#include "cartographer_ext/tools/flag_values.h"
 #include "gflags/gflags.h"
 #include "glog/logging.h"
 
@@ -144,7 +143,9 @@ bool HasVerdict() {
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
     std::cout << "  -" << flag.name << " (" << flag.type;
     if (!flag.default_value.empty()) {
-      std::cout << ", default " << flag.default_value;
+      std::cout << ", default "
+                << (flag.type == "double" ? ShortestNumber(flag.default_value)
+                                          : flag.default_value);
     }
     std::cout << ")\n";
     PrintWrapped(flag.description, "      ");
@@ -163,38 +164,9 @@ std::string Suggestion(const std::string& unknown) {
   return similar.empty() ? "" : absl::StrCat(", did you mean -", similar, "?");
 }
 
-// No flag accepts NaN, and only flags with a negative default accept negative
-// numbers.
-bool IsSensible(const std::string& name, const std::string& value) {
-  gflags::CommandLineFlagInfo info;
-  double number = 0., default_number = 0.;
-  if (!gflags::GetCommandLineFlagInfo(name.c_str(), &info) ||
-      info.type == "string" || info.type == "bool" ||
-      !absl::SimpleAtod(value, &number) ||
-      !absl::SimpleAtod(info.default_value, &default_number)) {
-    return true;
-  }
-  return number >= 0. || (!std::isnan(number) && default_number < 0.);
-}
-
-// Limit of the flags for the number of threads or processes.
-void CheckNumberOfThreads(const std::string& name, const std::string& value) {
-  int64_t number = 0;
-  if ((name == "num_background_threads" || name == "threads" ||
-       name == "workers") &&
-      absl::SimpleAtoi(value, &number) &&
-      number > evaluation::kMaxBackgroundThreads) {
-    ExitWithUsageError(absl::StrCat("-", name, " must be at most ",
-                                    evaluation::kMaxBackgroundThreads));
-  }
-}
-
 void SetFlag(const std::string& name, const std::string& value) {
-  CheckNumberOfThreads(name, value);
-  if (!IsSensible(name, value)) {
-    ExitWithUsageError(
-        absl::StrCat("-", name, " is \"", value, "\", must be a number >= 0"));
-  }
+  const absl::Status sensible = CheckFlagValue(name, value);
+  if (!sensible.ok()) ExitWithUsageError(std::string(sensible.message()));
   if (gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty()) {
     ExitWithUsageError(absl::StrCat("-", name, " cannot be \"", value, "\""));
   }
@@ -240,6 +212,10 @@ std::vector<std::string> FlagsThatName(const std::string& filename) {
 
 absl::Status CheckDistinct(const std::vector<std::string>& outputs,
                            const std::vector<std::string>& inputs) {
+  if (std::count(outputs.begin(), outputs.end(), "-") > 1) {
+    return absl::InvalidArgumentError(
+        "two outputs are -, but standard output takes only one");
+  }
   for (size_t i = 0; i < outputs.size(); ++i) {
     const std::string& output = outputs[i];
     if (output.empty() || output == "-") continue;
@@ -315,10 +291,15 @@ void CommandLine::Parse(const int argc, char** const argv) {
   OccupyClosedStandardStreams();
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_ERROR;
+  bool only_inputs = false;  // after "--"
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    if (argument.size() < 2 || argument[0] != '-') {
+    if (only_inputs || argument.size() < 2 || argument[0] != '-') {
       TakePositional(argument);
+      continue;
+    }
+    if (argument == "--") {
+      only_inputs = true;
       continue;
     }
     const size_t dashes = argument[1] == '-' ? 2 : 1;
@@ -353,6 +334,7 @@ void CommandLine::Parse(const int argc, char** const argv) {
   }
   io::SetMaxExpansion(FLAGS_max_expansion);
   evaluation::RestrictLua(FLAGS_sandbox);
+  RemoveTemporaryFilesOnSignals();
   google::InitGoogleLogging(ProgramName().c_str());
 }
 
@@ -390,13 +372,15 @@ std::string ConfigurationDirectoryOf(const std::string& program) {
 }
 
 int UsageError(const std::string& message) {
-  std::cerr << ProgramName() << ": " << message << "\n"
+  std::cerr << ProgramName() << ": " << Printable(message) << "\n"
             << "Try " << ProgramName() << " -help\n";
   return kExitUsage;
 }
 
 void PrintNotes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
+  for (const std::string& note : notes) {
+    std::cerr << "note: " << Printable(note) << "\n";
+  }
 }
 
 int ExitCode(const absl::Status& status, const bool verdict_fails) {
@@ -408,7 +392,8 @@ int ExitCode(const absl::Status& status, const bool verdict_fails) {
     std::cerr << ProgramName() << ": cannot write standard output\n";
     return kExitBadInput;
   }
-  std::cerr << ProgramName() << ": " << status.message() << "\n";
+  std::cerr << ProgramName() << ": " << Printable(std::string(status.message()))
+            << "\n";
   return kExitBadInput;
 }
 
@@ -418,6 +403,11 @@ absl::Status CheckWritable(const std::vector<std::string>& filenames,
   if (!distinct.ok()) return distinct;
   for (const std::string& filename : filenames) {
     if (filename.empty() || filename == "-") continue;
+    struct stat existing;
+    if (::stat(filename.c_str(), &existing) == 0 &&
+        S_ISFIFO(existing.st_mode)) {
+      continue;  // Opening it twice would end its reader.
+    }
     // Goes away again, with nothing left behind.
     const absl::Status status = AtomicFile(filename).status();
     if (!status.ok()) return status;

@@ -34,7 +34,7 @@ constexpr int kExitVerdict = 3;
 
 // Sets the gflags of a command. `-flag value`, `-flag=value` with one or two
 // dashes, `-flag` and `-noflag` for booleans. One argument that is not a flag
-// is the main input, if the command has one. Unknown flags, bad values and
+// is the main input, if the command has one; behind `--` no argument is a flag. Unknown flags, bad values and
 // other arguments exit with code 2 and a hint; -help prints the description and
 // the command's own flags and exits with 0, -version prints the version.
 // Initialises the log, which shows errors only unless -minloglevel is given.

@@ -42,7 +42,7 @@ namespace {
 constexpr char kDescription[] =
     R"(Aligns two maps and reports their differences: walls, path, verdict.
 
-  cartographer_ext_compare before.pbstream after.pbstream
+  cartographer_ext_compare before.pbstream after.pbstream \
       -report_filename=comparison.html
   cartographer_ext_compare map.pbstream map.yaml -json=-
 

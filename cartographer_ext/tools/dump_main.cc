@@ -32,7 +32,7 @@ constexpr char kDescription[] =
     R"(Lists the contents of a .pbstream and checks them; compares two of them.
 
   cartographer_ext_dump -pbstream_filename=map.pbstream
-  cartographer_ext_dump -pbstream_filename=a.pbstream
+  cartographer_ext_dump -pbstream_filename=a.pbstream \
       -other_pbstream_filename=b.pbstream
 
 The exit code is 1 if a file cannot be read or has problems. Differences between

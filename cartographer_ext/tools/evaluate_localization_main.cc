@@ -56,10 +56,10 @@ constexpr char kDescription[] =
     R"(Evaluates localisation in a finished map: time to localise, jumps of the
 published pose, wrong places.
 
-  cartographer_ext_slam -input_filename=later.clf -load_state_filename=map.pbstream
+  cartographer_ext_slam -input_filename=later.clf -load_state_filename=map.pbstream \
       -configuration_basename=localization.lua -online_trajectory_filename=later.tum
-  cartographer_ext_evaluate_localization -trajectory_filename=later.tum
-      -reference_trajectory_filename=truth.tum
+  cartographer_ext_evaluate_localization -trajectory_filename=later.tum \
+      -reference_trajectory_filename=truth.tum \
       -map_trajectory_filename=map.tum -map_reference_trajectory_filename=map_truth.tum
 
 A kidnapped robot (its true pose moves by more than -carried_distance between two

@@ -111,12 +111,12 @@ constexpr char kDescription[] =
     R"(Judges a map: relations metric, trajectory error, right and wrong loops.
 
   cartographer_ext_evaluate -pbstream_filename=map.pbstream
-  cartographer_ext_evaluate -pbstream_filename=map.pbstream
+  cartographer_ext_evaluate -pbstream_filename=map.pbstream \
       -trajectory_filename=run.tum -relations_filename=aces.relations
-  cartographer_ext_evaluate -trajectory_filename=run.tum
+  cartographer_ext_evaluate -trajectory_filename=run.tum \
       -reference_trajectory_filename=truth.tum -json=-
-  cartographer_ext_evaluate -pbstream_filename=map.pbstream
-      -rerun_configuration_directory=configuration_files
+  cartographer_ext_evaluate -pbstream_filename=map.pbstream \
+      -rerun_configuration_directory=configuration_files \
       -report_filename=map.html
   cartographer_ext_evaluate maps/ -report_filename=overview.html -fail_on=broken
 

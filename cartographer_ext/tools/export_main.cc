@@ -65,8 +65,8 @@ constexpr size_t kMaxTableBytes = size_t{100} << 20;
 constexpr char kDescription[] =
     R"(Exports trajectory, graph, constraints and map of a .pbstream, without ROS.
 
-  cartographer_ext_export -pbstream_filename=map.pbstream
-      -trajectory_filename=map.tum -g2o_filename=map.g2o
+  cartographer_ext_export -pbstream_filename=map.pbstream \
+      -trajectory_filename=map.tum -g2o_filename=map.g2o \
       -constraints_filename=map.csv -map_filestem=map -picture_filename=map.png)";
 
 absl::Status ExportMap(const io::Pbstream& pbstream,

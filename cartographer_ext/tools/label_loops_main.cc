@@ -70,8 +70,8 @@ using evaluation::LoopStatisticsOptions;
 constexpr char kDescription[] =
     R"(Labels every loop candidate as true or false and reports how well the scores separate them.
 
-  cartographer_ext_label_loops -input_filename=aces.clf
-      -relations_filename=aces.relations -csv_filename=loops.csv
+  cartographer_ext_label_loops -input_filename=aces.clf \
+      -relations_filename=aces.relations -csv_filename=loops.csv \
       -picture_filename=loops.svg -json=-
 
 Runs the recording with our loop closure and, for comparison, with
@@ -120,9 +120,14 @@ absl::StatusOr<evaluation::SlamRun> RunWith(const std::string& basename) {
       FLAGS_input_filename, evaluation::ToSourceOptions(configuration->sensors),
       FLAGS_seed);
   if (!source.ok()) return source.status();
+  const bool is_first = basename == FLAGS_configuration_basename;
+  tools::PrintNotes(configuration->warnings);
+  if (is_first) tools::PrintNotes((*source)->info().warnings);
   evaluation::SlamRunOptions options;
   options.num_background_threads = FLAGS_num_background_threads;
-  return evaluation::RunSlam(*configuration, source->get(), options);
+  auto run = evaluation::RunSlam(*configuration, source->get(), options);
+  if (run.ok() && is_first) tools::PrintNotes(run->warnings);
+  return run;
 }
 
 nlohmann::ordered_json Number(const absl::optional<double>& value) {
@@ -190,8 +195,9 @@ absl::StatusOr<DecidedMap> RunOrReadMap() {
   if (map.decisions.empty()) {
     return absl::InvalidArgumentError(
         absl::StrCat(FLAGS_configuration_basename,
-                     ": no loop candidates; is POSE_GRAPH.constraint_builder."
-                     "cartographer_ext set?"));
+                     ": no loop candidates: the recording returns to no place, "
+                     "or POSE_GRAPH.constraint_builder.cartographer_ext is not "
+                     "set"));
   }
   return map;
 }
@@ -261,7 +267,8 @@ absl::Status Run() {
         stock->loop_searches, stock->loop_search_cpu_seconds);
   }
 
-  const absl::Status written = WriteLabels(loops);
+  AtomicFileSet files;
+  absl::Status written = WriteLabels(loops);
   if (!written.ok()) return written;
   if (FLAGS_json != "-") {
     std::cout << absl::StrFormat(
@@ -270,8 +277,8 @@ absl::Status Run() {
         chain.true_accepted, chain.false_accepted);
     std::cout << json["auc"].dump() << "\n";
   }
-  if (FLAGS_json.empty()) return absl::OkStatus();
-  return tools::WriteJson(json, FLAGS_json);
+  if (!FLAGS_json.empty()) written = tools::WriteJson(json, FLAGS_json);
+  return written.ok() ? files.Commit() : written;
 }
 
 }  // namespace

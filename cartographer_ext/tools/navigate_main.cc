@@ -12,7 +12,8 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
+#include "absl/types/optional.h"
+#include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
@@ -50,8 +51,10 @@ DEFINE_bool(attentive_people, true,
             "The people of the world stop rather than walk into a robot that "
             "they see; otherwise they walk on whatever is there. Those who "
             "cross suddenly never look.");
-DEFINE_string(configuration_directory, "configuration_files",
-              "Where Lua files are searched, comma separated.");
+DEFINE_string(
+    configuration_directory, "",
+    "Folders that are searched for Lua files, comma separated. Empty: "
+    "the files installed with this command.");
 DEFINE_string(configuration_basename, "localization.lua",
               "Lua file for the localisation.");
 DEFINE_string(other_configuration_basename, "",
@@ -67,15 +70,17 @@ DEFINE_string(json, "", "Output: figures as JSON; - is standard output.");
 namespace cartographer_ext {
 namespace {
 
+constexpr int kMaxGoals = 1000;
+
 constexpr char kDescription[] =
     R"(Drives a simulated robot to goals on a finished map: localisation, A*, dynamic
 window approach, all in closed loop, measured against the truth.
 
-  cartographer_ext_slam -input_filename=configuration_files/worlds/office.world
+  cartographer_ext_slam -input_filename=configuration_files/worlds/office.world \
       -seed=101 -configuration_basename=default.lua -pbstream_filename=office.pbstream
-  cartographer_ext_navigate -pbstream_filename=office.pbstream
-      -world_filename=configuration_files/worlds/office.world
-      -goals=auto -seed=1 -obstacles=5 -crossings=3
+  cartographer_ext_navigate -pbstream_filename=office.pbstream \
+      -world_filename=configuration_files/worlds/office.world \
+      -goals=auto -seed=1 -obstacles=5 -crossings=3 \
       -picture_filename=drive.png -animation_filename=drive.html -json=-
 
 What is measured and how: docs/navigation.md.)";
@@ -125,10 +130,17 @@ absl::Status Run() {
   const auto options = ReadOptions();
   if (!options.ok()) return options.status();
   const std::vector<std::string> directories =
-      absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+      tools::ConfigurationDirectories(FLAGS_configuration_directory);
   const auto configuration = evaluation::LoadSlamConfiguration(
       directories, FLAGS_configuration_basename);
   if (!configuration.ok()) return configuration.status();
+  absl::optional<evaluation::SlamConfiguration> other;
+  if (!FLAGS_other_configuration_basename.empty()) {
+    auto loaded = evaluation::LoadSlamConfiguration(
+        directories, FLAGS_other_configuration_basename);
+    if (!loaded.ok()) return loaded.status();
+    other = *std::move(loaded);
+  }
   const auto world = simulation::LoadWorld(FLAGS_world_filename);
   if (!world.ok()) return world.status();
   const auto map = ReadMap();
@@ -140,6 +152,7 @@ absl::Status Run() {
   const std::string title =
       absl::StrCat(world->name, ", seed ", FLAGS_seed, ": ", run->reached(),
                    " of ", run->goals.size(), " goals");
+  AtomicFileSet files;
   if (!FLAGS_picture_filename.empty()) {
     status = navigation::WriteRunPicture(*run, title, FLAGS_picture_filename);
     if (!status.ok()) return status;
@@ -153,10 +166,7 @@ absl::Status Run() {
                                  {"seed", FLAGS_seed},
                                  {"configuration", configuration->name}};
   json.update(navigation::ToJson(*run));
-  if (!FLAGS_other_configuration_basename.empty()) {
-    const auto other = evaluation::LoadSlamConfiguration(
-        directories, FLAGS_other_configuration_basename);
-    if (!other.ok()) return other.status();
+  if (other.has_value()) {
     const auto shadow =
         navigation::LocalizeAgain(*run, *other, FLAGS_pbstream_filename);
     if (!shadow.ok()) return shadow.status();
@@ -164,8 +174,8 @@ absl::Status Run() {
     json["other_localization"]["configuration"] = other->name;
   }
   if (FLAGS_json != "-") std::cout << navigation::ToText(*run);
-  if (FLAGS_json.empty()) return absl::OkStatus();
-  return tools::WriteJson(json, FLAGS_json);
+  if (!FLAGS_json.empty()) status = tools::WriteJson(json, FLAGS_json);
+  return status.ok() ? files.Commit() : status;
 }
 
 }  // namespace
@@ -182,11 +192,13 @@ int main(int argc, char** argv) {
   if (FLAGS_world_filename.empty()) {
     return tools::UsageError("-world_filename is missing");
   }
-  if (FLAGS_num_goals < 1 || FLAGS_obstacles < 0 || FLAGS_crossings < 0 ||
-      FLAGS_doors < 0) {
-    return tools::UsageError(
-        "-num_goals must be positive, -obstacles, -crossings and -doors not "
-        "negative");
+  if (FLAGS_num_goals < 1 || FLAGS_num_goals > cartographer_ext::kMaxGoals) {
+    return tools::UsageError(absl::StrCat("-num_goals must be at least 1 and ",
+                                          "at most ",
+                                          cartographer_ext::kMaxGoals));
+  }
+  if (!(FLAGS_max_seconds >= 1.)) {
+    return tools::UsageError("-max_seconds must be at least 1");
   }
   return tools::ExitCode(cartographer_ext::Run());
 }

@@ -82,14 +82,14 @@ namespace {
 constexpr char kDescription[] =
     R"(Optimises a pose graph and separates right loops from wrong ones.
 
-  cartographer_ext_optimize -input_filename=graph.g2o -kernel=auto
-      -output_filename=optimised.g2o -verdicts_filename=loops.csv
+  cartographer_ext_optimize -input_filename=graph.g2o -kernel=auto \
+      -output_filename=optimised.g2o -verdicts_filename=loops.csv \
       -picture_filename=before_after.png -json=-
 A finished map; rejected loops are removed from the new one:
-  cartographer_ext_optimize -input_filename=map.pbstream -nokeep_rejected
+  cartographer_ext_optimize -input_filename=map.pbstream -nokeep_rejected \
       -output_filename=better.pbstream
 Remove one loop (ids as in the CSV of cartographer_ext_export) and solve again:
-  cartographer_ext_optimize -input_filename=map.pbstream -kernel=huber
+  cartographer_ext_optimize -input_filename=map.pbstream -kernel=huber \
       -drop_loops=0:12:0:1034 -output_filename=without.pbstream)";
 
 // What was read.

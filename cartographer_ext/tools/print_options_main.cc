@@ -41,7 +41,7 @@ constexpr char kDescription[] =
   cartographer_ext_print_options -configuration_basename=default.lua
   cartographer_ext_print_options -format=lua
       writes configuration_files/cartographer_ext.lua to standard output
-  cartographer_ext_print_options -format=reference
+  cartographer_ext_print_options -format=reference \
       -effects_filename=docs/option_effects.csv
       writes docs/options.md to standard output
   cartographer_ext_print_options -configuration_basename=mine.lua -format=lua

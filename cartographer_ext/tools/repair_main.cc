@@ -72,7 +72,7 @@ namespace {
 constexpr char kDescription[] =
     R"(Repairs a finished map without its recording.
 
-  cartographer_ext_repair map.pbstream -output_filename=repaired.pbstream
+  cartographer_ext_repair map.pbstream -output_filename=repaired.pbstream \
       -report_filename=repair.html
   cartographer_ext_repair map.pbstream -dry_run
 

@@ -87,17 +87,17 @@ namespace {
 constexpr char kDescription[] =
     R"(Adds wrong loops to pose graphs and evaluates the robust back ends; medians over seeds.
 
-  cartographer_ext_robustness -datasets=intel,manhattan_g2o -kernels=auto,dcs,sc
-      -outlier_types=R,LG -outlier_counts=1000,4000,90% -seeds=5
+  cartographer_ext_robustness -datasets=intel,manhattan_g2o -kernels=auto,dcs,sc \
+      -outlier_types=R,LG -outlier_counts=1000,4000,90% -seeds=5 \
       -journal_filename=sweep.jsonl -json=sweep.json -picture_filename=sweep.png
 
 Generated graphs with known truth, clean and with outliers:
-  cartographer_ext_robustness -family=ring,road,grid -outlier_types=none,R,RG
+  cartographer_ext_robustness -family=ring,road,grid -outlier_types=none,R,RG \
       -outlier_counts=50%,80% -seeds=10 -json=families.json
 
 Does auto end with the lowest cost? 1053 graphs, to be stopped and resumed:
-  cartographer_ext_robustness -compare_cost -family=all -seeds=9
-      -outlier_types=none,R,RG,L,LG -outlier_counts=10%,50%,80%
+  cartographer_ext_robustness -compare_cost -family=all -seeds=9 \
+      -outlier_types=none,R,RG,L,LG -outlier_counts=10%,50%,80% \
       -journal_filename=costs.jsonl
 
 The tables of the papers, printed values beside ours:

@@ -51,10 +51,11 @@ DEFINE_string(world_output_filename, "",
 DEFINE_uint64(seed, 0,
               "Seed of noise, biases, obstacle phases and random faults. The "
               "same world and seed always give the same files.");
-DEFINE_string(output_filestem, "",
-              "Output: <stem>.clf (log), .tum (ground truth at every scan), "
-              ".relations (true relative poses), .loops.csv, .places.csv, "
-              ".distances.csv, .faults.csv and .truth.pgm/.yaml.");
+DEFINE_string(
+    output_filestem, "",
+    "Output: <stem>.clf (log), .tum (ground truth at every scan), "
+    ".relations (true relative poses), .truth.loops.csv, .places.csv, "
+    ".distances.csv, .faults.csv and .truth.pgm/.yaml.");
 DEFINE_bool(carmen, true, "Write the CARMEN log <stem>.clf.");
 DEFINE_bool(bag, false,
             "Also write the ROS 1 bag <stem>.bag, which has the IMU.");
@@ -83,26 +84,28 @@ constexpr char kDescription[] =
     R"(Simulates a robot with a laser, wheel odometry and an IMU, with ground truth.
 
 Look at a world before using it:
-  cartographer_ext_simulate
-      -world_filename=configuration_files/worlds/ri_corridor.world
+  cartographer_ext_simulate \
+      -world_filename=configuration_files/worlds/ri_corridor.world \
       -picture_filename=/tmp/ri.png
 Make a log with ground truth, then map and evaluate it:
-  cartographer_ext_simulate
-      -world_filename=configuration_files/worlds/ri_corridor.world
+  cartographer_ext_simulate \
+      -world_filename=configuration_files/worlds/ri_corridor.world \
       -seed=3 -output_filestem=/tmp/ri
-  cartographer_ext_slam -input_filename=/tmp/ri.clf -pbstream_filename=/tmp/ri.pbstream ...
-  cartographer_ext_evaluate -pbstream_filename=/tmp/ri.pbstream
-      -relations_filename=/tmp/ri.relations
+  cartographer_ext_slam -input_filename=/tmp/ri.clf \
+      -pbstream_filename=/tmp/ri.pbstream
+  cartographer_ext_evaluate -pbstream_filename=/tmp/ri.pbstream \
+      -relations_filename=/tmp/ri.relations \
       -reference_trajectory_filename=/tmp/ri.tum
 Add odometry faults:
   ... -odometry_faults=stale:3,jump:2,slip:2,offset:0.12
 
 A building generated from a seed, with sensors of your choice:
-  cartographer_ext_simulate -generate=hotel -seed=17 -laser=rplidar_a1
-      -odometry=poor -laps=2 -output_filestem=/tmp/hotel -mcap
+  cartographer_ext_simulate -generate=hotel -seed=17 -laser=rplidar_a1 \
+      -odometry=poor -laps=2 -output_filestem=/tmp/hotel -mcap \
       -world_output_filename=/tmp/hotel.world -picture_filename=/tmp/hotel.png
 The same sensors in a world of your own:
-  cartographer_ext_simulate -world_filename=my.world -laser=depth_camera ...
+  cartographer_ext_simulate -world_filename=my.world -laser=depth_camera \
+      -output_filestem=/tmp/mine
 
 Format of worlds and output files, and values of the presets:
 docs/world_format.md.)";
@@ -246,6 +249,7 @@ absl::Status Run() {
   }
   absl::Status status = tools::CheckWritable(outputs);
   if (!status.ok()) return status;
+  AtomicFileSet files;
   absl::StatusOr<simulation::World> world = MakeWorld();
   if (!world.ok()) return world.status();
   simulation::SimulationOptions options;
@@ -296,6 +300,8 @@ absl::Status Run() {
     status = tools::WriteJson(report, FLAGS_json);
     if (!status.ok()) return status;
   }
+  status = files.Commit();
+  if (!status.ok()) return status;
   if (FLAGS_json != "-") {
     std::cout << absl::StrFormat(
         "%s, seed %d: %.0f m in %.0f s", simulation->world().name, FLAGS_seed,

@@ -94,7 +94,7 @@ constexpr char kDescription[] =
   cartographer_ext_slam run.bag
       writes run.pbstream, run.pgm and run.yaml (the map for navigation), run.png
       and run.html (the report) into the working folder
-  cartographer_ext_slam -input_filename=run.clf -pbstream_filename=run.pbstream
+  cartographer_ext_slam -input_filename=run.clf -pbstream_filename=run.pbstream \
       -map_filestem=run -picture_filename=run.png -trajectory_filename=run.tum
 
 The configuration is Cartographer's Lua (-configuration_directory,
@@ -104,8 +104,8 @@ with ground truth.
 
 Localise in a finished map (the pose of every scan as published online; evaluate
 it with cartographer_ext_evaluate_localization):
-  cartographer_ext_slam -input_filename=later.clf -load_state_filename=run.pbstream
-      -configuration_basename=localization.lua
+  cartographer_ext_slam -input_filename=later.clf -load_state_filename=run.pbstream \
+      -configuration_basename=localization.lua \
       -online_trajectory_filename=later.tum [-initial_pose=12.5,3,90])";
 
 absl::StatusOr<evaluation::StartingState> ReadStartingState() {
@@ -134,6 +134,21 @@ absl::Status ApplyFlags(evaluation::SensorSettings* const sensors) {
                         sensors->min_range, sensors->max_range));
   }
   return absl::OkStatus();
+}
+
+// A configuration for localisation keeps the newest submaps only, and none at
+// the end.
+absl::Status CheckKeepsMap(const evaluation::SlamConfiguration& configuration) {
+  if (!FLAGS_load_state_filename.empty() || !tools::WritesMap() ||
+      !configuration.trajectory_builder_options
+           .has_pure_localization_trimmer()) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrCat(
+      FLAGS_configuration_basename,
+      " is for localisation (TRAJECTORY_BUILDER.pure_localization_trimmer) and "
+      "leaves no map: name the map to localise in with -load_state_filename, "
+      "or map with default.lua"));
 }
 
 void PrintRecording(const io::SensorSourceInfo& info, std::ostream& out) {
@@ -216,7 +231,8 @@ absl::Status Run(const std::string& command_line) {
       directories, FLAGS_configuration_basename);
   if (!configuration.ok()) return configuration.status();
   tools::PrintNotes(configuration->warnings);
-  const absl::Status applied = ApplyFlags(&configuration->sensors);
+  absl::Status applied = ApplyFlags(&configuration->sensors);
+  if (applied.ok()) applied = CheckKeepsMap(*configuration);
   if (!applied.ok()) return applied;
   auto state = ReadStartingState();
   if (!state.ok()) return state.status();

@@ -51,8 +51,9 @@ DEFINE_string(online_trajectory_filename, "",
               "Output: pose at every scan as published online (TUM), including "
               "the jumps caused by optimisations.");
 DEFINE_string(decisions_filename, "",
-              "Output: CSV of the accepted loops, with those that the "
-              "optimisation has disabled.");
+              "Output: CSV of every loop candidate, with the reason why it was "
+              "accepted or not (docs/side_files.md); without our loop closure, "
+              "of the accepted loops.");
 DEFINE_string(switched_loops_filename, "",
               "Output: CSV of the loops that the robust back end disabled in "
               "the last optimisation.");
@@ -187,14 +188,23 @@ absl::Status WriteSlamResults(const evaluation::SlamRun& run) {
   return absl::OkStatus();
 }
 
+bool WritesMap() {
+  return !FLAGS_pbstream_filename.empty() || !FLAGS_map_filestem.empty() ||
+         !FLAGS_picture_filename.empty();
+}
+
 void PrintSlamOutputs(std::ostream& out) {
   std::vector<std::string> names = {
-      FLAGS_pbstream_filename, FLAGS_picture_filename, FLAGS_report_filename};
+      FLAGS_pbstream_filename,         FLAGS_picture_filename,
+      FLAGS_report_filename,           FLAGS_trajectory_filename,
+      FLAGS_local_trajectory_filename, FLAGS_online_trajectory_filename,
+      FLAGS_decisions_filename,        FLAGS_switched_loops_filename};
   if (!FLAGS_map_filestem.empty()) {
     names.push_back(FLAGS_map_filestem + ".yaml");
     names.push_back(FLAGS_map_filestem + ".pgm");
   }
   names.erase(std::remove(names.begin(), names.end(), ""), names.end());
+  names.erase(std::remove(names.begin(), names.end(), "-"), names.end());
   if (!names.empty())
     out << "Written    " << absl::StrJoin(names, ", ") << "\n";
 }

@@ -25,7 +25,10 @@ absl::Status CheckSlamOutputs();
 // named by a flag; not the report.
 absl::Status WriteSlamResults(const evaluation::SlamRun& run);
 
-// Prints the names of the most important files.
+// Whether a map is written, as a state, picture or occupancy grid.
+bool WritesMap();
+
+// Prints the names of the files, but for those that always lie beside a map.
 void PrintSlamOutputs(std::ostream& out);
 
 }  // namespace tools

@@ -93,8 +93,8 @@ namespace {
 constexpr char kDescription[] =
     R"(Searches Lua keys for the best configuration for the recordings.
 
-  cartographer_ext_tune -search_filename=configuration_files/tuning/stock.lua
-      -inputs=aces.clf,csail.clf -holdout=intel.clf -budget_minutes=30
+  cartographer_ext_tune -search_filename=configuration_files/tuning/stock.lua \
+      -inputs=aces.clf,csail.clf -holdout=intel.clf -budget_minutes=30 \
       -journal_filename=tune.jsonl -output_filename=tuned.lua
   mpirun -n 9 cartographer_ext_tune ...        (the same on eight workers)
   cartographer_ext_tune ... -job_folder=/shared/tune -job_task=K

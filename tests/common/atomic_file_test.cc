@@ -3,6 +3,7 @@
 #include "cartographer_ext/common/atomic_file.h"
 
 #include <dirent.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -200,6 +201,48 @@ TEST_F(AtomicFileTest, WhatAKilledProcessLeftIsRemoved) {
     EXPECT_EQ(List().size(), 2u);
   }
   EXPECT_EQ(List(), std::vector<std::string>{"out"});
+}
+
+TEST_F(AtomicFileTest, ALinkLeadsToAFileThatIsNotThereYet) {
+  ASSERT_EQ(::symlink("target.txt", (folder_ + "/link").c_str()), 0);
+  ASSERT_TRUE(WriteFileAtomically(folder_ + "/link", "new").ok());
+  EXPECT_EQ(Read(folder_ + "/target.txt"), "new");
+  struct stat info;
+  ASSERT_EQ(::lstat((folder_ + "/link").c_str(), &info), 0);
+  EXPECT_TRUE(S_ISLNK(info.st_mode));
+}
+
+TEST_F(AtomicFileTest, LinksInACircleEnd) {
+  ASSERT_EQ(::symlink("b", (folder_ + "/a").c_str()), 0);
+  ASSERT_EQ(::symlink("a", (folder_ + "/b").c_str()), 0);
+  // Whatever becomes of it.
+  WriteFileAtomically(folder_ + "/a", "new").IgnoreError();
+}
+
+TEST_F(AtomicFileTest, SignalsLeaveNoTemporaryFiles) {
+  for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      RemoveTemporaryFilesOnSignals();
+      AtomicFileSet set;
+      AtomicFile waiting(folder_ + "/waiting.txt");
+      if (!waiting.Commit().ok()) ::_exit(1);
+      AtomicFile open(folder_ + "/open.txt");
+      if (List().size() != 2) ::_exit(1);
+      // A child of its own does not remove what is not its.
+      const pid_t worker = ::fork();
+      if (worker == 0) ::raise(number);
+      ::waitpid(worker, nullptr, 0);
+      if (List().size() != 2) ::_exit(1);
+      ::raise(number);
+      ::_exit(1);
+    }
+    int state = 0;
+    ::waitpid(child, &state, 0);
+    ASSERT_TRUE(WIFSIGNALED(state));
+    EXPECT_EQ(WTERMSIG(state), number);
+    EXPECT_THAT(List(), ::testing::IsEmpty());
+  }
 }
 
 }  // namespace

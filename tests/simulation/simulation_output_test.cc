@@ -162,7 +162,7 @@ TEST_F(SimulationOutputTest, TruthFiles) {
   const auto distances = Lines(".distances.csv");
   ASSERT_EQ(distances.size(), 2);
   EXPECT_TRUE(absl::StartsWith(distances[1], "k,12.000000,"));
-  EXPECT_EQ(Lines(".loops.csv").size(), 1 + summary_.loop_relations);
+  EXPECT_EQ(Lines(".truth.loops.csv").size(), 1 + summary_.loop_relations);
   EXPECT_TRUE(test::Exists(stem_.path() + ".truth.pgm"));
   EXPECT_TRUE(test::Exists(stem_.path() + ".truth.yaml"));
 }

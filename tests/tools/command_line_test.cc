@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/tools/command_line.h"
 
+#include <sys/stat.h>
+
 #include <cmath>
 #include <filesystem>
 #include <vector>
 
+#include "cartographer_ext/tools/flag_values.h"
 #include "gflags/gflags.h"
 #include "glog/logging.h"
 #include "gmock/gmock.h"
@@ -17,6 +20,8 @@ DEFINE_int32(test_number, 3, "A number.");
 DEFINE_int32(test_index, -1, "A number, -1 for all.");
 DEFINE_int32(num_background_threads, 2, "Threads.");
 DEFINE_double(test_length, 1., "A length.");
+DEFINE_double(max_test_length, 1., "A limit.");
+DEFINE_double(resolution, 0.05, "Metres per cell.");
 DEFINE_bool(test_switch, true, "On or off.");
 
 namespace cartographer_ext {
@@ -84,7 +89,7 @@ TEST(CommandLineTest, RefusesNumbersThatMeanNothing) {
   ParseAndFail({"-num_background_threads", "100000"},
                "-num_background_threads must be at most 4096");
   // Its default is below 0.
-  ParseAndCheck({"-test_index", "-2", "-test_length", "inf"}, "", 3, true);
+  ParseAndCheck({"-test_index", "-1", "-max_test_length", "inf"}, "", 3, true);
 }
 
 TEST(CommandLineTest, TakesTheInputWithoutItsFlag) {
@@ -102,6 +107,15 @@ TEST(CommandLineTest, TakesTheInputWithoutItsFlag) {
   fails({"run.bag", "other.bag"}, "\"other.bag\" is a second input");
   fails({"-test_name", "x", "run.bag"}, "\"run.bag\" is a second input");
   fails({"-"}, "what is \"-\"");
+}
+
+TEST(CommandLineTest, BehindTwoDashesComesTheInput) {
+  EXPECT_EXIT(
+      {
+        google::ShutdownGoogleLogging();
+        Parse({"-test_number", "3", "--", "-odd.clf"}, "test_name");
+      },
+      testing::ExitedWithCode(7), "");
 }
 
 TEST(CommandLineTest, PrintsItsVersion) {
@@ -172,7 +186,42 @@ TEST(CommandLineTest, OutputsReplaceNoInputAndNoOtherOutput) {
         << name;
   }
   EXPECT_TRUE(CheckWritable({"/dev/null", "/dev/null"}, {"/dev/null"}).ok());
-  EXPECT_TRUE(CheckWritable({"-", "-", "", ""}, {"-", ""}).ok());
+  EXPECT_TRUE(CheckWritable({"-", "", ""}, {"-", ""}).ok());
+  EXPECT_THAT(message(CheckWritable({"-", "-"})),
+              testing::HasSubstr("two outputs are -"));
+}
+
+// Whoever opens it and goes away again ends the reader.
+TEST(CommandLineTest, PipesAreNotOpenedByTheCheck) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_TRUE(CheckWritable({folder / "pipe"}).ok());  // would wait for ever
+}
+
+TEST(CommandLineTest, ValuesMakeSense) {
+  const auto good = [](const std::string& name, const std::string& value) {
+    return CheckFlagValue(name, value).ok();
+  };
+  EXPECT_TRUE(good("test_length", "2.5"));
+  EXPECT_FALSE(good("test_length", "inf"));
+  EXPECT_FALSE(good("test_length", "nan"));
+  EXPECT_FALSE(good("test_length", "-1"));
+  EXPECT_TRUE(good("max_test_length", "inf"));
+  EXPECT_TRUE(good("test_index", "-1"));
+  EXPECT_FALSE(good("test_index", "-2"));
+  EXPECT_TRUE(good("test_name", "-inf"));
+  for (const char* const value : {"0", "1e-300", "1e308", "11"}) {
+    EXPECT_THAT(std::string(CheckFlagValue("resolution", value).message()),
+                testing::HasSubstr("at least 0.001 and at most 10"));
+  }
+  EXPECT_TRUE(good("resolution", "0.05"));
+}
+
+TEST(CommandLineTest, NumbersAndMessagesCanBeRead) {
+  EXPECT_EQ(ShortestNumber("0.050000000000000003"), "0.05");
+  EXPECT_EQ(ShortestNumber("1000000000"), "1000000000");
+  EXPECT_EQ(ShortestNumber("auto"), "auto");
+  EXPECT_EQ(Printable("a\x1b[2Jb\x7f\r\n\tü"), "a?[2Jb??\n\tü");
 }
 
 TEST(CommandLineTest, JsonHasNoNan) {

@@ -92,6 +92,15 @@ TEST_F(EvaluateMainTest, AgainstTheTruth) {
   EXPECT_EQ(json["verdict"], "sound");
 }
 
+TEST_F(EvaluateMainTest, NoPairOfPosesIsNoError) {
+  const CommandResult result =
+      RunCommand("evaluate", {"-trajectory_filename", File("room.tum"),
+                              "-reference_trajectory_filename",
+                              File("truth.tum"), "-rpe_distance", "1e4"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("unknown: no two poses are that far"));
+}
+
 TEST_F(EvaluateMainTest, NodesAloneAreInterpolated) {
   const CommandResult result =
       RunCommand("evaluate", {"-pbstream_filename", File("room.pbstream"),

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "cartographer_ext/io/g2o.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/trajectory_file.h"
@@ -79,6 +81,21 @@ TEST(ExportMainTest, BadInputs) {
   EXPECT_THAT(missing.error, HasSubstr("no.pbstream"));
 }
 
+TEST(ExportMainTest, ColumnsAreDocumented) {
+  const TemporaryFolder folder;
+  WriteRoomMap(folder, 40);
+  ASSERT_EQ(RunCommand("export", {folder / "room.pbstream",
+                                  "-constraints_filename", folder / "x.csv"})
+                .exit_code,
+            0);
+  const std::string table = ReadFile(folder / "x.csv");
+  const std::string page = ReadFile("docs/side_files.md");
+  for (const auto column :
+       absl::StrSplit(table.substr(0, table.find('\n')), ',')) {
+    EXPECT_THAT(page, HasSubstr(absl::StrCat("`", column, "`")));
+  }
+}
+
 TEST(ExportMainTest, UnwritableOutputAndSenselessResolution) {
   const TemporaryFolder folder;
   WriteRoomMap(folder, 20);
@@ -90,8 +107,8 @@ TEST(ExportMainTest, UnwritableOutputAndSenselessResolution) {
   const CommandResult too_fine = RunCommand(
       "export", {"-pbstream_filename", folder / "room.pbstream",
                  "-map_filestem", folder / "map", "-resolution", "0.00001"});
-  EXPECT_EQ(too_fine.exit_code, 1);
-  EXPECT_THAT(too_fine.error, HasSubstr("coarser"));
+  EXPECT_EQ(too_fine.exit_code, 2);
+  EXPECT_THAT(too_fine.error, HasSubstr("-resolution is \"0.00001\""));
 }
 
 }  // namespace

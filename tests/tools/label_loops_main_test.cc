@@ -63,6 +63,21 @@ TEST(LabelLoopsMainTest, LabelsTheCandidatesOfARun) {
   EXPECT_THAT(ReadFile(folder / "loops.svg"), HasSubstr("<svg"));
 }
 
+TEST(LabelLoopsMainTest, SaysWhatIsWrongWithTheRecording) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 20);
+  WriteFile(folder / "room.clf",
+            "FLASER 7 1 2\n" + ReadFile(folder / "room.clf"));
+  WriteFile(folder / "x.relations", "1 2 0 0 0 0 0 0\n");
+  const CommandResult result = RunCommand(
+      "label_loops",
+      {folder / "room.clf", "-relations_filename", folder / "x.relations"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("note: "));
+  EXPECT_THAT(result.error, HasSubstr("room.clf:1: "));
+  EXPECT_THAT(result.error, HasSubstr("the recording returns to no place"));
+}
+
 }  // namespace
 }  // namespace test
 }  // namespace cartographer_ext

@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <cstdlib>
 #include <string>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -48,6 +52,34 @@ TEST(NavigateMainTest, BadInputIsExitCodeOne) {
       {"-pbstream_filename", "x", "-world_filename", "/no/such.world"});
   EXPECT_EQ(no_world.exit_code, 1);
   EXPECT_THAT(no_world.error, HasSubstr("such.world"));
+}
+
+TEST(NavigateMainTest, FindsTheConfigurationFromAnyFolder) {
+  char* const here = getcwd(nullptr, 0);
+  ASSERT_EQ(chdir("/"), 0);
+  const CommandResult result = RunCommand(
+      "navigate",
+      {"-pbstream_filename", "x", "-world_filename", "/no/such.world"});
+  ASSERT_EQ(chdir(here), 0);
+  std::free(here);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("such.world"));
+}
+
+TEST(NavigateMainTest, DrivesThatCannotBeAreWrongUsage) {
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{"-max_seconds", "0"},
+        std::vector<std::string>{"-num_goals", "2000000000"}}) {
+    EXPECT_EQ(RunCommand("navigate",
+                         {"x", "-world_filename", "y", flags[0], flags[1]})
+                  .exit_code,
+              2)
+        << flags[0];
+  }
+  const CommandResult other =
+      RunCommand("navigate", {"x", "-world_filename", "/no/such.world",
+                              "-other_configuration_basename", "no_such.lua"});
+  EXPECT_THAT(other.error, HasSubstr("no_such.lua"));
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The command cartographer_ext_robustness.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include "gmock/gmock.h"
 #include "tests/test_data.h"
 #include "tests/tools/run_command.h"
@@ -103,6 +107,26 @@ TEST(RobustnessMainTest, BadInputAndUsage) {
   result = RunCommand("robustness", {"-journal_filename", folder / "journal"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.error, HasSubstr("journal:1"));
+}
+
+TEST(RobustnessMainTest, AJournalIsKeptByOneSweepAndOnDisk) {
+  const test::TemporaryFolder folder;
+  const auto sweep = [](const std::string& journal) {
+    return RunCommand("robustness",
+                      {"-datasets", "tests/data/square.g2o", "-outlier_types",
+                       "none", "-journal_filename", journal});
+  };
+  ASSERT_EQ(sweep(folder / "journal").exit_code, 0);
+  const int descriptor = open((folder / "journal").c_str(), O_RDONLY);
+  ASSERT_EQ(flock(descriptor, LOCK_EX), 0);
+  const CommandResult second = sweep(folder / "journal");
+  close(descriptor);
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_THAT(second.error, HasSubstr("journal: another sweep is writing"));
+  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  const CommandResult full = sweep("/dev/full");
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_THAT(full.error, HasSubstr("/dev/full: No space left"));
 }
 
 }  // namespace

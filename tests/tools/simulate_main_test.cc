@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <string>
 
 #include "gmock/gmock.h"
@@ -74,6 +76,21 @@ TEST(SimulateMainTest, PresetsReplaceThoseOfAWorld) {
                               "-odometry", "none", "-json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.out, HasSubstr("\"laser_beams_per_second\": 6830"));
+}
+
+TEST(SimulateMainTest, WritesAllFilesOrNone) {
+  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  const TemporaryFolder folder;
+  const std::string world = "configuration_files/worlds/l_corner.world";
+  const CommandResult result = RunCommand(
+      "simulate", {world, "-output_filestem", folder / "run", "-json",
+                   "/dev/full", "-world_output_filename", folder / "x.world"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(folder.Names(), testing::IsEmpty());
+  EXPECT_EQ(RunCommand("simulate", {world, "-picture_filename",
+                                    folder / "x.png", "-resolution", "0"})
+                .exit_code,
+            2);
 }
 
 }  // namespace

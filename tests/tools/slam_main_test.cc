@@ -389,13 +389,30 @@ TEST_F(LuaTest, WrongType) {
       "min_score");
 }
 
-TEST_F(LuaTest, SyntaxError) { ExpectRefused(head_ + "if x then" + tail_, ""); }
+TEST_F(LuaTest, ErrorsNameFileAndLine) {
+  ExpectRefused(head_ + "if x then" + tail_, "): test.lua:");
+  ExpectRefused(head_ + "POSE_GRPAH.a = 1" + tail_, "): test.lua:2: ");
+}
 
 TEST_F(LuaTest, MissingInclude) {
   ExpectRefused("include \"nowhere.lua\"" + tail_, "nowhere.lua");
 }
 
-TEST_F(LuaTest, NotATable) { ExpectRefused("return 3\n", ""); }
+TEST_F(LuaTest, NotATable) {
+  ExpectRefused("return 3\n", "): The Lua code does not return a table");
+}
+
+TEST_F(LuaTest, LocalisationNeedsAMap) {
+  ExpectRefused(head_ +
+                    "TRAJECTORY_BUILDER.pure_localization_trimmer = { "
+                    "max_submaps_to_keep = 3 }" +
+                    tail_,
+                "-load_state_filename");
+}
+
+TEST_F(LuaTest, AByteOrderMarkIsSkipped) {
+  EXPECT_EQ(RunWith("\xef\xbb\xbf" + head_ + tail_).exit_code, 0);
+}
 
 TEST_F(LuaTest, NeitherTwoNorThreeDimensions) {
   ExpectRefused(head_ + "MAP_BUILDER.use_trajectory_builder_2d = false" + tail_,

@@ -225,12 +225,18 @@ std::string ToText(const Evaluation& evaluation) {
         "(%d poses, %.1f m)\n",
         errors.ate.rmse, errors.ate.mean, errors.ate.max, errors.num_pairs,
         evaluation.trajectory_metres);
-    absl::StrAppendFormat(
-        &text,
-        "Relative error over %.1f m   rmse %.4f m  mean %.4f m  max %.4f m  "
-        "mean %.3f deg\n",
-        errors.rpe_distance, errors.rpe.rmse, errors.rpe.mean, errors.rpe.max,
-        errors.rpe_rotation_degrees.mean);
+    if (errors.rpe.count > 0) {
+      absl::StrAppendFormat(
+          &text,
+          "Relative error over %.1f m   rmse %.4f m  mean %.4f m  max %.4f m  "
+          "mean %.3f deg\n",
+          errors.rpe_distance, errors.rpe.rmse, errors.rpe.mean, errors.rpe.max,
+          errors.rpe_rotation_degrees.mean);
+    } else {
+      absl::StrAppendFormat(
+          &text, "Relative error over %.1f m   unknown: no two poses are %s\n",
+          errors.rpe_distance, "that far apart along the path");
+    }
   }
   if (evaluation.loops.has_value()) {
     const LoopStatistics& loops = *evaluation.loops;
