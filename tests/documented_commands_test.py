@@ -44,7 +44,8 @@ for path, text in texts:
         if goes_on and not before.endswith('\\'):
             errors.append('%s: no backslash at the end of: %s' % (path.relative_to(root), before))
         if not goes_on:
-            start = re.match('( +)cartographer_ext_', line)
+            # Also where the command stands in quotes, behind another.
+            start = re.match("( *)(?:cartographer_ext_|sbatch .*'cartographer_ext_)", line)
             command = start.group(1) if start else None
         before = line
 print('\n'.join(errors) or '%d blocks of commands' % blocks)

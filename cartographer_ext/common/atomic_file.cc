@@ -158,6 +158,11 @@ absl::Status Synchronize(const std::string& file, const std::string& path) {
 
 AtomicFile::AtomicFile(const std::string& path) : path_(path) {
   stream_.reset(new std::ostream(nullptr));  // Swallows output on errors.
+  if (path == "-") {
+    status_ =
+        absl::InvalidArgumentError("cannot write -: this output needs a file");
+    return;
+  }
   struct stat existing;
   const bool exists = ::stat(path.c_str(), &existing) == 0;
   if (exists && S_ISDIR(existing.st_mode)) {

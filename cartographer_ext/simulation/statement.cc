@@ -7,6 +7,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "cartographer_ext/common/similar_word.h"
 
 namespace cartographer_ext {
 namespace simulation {
@@ -118,6 +119,7 @@ bool Statement::Has(absl::string_view key) const {
 
 double Statement::Option(absl::string_view key, const double fallback,
                          const double min, const double max) {
+  known_options_.emplace_back(key);
   double number = fallback;
   bool seen = false;
   for (KeyValue& option : options_) {
@@ -132,6 +134,7 @@ double Statement::Option(absl::string_view key, const double fallback,
 
 std::string Statement::WordOption(absl::string_view key,
                                   absl::string_view fallback) {
+  known_options_.emplace_back(key);
   std::string word(fallback);
   bool seen = false;
   for (KeyValue& option : options_) {
@@ -147,6 +150,7 @@ std::string Statement::WordOption(absl::string_view key,
 std::vector<std::vector<double>> Statement::ListOptions(absl::string_view key,
                                                         const size_t count,
                                                         const double limit) {
+  known_options_.emplace_back(key);
   std::vector<std::vector<double>> lists;
   for (KeyValue& option : options_) {
     if (option.key != key) continue;
@@ -169,13 +173,20 @@ std::vector<std::vector<double>> Statement::ListOptions(absl::string_view key,
   return lists;
 }
 
+std::string DidYouMean(const std::string& word,
+                       const std::vector<std::string>& names) {
+  const std::string similar = SimilarWord(word, names);
+  return similar.empty() ? "" : absl::StrCat(", did you mean '", similar, "'?");
+}
+
 absl::Status Statement::Finish() {
   if (has_values()) {
     Fail(absl::StrCat("unexpected value ", Quoted(values_[next_value_])));
   }
   for (const KeyValue& option : options_) {
     if (!option.used) {
-      Fail(absl::StrCat("unknown option ", Quoted(option.key)));
+      Fail(absl::StrCat("unknown option ", Quoted(option.key),
+                        DidYouMean(option.key, known_options_)));
     }
   }
   return status_;

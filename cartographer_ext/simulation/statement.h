@@ -66,8 +66,13 @@ class Statement {
   std::vector<std::string> values_;
   size_t next_value_ = 0;
   std::vector<KeyValue> options_;
+  std::vector<std::string> known_options_;  // those asked for
   absl::Status status_;
 };
+
+// ", did you mean 'NAME'?" for the name that is most similar, or nothing.
+std::string DidYouMean(const std::string& word,
+                       const std::vector<std::string>& names);
 
 // Larger coordinates are typing errors, and would overflow the grids.
 constexpr double kMaxCoordinate = 1e4;

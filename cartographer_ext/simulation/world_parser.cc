@@ -264,7 +264,16 @@ class Parser {
       world_.places.push_back(place);
       if (world_.places.size() > kMaxMarks) s->Fail("too many marks");
     } else {
-      s->Fail("unknown statement");
+      s->Fail(absl::StrCat(
+          "unknown statement",
+          DidYouMean(absl::AsciiStrToLower(keyword),
+                     {"world",     "describe", "polyline", "polygon",
+                      "rectangle", "circle",   "pillar",   "wall",
+                      "block",     "end",      "place",    "robot",
+                      "start",     "goto",     "reverse",  "turn",
+                      "wait",      "laser",    "odometry", "imu",
+                      "obstacle",  "begin",    "fault",    "key_distance",
+                      "revisit"})));
     }
   }
 

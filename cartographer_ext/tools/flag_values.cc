@@ -28,6 +28,12 @@ absl::Status OutOfRange(const std::string& name, const std::string& value,
 }  // namespace
 
 absl::Status CheckFlagValue(const std::string& name, const std::string& value) {
+  if (value == "-" && (absl::EndsWith(name, "pbstream_filename") ||
+                       absl::EndsWith(name, "picture_filename") ||
+                       absl::EndsWith(name, "filestem"))) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "-", name, " cannot be -, which is standard output for JSON and text"));
+  }
   gflags::CommandLineFlagInfo info;
   double number = 0., default_number = 0.;
   if (!gflags::GetCommandLineFlagInfo(name.c_str(), &info) ||

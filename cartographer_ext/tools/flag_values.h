@@ -14,7 +14,8 @@ namespace tools {
 
 // An error for a number that means nothing: NaN, negative (but for flags with
 // the default -1, which may be -1), infinite (but for limits, -max_...), more
-// threads or processes than a computer has, or a -resolution without a map.
+// threads or processes than a computer has, or a -resolution without a map; also
+// for standard output (-) where a map or picture is named.
 // Words that are no number are left to gflags.
 absl::Status CheckFlagValue(const std::string& name, const std::string& value);
 

@@ -240,6 +240,13 @@ absl::Status Run() {
       evaluation::LabelLoops(candidates, JudgeLoops(candidate_graph, *truth));
   const evaluation::ChainRates chain = evaluation::RatesOfChain(loops);
 
+  if (!loops.empty() && chain.true_candidates + chain.false_candidates == 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        FLAGS_relations_filename, FLAGS_reference_trajectory_filename,
+        ": the ground truth covers none of the ", loops.size(),
+        " loop candidates; is it of another recording?"));
+  }
+
   json["candidates"] = loops.size();
   json["judged_candidates"] = chain.true_candidates + chain.false_candidates;
   json["true_candidates"] = chain.true_candidates;

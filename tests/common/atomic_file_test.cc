@@ -212,6 +212,11 @@ TEST_F(AtomicFileTest, ALinkLeadsToAFileThatIsNotThereYet) {
   EXPECT_TRUE(S_ISLNK(info.st_mode));
 }
 
+TEST_F(AtomicFileTest, NoFileIsCalledDash) {
+  EXPECT_FALSE(AtomicFile("-").status().ok());
+  EXPECT_NE(::access("-", F_OK), 0);
+}
+
 TEST_F(AtomicFileTest, LinksInACircleEnd) {
   ASSERT_EQ(::symlink("b", (folder_ + "/a").c_str()), 0);
   ASSERT_EQ(::symlink("a", (folder_ + "/b").c_str()), 0);

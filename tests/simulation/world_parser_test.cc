@@ -166,14 +166,17 @@ struct BadLine {
 
 TEST(WorldParserTest, ErrorsNameFileLineAndCause) {
   const std::vector<BadLine> bad_lines = {
-      {"wal 0 0 1 0", "unknown statement"},
+      {"wal 0 0 1 0", "unknown statement, did you mean 'wall'?"},
+      {"Rectangle 0 0 1 1", "did you mean 'rectangle'?"},
+      {"zzz 0 0 1 0", "unknown statement"},
       {"circle 1 2", "radius is missing"},
       {"circle 1 2 -3", "outside"},
       {"circle 1 2 x", "'x' is not a number"},
       {"circle 1 2 nan", "not a number"},
       {"circle 1e9 2 3", "outside"},
       {"circle 1 2 3 4", "unexpected value '4'"},
-      {"circle 1 2 3 reflectivty=1", "unknown option 'reflectivty'"},
+      {"circle 1 2 3 reflectivty=1",
+       "unknown option 'reflectivty', did you mean 'reflectivity'?"},
       {"circle 1 2 3 reflectivity=2", "option reflectivity 2 is outside"},
       {"circle 1 2 3 reflectivity=1 reflectivity=1", "twice"},
       {"polygon 0 0 1 1", "at least 3 points"},

@@ -215,6 +215,9 @@ TEST(CommandLineTest, ValuesMakeSense) {
                 testing::HasSubstr("at least 0.001 and at most 10"));
   }
   EXPECT_TRUE(good("resolution", "0.05"));
+  EXPECT_TRUE(good("json", "-"));
+  EXPECT_FALSE(good("pbstream_filename", "-"));
+  EXPECT_FALSE(good("map_filestem", "-"));
 }
 
 TEST(CommandLineTest, NumbersAndMessagesCanBeRead) {

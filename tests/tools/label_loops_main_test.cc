@@ -63,6 +63,17 @@ TEST(LabelLoopsMainTest, LabelsTheCandidatesOfARun) {
   EXPECT_THAT(ReadFile(folder / "loops.svg"), HasSubstr("<svg"));
 }
 
+TEST(LabelLoopsMainTest, TruthOfAnotherRecordingIsAnError) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 450);
+  WriteFile(folder / "x.relations", "1 2 0 0 0 0 0 0\n");
+  const CommandResult result = RunCommand(
+      "label_loops",
+      {folder / "room.clf", "-relations_filename", folder / "x.relations"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("x.relations: the ground truth covers "));
+}
+
 TEST(LabelLoopsMainTest, SaysWhatIsWrongWithTheRecording) {
   const TemporaryFolder folder;
   WriteRoomLog(folder / "room.clf", 20);

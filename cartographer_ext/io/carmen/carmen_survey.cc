@@ -26,6 +26,9 @@ namespace {
 constexpr size_t kMaxLines = 20000000;
 constexpr size_t kMaxReorderWindow = 1 << 16;
 
+// Larger steps of a clock do not come from messages that were late.
+constexpr TimeNs kMaxClockStep = int64_t{10} * 1000000000;
+
 class Survey {
  public:
   explicit Survey(const std::string& filename) : filename_(filename) {}
@@ -364,6 +367,14 @@ absl::StatusOr<CarmenPlan> Survey::Plan(
         absl::StrFormat("%s: stamps of %d scans and %d odometry messages go "
                         "backwards; sorted",
                         filename_, backward_scans, backward_odometry));
+  }
+  // Sorting would mix what was driven before and after.
+  const TimeNs step = LargestStepBack(lines_, plan.scan_kind);
+  if (step > kMaxClockStep) {
+    info.warnings.push_back(absl::StrFormat(
+        "%s: the clock of the scans was set back by up to %.1f s: where the "
+        "times overlap, scans of different places are mixed; split the log",
+        filename_, ToSeconds(step)));
   }
   OrderEvents(&plan);
   return plan;

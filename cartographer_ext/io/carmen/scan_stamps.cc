@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/carmen/scan_stamps.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 
@@ -35,6 +36,17 @@ int64_t CountBackwards(const std::vector<LineKey>& lines,
     last = line.time;
   }
   return count;
+}
+
+TimeNs LargestStepBack(const std::vector<LineKey>& lines,
+                       const CarmenKind kind) {
+  TimeNs largest = 0, last = 0;
+  for (const LineKey& line : lines) {
+    if (line.kind != kind || !line.plausible) continue;
+    largest = std::max(largest, last - line.time);
+    last = line.time;
+  }
+  return largest;
 }
 
 ImplausibleLines MarkImplausible(std::vector<LineKey>* const lines) {

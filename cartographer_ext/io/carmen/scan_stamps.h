@@ -38,6 +38,9 @@ bool AreStampsLost(const std::vector<LineKey>& lines, CarmenKind kind);
 // Plausible lines of this kind with an earlier stamp than the one before them.
 int64_t CountBackwards(const std::vector<LineKey>& lines, CarmenKind kind);
 
+// By how much they are earlier at most.
+TimeNs LargestStepBack(const std::vector<LineKey>& lines, CarmenKind kind);
+
 // Makes lines implausible that have a gap of an hour to others of their kind on
 // both sides, if they are few: a stamp that was cut off or is none. Kinds may
 // have clocks of their own.

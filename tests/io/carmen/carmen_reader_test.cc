@@ -341,7 +341,6 @@ TEST(CarmenReaderTest, StampsThatDoNotBelongToTheLogAreDropped) {
   EXPECT_EQ(ReadText(paused)->info.num_scans, 300);
 }
 
-// The computer of the base had another idea of the time than that of the laser.
 TEST(CarmenReaderTest, OdometryMayHaveAClockOfItsOwn) {
   std::string text;
   for (int i = 0; i < 200; ++i) {
@@ -358,6 +357,18 @@ TEST(CarmenReaderTest, OdometryMayHaveAClockOfItsOwn) {
   EXPECT_THAT(log->info.warnings[0],
               HasSubstr("other times in the ODOM lines than in those of scans "
                         "(200); odometry is taken from the scan lines"));
+}
+
+TEST(CarmenReaderTest, AClockThatIsSetBackIsSaid) {
+  std::string text;
+  for (int i = 0; i < 200; ++i) {
+    absl::StrAppend(&text, "FLASER 2 1 2 ", i, " 0 0 ", i, " 0 0 ",
+                    1134864000 + (i < 100 ? i : i - 60), ".5 h 1\n");
+  }
+  const auto log = ReadText(text);
+  ASSERT_TRUE(log.ok()) << log.status();
+  EXPECT_THAT(log->info.warnings,
+              testing::Contains(HasSubstr("set back by up to 59.0 s")));
 }
 
 TEST(CarmenReaderTest, ALastLineThatIsCutOffIsDropped) {
