@@ -325,10 +325,13 @@ void RosRecording::CountEvents(const std::vector<EventKey>& keys) {
 
 void RosRecording::ChooseTrackingFrame() {
   if (frames_.Knows(tracking_frame_)) return;
+  for (const std::set<std::string>& seen : seen_frames_) {
+    if (seen.count(tracking_frame_) > 0) return;
+  }
   for (const RosRank rank : {kOdometryRank, kScanRank}) {
     std::set<std::string> seen = seen_frames_[rank];
     seen.erase("");  // odometry without child_frame_id
-    if (seen.empty() || seen.count(tracking_frame_) > 0) continue;
+    if (seen.empty()) continue;
     info_.warnings.push_back(
         absl::StrCat(filename_, ": tracking frame \"", tracking_frame_,
                      "\" does not occur; taking \"", *seen.begin(), "\""));

@@ -206,6 +206,22 @@ TEST(RosRecordingTest, OdometryWithoutFrameIsThatOfTheLaser) {
                   "messages without a frame; taken to be at \"base_link\"")));
 }
 
+TEST(RosRecordingTest, TheFrameOfTheOdometryOccurs) {
+  auto container = absl::make_unique<MemoryContainer>();
+  container->Add("/scan", kRos2LaserScan,
+                 EncodeLaserScan(test::SampleScan(2000000000, 5), "laser"));
+  OdometryReading reading;
+  reading.time = FromSeconds(1.);
+  container->Add("/odom", kRos2Odometry,
+                 EncodeOdometry(reading, 0., 0., "odom", "base_link"));
+  auto source = OpenRosRecording("memory", std::move(container), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  EXPECT_THAT((*source)->info().warnings,
+              ElementsAre("memory: rather short",
+                          HasSubstr("no transform from \"laser\" to "
+                                    "\"base_link\"; assumed to coincide")));
+}
+
 TEST(RosRecordingTest, TransformsThatNeverChangeAreNoOdometry) {
   auto source =
       OpenRosRecording("memory", OdometryInTransforms(Pose2(), Pose2()), {});
