@@ -138,9 +138,9 @@ void LoopPipeline::UpdateDrift() {
   for (LoopCandidate& candidate : vetoed) Veto(std::move(candidate));
 }
 
-std::vector<LoopCandidate> LoopPipeline::Decide() {
+std::vector<LoopCandidate> LoopPipeline::Decide(const bool at_end) {
   UpdateDrift();
-  std::vector<LoopCandidate> decided = consensus_.Decide();
+  std::vector<LoopCandidate> decided = consensus_.Decide(at_end);
   for (const LoopCandidate& candidate : decided) {
     if (candidate.is_accepted()) scores_.Learn(candidate);
   }

@@ -75,7 +75,7 @@ class LoopPipeline {
 
   // Candidates that were accepted or rejected since the last call, in the order
   // of their numbers. `Flush` leaves nothing undecided.
-  std::vector<LoopCandidate> Decide();
+  std::vector<LoopCandidate> Decide(bool at_end = false);
   std::vector<LoopCandidate> Flush();
 
   // The undecided candidates with their reasons, in the order of their numbers:

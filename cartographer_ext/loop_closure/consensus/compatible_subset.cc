@@ -277,6 +277,25 @@ std::vector<LoopEvidence> CompatibleSubset::TakeLikely(
   return likely;
 }
 
+std::vector<LoopEvidence> CompatibleSubset::TakeProbable(
+    Cluster* const cluster) const {
+  std::vector<LoopEvidence> probable;
+  SubsetReason reason;
+  if (!options_.single_strong_enabled || !cluster->in_subset ||
+      cluster->rival_support >= 0 || std::isinf(cluster->least_sigma) ||
+      MayAccept(*cluster, &reason) || reason != SubsetReason::kUnsupported) {
+    return probable;
+  }
+  std::vector<LoopEvidence>& loops = cluster->undecided;
+  const auto improbable = std::stable_partition(
+      loops.begin(), loops.end(), [this](const LoopEvidence& loop) {
+        return loop.probability >= options_.probability_at_end;
+      });
+  probable.assign(loops.begin(), improbable);
+  loops.erase(loops.begin(), improbable);
+  return probable;
+}
+
 SubsetReason CompatibleSubset::WhyNot(const Cluster& cluster) const {
   SubsetReason reason;
   // Of a cluster that may be accepted, the unlikely loops wait.
@@ -299,7 +318,7 @@ void CompatibleSubset::Emit(
   }
 }
 
-std::vector<SubsetDecision> CompatibleSubset::Decide() {
+std::vector<SubsetDecision> CompatibleSubset::Decide(const bool at_end) {
   std::vector<SubsetDecision> decisions = std::move(overflow_);
   overflow_.clear();
   if (changed_) {
@@ -313,6 +332,14 @@ std::vector<SubsetDecision> CompatibleSubset::Decide() {
       Emit(cluster, likely, true, reason, &decisions);
       cluster.accepted = true;
     }
+  }
+  for (int i = 0; at_end && i < num_clusters(); ++i) {
+    Cluster& cluster = clusters_[i];
+    const std::vector<LoopEvidence> probable = TakeProbable(&cluster);
+    if (probable.empty()) continue;
+    Emit(cluster, probable, true, SubsetReason::kLikelyAtEnd, &decisions);
+    cluster.accepted = true;
+    changed_ = true;
   }
   std::stable_sort(decisions.begin(), decisions.end(),
                    [](const SubsetDecision& a, const SubsetDecision& b) {

@@ -23,7 +23,10 @@
 //              contradict the rival than support it. A single strong loop
 //              without support is accepted by stricter rules of its own. What
 //              is neither stays buffered and is tested again when new evidence
-//              comes; `Flush` ends that.
+//              comes; `Flush` ends that. At the end of a run, when no more can
+//              come, a loop of the subset whose only fault is a lack of support
+//              is accepted if it is probable: a robot that comes back to its
+//              start and stops there leaves no second revisit.
 //
 // Pairwise tests of true loops fail occasionally; `tolerance` allows a small
 // share of contradictions so that long runs do not lose true loops. Zero is the
@@ -61,6 +64,8 @@ struct LoopEvidence {
   // loops of a submap; empty: edge.a.
   absl::optional<uncertainty::VertexId> anchor;
   double score = 0.;  // the fused score, in [0, 1]
+  // The calibrated probability that the loop is true; 0: unknown.
+  double probability = 0.;
   // Standard deviation of the prediction before the search, metres; infinity
   // without a prediction.
   double prior_sigma = 0.;
@@ -103,6 +108,9 @@ struct CompatibleSubsetOptions {
   // It must agree with its prediction: a match in a wide search may be a
   // look-alike place.
   double single_strong_sigma = 0.5;  // metres
+  // A loop without enough support is accepted at the end of a run with at least
+  // this probability, if single_strong_enabled.
+  double probability_at_end = 0.9;
   // If the sigma of the prediction exceeds this, more revisits must agree.
   double weak_prior_sigma = 1.;  // metres
   int weak_prior_revisits = 3;   // including the loop itself, >= 1
@@ -117,6 +125,7 @@ enum class SubsetReason {
   kSupported,      // accepted with its cluster
   kSingleStrong,   // accepted by the rule for single strong loops
   kJoinsAccepted,  // accepted, its cluster was accepted before
+  kLikelyAtEnd,    // accepted at the end of the run, without enough support
   kContradicted,   // rejected, contradicts the compatible subset
   kRival,          // rejected, a contradicting cluster has as much support
   kUnsupported,    // rejected, not confirmed until the end
@@ -142,8 +151,9 @@ class CompatibleSubset {
   void Add(const LoopEvidence& loop);
 
   // Returns the decisions that can be made now, in the order of adding. Cheap
-  // if nothing was added since the last call.
-  std::vector<SubsetDecision> Decide();
+  // if nothing was added since the last call. `at_end`: no loop will be added
+  // for now; further ones may be.
+  std::vector<SubsetDecision> Decide(bool at_end = false);
   // Decides, then rejects everything undecided with its reason. Accepted
   // clusters are kept.
   std::vector<SubsetDecision> Flush();
@@ -208,6 +218,8 @@ class CompatibleSubset {
   // Removes the loops that may be accepted from the undecided ones of an
   // accepted cluster and returns them.
   std::vector<LoopEvidence> TakeLikely(Cluster* cluster) const;
+  // The same of the loops that are probable, if the cluster lacks support only.
+  std::vector<LoopEvidence> TakeProbable(Cluster* cluster) const;
   // Why the undecided loops of a cluster are not accepted.
   SubsetReason WhyNot(const Cluster& cluster) const;
   void Emit(const Cluster& cluster, const std::vector<LoopEvidence>& loops,

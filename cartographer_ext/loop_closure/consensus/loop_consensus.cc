@@ -25,6 +25,8 @@ LoopDecision::Reason ToReason(const SubsetReason reason) {
       return LoopDecision::SINGLE_STRONG;
     case SubsetReason::kJoinsAccepted:
       return LoopDecision::JOINED_ACCEPTED;
+    case SubsetReason::kLikelyAtEnd:
+      return LoopDecision::LIKELY_AT_END;
     case SubsetReason::kContradicted:
       return LoopDecision::CONTRADICTED;
     case SubsetReason::kRival:
@@ -79,6 +81,9 @@ LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
     evidence.anchor = *candidate.anchor;
   }
   evidence.score = candidate.FinalScore();
+  if (candidate.fusion.has_value()) {
+    evidence.probability = candidate.fusion->probability;
+  }
   evidence.prior_sigma = PriorSigma(candidate);
   return evidence;
 }
@@ -121,8 +126,8 @@ std::vector<LoopCandidate> LoopConsensus::Settle(
   return settled;
 }
 
-std::vector<LoopCandidate> LoopConsensus::Decide() {
-  return Settle(subset_.Decide());
+std::vector<LoopCandidate> LoopConsensus::Decide(const bool at_end) {
+  return Settle(subset_.Decide(at_end));
 }
 
 std::vector<LoopCandidate> LoopConsensus::Flush() {

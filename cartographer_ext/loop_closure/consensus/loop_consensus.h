@@ -40,9 +40,10 @@ class LoopConsensus {
 
   void Add(LoopCandidate candidate);
 
-  // Returns the candidates that can be decided now, accepted or rejected;
+  // Returns the candidates that can be decided now, accepted or rejected, by
+  // other rules at the end of a run (compatible_subset.h);
   // `Flush` rejects all that are still undecided.
-  std::vector<LoopCandidate> Decide();
+  std::vector<LoopCandidate> Decide(bool at_end = false);
   std::vector<LoopCandidate> Flush();
 
   // To be called after a change of the drift of `paths`.

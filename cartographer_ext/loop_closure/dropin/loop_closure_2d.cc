@@ -202,7 +202,8 @@ void LoopClosure2D::ScheduleQuery(const std::vector<SearchJob*>& jobs,
   end_of_node->AddDependency(*last_task);
 }
 
-void LoopClosure2D::MarkDue() {
+void LoopClosure2D::MarkDue(const bool at_end) {
+  at_end_ = at_end;
   num_jobs_due_ = jobs_.size();
   num_queries_due_ = queries_.size();
 }
@@ -220,7 +221,7 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   jobs_.erase(jobs_.begin(), jobs_.begin() + num_jobs_due_);
   num_jobs_due_ = 0;
   num_queries_due_ = 0;
-  const std::vector<LoopCandidate> decided = pipeline_.Decide();
+  const std::vector<LoopCandidate> decided = pipeline_.Decide(at_end_);
   Record(decided);
   std::vector<Constraint> constraints;
   for (const LoopCandidate& candidate : decided) {

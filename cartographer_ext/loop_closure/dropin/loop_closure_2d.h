@@ -92,8 +92,9 @@ class LoopClosure2D {
   // searches before `end_of_node`.
   void AddNode(const std::vector<Proposal>& proposals,
                cartographer::common::Task* end_of_node);
-  // The next `Verify` processes the nodes added so far.
-  void MarkDue();
+  // The next `Verify` processes the nodes added so far. `at_end`: no node will
+  // be added for now.
+  void MarkDue(bool at_end = false);
   // Processes the due candidates by the stages after the search, and returns
   // the constraints of those that are accepted now. The tasks of their nodes
   // must have run.
@@ -153,6 +154,7 @@ class LoopClosure2D {
   // ones, as many as are due, belong to the next `Verify`.
   std::deque<SearchJob> jobs_;
   std::deque<PlaceQuery> queries_;
+  bool at_end_ = false;
   size_t num_jobs_due_ = 0;
   size_t num_queries_due_ = 0;
   // Trajectories whose last known submap was deleted, with the number of nodes

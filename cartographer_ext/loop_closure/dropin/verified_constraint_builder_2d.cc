@@ -15,8 +15,7 @@ using cartographer::common::Task;
 using Proposal = LoopClosure2D::Proposal;
 
 VerifiedConstraintBuilder2D::VerifiedConstraintBuilder2D(
-    const ConstraintBuilderOptions& options,
-    const LoopOptions& extension,
+    const ConstraintBuilderOptions& options, const LoopOptions& extension,
     cartographer::common::ThreadPoolInterface* const thread_pool)
     : thread_pool_(thread_pool),
       loop_closure_(options, extension, thread_pool),
@@ -74,7 +73,10 @@ void VerifiedConstraintBuilder2D::WhenDone(
   absl::MutexLock lock(&mutex_);
   CHECK(callback_ == nullptr) << "WhenDone was called before the last callback";
   callback_ = callback;
-  loop_closure_.MarkDue();
+  // The pose graph asks again without a new node only where it optimises for
+  // the last time.
+  loop_closure_.MarkDue(num_started_nodes_ == num_nodes_at_last_call_);
+  num_nodes_at_last_call_ = num_started_nodes_;
   callback_task_->SetWorkItem([this]() { CallBack(); });
   thread_pool_->Schedule(std::move(callback_task_));
   callback_task_ = absl::make_unique<Task>();

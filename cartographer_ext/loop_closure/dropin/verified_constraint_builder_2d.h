@@ -124,6 +124,8 @@ class VerifiedConstraintBuilder2D {
       ABSL_GUARDED_BY(mutex_);
   int num_started_nodes_ ABSL_GUARDED_BY(mutex_) = 0;
   int num_finished_nodes_ ABSL_GUARDED_BY(mutex_) = 0;
+  // Started when WhenDone was called last.
+  int num_nodes_at_last_call_ ABSL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace loop_closure

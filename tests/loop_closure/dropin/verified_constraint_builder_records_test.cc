@@ -115,6 +115,26 @@ TEST_F(VerifiedConstraintBuilderRecordsTest,
   EXPECT_GT(deleted_submap, 0);
 }
 
+TEST_F(VerifiedConstraintBuilderRecordsTest,
+       ProbableLoopsAreAcceptedWhereNoNodeFollows) {
+  recorder_->Start(100000);
+  LoopOptions options;
+  options.compatible_subset.min_revisits = 50;
+  options.compatible_subset.single_strong_loops = 1000;
+  options.compatible_subset.probability_at_end = 0.;
+  cartographer::common::ThreadPool pool(2);
+  Builder builder(StockOptions(), options, &pool);
+  EXPECT_TRUE(Drive(&builder).back().empty());
+  EXPECT_FALSE(Collect(&builder).empty());
+  int accepted = 0;
+  for (const LoopDecision& decision : recorder_->All()) {
+    if (decision.verdict() != LoopDecision::ACCEPTED) continue;
+    EXPECT_EQ(decision.reason(), LoopDecision::LIKELY_AT_END);
+    ++accepted;
+  }
+  EXPECT_GT(accepted, 0);
+}
+
 // A submap of a trajectory of which no node was ever offered: any node may
 // have been part of it.
 TEST_F(VerifiedConstraintBuilderRecordsTest, UnknownNodesAreAllGivenUp) {
