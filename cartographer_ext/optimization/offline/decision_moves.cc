@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "Eigen/Cholesky"
-#include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
 #include "glog/logging.h"
@@ -25,8 +22,6 @@ constexpr double kNear = 100.;
 constexpr double kDecisive = 4.;
 // Relative decrease of the cost that counts.
 constexpr double kProgress = 1e-9;
-// The same for a move after which all others are tried again.
-constexpr double kLargeProgress = 1e-6;
 
 struct Flip {
   int edge = 0;
@@ -93,45 +88,6 @@ std::vector<Flip> PromisingFlips(const FlipOptions& options,
   return result;
 }
 
-// The map of lowest truncated cost so far.
-class LowestCost {
- public:
-  // A map is taken over if its cost is lower by the share `progress`. What is
-  // offered or replaced is an alternative if it costs less than a gate more.
-  // `edges` and `poses` must outlive this; `alternatives` may be null.
-  LowestCost(const std::vector<WhitenedEdge>& edges, const double gate,
-             const double progress, std::vector<Pose2>* const poses,
-             std::vector<Alternative>* const alternatives)
-      : edges_(edges),
-        gate_(gate),
-        progress_(progress),
-        poses_(*poses),
-        alternatives_(alternatives),
-        cost_(TruncatedCost(edges, *poses, gate)) {}
-
-  // Whether the map was taken over.
-  bool Offer(std::vector<Pose2> moved) {
-    const double moved_cost = TruncatedCost(edges_, moved, gate_);
-    const bool better = moved_cost < cost_ * (1. - progress_);
-    if (better) std::swap(moved, poses_);
-    if (alternatives_ != nullptr && std::abs(moved_cost - cost_) < gate_) {
-      alternatives_->push_back({std::max(cost_, moved_cost), std::move(moved)});
-    }
-    if (better) cost_ = moved_cost;
-    return better;
-  }
-
-  double cost() const { return cost_; }
-
- private:
-  const std::vector<WhitenedEdge>& edges_;
-  const double gate_;
-  const double progress_;
-  std::vector<Pose2>& poses_;
-  std::vector<Alternative>* const alternatives_;
-  double cost_;
-};
-
 // Puts a group in force, releases it and polishes. With `relax` from a chordal
 // relaxation of what is in force then; false where there is none, or where the
 // map costs more than `limit` while the group is in force.
@@ -156,64 +112,6 @@ bool SolveForced(const std::vector<int>& group, const ForceOptions& options,
   return true;
 }
 
-// A group with loops in force.
-struct GroupInForce {
-  int turn = 0;   // among the groups with as many
-  int loops = 0;  // in force
-  int group = 0;
-};
-
-// Groups that may be released, in the order of trials.
-std::vector<GroupInForce> ReleasableGroups(const LoopSupport& support,
-                                           const std::vector<double>& weights) {
-  std::vector<GroupInForce> result;
-  std::map<int, int> groups_of_size;
-  int all = 0;
-  for (size_t g = 0; g != support.groups.size(); ++g) {
-    GroupInForce entry;
-    entry.group = g;
-    for (const int i : support.groups[g]) entry.loops += weights[i] > 0.;
-    all += entry.loops;
-    if (entry.loops == 0) continue;
-    entry.turn = groups_of_size[entry.loops]++;
-    result.push_back(entry);
-  }
-  result.erase(std::remove_if(result.begin(), result.end(),
-                              [all](const GroupInForce& entry) {
-                                return 2 * entry.loops > all;
-                              }),
-               result.end());
-  std::sort(result.begin(), result.end(),
-            [](const GroupInForce& a, const GroupInForce& b) {
-              return std::tie(a.turn, a.loops, a.group) <
-                     std::tie(b.turn, b.loops, b.group);
-            });
-  return result;
-}
-
-// Grows the map on, without `released` if not null and what has no more loops in
-// force; false where nothing is determined. `weights`: the loops in force.
-bool Regrow(const LoopSupport& support, const double gate,
-            const std::vector<GroupInForce>& groups,
-            const GroupInForce* const released, std::vector<double> weights,
-            RobustSolver* const solver, std::vector<Pose2>* const poses) {
-  std::vector<bool> banned(weights.size(), false);
-  if (released != nullptr) {
-    for (const GroupInForce& other : groups) {
-      if (other.loops > released->loops) continue;
-      for (const int i : support.groups[other.group]) weights[i] = 0.;
-    }
-    for (const int i : support.groups[released->group]) banned[i] = true;
-  }
-  GrowthOptions growth;
-  growth.gate = gate;
-  if (!ContinueGrowth(support, growth, banned, solver, poses, &weights)) {
-    return false;
-  }
-  PolishTruncated(gate, kFullPolishRounds, solver, poses, nullptr);
-  return true;
-}
-
 }  // namespace
 
 bool DifferNearGateOnly(const std::vector<WhitenedEdge>& edges,
@@ -228,6 +126,28 @@ bool DifferNearGateOnly(const std::vector<WhitenedEdge>& edges,
     }
   }
   return true;
+}
+
+LowestCost::LowestCost(const std::vector<WhitenedEdge>& edges,
+                       const double gate, const double progress,
+                       std::vector<Pose2>* const poses,
+                       std::vector<Alternative>* const alternatives)
+    : edges_(edges),
+      gate_(gate),
+      progress_(progress),
+      poses_(*poses),
+      alternatives_(alternatives),
+      cost_(TruncatedCost(edges, *poses, gate)) {}
+
+bool LowestCost::Offer(std::vector<Pose2> moved) {
+  const double moved_cost = TruncatedCost(edges_, moved, gate_);
+  const bool better = moved_cost < cost_ * (1. - progress_);
+  if (better) std::swap(moved, poses_);
+  if (alternatives_ != nullptr && std::abs(moved_cost - cost_) < gate_) {
+    alternatives_->push_back({std::max(cost_, moved_cost), std::move(moved)});
+  }
+  if (better) cost_ = moved_cost;
+  return better;
 }
 
 int FlipLoops(const FlipOptions& options, RobustSolver* const solver,
@@ -308,44 +228,6 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
     // What failed before may succeed now.
     std::fill(tried.begin(), tried.end(), false);
     tried[best] = true;
-  }
-  return kept;
-}
-
-int RegrowGroups(const LoopSupport& support, const RegrowOptions& options,
-                 RobustSolver* const solver, std::vector<Pose2>* const poses,
-                 std::vector<Alternative>* const alternatives) {
-  const std::vector<WhitenedEdge>& edges = solver->edges();
-  LowestCost lowest(edges, options.gate, kLargeProgress, poses, alternatives);
-  int kept = 0, trials = 0;
-  std::set<int> tried;
-  const double most_work = solver->work() + options.max_work;
-  const auto may_try = [&] {
-    return trials < options.max_trials && solver->work() < most_work;
-  };
-  for (bool progress = true; progress && may_try();) {
-    const std::vector<double> weights =
-        DecideLoops(edges, *poses, options.gate);
-    const std::vector<GroupInForce> groups = ReleasableGroups(support, weights);
-    const auto is_better = [&](const GroupInForce* const released) {
-      std::vector<Pose2> moved = *poses;
-      return Regrow(support, options.gate, groups, released, weights, solver,
-                    &moved) &&
-             lowest.Offer(std::move(moved));
-    };
-    ++trials;
-    progress = is_better(nullptr);
-    int failures = 0;
-    for (const GroupInForce& released : groups) {
-      if (progress || !may_try() || failures >= options.max_failures) break;
-      if (!tried.insert(released.group).second) continue;
-      ++failures;
-      ++trials;
-      progress = is_better(&released);
-      // What failed before may succeed now.
-      if (progress) tried = {released.group};
-    }
-    kept += progress;
   }
   return kept;
 }

@@ -17,11 +17,21 @@
 //                unfold by descent.
 //   RegrowGroups the map is grown on by the rejected loops that its uncertainty
 //                allows (loop_growth.h), however far off they are. Then again
-//                without one group in force and without what has no more loops
-//                in force than it: the group stays out, the others may come
-//                back. This is how wrong loops are replaced that agree with each
-//                other and keep several right ones out, none of which alone
-//                lowers the cost.
+//                after a change, the first that helps:
+//                - a rejected loop is put in force that the map nearly allows.
+//                  Several right ones that have to come in together follow it,
+//                  each of which alone would cost more than the gate. Of these
+//                  trials the best is kept;
+//                - one group in force is released alone, those first whose
+//                  release saves more chi2 than that of right loops would; if
+//                  nothing better follows, rejected loops are put in force then;
+//                - one group in force is released, and what has no more loops
+//                  in force than it; the group stays out, the others may come
+//                  back.
+//                This is how wrong loops are replaced that agree with each other
+//                and keep several right ones out, none of which alone lowers the
+//                cost. After a change the map is solved from a chordal
+//                relaxation, too, which unfolds what wrong loops have folded.
 //
 // A move is kept only if it lowers the truncated cost of the graph.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_DECISION_MOVES_H_
@@ -79,6 +89,30 @@ struct Alternative {
   std::vector<Pose2> poses;
 };
 
+// The map of lowest truncated cost so far.
+class LowestCost {
+ public:
+  // A map is taken over if its cost is lower by the share `progress`. What is
+  // offered or replaced is an alternative if it costs less than a gate more.
+  // `edges` and `poses` must outlive this; `alternatives` may be null.
+  LowestCost(const std::vector<WhitenedEdge>& edges, double gate,
+             double progress, std::vector<Pose2>* poses,
+             std::vector<Alternative>* alternatives);
+
+  // Whether the map was taken over.
+  bool Offer(std::vector<Pose2> moved);
+
+  double cost() const { return cost_; }
+
+ private:
+  const std::vector<WhitenedEdge>& edges_;
+  const double gate_;
+  const double progress_;
+  std::vector<Pose2>& poses_;
+  std::vector<Alternative>* const alternatives_;
+  double cost_;
+};
+
 // `edges` are those of `solver`. Returns the number of moves kept. Solutions
 // that cost at most one gate more than the best are added to `alternatives`,
 // if not null.
@@ -90,8 +124,13 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
 // Limits of RegrowGroups.
 struct RegrowOptions {
   double gate = kChi2Gate;
-  int max_trials = 40;
-  int max_failures = 5;  // in succession
+  int max_trials = 80;
+  // In succession, of groups that are released with others.
+  int max_failures = 5;
+  // The same of loops that are put in force and of groups that are released
+  // alone; and of loops that are put in force after each of these.
+  int max_near = 5;
+  int max_forced = 2;
   double max_work = kMaxMoveWork;
 };
 

@@ -31,6 +31,8 @@ constexpr double kRounding = 1e-3;
 constexpr double kMaxRepeatedWork = 2e6;
 // Poses of an epoch of a short replay, up to ten times as many in all.
 constexpr int kShortEpoch = 50;
+// Poses times loops of a graph on which a move costs next to nothing.
+constexpr double kCheapMoves = 5e5;
 // Rounds of the search by groups, as long as each finds a loop.
 constexpr int kMaxGroupRounds = 4;
 
@@ -253,8 +255,13 @@ void Portfolio::RunGroups() {
     if (best().cost > before - kChi2Gate) break;
   }
   std::vector<Pose2> poses = best().poses;
-  if (RegrowGroups(support(), RegrowOptions(), &solver_, &poses,
-                   &alternatives_) > 0) {
+  RegrowOptions regrow;
+  if (Size() < kCheapMoves) {
+    regrow.max_near = 20;
+    regrow.max_forced = 5;
+    regrow.max_trials = 300;
+  }
+  if (RegrowGroups(support(), regrow, &solver_, &poses, &alternatives_) > 0) {
     Add(absl::StrCat(best().name, ", regrown"), std::move(poses));
   }
 }
