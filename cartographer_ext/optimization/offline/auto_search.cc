@@ -25,6 +25,8 @@ constexpr double kSameOptimum = 1e-9;
 constexpr size_t kMaxEdgesForNoise = 100000;
 // 99.9 % quantile of chi2 with three degrees of freedom.
 constexpr double kWideGate = 16.26623619623813;
+// Loops whose leave-one-out innovation is looked at.
+constexpr size_t kMaxInnovations = 100;
 
 // Where most loops are wrong, one that saves hardly more than what it costs to
 // refuse it is more likely wrong, too: the gate is meant for even odds, and twice
@@ -81,8 +83,14 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
     result->converged = summary.converged;
   };
   result->member_cost = best.cost;
-  const double gate =
+  const double narrow =
       options.adaptive_gate ? AdaptiveGate(edges, best.poses) : kChi2Gate;
+  const bool adaptive =
+      narrow < kChi2Gate &&
+      ClaimTooMuchNoise(LeaveOneOutInnovations(
+          best.poses, DecideLoops(edges, best.poses, kChi2Gate),
+          kMaxInnovations, &solver));
+  const double gate = adaptive ? narrow : kChi2Gate;
   const double limit = best.cost + kUnfolded * kChi2Gate;
   const double slack = Slack(*portfolio);
   const double most = best.cost * (1. + kSameOptimum) + slack;
@@ -111,7 +119,7 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
     result->weights = std::move(weights);
     result->member = member.name;
   }
-  if (!options.adaptive_gate) return;
+  if (!adaptive) return;
   count(PolishAdapted(kFullPolishRounds, &solver, &result->poses,
                       &result->weights));
   if (!options.lowest_cost || TruncatedCost(edges, result->poses) <= most) {

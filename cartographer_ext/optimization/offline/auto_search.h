@@ -16,7 +16,8 @@
 //      lowest cost needs the noise that the matrices claim, and another map costs
 //      less with the noise that the data show;
 //   3. the members near the lowest truncated cost polished with a gate adapted
-//      to the scale of the accepted loops, where the matrices claim too little;
+//      to the scale of the accepted loops, where the matrices claim too much
+//      noise, which in a sparse graph leave-one-out innovations alone show;
 //      the lowest cost truncated there is taken. Where they do not, that of
 //      the members of (4) which the odds of a wrong loop favour;
 //   4. where that costs more than the best single solver, the lowest is taken,

@@ -146,6 +146,13 @@ bool IsCutByGate(const std::vector<double>& values, const double gate) {
   return values.size() >= 10 && upper > kSuspicious * values.size();
 }
 
+bool ClaimTooMuchNoise(std::vector<double> innovations) {
+  if (innovations.size() < 10) return false;
+  const auto middle = innovations.begin() + innovations.size() / 2;
+  std::nth_element(innovations.begin(), middle, innovations.end());
+  return *middle < 0.25 * kMedian;
+}
+
 PoseGraph WithNoiseScale(const PoseGraph& graph, const double odometry,
                          const double loops) {
   PoseGraph result = graph;

@@ -63,6 +63,12 @@ bool IsLikeChi2(const std::vector<double>& values);
 // the right loops.
 bool IsCutByGate(const std::vector<double>& values, double gate);
 
+// Whether the median of leave-one-out innovations is that of half the claimed
+// noise or less. chi2 of the loops themselves is that small also where odometry
+// gives way to them, as in a sparse graph, and then says nothing about their
+// noise. False for fewer than ten.
+bool ClaimTooMuchNoise(std::vector<double> innovations);
+
 // The graph with the standard deviations of odometry and loops multiplied.
 PoseGraph WithNoiseScale(const PoseGraph& graph, double odometry, double loops);
 // The same for whitened edges.

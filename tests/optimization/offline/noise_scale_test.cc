@@ -77,6 +77,44 @@ TEST(NoiseScaleTest, InnovationsAreChi2ForHonestMatricesOnly) {
   EXPECT_FALSE(IsLikeChi2({1., 2., 3.}));
 }
 
+// Loops across stretches of odometry that gives way to them: whatever noise the
+// loops have, little of it is left in their chi2.
+TEST(NoiseScaleTest, ChiSquaredOfASparseGraphDoesNotShowTheNoise) {
+  constexpr int kLoops = 40, kStretch = 12;
+  for (const double factor : {1., 0.3}) {
+    Random random(4);
+    PoseGraph graph;
+    graph.poses = {Pose2()};
+    for (int i = 0; i != kLoops * kStretch; ++i) {
+      for (const bool is_loop : {false, true}) {
+        if (is_loop && i % kStretch != 0) continue;
+        const double sigma = is_loop ? 0.03 : 0.05;
+        const auto noise = [&] { return random.Normal(0., factor * sigma); };
+        PoseGraphEdge edge;
+        edge.is_loop = is_loop;
+        edge.from = i;
+        edge.to = is_loop ? i + kStretch : i + 1;
+        edge.measurement = Pose2(is_loop ? kStretch : 1., 0., 0.) *
+                           Pose2(noise(), noise(), noise());
+        edge.information = Eigen::Matrix3d::Identity() / (sigma * sigma);
+        graph.edges.push_back(edge);
+        if (!is_loop) {
+          graph.poses.push_back(graph.poses.back() * edge.measurement);
+        }
+      }
+    }
+    const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+    RobustSolver solver(edges);
+    std::vector<Pose2> poses = graph.poses;
+    solver.Solve(SolverOptions(), &poses);
+    EXPECT_LT(AdaptiveGate(edges, poses), 0.7 * kChi2Gate);
+    const std::vector<double> innovations = LeaveOneOutInnovations(
+        poses, std::vector<double>(edges.size(), 1.), 300, &solver);
+    EXPECT_EQ(ClaimTooMuchNoise(innovations), factor < 0.5);
+  }
+  EXPECT_FALSE(ClaimTooMuchNoise({0.1, 0.1, 0.1}));
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext
