@@ -364,6 +364,8 @@ void Portfolio::Run() {
     if (!settled) AddCertain();
     Graduate(kNear);
     Graduate(kFar);
+    // Kernels agree on what they reject alike, too.
+    if (settled && size <= kSmallGraph) Regrow();
   }
   Improve();
 }

@@ -22,7 +22,8 @@
 //           spanning tree over the loops in force, groups forced in one by one
 //           (decision_moves.h), in turn with chordal relaxations of what is in
 //           force, as long as that finds loops; then growth from the best
-//           map, with and without the groups that it relies on.
+//           map, with and without the groups that it relies on. The last also
+//           where the kernels agree on a small graph.
 //
 // From the best of these, non-convexity is graduated once more, with the loops
 // near the map only: that finds what many decisions at once would gain, and
@@ -168,6 +169,8 @@ class Portfolio {
   bool RejectedContradict();
   void RunStarts(bool with_full_kernels);
   void RunGroups();
+  // From the best, moves by growth.
+  void Regrow();
   FlipOptions flip_options() const;
   void Count(const SolverSummary& summary);
   // A solver's own result.

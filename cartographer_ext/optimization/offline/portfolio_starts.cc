@@ -254,6 +254,10 @@ void Portfolio::RunGroups() {
     Graduate(kFar);
     if (best().cost > before - kChi2Gate) break;
   }
+  Regrow();
+}
+
+void Portfolio::Regrow() {
   std::vector<Pose2> poses = best().poses;
   RegrowOptions regrow;
   if (Size() < kCheapMoves) {
