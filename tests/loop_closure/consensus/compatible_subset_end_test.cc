@@ -6,6 +6,7 @@
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/loop_closure/consensus/forth_and_back.h"
 #include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
@@ -15,42 +16,20 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// 50 m forth and back in a corridor, a node every half metre: nodes i and
-// 200 - i are at one place. The run ends where it began.
 class CompatibleSubsetEndTest : public testing::Test {
  protected:
   CompatibleSubsetEndTest() : paths_(uncertainty::RandomWalk(), 1000) {
     for (int i = 0; i <= 200; ++i) {
-      paths_.Add(uncertainty::NodeId{0, i}, True(i));
+      paths_.Add(uncertainty::NodeId{0, i}, ForthAndBack(i));
     }
-  }
-
-  static Pose2 True(int i) {
-    return i <= 100 ? Pose2(0.5 * i, 0., 0.) : Pose2(100. - 0.5 * i, 0., kPi);
   }
 
   // A badly predicted loop between the place of node i forth and back.
   static LoopEvidence Last(int64_t id, int i, double probability) {
-    LoopEvidence loop;
-    loop.id = id;
-    loop.edge.a = uncertainty::NodeId{0, i};
-    loop.edge.b = uncertainty::NodeId{0, 200 - i};
-    loop.edge.pose.pose = Between(True(i), True(200 - i));
-    loop.edge.pose.covariance =
-        Eigen::Vector3d(0.0025, 0.0025, 1e-4).asDiagonal();
-    loop.score = 0.6;
+    LoopEvidence loop = ForthAndBackLoop(id, i, 0., 0.6);
     loop.prior_sigma = 2.;
     loop.probability = probability;
     return loop;
-  }
-
-  static std::vector<int64_t> Accepted(
-      const std::vector<SubsetDecision>& decisions) {
-    std::vector<int64_t> ids;
-    for (const SubsetDecision& decision : decisions) {
-      if (decision.accepted) ids.push_back(decision.id);
-    }
-    return ids;
   }
 
   CompatibleSubsetOptions options_;

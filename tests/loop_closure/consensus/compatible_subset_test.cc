@@ -10,6 +10,7 @@
 #include "cartographer_ext/common/random.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/loop_closure/consensus/forth_and_back.h"
 #include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
@@ -19,44 +20,22 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// 50 m forth and back in a corridor, a node every half metre: nodes i and
-// 200 - i are at one place. Trajectory 1 repeats it in a frame of its own.
+// Trajectory 1 repeats the way in a frame of its own.
 class CompatibleSubsetTest : public testing::Test {
  protected:
   CompatibleSubsetTest() : paths_(uncertainty::RandomWalk(), 1000) {
     options_.single_strong_enabled = false;
     for (int i = 0; i <= 200; ++i) {
-      paths_.Add(uncertainty::NodeId{0, i}, True(i));
-      paths_.Add(uncertainty::NodeId{1, i}, Pose2(7., -3., 1.) * True(i));
+      paths_.Add(uncertainty::NodeId{0, i}, ForthAndBack(i));
+      paths_.Add(uncertainty::NodeId{1, i},
+                 Pose2(7., -3., 1.) * ForthAndBack(i));
     }
   }
 
-  static Pose2 True(int i) {
-    return i <= 100 ? Pose2(0.5 * i, 0., 0.) : Pose2(100. - 0.5 * i, 0., kPi);
-  }
-
-  // A loop between the place of node i forth and back, wrong by `offset`
-  // metres along the corridor.
-  LoopEvidence Loop(int64_t id, int i, double offset, double score = 0.6) {
-    LoopEvidence loop;
-    loop.id = id;
-    loop.edge.a = uncertainty::NodeId{0, i};
-    loop.edge.b = uncertainty::NodeId{0, 200 - i};
-    loop.edge.pose.pose =
-        Pose2(offset, 0., 0.) * Between(True(i), True(200 - i));
-    loop.edge.pose.covariance =
-        Eigen::Vector3d(0.0025, 0.0025, 1e-4).asDiagonal();
-    loop.score = score;
-    return loop;
-  }
-
-  static std::vector<int64_t> Accepted(
-      const std::vector<SubsetDecision>& decisions) {
-    std::vector<int64_t> ids;
-    for (const SubsetDecision& decision : decisions) {
-      if (decision.accepted) ids.push_back(decision.id);
-    }
-    return ids;
+  // See forth_and_back.h.
+  static LoopEvidence Loop(int64_t id, int i, double offset,
+                           double score = 0.6) {
+    return ForthAndBackLoop(id, i, offset, score);
   }
 
   CompatibleSubsetOptions options_;
@@ -143,7 +122,7 @@ TEST_F(CompatibleSubsetTest, BetweenRunsPlacesCountNotSubmaps) {
                             const double prior_sigma) {
     LoopEvidence loop = Loop(id, a, 0.);
     loop.edge.b = uncertainty::NodeId{1, i};
-    loop.edge.pose.pose = Between(True(a), True(i));
+    loop.edge.pose.pose = Between(ForthAndBack(a), ForthAndBack(i));
     loop.prior_sigma = prior_sigma;
     return loop;
   };
