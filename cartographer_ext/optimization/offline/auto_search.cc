@@ -198,8 +198,8 @@ std::unique_ptr<Portfolio> Search(const PoseGraph& graph,
     return portfolio;
   }
   NoiseOfMap map = MeasureNoise(portfolio.get());
-  for (const auto find :
-       {&FindLargerNoise, &FindNoiseRatio, &FindSmallerNoise}) {
+  for (const auto find : {&FindLargerNoise, &FindNoiseOfFewLoops,
+                          &FindNoiseRatio, &FindSmallerNoise}) {
     NoiseHypothesis noise;
     if (!find(*applied, map, portfolio.get(), &noise)) continue;
     // Only where the matrices claim too little is another map to be expected

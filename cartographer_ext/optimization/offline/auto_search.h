@@ -14,7 +14,9 @@
 //      members with the estimate; the larger of both factors stays at least one.
 //      Below one are both only where that decides between two maps: where the
 //      lowest cost needs the noise that the matrices claim, and another map costs
-//      less with the noise that the data show;
+//      less with the noise that the data show. Fewer than ten loops say nothing
+//      about the noise by their residuals, but they may confirm each other far
+//      from where odometry has led;
 //   3. the members near the lowest truncated cost polished with a gate adapted
 //      to the scale of the accepted loops, where the matrices claim too much
 //      noise, which in a sparse graph leave-one-out innovations alone show;

@@ -37,6 +37,11 @@ constexpr double kSmaller = 0.9;
 constexpr double kAnother = 3.;
 constexpr int kMaxMaps = 3;  // in turn
 
+// Factors of the odometry that are tried where there are few loops, and the
+// logarithm of the odds that one needs.
+constexpr double kFewLoopsScales[] = {1.5, 2., 3.};
+const double kFewLoopsOdds = std::log(1000.);
+
 enum class Floor {
   kEach,    // no factor is below one
   kLargest  // the larger one is not
@@ -193,6 +198,50 @@ double Rounded(const double scale) {
   return std::exp2(std::round(4. * std::log2(scale)) / 4.);
 }
 
+// What few loops say if put in force one by one, the likeliest first, as long as
+// that says something: the logarithm of their density over that of wrong ones,
+// which lead anywhere. `map`: the poses and how many were put in force.
+double EvidenceOfLoops(const std::vector<WhitenedEdge>& edges,
+                       const std::vector<Pose2>& chained,
+                       NoiseHypothesis* const map) {
+  RobustSolver solver(edges);
+  std::vector<double> weights(edges.size(), 1.);
+  std::vector<int> rejected;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop) continue;
+    weights[i] = 0.;
+    rejected.push_back(i);
+  }
+  map->poses = chained;
+  map->accepted = 0;
+  double result = 0.;
+  while (!rejected.empty()) {
+    const std::vector<Innovation> innovations =
+        PredictLoops(rejected, weights, map->poses, &solver);
+    const double log_area = LogArea(map->poses);
+    double highest = 0.;
+    size_t best = rejected.size();
+    for (size_t k = 0; k != innovations.size(); ++k) {
+      if (innovations[k].chi2 >= kChi2Gate) continue;
+      const double evidence =
+          LogVolume(edges[rejected[k]], log_area) -
+          0.5 * (innovations[k].chi2 + innovations[k].log_determinant);
+      if (evidence <= highest) continue;
+      highest = evidence;
+      best = k;
+    }
+    if (best == rejected.size()) break;
+    result += highest;
+    weights[rejected[best]] = 1.;
+    rejected.erase(rejected.begin() + best);
+    ++map->accepted;
+    SolverOptions options;
+    options.edge_weights = weights;
+    solver.Solve(options, &map->poses);
+  }
+  return result;
+}
+
 // Rounds the metric and returns whether it differs from that applied.
 bool IsAnother(const NoiseMetric& applied, NoiseMetric* const metric) {
   metric->odometry = Rounded(metric->odometry);
@@ -218,6 +267,35 @@ bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
     any = true;
   }
   return any && IsAnother(applied, &found->metric);
+}
+
+bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
+                         Portfolio* const portfolio,
+                         NoiseHypothesis* const found) {
+  if (map.loops < 2 || map.loops >= kMinLoops || map.accepted == map.loops) {
+    return false;
+  }
+  const std::vector<Pose2> chained = ChainOdometry(portfolio->graph());
+  NoiseHypothesis given;
+  double highest =
+      EvidenceOfLoops(portfolio->edges(), chained, &given) + kFewLoopsOdds;
+  found->valid = false;
+  for (const double scale : kFewLoopsScales) {
+    NoiseHypothesis hypothesis;
+    const double evidence =
+        EvidenceOfLoops(WithNoiseScale(portfolio->edges(), scale, 1.), chained,
+                        &hypothesis) -
+        0.5 * std::log2(scale) * std::log2(scale);
+    if (evidence <= highest || hypothesis.accepted < 2 ||
+        hypothesis.accepted <= map.accepted) {
+      continue;
+    }
+    highest = evidence;
+    *found = hypothesis;
+    found->metric = {applied.odometry * scale, applied.loops};
+    found->valid = true;
+  }
+  return found->valid && IsAnother(applied, &found->metric);
 }
 
 bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,

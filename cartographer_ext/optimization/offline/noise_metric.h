@@ -50,6 +50,16 @@ NoiseOfMap MeasureNoise(Portfolio* portfolio);
 // better. Only where these are applied as they are.
 bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
                      Portfolio* portfolio, NoiseHypothesis* found);
+// The same for the odometry of a graph with fewer than ten loops, whose residuals
+// say nothing about it. Two loops and more that confirm each other, far from where
+// odometry has led, are hardly wrong ones. With a factor s of the odometry
+//
+//   log p = sum over loops log N(r; 0, S) V - (log2 s)^2 / 2
+//
+// where loops are put in force one by one, as in loop_growth.h; it has to exceed
+// that of the given noise by odds of 1000, and each loop to be within the gate.
+bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
+                         Portfolio* portfolio, NoiseHypothesis* found);
 // The actual ratio of the noise of odometry and loops, if it differs from that of
 // their matrices. The best map has to be explained as well.
 bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,

@@ -8,6 +8,7 @@
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
+#include "tests/optimization/weak_ring.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -134,6 +135,54 @@ TEST(NoiseMetricTest, ASmallerNoiseDecidesBetweenMaps) {
   EXPECT_EQ(careful.best().name, "straight");
   EXPECT_FALSE(FindSmallerNoise(NoiseMetric(), MeasureNoise(&careful), &careful,
                                 &noise));
+}
+
+// A ring driven twice, with neighbouring loops between the laps; its odometry
+// errs `factor` times as much as it claims.
+PoseGraph RingOfFewLoops(const int num_loops, const double factor,
+                         const uint64_t seed) {
+  const test::GridWorld world = test::MakeWeakRing(seed, 0.004);
+  PoseGraph graph = WithNoiseScale(world.graph, 1. / factor, 1.);
+  int loops = 0;
+  std::vector<PoseGraphEdge> edges;
+  for (const PoseGraphEdge& edge : graph.edges) {
+    loops += edge.is_loop;
+    if (!edge.is_loop || loops <= num_loops) edges.push_back(edge);
+  }
+  graph.edges = edges;
+  return graph;
+}
+
+bool FindNoiseOfRing(const PoseGraph& graph, NoiseHypothesis* const found) {
+  Portfolio portfolio(graph, PortfolioOptions());
+  portfolio.Run();
+  return FindNoiseOfFewLoops(NoiseMetric(), MeasureNoise(&portfolio),
+                             &portfolio, found);
+}
+
+TEST(NoiseMetricTest, FewLoopsThatConfirmEachOtherTellTheNoiseOfOdometry) {
+  int num_found = 0, num_honest = 0;
+  for (int seed = 0; seed != 10; ++seed) {
+    NoiseHypothesis found;
+    if (FindNoiseOfRing(RingOfFewLoops(2, 4., seed), &found)) {
+      ++num_found;
+      EXPECT_EQ(found.accepted, 2);
+      EXPECT_GT(found.metric.odometry, 1.4);
+      EXPECT_LT(found.metric.odometry, 3.1);
+      EXPECT_EQ(found.metric.loops, 1.);
+    }
+    num_honest += FindNoiseOfRing(RingOfFewLoops(2, 1., seed), &found);
+    // One says nothing, nor do two that contradict each other.
+    EXPECT_FALSE(FindNoiseOfRing(RingOfFewLoops(1, 4., seed), &found));
+    PoseGraph contradiction = RingOfFewLoops(2, 4., seed);
+    contradiction.edges.back().measurement.x += 30.;
+    EXPECT_FALSE(FindNoiseOfRing(contradiction, &found));
+  }
+  // In four of ten rings chi2 of the odometry with three degrees of freedom is
+  // too small to be noticed, or larger than a factor of three explains.
+  EXPECT_GE(num_found, 4);
+  // One loop in a hundred lies beyond the gate where odometry is as it claims.
+  EXPECT_LE(num_honest, 1);
 }
 
 }  // namespace
