@@ -147,10 +147,10 @@ SearchPlan SearchPlanner::PlanAlone(const LoopCandidate& candidate) {
   return plan;
 }
 
-bool SearchPlanner::HasEnoughPasses(const LoopCandidate& candidate) const {
-  const auto memory = submaps_.find(candidate.submap);
-  return candidate.predicted.has_value() && memory != submaps_.end() &&
-         memory->second.passes.Count(*candidate.predicted) >= pass_limits_.most;
+bool SearchPlanner::HasEnoughPasses(const SubmapMemory& memory,
+                                    const LoopCandidate& candidate) const {
+  return candidate.predicted.has_value() &&
+         memory.passes.Count(*candidate.predicted) >= pass_limits_.most;
 }
 
 bool SearchPlanner::IsTied(const LoopCandidate& candidate,
@@ -165,10 +165,12 @@ bool SearchPlanner::IsTied(const LoopCandidate& candidate,
                              pass_limits_, *paths_)) {
     return true;
   }
-  return plan.translation_sigma <
-             kTiedSigmas *
-                 uncertainty::WorstTranslationSigma(loop_covariance_) &&
-         HasEnoughPasses(candidate);
+  if (plan.translation_sigma >=
+      kTiedSigmas * uncertainty::WorstTranslationSigma(loop_covariance_)) {
+    return false;
+  }
+  const auto memory = submaps_.find(candidate.submap);
+  return memory != submaps_.end() && HasEnoughPasses(memory->second, candidate);
 }
 
 bool SearchPlanner::IsSaturated(const LoopCandidate& candidate) const {
@@ -176,7 +178,7 @@ bool SearchPlanner::IsSaturated(const LoopCandidate& candidate) const {
   return memory != submaps_.end() &&
          (memory->second.accepted.size() >=
               static_cast<size_t>(options_.saturating_loops) ||
-          HasEnoughPasses(candidate));
+          HasEnoughPasses(memory->second, candidate));
 }
 
 bool SearchPlanner::IsEnoughFor(const LoopCandidate& candidate,

@@ -152,7 +152,8 @@ class SearchPlanner {
                        Nodes* nodes);
   // Whether the submap, or the place in it, has enough loops.
   bool IsSaturated(const LoopCandidate& candidate) const;
-  bool HasEnoughPasses(const LoopCandidate& candidate) const;
+  bool HasEnoughPasses(const SubmapMemory& memory,
+                       const LoopCandidate& candidate) const;
   // Whether the place has enough passes for a path as uncertain as planned.
   bool IsTied(const LoopCandidate& candidate, const SearchPlan& plan) const;
   // Whether the node of a saturated candidate needs no other one: it is

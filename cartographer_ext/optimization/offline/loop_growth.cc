@@ -82,8 +82,7 @@ class Growth {
     for (size_t k = 0; k != candidates.size(); ++k) {
       if (innovations[k].chi2 >= options_.gate) continue;
       scores[candidates[k]] =
-          LogVolume(edges_[candidates[k]], log_area) -
-          0.5 * (innovations[k].chi2 + innovations[k].log_determinant);
+          LogEvidence(edges_[candidates[k]], innovations[k], log_area);
     }
     int best = -1;
     double highest = -std::numeric_limits<double>::infinity();
@@ -207,6 +206,12 @@ double LogVolume(const WhitenedEdge& edge, const double log_area) {
   return log_area + std::log(2. * kPi) +
          std::log(std::abs(edge.whitening.determinant())) -
          1.5 * std::log(2. * kPi);
+}
+
+double LogEvidence(const WhitenedEdge& edge, const Innovation& innovation,
+                   const double log_area) {
+  return LogVolume(edge, log_area) -
+         0.5 * (innovation.chi2 + innovation.log_determinant);
 }
 
 double ChanceToFit(const WhitenedEdge& edge, const double log_area,

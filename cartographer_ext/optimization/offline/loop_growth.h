@@ -69,6 +69,10 @@ double LogArea(const std::vector<Pose2>& poses);
 // with.
 double LogVolume(const WhitenedEdge& edge, double log_area);
 
+// log N(r; 0, S) - log 1 / (2 pi A det W^-1) of a loop with this innovation.
+double LogEvidence(const WhitenedEdge& edge, const Innovation& innovation,
+                   double log_area);
+
 // Probability that a loop which leads anywhere in the area has a chi2 below the
 // gate.
 double ChanceToFit(const WhitenedEdge& edge, double log_area, double gate);

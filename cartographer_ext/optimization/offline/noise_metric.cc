@@ -224,8 +224,7 @@ double EvidenceOfLoops(const std::vector<WhitenedEdge>& edges,
     for (size_t k = 0; k != innovations.size(); ++k) {
       if (innovations[k].chi2 >= kChi2Gate) continue;
       const double evidence =
-          LogVolume(edges[rejected[k]], log_area) -
-          0.5 * (innovations[k].chi2 + innovations[k].log_determinant);
+          LogEvidence(edges[rejected[k]], innovations[k], log_area);
       if (evidence <= highest) continue;
       highest = evidence;
       best = k;
