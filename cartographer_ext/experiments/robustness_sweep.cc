@@ -2,20 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/experiments/robustness_sweep.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
+#include <map>
+#include <memory>
 #include <numeric>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/experiments/sweep_graphs.h"
+#include "cartographer_ext/io/line_journal.h"
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
@@ -32,74 +30,46 @@ std::string Key(const SweepRun& run) {
                       run.kernel, "|", run.type, "|", run.count, "|", run.seed);
 }
 
-absl::StatusOr<std::map<std::string, SweepRun>> ReadJournal(
-    const std::string& filename) {
-  std::map<std::string, SweepRun> result;
-  if (filename.empty()) return result;
-  std::ifstream stream(filename);
-  std::string line;
-  size_t whole_lines = 0;  // bytes
-  int number = 0;
-  while (std::getline(stream, line)) {
-    ++number;
-    SweepRun run;
-    const auto json = nlohmann::json::parse(line, nullptr, false);
-    if (json.is_discarded() && number > 1 && stream.peek() == EOF) {
-      // An interrupted write leaves half a line at the end. The file stays the
-      // same one, because it is locked.
-      if (truncate(filename.c_str(), static_cast<off_t>(whole_lines)) != 0) {
-        return absl::ErrnoToStatus(errno,
-                                   absl::StrCat("cannot write ", filename));
-      }
-      break;
-    }
-    if (json.is_discarded() || !FromJson(json, &run)) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          filename, ":", number, ": not a line of a robustness journal"));
-    }
-    result[Key(run)] = run;
-    whole_lines += line.size() + 1;
-  }
-  return result;
-}
-
-// Appends lines, each on disk before the next run starts. One process at a time
-// may hold it.
+// The runs that are done, by data set, kernel, type, count and seed.
 class SweepJournal {
  public:
-  ~SweepJournal() {
-    if (descriptor_ >= 0) close(descriptor_);
+  absl::Status Open(const SweepOptions& options) {
+    // Other settings that the runs depend on.
+    const std::string fingerprint =
+        absl::StrCat("group_size ", options.group_size, ", adaptive_gate ",
+                     options.optimize.adaptive_gate, ", lowest_cost ",
+                     options.optimize.lowest_cost, ", max_seconds ",
+                     options.optimize.max_seconds);
+    auto lines = io::LineJournal::Open(
+        options.journal_filename,
+        {"cartographer_ext_robustness", "robustness journal", "sweep",
+         "its runs had other options"},
+        fingerprint, [this](const nlohmann::json& line) -> absl::Status {
+          SweepRun run;
+          if (!FromJson(line, &run)) {
+            return absl::InvalidArgumentError("not a run of a sweep");
+          }
+          done_[Key(run)] = run;
+          return absl::OkStatus();
+        });
+    if (!lines.ok()) return lines.status();
+    lines_ = *std::move(lines);
+    return absl::OkStatus();
   }
 
-  absl::Status Open(const std::string& filename) {
-    filename_ = filename;
-    if (filename.empty()) return absl::OkStatus();
-    descriptor_ =
-        open(filename.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) return SystemError();
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return absl::OkStatus();
-    // Some file systems and devices have no locks.
-    if (errno != EWOULDBLOCK) return absl::OkStatus();
-    return absl::InvalidArgumentError(
-        absl::StrCat(filename, ": another sweep is writing to it"));
+  // Null if it is not done yet.
+  const SweepRun* Find(const SweepRun& run) const {
+    const auto found = done_.find(Key(run));
+    return found == done_.end() ? nullptr : &found->second;
   }
 
   absl::Status Append(const SweepRun& run) {
-    if (descriptor_ < 0) return absl::OkStatus();
-    const std::string line = absl::StrCat(ToJson(run).dump(), "\n");
-    const ssize_t written = write(descriptor_, line.data(), line.size());
-    if (written == static_cast<ssize_t>(line.size())) return absl::OkStatus();
-    if (written >= 0) errno = ENOSPC;
-    return SystemError();
+    return lines_->Append(ToJson(run));
   }
 
  private:
-  absl::Status SystemError() const {
-    return absl::ErrnoToStatus(errno, absl::StrCat("cannot write ", filename_));
-  }
-
-  std::string filename_;
-  int descriptor_ = -1;
+  std::unique_ptr<io::LineJournal> lines_;
+  std::map<std::string, SweepRun> done_;
 };
 
 double AteLimit(const SweepOptions& options, const SweepGraph& dataset,
@@ -261,11 +231,9 @@ bool FromJson(const nlohmann::json& json, SweepRun* const run) {
 absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
   const absl::Status known = CheckSweepOptions(options);
   if (!known.ok()) return known;
-  SweepJournal append;
-  const absl::Status opened = append.Open(options.journal_filename);
+  SweepJournal journal;
+  const absl::Status opened = journal.Open(options);
   if (!opened.ok()) return opened;
-  auto journal = ReadJournal(options.journal_filename);
-  if (!journal.ok()) return journal.status();
   std::vector<SweepRun> runs;
   const int64_t total = (options.datasets.size() + options.families.size()) *
                         options.types.size() * options.counts.size() *
@@ -288,14 +256,14 @@ absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
       run.outlier_share = static_cast<double>(run.count) /
                           std::max(1, run.count + dataset.num_loops);
       run.seed = seed;
-      const auto done = journal->find(Key(run));
-      if (done != journal->end()) {
-        runs.push_back(done->second);
+      const SweepRun* const done = journal.Find(run);
+      if (done != nullptr) {
+        runs.push_back(*done);
         runs.back().outlier_share = run.outlier_share;
         runs.back().requested_count = count_text;
       } else {
         absl::Status status = RunOne(options, dataset, &run);
-        if (status.ok()) status = append.Append(run);
+        if (status.ok()) status = journal.Append(run);
         if (!status.ok()) return status;
         runs.push_back(run);
       }

@@ -106,10 +106,11 @@ TEST(RobustnessMainTest, BadInputAndUsage) {
   test::WriteFile(folder / "journal", "something else\nand more\n");
   result = RunCommand("robustness", {"-journal_filename", folder / "journal"});
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.error, HasSubstr("journal:1"));
+  EXPECT_THAT(result.error,
+              HasSubstr("journal: line 1: not a robustness journal"));
 }
 
-TEST(RobustnessMainTest, AJournalIsKeptByOneSweepAndOnDisk) {
+TEST(RobustnessMainTest, AJournalIsKeptByOneSweepInAFile) {
   const test::TemporaryFolder folder;
   const auto sweep = [](const std::string& journal) {
     return RunCommand("robustness",
@@ -126,7 +127,7 @@ TEST(RobustnessMainTest, AJournalIsKeptByOneSweepAndOnDisk) {
   if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
   const CommandResult full = sweep("/dev/full");
   EXPECT_EQ(full.exit_code, 1);
-  EXPECT_THAT(full.error, HasSubstr("/dev/full: No space left"));
+  EXPECT_THAT(full.error, HasSubstr("/dev/full: not a plain file"));
 }
 
 }  // namespace
