@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
@@ -34,6 +35,9 @@ constexpr double kMostly = 0.75;
 // Upper bound of a factor from which a smaller noise is looked into, and loops by
 // which a map has to cost less with it to be another one.
 constexpr double kSmaller = 0.9;
+constexpr double kWellBelow = 0.5;
+// So many innovations take next to no time.
+constexpr int kFewAccepted = 100;
 constexpr double kAnother = 3.;
 constexpr int kMaxMaps = 3;  // in turn
 
@@ -241,6 +245,22 @@ double EvidenceOfLoops(const std::vector<WhitenedEdge>& edges,
   return result;
 }
 
+// Whether a few loops in force have nearly all chi2, as wrong ones among right
+// ones that claim too much noise do.
+bool AreMixed(const NoiseOfMap& map, Portfolio* const portfolio) {
+  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+  const std::vector<double> all = Chi2OfEdges(edges, portfolio->best().poses);
+  std::vector<double> of_loops;
+  double sum = 0.;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop || map.decisions[i] == 0.) continue;
+    of_loops.push_back(all[i]);
+    sum += all[i];
+  }
+  return Squared(TypicalNoise(of_loops)) <
+         Squared(kWellBelow) * sum / (3. * of_loops.size());
+}
+
 // Rounds the metric and returns whether it differs from that applied.
 bool IsAnother(const NoiseMetric& applied, NoiseMetric* const metric) {
   metric->odometry = Rounded(metric->odometry);
@@ -300,20 +320,30 @@ bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
 bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
                     Portfolio* const portfolio, NoiseHypothesis* const found) {
   const NoiseScale& scale = map.scale;
-  if (map.accepted < kMinLoops ||
-      (scale.loops.high * kMinRatio > scale.odometry.low &&
-       scale.odometry.high * kMinRatio > scale.loops.low)) {
-    return false;
+  if (map.accepted < kMinLoops) return false;
+  double loops = scale.loops.factor;
+  if (scale.loops.high * kMinRatio > scale.odometry.low &&
+      scale.odometry.high * kMinRatio > scale.loops.low) {
+    // A gate that is too wide lets wrong loops in, which make the noise of the
+    // loops look larger than it is.
+    if (scale.loops.high >= kSmaller ||
+        (map.accepted > kFewAccepted && !AreMixed(map, portfolio))) {
+      return false;
+    }
+    loops = TypicalNoise(LeaveOneOutInnovations(portfolio->best().poses,
+                                                map.decisions, kMaxInnovations,
+                                                portfolio->solver()));
+    if (loops > kWellBelow || loops * kMinRatio > scale.odometry.low) {
+      return false;
+    }
   }
   Trial trial;
   trial.floor = Floor::kLargest;
   trial.starts = {portfolio->best().poses};
-  *found =
-      EstimateMetric(WithNoiseScale(portfolio->edges(), 1. / applied.odometry,
-                                    1. / applied.loops),
-                     {applied.odometry * scale.odometry.factor,
-                      applied.loops * scale.loops.factor},
-                     trial);
+  *found = EstimateMetric(
+      WithNoiseScale(portfolio->edges(), 1. / applied.odometry,
+                     1. / applied.loops),
+      {applied.odometry * scale.odometry.factor, applied.loops * loops}, trial);
   return found->valid && found->accepted >= kMostly * map.accepted &&
          IsAnother(applied, &found->metric);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "Eigen/Cholesky"
 #include "cartographer_ext/common/squared.h"
@@ -146,11 +147,15 @@ bool IsCutByGate(const std::vector<double>& values, const double gate) {
   return values.size() >= 10 && upper > kSuspicious * values.size();
 }
 
-bool ClaimTooMuchNoise(std::vector<double> innovations) {
-  if (innovations.size() < 10) return false;
+double TypicalNoise(std::vector<double> innovations) {
+  if (innovations.size() < 10) return 1.;
   const auto middle = innovations.begin() + innovations.size() / 2;
   std::nth_element(innovations.begin(), middle, innovations.end());
-  return *middle < 0.25 * kMedian;
+  return std::sqrt(*middle / kMedian);
+}
+
+bool ClaimTooMuchNoise(std::vector<double> innovations) {
+  return TypicalNoise(std::move(innovations)) < 0.5;
 }
 
 PoseGraph WithNoiseScale(const PoseGraph& graph, const double odometry,

@@ -63,6 +63,11 @@ bool IsLikeChi2(const std::vector<double>& values);
 // the right loops.
 bool IsCutByGate(const std::vector<double>& values, double gate);
 
+// The factor of the standard deviations by the median of leave-one-out
+// innovations, which a few wrong loops among them hardly move; 1 for fewer than
+// ten.
+double TypicalNoise(std::vector<double> innovations);
+
 // Whether the median of leave-one-out innovations is that of half the claimed
 // noise or less. chi2 of the loops themselves is that small also where odometry
 // gives way to them, as in a sparse graph, and then says nothing about their

@@ -48,6 +48,29 @@ TEST(NoiseMetricTest, TheRatioRefersToTheGivenMatrices) {
   EXPECT_NEAR(found.metric.loops, 6., 1.2);
 }
 
+// Loops that claim ten times their noise let wrong ones in.
+TEST(NoiseMetricTest, WrongLoopsWithinTheGateDoNotHideTheRatio) {
+  constexpr double kClaimed = 10.;
+  const test::GridWorld world = test::MakeGridWorld(300, 5, 3);
+  PoseGraph graph = WithNoiseScale(world.graph, 1., kClaimed);
+  int loops = 0;
+  for (PoseGraphEdge& edge : graph.edges) {
+    if (!edge.is_loop || ++loops % 5 != 0) continue;
+    const double sigma = 1. / std::sqrt(edge.information(0, 0));
+    edge.measurement.x += (loops % 2 == 0 ? 2.8 : -2.8) * sigma;
+  }
+  Portfolio portfolio(graph, PortfolioOptions());
+  portfolio.Run();
+  const NoiseOfMap map = MeasureNoise(&portfolio);
+  // By chi2 alone they are as noisy as they claim.
+  EXPECT_GT(map.scale.loops.high * 1.25, map.scale.odometry.low);
+  NoiseHypothesis found;
+  ASSERT_TRUE(FindNoiseRatio(NoiseMetric(), map, &portfolio, &found));
+  EXPECT_EQ(found.metric.odometry, 1.);
+  EXPECT_NEAR(found.metric.loops, 1. / kClaimed, 0.4 / kClaimed);
+  EXPECT_NEAR(found.accepted, 0.8 * map.loops, 0.05 * map.loops);
+}
+
 TEST(NoiseMetricTest, AMapOfFewLoopsSaysNothing) {
   test::GridWorld world = test::MakeGridWorld(60, 5, 2);
   int loops = 0;

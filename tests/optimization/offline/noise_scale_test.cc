@@ -111,8 +111,15 @@ TEST(NoiseScaleTest, ChiSquaredOfASparseGraphDoesNotShowTheNoise) {
     const std::vector<double> innovations = LeaveOneOutInnovations(
         poses, std::vector<double>(edges.size(), 1.), 300, &solver);
     EXPECT_EQ(ClaimTooMuchNoise(innovations), factor < 0.5);
+    const double typical = TypicalNoise(innovations);
+    EXPECT_NEAR(typical, factor, 0.25 * factor);
+    // A fifth of wrong loops moves the mean far and the median little.
+    std::vector<double> contaminated = innovations;
+    contaminated.insert(contaminated.end(), innovations.size() / 4, 14.);
+    EXPECT_NEAR(TypicalNoise(contaminated), typical, 0.35 * typical);
   }
   EXPECT_FALSE(ClaimTooMuchNoise({0.1, 0.1, 0.1}));
+  EXPECT_EQ(TypicalNoise({0.1, 0.1, 0.1}), 1.);
 }
 
 }  // namespace
