@@ -96,6 +96,9 @@ struct LoopCandidate {
 
   // --- Consensus. ---
   absl::optional<InnovationResult> innovation;
+  // Metres, standard deviation of the prediction over loops that were accepted
+  // after the search; where it is set, `innovation` is from this prediction.
+  absl::optional<double> closed_sigma;
   absl::optional<ConsensusResult> consensus;
 
   // --- The verdict, with the reason for it. ---

@@ -140,7 +140,14 @@ void LoopPipeline::UpdateDrift() {
 
 std::vector<LoopCandidate> LoopPipeline::Decide(const bool at_end) {
   UpdateDrift();
-  std::vector<LoopCandidate> decided = consensus_.Decide(at_end);
+  const bool unalike =
+      std::none_of(vetoed_.begin(), vetoed_.end(), [](const auto& candidate) {
+        return candidate.FinalScore() >= kConfirmingScore;
+      });
+  std::vector<LoopCandidate> decided =
+      consensus_.Decide(!at_end   ? RunState::kGoesOn
+                        : unalike ? RunState::kEndsUnalike
+                                  : RunState::kEnds);
   for (const LoopCandidate& candidate : decided) {
     if (candidate.is_accepted()) scores_.Learn(candidate);
   }
@@ -157,6 +164,21 @@ std::vector<LoopCandidate> LoopPipeline::Flush() {
   vetoed_.clear();
   Settle(consensus_.Flush());
   return TakeSettled();
+}
+
+bool LoopPipeline::PredictAgain(const PathBetween& path_between) {
+  if (!options_.search.enabled || !options_.innovation_veto.enabled ||
+      !options_.compatible_subset.single_strong_enabled) {
+    return false;
+  }
+  return consensus_.PredictAgain([&](LoopCandidate* const candidate) {
+    if (!loop_closure::PredictAgain(options_, paths_, path_between,
+                                    candidate)) {
+      return false;
+    }
+    EstimateProbability(options_.search, candidate);
+    return true;
+  }) > 0;
 }
 
 std::vector<LoopCandidate> LoopPipeline::Undecided() const {

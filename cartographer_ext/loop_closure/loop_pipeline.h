@@ -33,6 +33,7 @@
 
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/consensus/drift_learner.h"
+#include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 #include "cartographer_ext/loop_closure/consensus/loop_consensus.h"
 #include "cartographer_ext/loop_closure/information/constraint_information.h"
 #include "cartographer_ext/loop_closure/information/typical_step.h"
@@ -77,6 +78,10 @@ class LoopPipeline {
   // of their numbers. `Flush` leaves nothing undecided.
   std::vector<LoopCandidate> Decide(bool at_end = false);
   std::vector<LoopCandidate> Flush();
+
+  // Predicts the undecided candidates again, over the loops accepted since they
+  // were searched. Returns whether some of them may be decided now.
+  bool PredictAgain(const PathBetween& path_between);
 
   // The undecided candidates with their reasons, in the order of their numbers:
   // they wait for other loops, or for evidence of a larger drift of local SLAM.

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "cartographer/common/thread_pool.h"
@@ -240,6 +241,14 @@ void Drive(const io::Pbstream& pbstream, const ReplayPlan& plan,
   for (const auto& trajectory : pbstream.pose_graph.trajectory()) {
     sensors.FeedUntil(trajectory.trajectory_id(),
                       std::numeric_limits<int64_t>::max());
+  }
+  // As a run ends, so that what is decided at its end is.
+  std::set<int> trajectories;
+  for (const ReplayStep& step : plan.steps) {
+    trajectories.insert(step.node_id.trajectory_id);
+  }
+  for (const int trajectory_id : trajectories) {
+    pose_graph->FinishTrajectory(trajectory_id);
   }
   pose_graph->RunFinalOptimization();
 }

@@ -38,6 +38,7 @@
 #include <vector>
 
 #include "Eigen/Core"
+#include "absl/types/optional.h"
 #include "cartographer_ext/loop_closure/candidate_search/place_passes.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_credit.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_result.h"
@@ -46,6 +47,7 @@
 #include "cartographer_ext/uncertainty/least_uncertain_paths.h"
 #include "cartographer_ext/uncertainty/loop_edge.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -113,6 +115,13 @@ class SearchPlanner {
   // be passed in one call, so that the limit per node applies to all of them.
   std::vector<SearchPlan> Plan(
       const std::vector<const LoopCandidate*>& candidates);
+
+  // (a <- b) along the least uncertain path over all accepted loops; empty if
+  // none connects them.
+  absl::optional<uncertainty::UncertainPose> PathBetween(
+      const uncertainty::VertexId& a, const uncertainty::VertexId& b) {
+    return least_uncertain_paths_.Between(a, b);
+  }
 
   // (anchor <- node) of a candidate that was accepted.
   void AddAcceptedLoop(const LoopCandidate& accepted,

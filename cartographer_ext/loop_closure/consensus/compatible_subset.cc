@@ -3,7 +3,6 @@
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "glog/logging.h"
@@ -16,8 +15,6 @@ namespace {
 constexpr double kLeastClusterWeight = 0.1;
 // Of the best score of a cluster; rivals below are none.
 constexpr double kRivalScore = 0.5;
-// Of a cluster that may confirm others: rather true than false.
-constexpr double kConfirmingScore = 0.5;
 // After a clique search that reached its limit, the next ones continue from its
 // subset, to which little has been added, and get this part of the limit.
 // Otherwise a building of equal places costs the whole limit for each revisit.
@@ -100,6 +97,19 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
   cluster.least_sigma = loop.prior_sigma;
   clusters_.push_back(std::move(cluster));
   relations_.push_back(std::move(relations));
+}
+
+void CompatibleSubset::UpdatePrior(const LoopEvidence& loop) {
+  for (Cluster& cluster : clusters_) {
+    for (LoopEvidence& undecided : cluster.undecided) {
+      if (undecided.id != loop.id) continue;
+      undecided.probability = loop.probability;
+      undecided.prior_sigma = loop.prior_sigma;
+      cluster.least_sigma = std::min(cluster.least_sigma, loop.prior_sigma);
+      changed_ = true;
+      return;
+    }
+  }
 }
 
 void CompatibleSubset::RelateAll() {
@@ -212,96 +222,6 @@ void CompatibleSubset::Solve() {
   }
 }
 
-bool CompatibleSubset::MayAccept(const Cluster& cluster,
-                                 SubsetReason* const reason) const {
-  if (!cluster.in_subset) {
-    // A few failed tests among many that agree are forgiven.
-    const double tolerance =
-        cluster.least_sigma <= options_.single_strong_sigma
-            ? std::max(options_.tolerance, options_.predicted_tolerance)
-            : options_.tolerance;
-    if (cluster.best_score < options_.forgiven_score ||
-        cluster.contradictions >
-            tolerance * (cluster.support + cluster.contradictions)) {
-      *reason = SubsetReason::kContradicted;
-      return false;
-    }
-  } else if (cluster.rival_support >= cluster.support && !cluster.accepted) {
-    *reason = cluster.support == 0 ? SubsetReason::kUnsupported
-                                   : SubsetReason::kRival;
-    return false;
-  }
-  if (cluster.accepted) {
-    *reason = SubsetReason::kJoinsAccepted;
-    return true;
-  }
-  int needed = options_.min_revisits;
-  if (cluster.least_sigma > options_.weak_prior_sigma) {
-    needed = std::max(needed, options_.weak_prior_revisits);
-  }
-  if (std::isinf(cluster.least_sigma)) {
-    needed = std::max(needed, options_.unpredicted_revisits);
-  }
-  if (cluster.support + 1 >= needed) {
-    *reason = SubsetReason::kSupported;
-    return true;
-  }
-  if (options_.single_strong_enabled && cluster.rival_support < 0 &&
-      cluster.least_sigma <= options_.single_strong_sigma &&
-      cluster.best_score >= options_.single_strong_score &&
-      cluster.num_loops >= options_.single_strong_loops) {
-    *reason = SubsetReason::kSingleStrong;
-    return true;
-  }
-  *reason = SubsetReason::kUnsupported;
-  return false;
-}
-
-bool CompatibleSubset::MayAcceptLoop(const Cluster& cluster,
-                                     const LoopEvidence& loop) const {
-  if (!options_.scores_are_probabilities) return true;
-  const int revisits =
-      std::min(cluster.support, options_.max_revisits_for_odds);
-  return loop.score * std::pow(options_.odds_per_revisit, revisits) >=
-         (1. - loop.score) * options_.odds_per_revisit;
-}
-
-std::vector<LoopEvidence> CompatibleSubset::TakeLikely(
-    Cluster* const cluster) const {
-  std::vector<LoopEvidence>& loops = cluster->undecided;
-  const auto unlikely = std::stable_partition(
-      loops.begin(), loops.end(),
-      [&](const LoopEvidence& loop) { return MayAcceptLoop(*cluster, loop); });
-  std::vector<LoopEvidence> likely(loops.begin(), unlikely);
-  loops.erase(loops.begin(), unlikely);
-  return likely;
-}
-
-std::vector<LoopEvidence> CompatibleSubset::TakeProbable(
-    Cluster* const cluster) const {
-  std::vector<LoopEvidence> probable;
-  SubsetReason reason;
-  if (!options_.single_strong_enabled || !cluster->in_subset ||
-      cluster->rival_support >= 0 || std::isinf(cluster->least_sigma) ||
-      MayAccept(*cluster, &reason) || reason != SubsetReason::kUnsupported) {
-    return probable;
-  }
-  std::vector<LoopEvidence>& loops = cluster->undecided;
-  const auto improbable = std::stable_partition(
-      loops.begin(), loops.end(), [this](const LoopEvidence& loop) {
-        return loop.probability >= options_.probability_at_end;
-      });
-  probable.assign(loops.begin(), improbable);
-  loops.erase(loops.begin(), improbable);
-  return probable;
-}
-
-SubsetReason CompatibleSubset::WhyNot(const Cluster& cluster) const {
-  SubsetReason reason;
-  // Of a cluster that may be accepted, the unlikely loops wait.
-  return MayAccept(cluster, &reason) ? SubsetReason::kUnsupported : reason;
-}
-
 void CompatibleSubset::Emit(
     const Cluster& cluster, const std::vector<LoopEvidence>& loops,
     const bool accepted, const SubsetReason reason,
@@ -318,7 +238,7 @@ void CompatibleSubset::Emit(
   }
 }
 
-std::vector<SubsetDecision> CompatibleSubset::Decide(const bool at_end) {
+std::vector<SubsetDecision> CompatibleSubset::Decide(const RunState state) {
   std::vector<SubsetDecision> decisions = std::move(overflow_);
   overflow_.clear();
   if (changed_) {
@@ -333,9 +253,11 @@ std::vector<SubsetDecision> CompatibleSubset::Decide(const bool at_end) {
       cluster.accepted = true;
     }
   }
-  for (int i = 0; at_end && i < num_clusters(); ++i) {
+  const absl::optional<int> num_right = NumRightFarOff(state);
+  for (int i = 0; state != RunState::kGoesOn && i < num_clusters(); ++i) {
     Cluster& cluster = clusters_[i];
-    const std::vector<LoopEvidence> probable = TakeProbable(&cluster);
+    const std::vector<LoopEvidence> probable =
+        TakeProbable(num_right, &cluster);
     if (probable.empty()) continue;
     Emit(cluster, probable, true, SubsetReason::kLikelyAtEnd, &decisions);
     cluster.accepted = true;

@@ -26,7 +26,10 @@
 //              comes; `Flush` ends that. At the end of a run, when no more can
 //              come, a loop of the subset whose only fault is a lack of support
 //              is accepted if it is probable: a robot that comes back to its
-//              start and stops there leaves no second revisit.
+//              start and stops there leaves no second revisit. If no match of
+//              the run was wrong, places do not look alike: then two revisits
+//              are enough in a weak prior, too, and after some that were right
+//              a single one.
 //
 // Pairwise tests of true loops fail occasionally; `tolerance` allows a small
 // share of contradictions so that long runs do not lose true loops. Zero is the
@@ -69,6 +72,17 @@ struct LoopEvidence {
   // Standard deviation of the prediction before the search, metres; infinity
   // without a prediction.
   double prior_sigma = 0.;
+};
+
+// Least best score of a cluster that may confirm others: rather true than
+// false.
+constexpr double kConfirmingScore = 0.5;
+
+// What is known of the run when loops are decided.
+enum class RunState {
+  kGoesOn,       // more loops may come
+  kEnds,         // none will come for now
+  kEndsUnalike,  // the same, and no place of it was taken for another one
 };
 
 // Options of clusters, relations and verdicts, see above.
@@ -151,12 +165,16 @@ class CompatibleSubset {
   void Add(const LoopEvidence& loop);
 
   // Returns the decisions that can be made now, in the order of adding. Cheap
-  // if nothing was added since the last call. `at_end`: no loop will be added
-  // for now; further ones may be.
-  std::vector<SubsetDecision> Decide(bool at_end = false);
+  // if nothing was added since the last call. After the end of a run further
+  // loops may be added.
+  std::vector<SubsetDecision> Decide(RunState state = RunState::kGoesOn);
   // Decides, then rejects everything undecided with its reason. Accepted
   // clusters are kept.
   std::vector<SubsetDecision> Flush();
+
+  // Takes the probability and the prior of an undecided loop, known by its id,
+  // from `loop`, where they have become better known.
+  void UpdatePrior(const LoopEvidence& loop);
 
   // Repeats all pairwise tests, after a change of the drift of the paths.
   void RelateAll();
@@ -218,8 +236,16 @@ class CompatibleSubset {
   // Removes the loops that may be accepted from the undecided ones of an
   // accepted cluster and returns them.
   std::vector<LoopEvidence> TakeLikely(Cluster* cluster) const;
-  // The same of the loops that are probable, if the cluster lacks support only.
-  std::vector<LoopEvidence> TakeProbable(Cluster* cluster) const;
+  // The same of the loops that are accepted at the end of a run, if the cluster
+  // lacks support only. `num_right`: see NumRightFarOff.
+  std::vector<LoopEvidence> TakeProbable(const absl::optional<int>& num_right,
+                                         Cluster* cluster) const;
+  // Of the clusters in a weak prior, how many were right. Empty if another one
+  // was wrong, or the run goes on.
+  absl::optional<int> NumRightFarOff(RunState state) const;
+  // Whether a loop in a weak prior is accepted after so many right ones.
+  bool IsSureFarOff(const Cluster& cluster, const LoopEvidence& loop,
+                    int num_right) const;
   // Why the undecided loops of a cluster are not accepted.
   SubsetReason WhyNot(const Cluster& cluster) const;
   void Emit(const Cluster& cluster, const std::vector<LoopEvidence>& loops,

@@ -38,6 +38,7 @@ LoopDecision::Reason ToReason(const SubsetReason reason) {
 }
 
 double PriorSigma(const LoopCandidate& candidate) {
+  if (candidate.closed_sigma.has_value()) return *candidate.closed_sigma;
   double sigma = candidate.plan.translation_sigma;
   // With another trajectory zero means that nobody knows.
   if (candidate.is_inter_trajectory() &&
@@ -126,12 +127,23 @@ std::vector<LoopCandidate> LoopConsensus::Settle(
   return settled;
 }
 
-std::vector<LoopCandidate> LoopConsensus::Decide(const bool at_end) {
-  return Settle(subset_.Decide(at_end));
+std::vector<LoopCandidate> LoopConsensus::Decide(const RunState state) {
+  return Settle(subset_.Decide(state));
 }
 
 std::vector<LoopCandidate> LoopConsensus::Flush() {
   return Settle(subset_.Flush());
+}
+
+int LoopConsensus::PredictAgain(const Predict& predict) {
+  int num_predicted = 0;
+  for (auto& entry : waiting_) {
+    LoopCandidate& candidate = entry.second.candidate;
+    if (!predict(&candidate)) continue;
+    subset_.UpdatePrior(MakeEvidence(candidate));
+    ++num_predicted;
+  }
+  return num_predicted;
 }
 
 std::vector<LoopCandidate> LoopConsensus::Remove(const Condition& condition) {

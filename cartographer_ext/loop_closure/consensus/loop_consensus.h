@@ -10,6 +10,7 @@
 //   its prior    how well its place was predicted: the standard deviation of
 //                the prediction, or, where that is less, how far from the
 //                prediction the match was found. Infinity without a prediction.
+//                Loops accepted later may predict the place better.
 //
 // Not thread-safe; candidates are added in the order of their numbers.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_LOOP_CONSENSUS_H_
@@ -32,6 +33,8 @@ namespace loop_closure {
 class LoopConsensus {
  public:
   using Condition = std::function<bool(const LoopCandidate&)>;
+  // Predicts a candidate again; returns whether it is known better.
+  using Predict = std::function<bool(LoopCandidate*)>;
 
   // `paths` must outlive this object and contain the submaps and nodes of the
   // candidates.
@@ -43,8 +46,11 @@ class LoopConsensus {
   // Returns the candidates that can be decided now, accepted or rejected, by
   // other rules at the end of a run (compatible_subset.h);
   // `Flush` rejects all that are still undecided.
-  std::vector<LoopCandidate> Decide(bool at_end = false);
+  std::vector<LoopCandidate> Decide(RunState state = RunState::kGoesOn);
   std::vector<LoopCandidate> Flush();
+
+  // Predicts all undecided candidates again; returns how many are known better.
+  int PredictAgain(const Predict& predict);
 
   // To be called after a change of the drift of `paths`.
   void DriftChanged() { subset_.RelateAll(); }

@@ -36,6 +36,9 @@ constexpr double kDistanceBehindSubmap = 3.;
 // A trajectory without submaps is freed after this many nodes of others.
 constexpr int64_t kNodesUntilFreed = 100;
 
+// Loops accepted at the end of a run predict others, at most this often.
+constexpr int kMostPredictions = 10;
+
 ConstraintWeights StockWeights(const ConstraintBuilderOptions& options) {
   ConstraintWeights weights;
   weights.translation = options.loop_closure_translation_weight();
@@ -221,11 +224,11 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   jobs_.erase(jobs_.begin(), jobs_.begin() + num_jobs_due_);
   num_jobs_due_ = 0;
   num_queries_due_ = 0;
-  const std::vector<LoopCandidate> decided = pipeline_.Decide(at_end_);
-  Record(decided);
   std::vector<Constraint> constraints;
-  for (const LoopCandidate& candidate : decided) {
-    if (candidate.is_accepted()) Close(candidate, &constraints);
+  Decide(&constraints);
+  for (int i = 0; at_end_ && i < kMostPredictions; ++i) {
+    PredictAgain();
+    if (!Decide(&constraints)) break;
   }
   auto* const drift = context_->Get<uncertainty::DriftModel>();
   for (const auto& estimate : pipeline_.drift().Estimates()) {
@@ -233,6 +236,25 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   }
   metrics.undecided->Set(pipeline_.num_undecided());
   return constraints;
+}
+
+bool LoopClosure2D::Decide(std::vector<Constraint>* const constraints) {
+  const std::vector<LoopCandidate> decided = pipeline_.Decide(at_end_);
+  Record(decided);
+  bool has_closed = false;
+  for (const LoopCandidate& candidate : decided) {
+    if (!candidate.is_accepted()) continue;
+    Close(candidate, constraints);
+    has_closed = true;
+  }
+  return has_closed;
+}
+
+void LoopClosure2D::PredictAgain() {
+  pipeline_.PredictAgain(
+      [this](const uncertainty::VertexId& a, const uncertainty::VertexId& b) {
+        return planner_.PathBetween(a, b);
+      });
 }
 
 void LoopClosure2D::ProcessQuery(const PlaceQuery& query) {

@@ -125,6 +125,11 @@ class LoopClosure2D {
   void ScheduleQuery(const std::vector<SearchJob*>& jobs,
                      cartographer::common::Task* end_of_node);
   void ProcessQuery(const PlaceQuery& query);
+  // Decides what can be decided, with the constraints of the accepted ones;
+  // returns whether there are any.
+  bool Decide(std::vector<Constraint>* constraints);
+  // As LoopPipeline::PredictAgain, over the accepted loops.
+  void PredictAgain();
   // Adds the constraint of an accepted candidate, and the marks of the loops
   // that are withdrawn on its account (common/withdrawn_loops.h).
   void Close(const LoopCandidate& accepted,

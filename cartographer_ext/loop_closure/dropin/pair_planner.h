@@ -34,6 +34,7 @@
 #include "cartographer_ext/uncertainty/ids.h"
 #include "cartographer_ext/uncertainty/loop_edge.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -61,6 +62,12 @@ class PairPlanner {
   // around its prediction and everywhere.
   std::vector<LoopCandidate> Plan(const std::vector<LoopCandidate>& proposed,
                                   std::vector<LostPlace>* lost);
+
+  // As SearchPlanner::PathBetween.
+  absl::optional<uncertainty::UncertainPose> PathBetween(
+      const uncertainty::VertexId& a, const uncertainty::VertexId& b) {
+    return search_planner_.PathBetween(a, b);
+  }
 
   // Adds an accepted candidate, with its loop if the anchor is known. Returns
   // as MapLocalization::AddAcceptedLoop.

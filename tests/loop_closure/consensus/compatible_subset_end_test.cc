@@ -42,7 +42,7 @@ TEST_F(CompatibleSubsetEndTest, ProbableLoopsAreAccepted) {
   subset.Add(Last(1, 1, 0.95));
   subset.Add(Last(2, 0, 0.9));
   EXPECT_THAT(subset.Decide(), IsEmpty());
-  const auto decisions = subset.Decide(/*at_end=*/true);
+  const auto decisions = subset.Decide(RunState::kEnds);
   EXPECT_THAT(Accepted(decisions), ElementsAre(1, 2));
   EXPECT_EQ(decisions[0].reason, SubsetReason::kLikelyAtEnd);
   EXPECT_EQ(subset.num_undecided(), 1);
@@ -56,18 +56,93 @@ TEST_F(CompatibleSubsetEndTest, ProbableLoopsAreAccepted) {
   LoopEvidence rival = Last(1, 10, 0.99);
   rival.edge.pose.pose.x += 12.;
   contested.Add(rival);
-  EXPECT_THAT(Accepted(contested.Decide(true)), IsEmpty());
+  EXPECT_THAT(Accepted(contested.Decide(RunState::kEnds)), IsEmpty());
   // ... where nothing predicted it, ...
   CompatibleSubset unpredicted(options_, &paths_);
   LoopEvidence loop = Last(0, 10, 0.99);
   loop.prior_sigma = std::numeric_limits<double>::infinity();
   unpredicted.Add(loop);
-  EXPECT_THAT(Accepted(unpredicted.Decide(true)), IsEmpty());
+  EXPECT_THAT(Accepted(unpredicted.Decide(RunState::kEnds)), IsEmpty());
   // ... and in the literal subset of the paper.
   options_.single_strong_enabled = false;
   CompatibleSubset literal(options_, &paths_);
   literal.Add(Last(0, 10, 0.99));
-  EXPECT_THAT(Accepted(literal.Decide(true)), IsEmpty());
+  EXPECT_THAT(Accepted(literal.Decide(RunState::kEnds)), IsEmpty());
+}
+
+// Where no match of the run was wrong, fewer loops need agree in a weak prior.
+class FarOffTest : public CompatibleSubsetEndTest {
+ protected:
+  static LoopEvidence Strong(int i, double score) {
+    LoopEvidence loop = Last(i, i, 0.1);
+    loop.score = score;
+    return loop;
+  }
+};
+
+TEST_F(FarOffTest, TwoRevisitsAreEnough) {
+  CompatibleSubset subset(options_, &paths_);
+  subset.Add(Strong(10, 0.9));  // odds 9 x 3
+  subset.Add(Strong(25, 0.8));  // 4 x 3
+  EXPECT_THAT(Accepted(subset.Decide(RunState::kEnds)), IsEmpty());
+  EXPECT_THAT(Accepted(subset.Decide(RunState::kEndsUnalike)), ElementsAre(10));
+  // After one that was right 4 x 3 x 2.
+  EXPECT_THAT(Accepted(subset.Decide(RunState::kEndsUnalike)), ElementsAre(25));
+}
+
+TEST_F(FarOffTest, NotIfAnotherMatchWasWrong) {
+  CompatibleSubset subset(options_, &paths_);
+  subset.Add(Strong(10, 0.9));
+  subset.Add(Strong(25, 0.9));
+  LoopEvidence wrong = Strong(70, 0.6);
+  wrong.edge.pose.pose.x += 12.;
+  subset.Add(wrong);
+  EXPECT_THAT(Accepted(subset.Decide(RunState::kEndsUnalike)), IsEmpty());
+}
+
+TEST_F(FarOffTest, ASingleOneAfterThreeThatWereRight) {
+  // Far apart: none supports another.
+  options_.informative_sigma = 1e-3;
+  for (const int num_right : {2, 3}) {
+    CompatibleSubset subset(options_, &paths_);
+    for (int i = 0; i < num_right; ++i) {
+      LoopEvidence loop = Strong(15 * i, 0.6);
+      loop.probability = 0.95;
+      subset.Add(loop);
+    }
+    EXPECT_EQ(Accepted(subset.Decide(RunState::kEnds)).size(),
+              static_cast<size_t>(num_right));
+    subset.Add(Strong(60, 0.8));   // 4 x 4
+    subset.Add(Strong(75, 0.85));  // 5.7 x 4
+    const auto accepted = Accepted(subset.Decide(RunState::kEndsUnalike));
+    if (num_right == 3) {
+      EXPECT_THAT(accepted, ElementsAre(75));
+    } else {
+      EXPECT_THAT(accepted, IsEmpty());
+    }
+  }
+}
+
+// Loops accepted meanwhile predict a place better: then fewer need agree.
+TEST_F(CompatibleSubsetEndTest, BetterPredictedLoopsNeedLessSupport) {
+  CompatibleSubset subset(options_, &paths_);
+  // Two revisits: one fewer than badly predicted ones need.
+  subset.Add(Last(0, 10, 0.2));
+  subset.Add(Last(1, 25, 0.2));
+  EXPECT_THAT(Accepted(subset.Decide(RunState::kEnds)), IsEmpty());
+  LoopEvidence known = Last(0, 10, 0.3);
+  known.prior_sigma = 0.8;
+  subset.UpdatePrior(known);
+  const auto decisions = subset.Decide(RunState::kEnds);
+  EXPECT_THAT(Accepted(decisions), ElementsAre(0));
+  EXPECT_EQ(decisions[0].reason, SubsetReason::kSupported);
+  // Nothing happens to a loop that is decided.
+  subset.UpdatePrior(known);
+  EXPECT_THAT(subset.Decide(RunState::kEnds), IsEmpty());
+  // A probable loop needs none.
+  known = Last(1, 25, 0.95);
+  subset.UpdatePrior(known);
+  EXPECT_THAT(Accepted(subset.Decide(RunState::kEnds)), ElementsAre(1));
 }
 
 }  // namespace

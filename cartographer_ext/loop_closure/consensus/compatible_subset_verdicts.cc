@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The verdicts of the compatible subset: which loops may be accepted.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+namespace {
+
+// Odds of a loop that is accepted at the end of a run where nothing looks
+// alike, and how many of them must have been right before one stands alone.
+constexpr double kSureOdds = 19.;
+constexpr int kEnoughRight = 3;
+
+}  // namespace
+
+bool CompatibleSubset::MayAccept(const Cluster& cluster,
+                                 SubsetReason* const reason) const {
+  if (!cluster.in_subset) {
+    // A few failed tests among many that agree are forgiven.
+    const double tolerance =
+        cluster.least_sigma <= options_.single_strong_sigma
+            ? std::max(options_.tolerance, options_.predicted_tolerance)
+            : options_.tolerance;
+    if (cluster.best_score < options_.forgiven_score ||
+        cluster.contradictions >
+            tolerance * (cluster.support + cluster.contradictions)) {
+      *reason = SubsetReason::kContradicted;
+      return false;
+    }
+  } else if (cluster.rival_support >= cluster.support && !cluster.accepted) {
+    *reason = cluster.support == 0 ? SubsetReason::kUnsupported
+                                   : SubsetReason::kRival;
+    return false;
+  }
+  if (cluster.accepted) {
+    *reason = SubsetReason::kJoinsAccepted;
+    return true;
+  }
+  int needed = options_.min_revisits;
+  if (cluster.least_sigma > options_.weak_prior_sigma) {
+    needed = std::max(needed, options_.weak_prior_revisits);
+  }
+  if (std::isinf(cluster.least_sigma)) {
+    needed = std::max(needed, options_.unpredicted_revisits);
+  }
+  if (cluster.support + 1 >= needed) {
+    *reason = SubsetReason::kSupported;
+    return true;
+  }
+  if (options_.single_strong_enabled && cluster.rival_support < 0 &&
+      cluster.least_sigma <= options_.single_strong_sigma &&
+      cluster.best_score >= options_.single_strong_score &&
+      cluster.num_loops >= options_.single_strong_loops) {
+    *reason = SubsetReason::kSingleStrong;
+    return true;
+  }
+  *reason = SubsetReason::kUnsupported;
+  return false;
+}
+
+bool CompatibleSubset::MayAcceptLoop(const Cluster& cluster,
+                                     const LoopEvidence& loop) const {
+  if (!options_.scores_are_probabilities) return true;
+  const int revisits =
+      std::min(cluster.support, options_.max_revisits_for_odds);
+  return loop.score * std::pow(options_.odds_per_revisit, revisits) >=
+         (1. - loop.score) * options_.odds_per_revisit;
+}
+
+std::vector<LoopEvidence> CompatibleSubset::TakeLikely(
+    Cluster* const cluster) const {
+  std::vector<LoopEvidence>& loops = cluster->undecided;
+  const auto unlikely = std::stable_partition(
+      loops.begin(), loops.end(),
+      [&](const LoopEvidence& loop) { return MayAcceptLoop(*cluster, loop); });
+  std::vector<LoopEvidence> likely(loops.begin(), unlikely);
+  loops.erase(loops.begin(), unlikely);
+  return likely;
+}
+
+absl::optional<int> CompatibleSubset::NumRightFarOff(
+    const RunState state) const {
+  if (state != RunState::kEndsUnalike) return absl::nullopt;
+  int num_right = 0;
+  for (const Cluster& cluster : clusters_) {
+    if (!cluster.in_subset && cluster.best_score >= kConfirmingScore) {
+      return absl::nullopt;
+    }
+    num_right +=
+        cluster.accepted && cluster.least_sigma > options_.weak_prior_sigma;
+  }
+  return num_right;
+}
+
+bool CompatibleSubset::IsSureFarOff(const Cluster& cluster,
+                                    const LoopEvidence& loop,
+                                    const int num_right) const {
+  if (cluster.support + 1 < options_.min_revisits && num_right < kEnoughRight) {
+    return false;
+  }
+  const int revisits =
+      std::min(cluster.support, options_.max_revisits_for_odds);
+  // The rule of succession: the odds that the next one is right, too.
+  return loop.score * std::pow(options_.odds_per_revisit, revisits) *
+             (num_right + 1) >=
+         (1. - loop.score) * kSureOdds;
+}
+
+std::vector<LoopEvidence> CompatibleSubset::TakeProbable(
+    const absl::optional<int>& num_right, Cluster* const cluster) const {
+  std::vector<LoopEvidence> probable;
+  SubsetReason reason;
+  if (!options_.single_strong_enabled || !cluster->in_subset ||
+      cluster->rival_support >= 0 || std::isinf(cluster->least_sigma) ||
+      MayAccept(*cluster, &reason) || reason != SubsetReason::kUnsupported) {
+    return probable;
+  }
+  std::vector<LoopEvidence>& loops = cluster->undecided;
+  const auto improbable = std::stable_partition(
+      loops.begin(), loops.end(), [&](const LoopEvidence& loop) {
+        return loop.probability >= options_.probability_at_end ||
+               (num_right.has_value() &&
+                IsSureFarOff(*cluster, loop, *num_right));
+      });
+  probable.assign(loops.begin(), improbable);
+  loops.erase(loops.begin(), improbable);
+  return probable;
+}
+
+SubsetReason CompatibleSubset::WhyNot(const Cluster& cluster) const {
+  SubsetReason reason;
+  // Of a cluster that may be accepted, the unlikely loops wait.
+  return MayAccept(cluster, &reason) ? SubsetReason::kUnsupported : reason;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
