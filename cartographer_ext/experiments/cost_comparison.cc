@@ -168,17 +168,12 @@ bool FromJson(const nlohmann::json& json, CostComparison* const comparison) {
 class CostJournal {
  public:
   absl::Status Open(const SweepOptions& options) {
-    // Other settings that the costs depend on.
-    const std::string fingerprint =
-        absl::StrCat("group_size ", options.group_size, ", adaptive_gate ",
-                     options.optimize.adaptive_gate, ", lowest_cost ",
-                     options.optimize.lowest_cost, ", max_seconds ",
-                     options.optimize.max_seconds);
     auto lines = io::LineJournal::Open(
         options.journal_filename,
         {"cartographer_ext_compare_cost", "journal of costs", "comparison",
          "graphs were generated or solved with other options"},
-        fingerprint, [this](const nlohmann::json& line) -> absl::Status {
+        JournalFingerprint(options),
+        [this](const nlohmann::json& line) -> absl::Status {
           CostComparison comparison;
           if (!line.is_object() || !line.contains("source") ||
               !line["source"].is_string() || !FromJson(line, &comparison)) {

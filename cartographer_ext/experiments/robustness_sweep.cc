@@ -34,17 +34,12 @@ std::string Key(const SweepRun& run) {
 class SweepJournal {
  public:
   absl::Status Open(const SweepOptions& options) {
-    // Other settings that the runs depend on.
-    const std::string fingerprint =
-        absl::StrCat("group_size ", options.group_size, ", adaptive_gate ",
-                     options.optimize.adaptive_gate, ", lowest_cost ",
-                     options.optimize.lowest_cost, ", max_seconds ",
-                     options.optimize.max_seconds);
     auto lines = io::LineJournal::Open(
         options.journal_filename,
         {"cartographer_ext_robustness", "robustness journal", "sweep",
          "its runs had other options"},
-        fingerprint, [this](const nlohmann::json& line) -> absl::Status {
+        JournalFingerprint(options),
+        [this](const nlohmann::json& line) -> absl::Status {
           SweepRun run;
           if (!FromJson(line, &run)) {
             return absl::InvalidArgumentError("not a run of a sweep");

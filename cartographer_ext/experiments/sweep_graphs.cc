@@ -76,6 +76,13 @@ std::vector<Pose2> OptimumOfRightLoops(const PoseGraph& graph) {
 
 }  // namespace
 
+std::string JournalFingerprint(const SweepOptions& options) {
+  return absl::StrCat("group_size ", options.group_size, ", adaptive_gate ",
+                      options.optimize.adaptive_gate, ", lowest_cost ",
+                      options.optimize.lowest_cost, ", max_seconds ",
+                      options.optimize.max_seconds);
+}
+
 absl::Status CheckSweepOptions(const SweepOptions& options) {
   for (const std::string& kernel : options.kernels) {
     const std::vector<std::string>& names = optimization::MethodNames();

@@ -52,6 +52,10 @@ struct SweepGraph {
 // An error for an unknown kernel, type or family.
 absl::Status CheckSweepOptions(const SweepOptions& options);
 
+// The options that a run depends on besides its data set, kernel, type, count
+// and seed: the fingerprint of a journal.
+std::string JournalFingerprint(const SweepOptions& options);
+
 // The data set's short name: the file's without folder and .g2o, .gz, .xz.
 std::string DatasetName(const std::string& dataset);
 

@@ -140,14 +140,15 @@ void LoopPipeline::UpdateDrift() {
 
 std::vector<LoopCandidate> LoopPipeline::Decide(const bool at_end) {
   UpdateDrift();
-  const bool unalike =
-      std::none_of(vetoed_.begin(), vetoed_.end(), [](const auto& candidate) {
-        return candidate.FinalScore() >= kConfirmingScore;
-      });
-  std::vector<LoopCandidate> decided =
-      consensus_.Decide(!at_end   ? RunState::kGoesOn
-                        : unalike ? RunState::kEndsUnalike
-                                  : RunState::kEnds);
+  RunState state = RunState::kGoesOn;
+  if (at_end) {
+    const bool any_wrong =
+        std::any_of(vetoed_.begin(), vetoed_.end(), [](const auto& candidate) {
+          return candidate.FinalScore() >= kConfirmingScore;
+        });
+    state = any_wrong ? RunState::kEnds : RunState::kEndsUnalike;
+  }
+  std::vector<LoopCandidate> decided = consensus_.Decide(state);
   for (const LoopCandidate& candidate : decided) {
     if (candidate.is_accepted()) scores_.Learn(candidate);
   }

@@ -13,9 +13,28 @@ namespace loop_closure {
 namespace {
 
 // Odds of a loop that is accepted at the end of a run where nothing looks
-// alike, and how many of them must have been right before one stands alone.
+// alike, and how many of them must have been right before one is accepted
+// without support.
 constexpr double kSureOdds = 19.;
 constexpr int kEnoughRight = 3;
+
+// Factor on the odds of a loop of a cluster with this support.
+double OddsOfSupport(const CompatibleSubsetOptions& options,
+                     const int support) {
+  return std::pow(options.odds_per_revisit,
+                  std::min(support, options.max_revisits_for_odds));
+}
+
+// Removes the loops that fulfil the condition and returns them, both in order.
+template <typename Condition>
+std::vector<LoopEvidence> TakeIf(const Condition& condition,
+                                 std::vector<LoopEvidence>* const loops) {
+  const auto rest =
+      std::stable_partition(loops->begin(), loops->end(), condition);
+  std::vector<LoopEvidence> taken(loops->begin(), rest);
+  loops->erase(loops->begin(), rest);
+  return taken;
+}
 
 }  // namespace
 
@@ -67,21 +86,15 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
 bool CompatibleSubset::MayAcceptLoop(const Cluster& cluster,
                                      const LoopEvidence& loop) const {
   if (!options_.scores_are_probabilities) return true;
-  const int revisits =
-      std::min(cluster.support, options_.max_revisits_for_odds);
-  return loop.score * std::pow(options_.odds_per_revisit, revisits) >=
+  return loop.score * OddsOfSupport(options_, cluster.support) >=
          (1. - loop.score) * options_.odds_per_revisit;
 }
 
 std::vector<LoopEvidence> CompatibleSubset::TakeLikely(
     Cluster* const cluster) const {
-  std::vector<LoopEvidence>& loops = cluster->undecided;
-  const auto unlikely = std::stable_partition(
-      loops.begin(), loops.end(),
-      [&](const LoopEvidence& loop) { return MayAcceptLoop(*cluster, loop); });
-  std::vector<LoopEvidence> likely(loops.begin(), unlikely);
-  loops.erase(loops.begin(), unlikely);
-  return likely;
+  return TakeIf(
+      [&](const LoopEvidence& loop) { return MayAcceptLoop(*cluster, loop); },
+      &cluster->undecided);
 }
 
 absl::optional<int> CompatibleSubset::NumRightFarOff(
@@ -104,33 +117,27 @@ bool CompatibleSubset::IsSureFarOff(const Cluster& cluster,
   if (cluster.support + 1 < options_.min_revisits && num_right < kEnoughRight) {
     return false;
   }
-  const int revisits =
-      std::min(cluster.support, options_.max_revisits_for_odds);
   // The rule of succession: the odds that the next one is right, too.
-  return loop.score * std::pow(options_.odds_per_revisit, revisits) *
+  return loop.score * OddsOfSupport(options_, cluster.support) *
              (num_right + 1) >=
          (1. - loop.score) * kSureOdds;
 }
 
 std::vector<LoopEvidence> CompatibleSubset::TakeProbable(
     const absl::optional<int>& num_right, Cluster* const cluster) const {
-  std::vector<LoopEvidence> probable;
   SubsetReason reason;
   if (!options_.single_strong_enabled || !cluster->in_subset ||
       cluster->rival_support >= 0 || std::isinf(cluster->least_sigma) ||
       MayAccept(*cluster, &reason) || reason != SubsetReason::kUnsupported) {
-    return probable;
+    return {};
   }
-  std::vector<LoopEvidence>& loops = cluster->undecided;
-  const auto improbable = std::stable_partition(
-      loops.begin(), loops.end(), [&](const LoopEvidence& loop) {
+  return TakeIf(
+      [&](const LoopEvidence& loop) {
         return loop.probability >= options_.probability_at_end ||
                (num_right.has_value() &&
                 IsSureFarOff(*cluster, loop, *num_right));
-      });
-  probable.assign(loops.begin(), improbable);
-  loops.erase(loops.begin(), improbable);
-  return probable;
+      },
+      &cluster->undecided);
 }
 
 SubsetReason CompatibleSubset::WhyNot(const Cluster& cluster) const {
