@@ -149,7 +149,7 @@ CARTOGRAPHER_EXT.constraint_builder = {
     -- Memory limit for the search structures of the most recently used
     -- submaps; others are rebuilt when they are needed, with the same result.
     -- [>= 0 and <= 1000000, MB]
-    max_cache_mb = 32,
+    max_cache_mb = 64,
   },
   temporal_verification = {
     -- Compare the most recent nodes with the scans that the submap predicts

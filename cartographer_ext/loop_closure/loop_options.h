@@ -77,7 +77,7 @@ struct LoopOptions {
   double loop_rotation = 0.01;
   // Limit of the cached search structures of submaps, bytes; others are rebuilt
   // when they are needed.
-  size_t max_cache_bytes = size_t{32} << 20;
+  size_t max_cache_bytes = size_t{64} << 20;
   // Whether matches are tested against other poses along the least observable
   // direction (dropin/slide_test.h), and the smallest log-odds: about 3 to 1.
   // Not in paper modes and not without score fusion.
