@@ -39,4 +39,8 @@ std::string SimilarWord(const std::string& word,
   return best;
 }
 
+std::string DidYouMean(const std::string& similar) {
+  return similar.empty() ? "" : ", did you mean '" + similar + "'?";
+}
+
 }  // namespace cartographer_ext

@@ -16,6 +16,9 @@ namespace cartographer_ext {
 std::string SimilarWord(const std::string& word,
                         const std::vector<std::string>& names);
 
+// ", did you mean 'NAME'?", to end a message; empty where there is no name.
+std::string DidYouMean(const std::string& similar);
+
 }  // namespace cartographer_ext
 
 #endif  // CARTOGRAPHER_EXT_COMMON_SIMILAR_WORD_H_

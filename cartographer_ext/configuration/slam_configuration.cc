@@ -17,6 +17,7 @@
 #include "cartographer/mapping/map_builder.h"
 #include "cartographer/mapping/map_builder_interface.h"
 #include "cartographer/mapping/trajectory_builder_interface.h"
+#include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/fatal_guard.h"
 #include "cartographer_ext/configuration/lua_value.h"
 #include "cartographer_ext/configuration/option_ranges.h"
@@ -198,12 +199,9 @@ absl::Status Suggest(const absl::Status& status, const nlohmann::json& table) {
     for (const UnknownKey& unknown :
          FindUnknownKeys(*found, *part.message, part.lua_name)) {
       if (!is_meant(unknown.key) && !is_meant(unknown.similar)) continue;
-      return absl::InvalidArgumentError(absl::StrCat(
-          InLuaFile(absl::StrCat(unknown.table, ".", unknown.key)),
-          " is not an option",
-          unknown.similar.empty()
-              ? ""
-              : absl::StrCat(", did you mean '", unknown.similar, "'?")));
+      return absl::InvalidArgumentError(
+          absl::StrCat(InLuaFile(absl::StrCat(unknown.table, ".", unknown.key)),
+                       " is not an option", DidYouMean(unknown.similar)));
     }
   }
   return status;

@@ -173,12 +173,6 @@ std::vector<std::vector<double>> Statement::ListOptions(absl::string_view key,
   return lists;
 }
 
-std::string DidYouMean(const std::string& word,
-                       const std::vector<std::string>& names) {
-  const std::string similar = SimilarWord(word, names);
-  return similar.empty() ? "" : absl::StrCat(", did you mean '", similar, "'?");
-}
-
 absl::Status Statement::Finish() {
   if (has_values()) {
     Fail(absl::StrCat("unexpected value ", Quoted(values_[next_value_])));
@@ -186,7 +180,7 @@ absl::Status Statement::Finish() {
   for (const KeyValue& option : options_) {
     if (!option.used) {
       Fail(absl::StrCat("unknown option ", Quoted(option.key),
-                        DidYouMean(option.key, known_options_)));
+                        DidYouMean(SimilarWord(option.key, known_options_))));
     }
   }
   return status_;

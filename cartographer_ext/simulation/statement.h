@@ -70,10 +70,6 @@ class Statement {
   absl::Status status_;
 };
 
-// ", did you mean 'NAME'?" for the name that is most similar, or nothing.
-std::string DidYouMean(const std::string& word,
-                       const std::vector<std::string>& names);
-
 // Larger coordinates are typing errors, and would overflow the grids.
 constexpr double kMaxCoordinate = 1e4;
 

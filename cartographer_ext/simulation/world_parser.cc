@@ -16,6 +16,7 @@
 #include "absl/strings/str_split.h"
 #include "cartographer_ext/common/bounded_read.h"
 #include "cartographer_ext/common/byte_order_mark.h"
+#include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/simulation/plan_builder.h"
 #include "cartographer_ext/simulation/statement.h"
 
@@ -264,16 +265,17 @@ class Parser {
       world_.places.push_back(place);
       if (world_.places.size() > kMaxMarks) s->Fail("too many marks");
     } else {
-      s->Fail(absl::StrCat(
-          "unknown statement",
-          DidYouMean(absl::AsciiStrToLower(keyword),
-                     {"world",     "describe", "polyline", "polygon",
-                      "rectangle", "circle",   "pillar",   "wall",
-                      "block",     "end",      "place",    "robot",
-                      "start",     "goto",     "reverse",  "turn",
-                      "wait",      "laser",    "odometry", "imu",
-                      "obstacle",  "begin",    "fault",    "key_distance",
-                      "revisit"})));
+      s->Fail(
+          absl::StrCat("unknown statement",
+                       DidYouMean(SimilarWord(
+                           absl::AsciiStrToLower(keyword),
+                           {"world",     "describe", "polyline", "polygon",
+                            "rectangle", "circle",   "pillar",   "wall",
+                            "block",     "end",      "place",    "robot",
+                            "start",     "goto",     "reverse",  "turn",
+                            "wait",      "laser",    "odometry", "imu",
+                            "obstacle",  "begin",    "fault",    "key_distance",
+                            "revisit"}))));
     }
   }
 

@@ -158,10 +158,9 @@ bool HasVerdict() {
 std::string Suggestion(const std::string& unknown) {
   std::vector<std::string> names;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    names.push_back(flag.name);
+    names.push_back(absl::StrCat("-", flag.name));
   }
-  const std::string similar = SimilarWord(unknown, names);
-  return similar.empty() ? "" : absl::StrCat(", did you mean -", similar, "?");
+  return DidYouMean(SimilarWord(unknown, names));
 }
 
 void SetFlag(const std::string& name, const std::string& value) {
@@ -318,7 +317,7 @@ void CommandLine::Parse(const int argc, char** const argv) {
       SetFlag(name.substr(2), "false");
     } else if (!IsKnown(name)) {
       ExitWithUsageError(
-          absl::StrCat("unknown flag -", name, Suggestion(name)));
+          absl::StrCat("unknown flag -", name, Suggestion("-" + name)));
     } else if (i + 1 == argc) {
       ExitWithUsageError(absl::StrCat("-", name, " needs a value"));
     } else {

@@ -16,6 +16,11 @@ TEST(SimilarWordTest, FindsTheNearest) {
   EXPECT_EQ(SimilarWord("mn_range", names), "min_range");
 }
 
+TEST(SimilarWordTest, DidYouMean) {
+  EXPECT_EQ(DidYouMean("min_z"), ", did you mean 'min_z'?");
+  EXPECT_EQ(DidYouMean(""), "");
+}
+
 TEST(SimilarWordTest, SaysNothingRatherThanNonsense) {
   EXPECT_EQ(SimilarWord("voxel", {"min_range", "max_range"}), "");
   EXPECT_EQ(SimilarWord("x", {}), "");

@@ -283,7 +283,7 @@ TEST(SlamMainTest, WrongUsageIsExitCodeTwo) {
   EXPECT_EQ(RunCommand("slam", {}).exit_code, 2);
   const CommandResult unknown = RunCommand("slam", {"-input_filname", "x.clf"});
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.error, HasSubstr("did you mean -input_filename?"));
+  EXPECT_THAT(unknown.error, HasSubstr("did you mean '-input_filename'?"));
   EXPECT_EQ(RunCommand("slam", {"x.clf", "y.clf"}).exit_code, 2);
   EXPECT_EQ(RunCommand("slam", {"-input_filename=x.clf", "-report_filename=r"})
                 .exit_code,
