@@ -164,7 +164,7 @@ absl::StatusOr<std::vector<int>> FindLoops(const MapGraph& map,
       }
     }
     if (result.size() == before) {
-      return absl::InvalidArgumentError(
+      return absl::NotFoundError(
           absl::StrCat("the map has no loop between submap ", ToString(submap),
                        " and node ", ToString(node)));
     }

@@ -65,17 +65,17 @@ absl::StatusOr<LoopByHand> Parse(const std::string& name) {
 absl::Status CheckIsNew(const LoopByHand& loop,
                         const evaluation::MapGraph& graph) {
   if (graph.submaps.count(loop.submap_id) == 0) {
-    return absl::InvalidArgumentError(absl::StrCat(
+    return absl::NotFoundError(absl::StrCat(
         "the map has no submap ", evaluation::ToString(loop.submap_id)));
   }
   if (graph.nodes.count(loop.node_id) == 0) {
-    return absl::InvalidArgumentError(absl::StrCat(
+    return absl::NotFoundError(absl::StrCat(
         "the map has no node ", evaluation::ToString(loop.node_id)));
   }
   for (const auto& constraint : graph.constraints) {
     if (constraint.submap_id == loop.submap_id &&
         constraint.node_id == loop.node_id) {
-      return absl::InvalidArgumentError(absl::StrCat(
+      return absl::AlreadyExistsError(absl::StrCat(
           ToString(loop), constraint.is_loop
                               ? ": the map already has this loop"
                               : ": this node was inserted into this submap"));

@@ -61,13 +61,10 @@ void Randomise(OdometryFault* fault, Random* random) {
   }
 }
 
-}  // namespace
-
-absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
-    const std::string& description, const Drive& drive, const uint64_t seed) {
+// As often as asked for, without times.
+absl::StatusOr<std::vector<OdometryFault>> Parse(
+    const std::string& description) {
   std::vector<OdometryFault> faults;
-  std::vector<double> taken;
-  Random random = MakeRandom(seed, RandomStream::kFaults);
   for (const absl::string_view item :
        absl::StrSplit(description, ',', absl::SkipEmpty())) {
     const std::vector<std::string> parts = absl::StrSplit(item, ':');
@@ -103,17 +100,33 @@ absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
           absl::StrCat("odometry fault '", item,
                        "': the count must be whole, in [0, ", kMaxCount, "]"));
     }
-    for (int i = 0; i < value; ++i) {
-      fault.start = FreeTime(drive, taken, &random);
-      if (fault.start < 0.) {
-        return absl::InvalidArgumentError(
-            absl::StrCat("odometry fault '", item, "': a drive of ",
-                         drive.duration(), " s is too short for so many"));
-      }
-      taken.push_back(fault.start);
-      Randomise(&fault, &random);
-      faults.push_back(fault);
+    faults.insert(faults.end(), static_cast<size_t>(value), fault);
+  }
+  return faults;
+}
+
+}  // namespace
+
+absl::Status CheckRandomFaults(const std::string& description) {
+  return Parse(description).status();
+}
+
+absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
+    const std::string& description, const Drive& drive, const uint64_t seed) {
+  auto faults = Parse(description);
+  if (!faults.ok()) return faults.status();
+  std::vector<double> taken;
+  Random random = MakeRandom(seed, RandomStream::kFaults);
+  for (OdometryFault& fault : *faults) {
+    if (fault.kind == Kind::kReverse || fault.kind == Kind::kOffset) continue;
+    fault.start = FreeTime(drive, taken, &random);
+    if (fault.start < 0.) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("odometry faults '", description, "': a drive of ",
+                       drive.duration(), " s is too short for so many"));
     }
+    taken.push_back(fault.start);
+    Randomise(&fault, &random);
   }
   return faults;
 }

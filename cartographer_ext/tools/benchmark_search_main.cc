@@ -42,17 +42,15 @@ std::string MatcherName(const GoldenMatcher matcher) {
   return matcher == GoldenMatcher::kStock ? "stock" : "ours";
 }
 
-// True when `name` is allowed.
-bool MatchersOfFlag(const std::string& name,
-                    std::vector<GoldenMatcher>* const matchers) {
-  matchers->clear();
+std::vector<GoldenMatcher> MatchersOfFlag(const std::string& name) {
+  std::vector<GoldenMatcher> matchers;
   if (name == "stock" || name == "both") {
-    matchers->push_back(GoldenMatcher::kStock);
+    matchers.push_back(GoldenMatcher::kStock);
   }
   if (name == "ours" || name == "both") {
-    matchers->push_back(GoldenMatcher::kOurs);
+    matchers.push_back(GoldenMatcher::kOurs);
   }
-  return !matchers->empty();
+  return matchers;
 }
 
 std::string PairName(const evaluation::GoldenPair& pair) {
@@ -215,7 +213,7 @@ absl::Status Run(int* const num_mismatches) {
 
   Progress progress("matching", static_cast<int64_t>(pairs->size()));
   evaluation::GoldenCheckOptions options;
-  MatchersOfFlag(FLAGS_matcher, &options.matchers);
+  options.matchers = MatchersOfFlag(FLAGS_matcher);
   options.repeat = FLAGS_repeat;
   options.progress = [&progress](const int done) { progress.Update(done); };
   const std::vector<GoldenReport> reports =
@@ -250,16 +248,13 @@ int main(int argc, char** argv) {
       "cartographer_ext_benchmark_search -pbstream_filename map.pbstream \\\n  "
       "    -golden_filename map.search.csv -matcher both -repeat 3\n\n"
       "Mismatches give exit code 1.");
+  command_line.TakeOneOf("matcher", {"stock", "ours", "both"});
   command_line.Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty()) {
     return tools::UsageError("-pbstream_filename is missing");
   }
   if (FLAGS_golden_filename.empty()) {
     return tools::UsageError("-golden_filename is missing");
-  }
-  std::vector<evaluation::GoldenMatcher> matchers;
-  if (!tools::MatchersOfFlag(FLAGS_matcher, &matchers)) {
-    return tools::UsageError("-matcher must be stock, ours or both");
   }
   if (FLAGS_repeat < 1) return tools::UsageError("-repeat must be at least 1");
   int num_mismatches = 0;

@@ -331,6 +331,8 @@ void CommandLine::Parse(const int argc, char** const argv) {
   if (FLAGS_max_expansion < 1) {
     ExitWithUsageError("-max_expansion must be at least 1");
   }
+  const absl::Status known = CheckFlagChoices(choices_);
+  if (!known.ok()) ExitWithUsageError(std::string(known.message()));
   io::SetMaxExpansion(FLAGS_max_expansion);
   evaluation::RestrictLua(FLAGS_sandbox);
   RemoveTemporaryFilesOnSignals();
@@ -391,6 +393,7 @@ int ExitCode(const absl::Status& status, const bool verdict_fails) {
     std::cerr << ProgramName() << ": cannot write standard output\n";
     return kExitBadInput;
   }
+  if (IsWrongUsage(status)) return UsageError(std::string(status.message()));
   std::cerr << ProgramName() << ": " << Printable(std::string(status.message()))
             << "\n";
   return kExitBadInput;

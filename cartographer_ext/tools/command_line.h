@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "cartographer_ext/tools/flag_values.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_ext {
@@ -48,6 +49,20 @@ class CommandLine {
                        const std::string& second_input_flag = "");
   // Accepts any number of inputs: those after the first are more_inputs().
   void TakeMany() { takes_many_ = true; }
+  // The only values of a flag, or of the words of one with a list.
+  void TakeOneOf(const std::string& flag,
+                 const std::vector<std::string>& values) {
+    choices_.push_back({flag, values, FlagChoices::Kind::kOne});
+  }
+  void TakeListOf(const std::string& flag,
+                  const std::vector<std::string>& values) {
+    choices_.push_back({flag, values, FlagChoices::Kind::kList});
+  }
+  // How the name of a file must end; pictures, unless it is said here, in .png.
+  void TakeEndings(const std::string& flag,
+                   const std::vector<std::string>& endings) {
+    choices_.push_back({flag, endings, FlagChoices::Kind::kEnding});
+  }
   void Parse(int argc, char** argv);
 
   // Whether the main input was given without its flag.
@@ -64,6 +79,7 @@ class CommandLine {
   bool has_positional_input_ = false;
   bool takes_many_ = false;
   std::vector<std::string> more_inputs_;
+  std::vector<FlagChoices> choices_;
 };
 
 // The name the program was called by, without folders.
@@ -78,7 +94,8 @@ int UsageError(const std::string& message);
 // On standard error, a line each.
 void PrintNotes(const std::vector<std::string>& notes);
 
-// kExitSuccess, or prints the message and returns kExitBadInput; also if
+// kExitSuccess, or prints the message and returns kExitBadInput (kExitUsage if
+// the status is marked by WrongUsage of flag_values.h); also if
 // standard output could not be written (full, closed). With `verdict_fails`
 // success becomes kExitVerdict.
 int ExitCode(const absl::Status& status, bool verdict_fails = false);

@@ -10,7 +10,6 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
@@ -293,7 +292,9 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
-  tools::CommandLine(kDescription, "input_filename").Parse(argc, argv);
+  tools::CommandLine command_line(kDescription, "input_filename");
+  command_line.TakeEndings("picture_filename", {".svg"});
+  command_line.Parse(argc, argv);
   if (FLAGS_input_filename.empty() == FLAGS_pbstream_filename.empty()) {
     return tools::UsageError(
         "give one of -input_filename and -pbstream_filename");
@@ -302,10 +303,6 @@ int main(int argc, char** argv) {
       FLAGS_reference_trajectory_filename.empty()) {
     return tools::UsageError(
         "give one of -relations_filename and -reference_trajectory_filename");
-  }
-  if (!FLAGS_picture_filename.empty() &&
-      !absl::EndsWith(FLAGS_picture_filename, ".svg")) {
-    return tools::UsageError("-picture_filename must end in .svg");
   }
   if (FLAGS_num_background_threads < 0 || !(FLAGS_loop_tolerance > 0.) ||
       !(FLAGS_stamp_tolerance >= 0.)) {

@@ -107,8 +107,8 @@ absl::StatusOr<navigation::NavigationRunOptions> ReadOptions() {
   if (FLAGS_goals != "auto") {
     auto goals = navigation::ParseGoals(FLAGS_goals);
     if (!goals.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("-goals: ", goals.status().message()));
+      return tools::WrongUsage(absl::InvalidArgumentError(
+          absl::StrCat("-goals: ", goals.status().message())));
     }
     options.goals = *std::move(goals);
   }
@@ -124,11 +124,11 @@ absl::StatusOr<navigation::NavigationRunOptions> ReadOptions() {
 }
 
 absl::Status Run() {
+  const auto options = ReadOptions();
+  if (!options.ok()) return options.status();
   absl::Status status = tools::CheckWritable(
       {FLAGS_picture_filename, FLAGS_animation_filename, FLAGS_json});
   if (!status.ok()) return status;
-  const auto options = ReadOptions();
-  if (!options.ok()) return options.status();
   const std::vector<std::string> directories =
       tools::ConfigurationDirectories(FLAGS_configuration_directory);
   const auto configuration = evaluation::LoadSlamConfiguration(

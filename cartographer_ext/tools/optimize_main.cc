@@ -102,11 +102,6 @@ struct Input {
 absl::StatusOr<Input> ReadInput() {
   Input input;
   if (!absl::EndsWith(FLAGS_input_filename, ".pbstream")) {
-    if (!FLAGS_drop_loops.empty() || FLAGS_wrong_loops > 0) {
-      return absl::InvalidArgumentError(
-          "-drop_loops and -wrong_loops need a pbstream; for a g2o file "
-          "cartographer_ext_robustness adds wrong loops");
-    }
     auto graph = evaluation::ReadPoseGraph(FLAGS_input_filename);
     if (!graph.ok()) return graph.status();
     input.graph = *std::move(graph);
@@ -117,7 +112,11 @@ absl::StatusOr<Input> ReadInput() {
   input.pbstream = *std::move(pbstream);
   const auto dropped = evaluation::FindLoops(
       evaluation::MakeMapGraph(*input.pbstream), FLAGS_drop_loops);
-  if (!dropped.ok()) return dropped.status();
+  if (!dropped.ok()) {
+    return absl::IsInvalidArgument(dropped.status())
+               ? tools::WrongUsage(dropped.status())
+               : dropped.status();
+  }
   evaluation::DropConstraints(*dropped, &*input.pbstream);
   evaluation::WrongLoopOptions wrong_loops;
   wrong_loops.count = FLAGS_wrong_loops;
@@ -162,10 +161,6 @@ absl::Status WriteOutput(const Input& input,
   if (!absl::EndsWith(FLAGS_output_filename, ".pbstream")) {
     return evaluation::WritePoseGraph(input.graph, result.poses,
                                       FLAGS_output_filename);
-  }
-  if (!input.pbstream.has_value()) {
-    return absl::InvalidArgumentError(
-        "a pbstream can only be written if one was read");
   }
   io::Pbstream output = *input.pbstream;
   evaluation::StorePoses(input.map, result.poses, &output);
@@ -359,15 +354,25 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
-  tools::CommandLine(kDescription, "input_filename").Parse(argc, argv);
+  tools::CommandLine command_line(kDescription, "input_filename");
+  command_line.TakeOneOf("kernel", optimization::MethodNames());
+  command_line.TakeOneOf("norm",
+                         {"spectral", "determinant", "root", "information"});
+  command_line.TakeEndings("output_filename", {".g2o", ".tum", ".pbstream"});
+  command_line.Parse(argc, argv);
   if (FLAGS_input_filename.empty()) {
     return tools::UsageError("-input_filename is missing");
   }
-  const std::vector<std::string>& names = optimization::MethodNames();
-  if (std::find(names.begin(), names.end(), FLAGS_kernel) == names.end()) {
-    return tools::UsageError(absl::StrCat("unknown -kernel ", FLAGS_kernel,
-                                          ", expected one of ",
-                                          absl::StrJoin(names, " ")));
+  if (!absl::EndsWith(FLAGS_input_filename, ".pbstream")) {
+    if (!FLAGS_drop_loops.empty() || FLAGS_wrong_loops > 0) {
+      return tools::UsageError(
+          "-drop_loops and -wrong_loops need a pbstream; for a g2o file "
+          "cartographer_ext_robustness adds wrong loops");
+    }
+    if (absl::EndsWith(FLAGS_output_filename, ".pbstream")) {
+      return tools::UsageError(
+          "-output_filename: a pbstream can only be written if one is read");
+    }
   }
   AtomicFileSet files;
   absl::Status status = Run();

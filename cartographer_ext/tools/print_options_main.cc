@@ -95,12 +95,9 @@ int Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
-  tools::CommandLine(kDescription).Parse(argc, argv);
-  if (FLAGS_format != "text" && FLAGS_format != "markdown" &&
-      FLAGS_format != "lua" && FLAGS_format != "reference") {
-    return tools::UsageError(
-        "-format must be text, markdown, lua or reference");
-  }
+  tools::CommandLine command_line(kDescription);
+  command_line.TakeOneOf("format", {"text", "markdown", "lua", "reference"});
+  command_line.Parse(argc, argv);
   if (FLAGS_format == "reference" && !FLAGS_configuration_basename.empty()) {
     return tools::UsageError("-format=reference is for all options");
   }

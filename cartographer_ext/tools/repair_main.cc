@@ -90,6 +90,13 @@ std::string PosesFilename() {
                       ".poses.csv");
 }
 
+// Wrong usage where the flag does not name loops; the map may also lack them.
+absl::Status OfLoops(const std::string& flag, const absl::Status& status) {
+  const absl::Status named(status.code(),
+                           absl::StrCat(flag, ": ", status.message()));
+  return absl::IsInvalidArgument(status) ? tools::WrongUsage(named) : named;
+}
+
 absl::StatusOr<repair::RepairOptions> MakeOptions(
     const evaluation::MapGraph& graph) {
   repair::RepairOptions options;
@@ -105,15 +112,15 @@ absl::StatusOr<repair::RepairOptions> MakeOptions(
   options.local_slam =
       slam->trajectory_builder_options.trajectory_builder_2d_options();
   options.loops = options.local = false;
-  for (const auto& name : absl::StrSplit(FLAGS_only, ',')) {
+  for (const auto& name : absl::StrSplit(FLAGS_only, absl::ByAnyChar(", "))) {
     options.loops = options.loops || name == "loops";
     options.local = options.local || name == "local";
   }
   const auto dropped = evaluation::FindLoops(graph, FLAGS_drop_loops);
-  if (!dropped.ok()) return dropped.status();
+  if (!dropped.ok()) return OfLoops("-drop_loops", dropped.status());
   options.dropped_loops = *dropped;
   const auto added = repair::ParseLoopsByHand(graph, FLAGS_add_loops);
-  if (!added.ok()) return added.status();
+  if (!added.ok()) return OfLoops("-add_loops", added.status());
   options.added_loops = *added;
   options.keep_frame = FLAGS_keep_frame;
   options.drop_odometry = FLAGS_drop_odometry;
@@ -194,19 +201,16 @@ absl::Status Run(const std::string& command_line, bool* const fails) {
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
   const std::string command_line = absl::StrJoin(argv, argv + argc, " ");
-  tools::CommandLine(kDescription, "pbstream_filename").Parse(argc, argv);
+  tools::CommandLine arguments(kDescription, "pbstream_filename");
+  arguments.TakeListOf("only", {"loops", "local"});
+  arguments.Parse(argc, argv);
   if (FLAGS_pbstream_filename.empty()) {
     return tools::UsageError("-pbstream_filename is missing");
   }
   if (FLAGS_output_filename.empty() && !FLAGS_dry_run) {
     return tools::UsageError("-output_filename is missing (or use -dry_run)");
   }
-  for (const auto& name : absl::StrSplit(FLAGS_only, ',')) {
-    if (name != "loops" && name != "local") {
-      return tools::UsageError(absl::StrCat(
-          "unknown step \"", name, "\" in -only, expected loops or local"));
-    }
-  }
+  if (FLAGS_only.empty()) return tools::UsageError("-only names no step");
   if (FLAGS_num_background_threads < 1) {
     return tools::UsageError("-num_background_threads must be above 0");
   }

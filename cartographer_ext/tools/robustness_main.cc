@@ -3,6 +3,7 @@
 // LINK: experiments
 //
 // cartographer_ext_robustness: how many wrong loops does a back end survive?
+#include <algorithm>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -126,8 +127,20 @@ constexpr Preset kPresets[] = {
      "auto,r_isam,gm,dcs,acs,acs_paper", "R,RG,L,LG", "1000,2000,4000", "5"},
 };
 
-bool ApplyPreset() {
-  if (FLAGS_preset.empty()) return true;
+std::vector<std::string> PresetNames() {
+  std::vector<std::string> names;
+  for (const Preset& preset : kPresets) names.push_back(preset.name);
+  return names;
+}
+
+std::vector<std::string> FamilyWords() {
+  std::vector<std::string> words = experiments::FamilyNames();
+  words.push_back("all");
+  return words;
+}
+
+// Parse has checked that there is such a preset.
+void ApplyPreset() {
   for (const Preset& preset : kPresets) {
     if (FLAGS_preset != preset.name) continue;
     const auto set = [](const char* flag, const char* value) {
@@ -140,9 +153,7 @@ bool ApplyPreset() {
     set("outlier_types", preset.types);
     set("outlier_counts", preset.counts);
     set("seeds", preset.seeds);
-    return true;
   }
-  return false;
 }
 
 std::vector<std::string> Words(const std::string& text) {
@@ -156,8 +167,17 @@ absl::StatusOr<experiments::SweepOptions> OptionsFromFlags() {
   options.kernels = Words(FLAGS_kernels);
   options.types = Words(FLAGS_outlier_types);
   options.counts = Words(FLAGS_outlier_counts);
+  for (const std::string& count : options.counts) {
+    const absl::Status status = experiments::OutlierCount(count, 0).status();
+    if (!status.ok()) {
+      return tools::WrongUsage(absl::InvalidArgumentError(
+          absl::StrCat("-outlier_counts: ", status.message())));
+    }
+  }
   options.families = Words(FLAGS_family);
-  if (FLAGS_family == "all") options.families = experiments::FamilyNames();
+  if (std::count(options.families.begin(), options.families.end(), "all") > 0) {
+    options.families = experiments::FamilyNames();
+  }
   if (!options.families.empty() &&
       gflags::GetCommandLineFlagInfoOrDie("datasets").is_default) {
     options.datasets.clear();
@@ -180,8 +200,8 @@ absl::StatusOr<experiments::SweepOptions> OptionsFromFlags() {
         absl::StrSplit(entry, absl::MaxSplits('=', 1));
     double limit;
     if (!absl::SimpleAtod(parts.second, &limit)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("-ate_limits: '", entry, "' is not name=metres"));
+      return tools::WrongUsage(absl::InvalidArgumentError(
+          absl::StrCat("-ate_limits: '", entry, "' is not name=metres")));
     }
     options.ate_limits[parts.first] = limit;
   }
@@ -189,8 +209,8 @@ absl::StatusOr<experiments::SweepOptions> OptionsFromFlags() {
     const std::pair<std::string, std::string> parts =
         absl::StrSplit(entry, absl::MaxSplits('=', 1));
     if (parts.second.empty()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("-truths: '", entry, "' is not name=file"));
+      return tools::WrongUsage(absl::InvalidArgumentError(
+          absl::StrCat("-truths: '", entry, "' is not name=file")));
     }
     options.truths[parts.first] = parts.second;
   }
@@ -248,20 +268,27 @@ absl::Status Run() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
-  tools::CommandLine(kDescription).Parse(argc, argv);
-  if (!ApplyPreset()) {
-    return tools::UsageError("unknown -preset " + FLAGS_preset);
-  }
+  tools::CommandLine command_line(kDescription);
+  command_line.TakeOneOf("preset", PresetNames());
+  command_line.TakeListOf("kernels", optimization::MethodNames());
+  command_line.TakeListOf("outlier_types", {"none", "R", "L", "RG", "LG"});
+  command_line.TakeListOf("family", FamilyWords());
+  command_line.TakeOneOf("norm",
+                         {"spectral", "determinant", "root", "information"});
+  command_line.Parse(argc, argv);
+  ApplyPreset();
   if (FLAGS_seeds < 1 || FLAGS_group_size < 1 || FLAGS_first_seed < 0) {
     return tools::UsageError(
         "-seeds and -group_size must be at least 1, -first_seed at least 0");
   }
-  if (Words(FLAGS_datasets).empty() || Words(FLAGS_kernels).empty() ||
-      Words(FLAGS_outlier_types).empty() ||
-      Words(FLAGS_outlier_counts).empty()) {
-    return tools::UsageError(
-        "-datasets, -kernels, -outlier_types and -outlier_counts must not be "
-        "empty");
+  if (Words(FLAGS_datasets).empty() && Words(FLAGS_family).empty()) {
+    return tools::UsageError("neither -datasets nor -family names graphs");
+  }
+  for (const char* flag : {"kernels", "outlier_types", "outlier_counts"}) {
+    if (Words(gflags::GetCommandLineFlagInfoOrDie(flag).current_value)
+            .empty()) {
+      return tools::UsageError(absl::StrCat("-", flag, " names nothing"));
+    }
   }
   return tools::ExitCode(Run());
 }

@@ -14,10 +14,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_join.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/simulation/buildings/building.h"
+#include "cartographer_ext/simulation/sensors/odometry_model.h"
 #include "cartographer_ext/simulation/sensors/presets.h"
 #include "cartographer_ext/simulation/simulation_output.h"
 #include "cartographer_ext/simulation/world_parser.h"
@@ -135,24 +135,6 @@ nlohmann::ordered_json Report(const simulation::Simulation& simulation,
   json["cpu_seconds"] = cpu_seconds;
   json["files"] = summary.files;
   return json;
-}
-
-// A flag that names a preset: exit code 2 when there is none by that name.
-bool IsKnown(const char* flag, const std::string& value,
-             const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    if (value.empty() || value == name) return true;
-  }
-  tools::UsageError(absl::StrCat("-", flag, "=", value, " is none of ",
-                                 absl::StrJoin(names, ", ")));
-  return false;
-}
-
-bool FlagsAreKnown() {
-  return IsKnown("generate", FLAGS_generate, simulation::BuildingNames()) &&
-         IsKnown("laser", FLAGS_laser, simulation::LaserPresetNames()) &&
-         IsKnown("robot", FLAGS_robot, simulation::RobotPresetNames()) &&
-         IsKnown("odometry", FLAGS_odometry, simulation::OdometryPresetNames());
 }
 
 // The MEMS unit of the shipped worlds.
@@ -328,6 +310,11 @@ int main(int argc, char** argv) {
   namespace tools = cartographer_ext::tools;
   tools::CommandLine command_line(cartographer_ext::kDescription,
                                   "world_filename");
+  namespace simulation = cartographer_ext::simulation;
+  command_line.TakeOneOf("generate", simulation::BuildingNames());
+  command_line.TakeOneOf("laser", simulation::LaserPresetNames());
+  command_line.TakeOneOf("robot", simulation::RobotPresetNames());
+  command_line.TakeOneOf("odometry", simulation::OdometryPresetNames());
   command_line.Parse(argc, argv);
   if (FLAGS_world_filename.empty() == FLAGS_generate.empty()) {
     return tools::UsageError(
@@ -335,11 +322,15 @@ int main(int argc, char** argv) {
             ? "give -world_filename or -generate"
             : "-world_filename and -generate exclude each other");
   }
-  if (!cartographer_ext::FlagsAreKnown()) return tools::kExitUsage;
-  if (FLAGS_laps < 1 || FLAGS_laps > cartographer_ext::simulation::kMaxLaps) {
+  const absl::Status faults =
+      simulation::CheckRandomFaults(FLAGS_odometry_faults);
+  if (!faults.ok()) {
     return tools::UsageError(
-        absl::StrCat("-laps=", FLAGS_laps, " is outside [1, ",
-                     cartographer_ext::simulation::kMaxLaps, "]"));
+        absl::StrCat("-odometry_faults: ", faults.message()));
+  }
+  if (FLAGS_laps < 1 || FLAGS_laps > simulation::kMaxLaps) {
+    return tools::UsageError(absl::StrCat(
+        "-laps=", FLAGS_laps, " is outside [1, ", simulation::kMaxLaps, "]"));
   }
   if (FLAGS_output_filestem.empty() && FLAGS_picture_filename.empty() &&
       FLAGS_json.empty() && FLAGS_world_output_filename.empty()) {

@@ -115,8 +115,8 @@ absl::StatusOr<evaluation::StartingState> ReadStartingState() {
   if (FLAGS_initial_pose.empty()) return state;
   const auto pose = evaluation::ParsePose(FLAGS_initial_pose);
   if (!pose.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("-initial_pose ", pose.status().message()));
+    return tools::WrongUsage(absl::InvalidArgumentError(
+        absl::StrCat("-initial_pose ", pose.status().message())));
   }
   state.initial_pose = *pose;
   return state;
@@ -129,9 +129,13 @@ absl::Status ApplyFlags(evaluation::SensorSettings* const sensors) {
   if (FLAGS_min_range > 0.) sensors->min_range = FLAGS_min_range;
   if (FLAGS_max_range > 0.) sensors->max_range = FLAGS_max_range;
   if (sensors->max_range <= sensors->min_range) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("no range is between the limits, %g m and %g m",
-                        sensors->min_range, sensors->max_range));
+    const absl::Status error = absl::InvalidArgumentError(absl::StrFormat(
+        "-min_range and -max_range: no range is between the limits, %g m and "
+        "%g m",
+        sensors->min_range, sensors->max_range));
+    return FLAGS_min_range > 0. || FLAGS_max_range > 0.
+               ? tools::WrongUsage(error)
+               : error;
   }
   return absl::OkStatus();
 }
@@ -223,6 +227,8 @@ tools::SlamWork WorkOf(const io::SensorSourceInfo& info,
 }
 
 absl::Status Run(const std::string& command_line) {
+  auto state = ReadStartingState();
+  if (!state.ok()) return state.status();
   const absl::Status writable = tools::CheckSlamOutputs();
   if (!writable.ok()) return writable;
   const std::vector<std::string> directories =
@@ -234,8 +240,6 @@ absl::Status Run(const std::string& command_line) {
   absl::Status applied = ApplyFlags(&configuration->sensors);
   if (applied.ok()) applied = CheckKeepsMap(*configuration);
   if (!applied.ok()) return applied;
-  auto state = ReadStartingState();
-  if (!state.ok()) return state.status();
   const auto source = evaluation::OpenRecording(
       FLAGS_input_filename, SourceOptions(configuration->sensors), FLAGS_seed);
   if (!source.ok()) return source.status();
@@ -302,6 +306,7 @@ int main(int argc, char** argv) {
 #endif
   const std::string arguments = absl::StrJoin(argv, argv + argc, " ");
   tools::CommandLine command_line(kDescription, "input_filename");
+  command_line.TakeOneOf("odometry_source", {"odom", "scan", "both", "auto"});
   command_line.Parse(argc, argv);
   if (FLAGS_output_filestem.empty() && command_line.has_positional_input()) {
     FLAGS_output_filestem = evaluation::RecordingStem(FLAGS_input_filename);

@@ -4,7 +4,6 @@
 // SOURCES: job.cc
 //
 // cartographer_ext_tune: finds a configuration that suits the recordings.
-#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -120,12 +119,7 @@ absl::StatusOr<Setup> ReadSetup() {
   if (!spec.ok()) return spec.status();
   setup.spec = *std::move(spec);
   if (!FLAGS_objective.empty()) {
-    auto weights = tuning::ParseWeights(FLAGS_objective);
-    if (!weights.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("-objective: ", weights.status().message()));
-    }
-    setup.spec.objective.weights = *std::move(weights);
+    setup.spec.objective.weights = *tuning::ParseWeights(FLAGS_objective);
   }
   if (!FLAGS_configuration_basename.empty()) {
     setup.spec.configuration = FLAGS_configuration_basename;
@@ -279,12 +273,11 @@ int CheckUsage() {
   if (FLAGS_search_filename.empty()) {
     return tools::UsageError("-search_filename is missing");
   }
-  const std::vector<std::string> methods = tuning::MethodNames();
-  if (std::find(methods.begin(), methods.end(), FLAGS_method) ==
-      methods.end()) {
-    return tools::UsageError(absl::StrCat("unknown -method ", FLAGS_method,
-                                          ", known are ",
-                                          absl::StrJoin(methods, ", ")));
+  if (!FLAGS_objective.empty()) {
+    const absl::Status status = tuning::ParseWeights(FLAGS_objective).status();
+    if (!status.ok()) {
+      return tools::UsageError(absl::StrCat("-objective: ", status.message()));
+    }
   }
   if (FLAGS_max_trials < 0 || !(FLAGS_budget_minutes >= 0.) ||
       FLAGS_folds < 0 || FLAGS_workers < 0 || FLAGS_threads < 1 ||
@@ -310,7 +303,11 @@ int CheckUsage() {
 
 int main(int argc, char** argv) {
   using namespace cartographer_ext;  // NOLINT
-  tools::CommandLine(kDescription).Parse(argc, argv);
+  tools::CommandLine command_line(kDescription);
+  command_line.TakeOneOf("method", tuning::MethodNames());
+  command_line.TakeOneOf("odometry_source", {"odom", "scan", "both", "auto"});
+  command_line.TakeEndings("picture_filename", {".png", ".svg"});
+  command_line.Parse(argc, argv);
   const int usage = CheckUsage();
   if (usage != tools::kExitSuccess) return usage;
   const std::string wrong = tools::Job::WrongUsage();

@@ -16,6 +16,7 @@
 #include "tests/tools/run_command.h"
 
 DEFINE_string(test_name, "", "A word.");
+DEFINE_string(test_picture_filename, "", "A picture.");
 DEFINE_int32(test_number, 3, "A number.");
 DEFINE_int32(test_index, -1, "A number, -1 for all.");
 DEFINE_int32(num_background_threads, 2, "Threads.");
@@ -90,6 +91,61 @@ TEST(CommandLineTest, RefusesNumbersThatMeanNothing) {
                "-num_background_threads must be at most 4096");
   // Its default is below 0.
   ParseAndCheck({"-test_index", "-1", "-max_test_length", "inf"}, "", 3, true);
+}
+
+TEST(CommandLineTest, RefusesValuesThatAFlagCannotHave) {
+  const auto status = [](const std::string& value, const bool is_list) {
+    gflags::FlagSaver saver;
+    FLAGS_test_name = value;
+    return std::string(CheckFlagChoices({{"test_name",
+                                          {"acs", "gm", "huber"},
+                                          is_list ? FlagChoices::Kind::kList
+                                                  : FlagChoices::Kind::kOne}})
+                           .message());
+  };
+  EXPECT_EQ(status("gm", false), "");
+  EXPECT_EQ(status("", false), "");
+  EXPECT_EQ(status("huper", false),
+            "-test_name=huper is none of acs, gm, huber, did you mean "
+            "'huber'?");
+  EXPECT_EQ(status("acs,gm", false),
+            "-test_name=acs,gm is none of acs, gm, "
+            "huber");
+  EXPECT_EQ(status("acs, gm", true), "");
+  EXPECT_EQ(status("acs,foo", true),
+            "-test_name=foo is none of acs, gm, "
+            "huber");
+}
+
+TEST(CommandLineTest, RefusesPicturesInOtherFormats) {
+  const auto status = [](const std::string& value,
+                         const std::vector<FlagChoices>& choices) {
+    gflags::FlagSaver saver;
+    FLAGS_test_picture_filename = value;
+    return std::string(CheckFlagChoices(choices).message());
+  };
+  EXPECT_EQ(status("", {}), "");
+  EXPECT_EQ(status("a/map.png", {}), "");
+  EXPECT_EQ(status("MAP.PNG", {}), "");
+  EXPECT_EQ(status("/dev/null", {}), "");
+  for (const char* name : {"map.jpg", "map.pgm", "map", "png", "map.png.gz"}) {
+    EXPECT_THAT(status(name, {}),
+                testing::AllOf(testing::HasSubstr(name),
+                               testing::HasSubstr("must end in .png")));
+  }
+  const std::vector<FlagChoices> both = {
+      {"test_picture_filename", {".png", ".svg"}, FlagChoices::Kind::kEnding}};
+  EXPECT_EQ(status("map.svg", both), "");
+  EXPECT_THAT(status("map.pdf", both),
+              testing::HasSubstr("must end in .png or .svg"));
+}
+
+TEST(CommandLineTest, ErrorsOfUsageHaveTheirExitCode) {
+  const absl::Status error = absl::InvalidArgumentError("-x is bad");
+  EXPECT_EQ(ExitCode(error), kExitBadInput);
+  EXPECT_EQ(ExitCode(WrongUsage(error)), kExitUsage);
+  EXPECT_EQ(WrongUsage(error).message(), "-x is bad");
+  EXPECT_EQ(ExitCode(WrongUsage(absl::OkStatus())), kExitSuccess);
 }
 
 TEST(CommandLineTest, TakesTheInputWithoutItsFlag) {

@@ -35,7 +35,7 @@ TEST(NavigateMainTest, BadInputIsExitCodeOne) {
   const CommandResult goals = RunCommand(
       "navigate",
       {"-pbstream_filename", "x", "-world_filename", world, "-goals", "1,2;3"});
-  EXPECT_EQ(goals.exit_code, 1);
+  EXPECT_EQ(goals.exit_code, 2);
   EXPECT_THAT(goals.error, HasSubstr("-goals: goal 2 \"3\" is not X,Y"));
   const CommandResult no_map = RunCommand(
       "navigate",

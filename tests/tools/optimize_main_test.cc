@@ -264,7 +264,7 @@ TEST(OptimizeMainTest, BadInputAndUsage) {
   ASSERT_TRUE(io::WriteG2o(Square(), folder / "in.g2o").ok());
   result = RunCommand("optimize", {"-input_filename", folder / "in.g2o",
                                    "-drop_loops", "0:0:0:1"});
-  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.error, HasSubstr("pbstream"));
 }
 

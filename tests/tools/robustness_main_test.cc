@@ -78,7 +78,7 @@ TEST(RobustnessMainTest, FamiliesAreGeneratedBySeed) {
   EXPECT_GE(json["runs"][0]["recall"], 0.9);
   EXPECT_EQ(json["limits"].size(), 4u);
   EXPECT_TRUE(json["limits"][0].contains("undecidable_from"));
-  EXPECT_EQ(RunCommand("robustness", {"-family", "moon"}).exit_code, 1);
+  EXPECT_EQ(RunCommand("robustness", {"-family", "moon"}).exit_code, 2);
 }
 
 TEST(RobustnessMainTest, ComparesCosts) {
@@ -101,8 +101,19 @@ TEST(RobustnessMainTest, BadInputAndUsage) {
       RunCommand("robustness", {"-datasets", folder / "missing.g2o"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.error, HasSubstr("missing.g2o"));
-  EXPECT_EQ(RunCommand("robustness", {"-kernels", "magic"}).exit_code, 1);
-  EXPECT_EQ(RunCommand("robustness", {"-outlier_types", "X"}).exit_code, 1);
+  EXPECT_EQ(RunCommand("robustness", {"-kernels", "magic"}).exit_code, 2);
+  EXPECT_EQ(RunCommand("robustness", {"-outlier_types", "X"}).exit_code, 2);
+  result = RunCommand("robustness", {"-datasets="});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.error,
+              HasSubstr("neither -datasets nor -family names graphs"));
+  result = RunCommand("robustness",
+                      {"-datasets=", "-family=few", "-outlier_counts="});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.error, HasSubstr("-outlier_counts names nothing"));
+  result = RunCommand("robustness", {"-datasets=", "-family=few",
+                                     "-outlier_types=none", "-kernels=none"});
+  EXPECT_EQ(result.exit_code, 0) << result.error;
   test::WriteFile(folder / "journal", "something else\nand more\n");
   result = RunCommand("robustness", {"-journal_filename", folder / "journal"});
   EXPECT_EQ(result.exit_code, 1);

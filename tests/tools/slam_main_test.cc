@@ -216,7 +216,7 @@ TEST(SlamMainTest, LocalizesInAMap) {
     const CommandResult wrong = RunCommand(
         "slam", {"-input_filename", folder / "room.clf", "-load_state_filename",
                  folder / "map.pbstream", "-initial_pose", pose});
-    EXPECT_EQ(wrong.exit_code, 1);
+    EXPECT_EQ(wrong.exit_code, 2);
     EXPECT_THAT(wrong.error, HasSubstr("is not X,Y,DEGREES"));
   }
   EXPECT_EQ(RunCommand("slam", {"-input_filename", folder / "room.clf",
@@ -323,7 +323,7 @@ TEST(SlamMainTest, UnwritableOutputIsFoundBeforeTheWork) {
         "-trajectory_filename", "-json"}) {
     const CommandResult result = RunCommand(
         "slam",
-        {"-input_filename", folder / "room.clf", flag, "/nowhere/output"});
+        {"-input_filename", folder / "room.clf", flag, "/nowhere/output.png"});
     EXPECT_EQ(result.exit_code, 1) << flag;
     EXPECT_THAT(result.error, HasSubstr("/nowhere/output")) << flag;
     EXPECT_THAT(result.out, IsEmpty()) << flag;

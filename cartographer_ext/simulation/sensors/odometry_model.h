@@ -61,6 +61,9 @@ OdometryRun SimulateOdometry(const World& world, const Drive& drive,
 absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
     const std::string& description, const Drive& drive, uint64_t seed);
 
+// An error where the description has another form.
+absl::Status CheckRandomFaults(const std::string& description);
+
 const char* FaultName(OdometryFault::Kind kind);
 
 }  // namespace simulation
