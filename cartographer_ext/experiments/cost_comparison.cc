@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
-#include <memory>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/progress.h"
-#include "cartographer_ext/io/line_journal.h"
+#include "cartographer_ext/io/keyed_journal.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
@@ -164,54 +162,31 @@ bool FromJson(const nlohmann::json& json, CostComparison* const comparison) {
   return true;
 }
 
+std::string Key(const std::string& source, const CostComparison& comparison) {
+  return absl::StrCat(source, "|", comparison.type, "|",
+                      comparison.requested_count, "|", comparison.seed);
+}
+
 // What has been compared, by the name that was asked for, type, count and seed.
-class CostJournal {
- public:
-  absl::Status Open(const SweepOptions& options) {
-    auto lines = io::LineJournal::Open(
-        options.journal_filename,
-        {"cartographer_ext_compare_cost", "journal of costs", "comparison",
-         "graphs were generated or solved with other options"},
-        JournalFingerprint(options),
-        [this](const nlohmann::json& line) -> absl::Status {
-          CostComparison comparison;
-          if (!line.is_object() || !line.contains("source") ||
-              !line["source"].is_string() || !FromJson(line, &comparison)) {
-            return absl::InvalidArgumentError("not a comparison of costs");
-          }
-          known_[Key(line["source"].get<std::string>(), comparison)] =
-              comparison;
-          return absl::OkStatus();
-        });
-    if (!lines.ok()) return lines.status();
-    lines_ = *std::move(lines);
-    return absl::OkStatus();
-  }
+using CostJournal = io::KeyedJournal<CostComparison>;
 
-  bool Find(const std::string& source, CostComparison* const comparison) const {
-    const auto found = known_.find(Key(source, *comparison));
-    if (found == known_.end()) return false;
-    *comparison = found->second;
-    return true;
-  }
-
-  absl::Status Append(const std::string& source,
-                      const CostComparison& comparison) {
-    nlohmann::ordered_json line = ToJson(comparison);
-    line["source"] = source;
-    return lines_->Append(line);
-  }
-
- private:
-  static std::string Key(const std::string& source,
-                         const CostComparison& comparison) {
-    return absl::StrCat(source, "|", comparison.type, "|",
-                        comparison.requested_count, "|", comparison.seed);
-  }
-
-  std::unique_ptr<io::LineJournal> lines_;
-  std::map<std::string, CostComparison> known_;
-};
+absl::Status OpenJournal(const SweepOptions& options, CostJournal* journal) {
+  return journal->Open(
+      options.journal_filename,
+      {"cartographer_ext_compare_cost", "journal of costs", "comparison",
+       "graphs were generated or solved with other options"},
+      JournalFingerprint(options),
+      [](const nlohmann::json& line)
+          -> absl::StatusOr<std::pair<std::string, CostComparison>> {
+        CostComparison comparison;
+        if (!line.is_object() || !line.contains("source") ||
+            !line["source"].is_string() || !FromJson(line, &comparison)) {
+          return absl::InvalidArgumentError("not a comparison of costs");
+        }
+        return std::make_pair(
+            Key(line["source"].get<std::string>(), comparison), comparison);
+      });
+}
 
 // Compares one data set, or where there is none the family `name`, with the
 // outliers and the seed of `comparison`.
@@ -221,7 +196,11 @@ absl::Status CompareOnce(const SweepOptions& options, const std::string& name,
                          CostComparison* const comparison) {
   const std::string source =
       absl::StrCat(loaded == nullptr ? "family " : "", name);
-  if (journal->Find(source, comparison)) return absl::OkStatus();
+  const CostComparison* const known = journal->Find(Key(source, *comparison));
+  if (known != nullptr) {
+    *comparison = *known;
+    return absl::OkStatus();
+  }
   absl::StatusOr<SweepGraph> family;
   if (loaded == nullptr) {
     family = MakeFamilyGraph(name, comparison->seed);
@@ -238,7 +217,9 @@ absl::Status CompareOnce(const SweepOptions& options, const std::string& name,
   if (!graph.ok()) return graph.status();
   const absl::Status status = Compare(*graph, options, comparison);
   if (!status.ok()) return status;
-  return journal->Append(source, *comparison);
+  nlohmann::ordered_json line = ToJson(*comparison);
+  line["source"] = source;
+  return journal->Append(line);
 }
 
 }  // namespace
@@ -281,7 +262,7 @@ absl::StatusOr<std::vector<CostComparison>> CompareCosts(
   std::vector<std::string> names = options.datasets;
   names.insert(names.end(), options.families.begin(), options.families.end());
   CostJournal journal;
-  const absl::Status opened = journal.Open(options);
+  const absl::Status opened = OpenJournal(options, &journal);
   if (!opened.ok()) return opened;
   std::vector<CostComparison> result;
   Progress progress("graphs", names.size() * cells.size() * options.seeds);

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -13,7 +11,7 @@
 #include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/experiments/sweep_graphs.h"
-#include "cartographer_ext/io/line_journal.h"
+#include "cartographer_ext/io/keyed_journal.h"
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
@@ -30,42 +28,24 @@ std::string Key(const SweepRun& run) {
                       run.kernel, "|", run.type, "|", run.count, "|", run.seed);
 }
 
-// The runs that are done, by data set, kernel, type, count and seed.
-class SweepJournal {
- public:
-  absl::Status Open(const SweepOptions& options) {
-    auto lines = io::LineJournal::Open(
-        options.journal_filename,
-        {"cartographer_ext_robustness", "robustness journal", "sweep",
-         "its runs had other options"},
-        JournalFingerprint(options),
-        [this](const nlohmann::json& line) -> absl::Status {
-          SweepRun run;
-          if (!FromJson(line, &run)) {
-            return absl::InvalidArgumentError("not a run of a sweep");
-          }
-          done_[Key(run)] = run;
-          return absl::OkStatus();
-        });
-    if (!lines.ok()) return lines.status();
-    lines_ = *std::move(lines);
-    return absl::OkStatus();
-  }
+// The runs that are done, by Key().
+using SweepJournal = io::KeyedJournal<SweepRun>;
 
-  // Null if it is not done yet.
-  const SweepRun* Find(const SweepRun& run) const {
-    const auto found = done_.find(Key(run));
-    return found == done_.end() ? nullptr : &found->second;
-  }
-
-  absl::Status Append(const SweepRun& run) {
-    return lines_->Append(ToJson(run));
-  }
-
- private:
-  std::unique_ptr<io::LineJournal> lines_;
-  std::map<std::string, SweepRun> done_;
-};
+absl::Status OpenJournal(const SweepOptions& options, SweepJournal* journal) {
+  return journal->Open(
+      options.journal_filename,
+      {"cartographer_ext_robustness", "robustness journal", "sweep",
+       "its runs had other options"},
+      JournalFingerprint(options),
+      [](const nlohmann::json& line)
+          -> absl::StatusOr<std::pair<std::string, SweepRun>> {
+        SweepRun run;
+        if (!FromJson(line, &run)) {
+          return absl::InvalidArgumentError("not a run of a sweep");
+        }
+        return std::make_pair(Key(run), run);
+      });
+}
 
 double AteLimit(const SweepOptions& options, const SweepGraph& dataset,
                 const std::string& type) {
@@ -227,7 +207,7 @@ absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
   const absl::Status known = CheckSweepOptions(options);
   if (!known.ok()) return known;
   SweepJournal journal;
-  const absl::Status opened = journal.Open(options);
+  const absl::Status opened = OpenJournal(options, &journal);
   if (!opened.ok()) return opened;
   std::vector<SweepRun> runs;
   const int64_t total = (options.datasets.size() + options.families.size()) *
@@ -251,14 +231,14 @@ absl::StatusOr<std::vector<SweepRun>> RunSweep(const SweepOptions& options) {
       run.outlier_share = static_cast<double>(run.count) /
                           std::max(1, run.count + dataset.num_loops);
       run.seed = seed;
-      const SweepRun* const done = journal.Find(run);
+      const SweepRun* const done = journal.Find(Key(run));
       if (done != nullptr) {
         runs.push_back(*done);
         runs.back().outlier_share = run.outlier_share;
         runs.back().requested_count = count_text;
       } else {
         absl::Status status = RunOne(options, dataset, &run);
-        if (status.ok()) status = journal.Append(run);
+        if (status.ok()) status = journal.Append(ToJson(run));
         if (!status.ok()) return status;
         runs.push_back(run);
       }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "cartographer_ext/io/keyed_journal.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -87,6 +88,40 @@ TEST_F(LineJournalTest, ATornHeadIsBegunAgain) {
   Append("{\"test_key\":1,\"fing");
   ASSERT_TRUE(Open("f").ok());
   EXPECT_EQ(Content(), "{\"test_key\":1,\"fingerprint\":\"f\"}\n");
+}
+
+TEST_F(LineJournalTest, ItemsAreFoundByTheirKeys) {
+  const auto parse = [](const nlohmann::json& line)
+      -> absl::StatusOr<std::pair<std::string, int>> {
+    if (!line.is_object() || !line.contains("v")) {
+      return absl::InvalidArgumentError("no v");
+    }
+    return std::make_pair(line["k"].get<std::string>(), line["v"].get<int>());
+  };
+  {
+    KeyedJournal<int> journal;
+    ASSERT_TRUE(journal.Open(filename_, kKind, "f", parse).ok());
+    EXPECT_EQ(journal.Find("a"), nullptr);
+    for (const int v : {1, 2}) {
+      ASSERT_TRUE(journal.Append({{"k", "a"}, {"v", v}}).ok());
+    }
+  }
+  KeyedJournal<int> journal;
+  ASSERT_TRUE(journal.Open(filename_, kKind, "f", parse).ok());
+  ASSERT_NE(journal.Find("a"), nullptr);
+  EXPECT_EQ(*journal.Find("a"), 2);
+  EXPECT_EQ(journal.Find("b"), nullptr);
+}
+
+TEST_F(LineJournalTest, LinesWithoutAnItemAreNamed) {
+  ASSERT_TRUE((*Open("f"))->Append({{"w", 1}}).ok());
+  KeyedJournal<int> journal;
+  const absl::Status status = journal.Open(
+      filename_, kKind, "f",
+      [](const nlohmann::json&) -> absl::StatusOr<std::pair<std::string, int>> {
+        return absl::InvalidArgumentError("no v");
+      });
+  EXPECT_THAT(std::string(status.message()), HasSubstr("line 2: no v"));
 }
 
 }  // namespace
