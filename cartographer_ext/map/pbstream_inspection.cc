@@ -35,6 +35,17 @@ int64_t CountOf(const std::map<int, int64_t>& counts, const int id) {
   return it == counts.end() ? 0 : it->second;
 }
 
+// Trajectories that say which nodes were inserted into which submap. One that
+// was loaded as a frozen map, for localisation, does not: Cartographer keeps no
+// constraints of it, as none of its poses moves.
+std::set<int> TrajectoriesWithInsertions(const MapGraph& graph) {
+  std::set<int> ids;
+  for (const GraphConstraint& constraint : graph.constraints) {
+    if (!constraint.is_loop) ids.insert(constraint.submap_id.trajectory_id);
+  }
+  return ids;
+}
+
 ordered_json SensorNames(
     const cartographer::mapping::proto::TrajectoryBuilderOptionsWithSensorIds&
         options) {
@@ -74,6 +85,7 @@ ordered_json SummariseTrajectory(const io::Pbstream& pbstream,
   json["constraints"] = {{"inter", inter}, {"intra", intra}};
   const Trajectory poses = graph.GlobalTrajectory(id);
   json["metres"] = poses.Length();
+  json["has_insertions"] = intra > 0;
   if (!poses.empty()) {
     json["begin_seconds"] = io::ToSeconds(poses.poses().front().time);
     json["end_seconds"] = io::ToSeconds(poses.poses().back().time);
@@ -126,7 +138,9 @@ ordered_json Summarise(const io::Pbstream& pbstream) {
   }
   json["constraints"]["between_trajectories"] = between_trajectories;
   int64_t in_no_submap = 0;
+  const std::set<int> known = TrajectoriesWithInsertions(graph);
   for (const auto& node : graph.nodes) {
+    if (known.count(node.first.trajectory_id) == 0) continue;
     in_no_submap += inserted.count(node.first) == 0 ? 1 : 0;
   }
   json["nodes_in_no_submap"] = in_no_submap;
@@ -176,6 +190,13 @@ std::string SummaryToText(const ordered_json& summary) {
     }
     absl::StrAppendFormat(&text, ", %d odometry readings\n",
                           trajectory["odometry_readings"].get<int64_t>());
+    if (!trajectory["has_insertions"].get<bool>() &&
+        trajectory["submaps"].get<int64_t>() > 0) {
+      absl::StrAppend(
+          &text,
+          "  a map that was loaded frozen: which nodes are in which "
+          "submap is not stored\n");
+    }
     if (trajectory.contains("sensors")) {
       absl::StrAppend(&text, "  sensors:");
       for (const ordered_json& name : trajectory["sensors"]) {
@@ -227,8 +248,10 @@ std::vector<std::string> FindProblems(const io::Pbstream& pbstream,
                        ", which was inserted into it"));
     }
   }
+  const std::set<int> known = TrajectoriesWithInsertions(graph);
   for (const auto& entry : graph.submaps) {
-    if (inserted.count(entry.first) == 0) {
+    if (known.count(entry.first.trajectory_id) > 0 &&
+        inserted.count(entry.first) == 0) {
       add(absl::StrCat("submap ", ToString(entry.first), " has no nodes"));
     }
   }

@@ -76,6 +76,32 @@ TEST(PbstreamInspectionTest, FindsOrphans) {
   EXPECT_EQ(FindProblems(state, 0).size(), 0u);
 }
 
+// The map of a localisation, whose own submaps may have been trimmed.
+TEST(PbstreamInspectionTest, AFrozenMapHasNoInsertions) {
+  io::Pbstream state = SmallState();
+  state.pose_graph.clear_constraint();
+  EXPECT_THAT(FindProblems(state), IsEmpty());
+  const auto summary = Summarise(state);
+  EXPECT_EQ(summary["nodes_in_no_submap"], 0);
+  EXPECT_EQ(summary["trajectories"][0]["has_insertions"], false);
+  EXPECT_THAT(SummaryToText(summary), HasSubstr("loaded frozen"));
+}
+
+TEST(PbstreamInspectionTest, OtherwiseASubmapNeedsNodes) {
+  io::Pbstream state = SmallState();
+  auto submap = state.submaps[0];
+  submap.mutable_submap_id()->set_submap_index(1);
+  state.submaps.push_back(submap);
+  auto* const pose =
+      state.pose_graph.mutable_trajectory(0)->mutable_submap()->Add();
+  *pose = state.pose_graph.trajectory(0).submap(0);
+  pose->set_submap_index(1);
+  EXPECT_THAT(FindProblems(state),
+              ElementsAre(HasSubstr("submap (0, 1) has no nodes")));
+  EXPECT_EQ(SummaryToText(Summarise(state)).find("loaded frozen"),
+            std::string::npos);
+}
+
 TEST(PbstreamInspectionTest, RealMapsAreWhole) {
   const std::string filename = cartographer_ext::test::SharedData(
       "pbstream/csail-sound-by-cartographer.pbstream");

@@ -199,8 +199,9 @@ TEST(SlamMainTest, LocalizesInAMap) {
        "localization.lua", "-load_state_filename", folder / "map.pbstream",
        "-initial_pose", "0,0,0", "-trajectory_filename", folder / "all.tum",
        "-online_trajectory_filename", folder / "online.tum", "-json",
-       folder / "slam.json"});
+       folder / "slam.json", "-pbstream_filename", folder / "later.pbstream"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_EQ(RunCommand("dump", {folder / "later.pbstream"}).exit_code, 0);
   const auto json = ParseJson(ReadFile(folder / "slam.json"));
   ASSERT_TRUE(json.is_object());
   EXPECT_EQ(json["loaded"]["frozen"], true);
