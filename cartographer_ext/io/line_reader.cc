@@ -9,6 +9,7 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -28,6 +29,8 @@ namespace io {
 namespace {
 
 constexpr size_t kReadSize = 1 << 16;
+// Buffers behind a decompressor: what is in them when it meets damage is lost.
+constexpr size_t kExpandedSize = 1 << 12;
 
 class ExpandsTooMuch : public std::exception {
  public:
@@ -59,18 +62,51 @@ class ExpansionLimit : public boost::iostreams::multichar_input_filter {
   ExpansionBudget budget_;
 };
 
+// A filter before the decompressor that counts what it has read.
+class ByteCounter : public boost::iostreams::multichar_input_filter {
+ public:
+  explicit ByteCounter(std::shared_ptr<int64_t> count)
+      : count_(std::move(count)) {}
+
+  template <typename Source>
+  std::streamsize read(Source& source, char* const to,
+                       const std::streamsize size) {
+    const std::streamsize count = boost::iostreams::read(source, to, size);
+    *count_ += std::max<std::streamsize>(0, count);
+    return count;
+  }
+
+ private:
+  const std::shared_ptr<int64_t> count_;
+};
+
+// Knows how much of the file has been read.
+struct Decompressed : public boost::iostreams::filtering_istreambuf {
+  std::shared_ptr<int64_t> num_read = std::make_shared<int64_t>(0);
+  int64_t file_size = 0;
+};
+
 // Up to `size` bytes; exceptions of the decompressors become errors.
 absl::StatusOr<size_t> ReadSome(std::streambuf* content, char* to, size_t size,
                                 const std::string& filename) {
   try {
-    return static_cast<size_t>(
-        std::max<std::streamsize>(0, content->sgetn(to, size)));
+    // No more than one buffer: an exception in the next one would lose it.
+    if (content->sgetc() == std::streambuf::traits_type::eof())
+      return size_t{0};
+    const auto available =
+        static_cast<size_t>(std::max<std::streamsize>(1, content->in_avail()));
+    return static_cast<size_t>(std::max<std::streamsize>(
+        0, content->sgetn(to, std::min(size, available))));
   } catch (const ExpandsTooMuch& exception) {
     return exception.budget().Error(filename);
   } catch (const std::exception& exception) {
-    return absl::DataLossError(
-        absl::StrCat(filename, ": compressed data is damaged or truncated (",
-                     exception.what(), ")"));
+    const auto* const file = dynamic_cast<const Decompressed*>(content);
+    return absl::DataLossError(absl::StrCat(
+        filename, ": compressed data is damaged or truncated",
+        file == nullptr ? ""
+                        : absl::StrCat(" before byte ", *file->num_read, " of ",
+                                       file->file_size),
+        " (", exception.what(), ")"));
   }
 }
 
@@ -97,20 +133,24 @@ absl::StatusOr<std::unique_ptr<std::streambuf>> OpenDecompressed(
   const absl::string_view head(magic, file.gcount());
   file.close();
   try {
-    std::unique_ptr<streams::filtering_istreambuf> result(
-        new streams::filtering_istreambuf);
+    std::unique_ptr<Decompressed> result(new Decompressed);
+    result->file_size = info.st_size;
+    const ByteCounter counter(result->num_read);
     const ExpansionLimit limit{ExpansionBudget(info.st_size)};
     if (absl::StartsWith(head, "\x1f\x8b")) {
-      result->push(limit, kReadSize);
-      result->push(streams::gzip_decompressor(), kReadSize);
+      result->push(limit, kExpandedSize);
+      result->push(streams::gzip_decompressor(), kExpandedSize);
+      result->push(counter, kReadSize);
     } else if (absl::StartsWith(head, "BZh")) {
-      result->push(limit, kReadSize);
-      result->push(streams::bzip2_decompressor(), kReadSize);
+      result->push(limit, kExpandedSize);
+      result->push(streams::bzip2_decompressor(), kExpandedSize);
+      result->push(counter, kReadSize);
     } else if (head == absl::string_view("\xfd"
                                          "7zXZ\0",
                                          6)) {
-      result->push(limit, kReadSize);
-      result->push(streams::lzma_decompressor(), kReadSize);
+      result->push(limit, kExpandedSize);
+      result->push(streams::lzma_decompressor(), kExpandedSize);
+      result->push(counter, kReadSize);
     }
     result->push(streams::file_source(filename, std::ios::binary), kReadSize);
     return std::unique_ptr<std::streambuf>(std::move(result));

@@ -37,9 +37,10 @@ class LineReader {
       const std::string& filename);
 
   // False at the end of the file. The view lives until the next call; line
-  // ends (LF or CR LF) and a byte order mark are stripped. Damaged or truncated compressed data, data
-  // that expand too much, lines beyond kMaxSkippedLength and read errors are
-  // errors naming the file.
+  // ends (LF or CR LF) and a byte order mark are stripped. Damaged or truncated
+  // compressed data (DataLoss, behind all whole lines that could be
+  // decompressed), data that expand too much, lines beyond kMaxSkippedLength
+  // and read errors are errors naming the file.
   absl::StatusOr<bool> Next(absl::string_view* line);
 
   // Of the line last returned, from 1.

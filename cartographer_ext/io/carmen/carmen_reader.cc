@@ -33,8 +33,9 @@ class CarmenSource : public SensorSource {
     while (!at_end_ && !waiting_.Ready()) {
       absl::string_view text;
       const auto more = reader_->Next(&text);
-      if (!more.ok()) return more.status();
-      if (!*more) {
+      const bool is_lost = plan_.is_damaged && absl::IsDataLoss(more.status());
+      if (!more.ok() && !is_lost) return more.status();
+      if (is_lost || !*more) {
         at_end_ = true;
         break;
       }

@@ -72,6 +72,7 @@ class Survey {
   MalformedLines malformed_behind_scans_;
   std::map<CarmenKind, size_t> stamp_words_;  // of the last line so far
   bool is_cut_ = false;                       // the last line, behind its stamp
+  std::string damage_;                        // of compressed data; empty: none
   ImplausibleLines implausible_;
 };
 
@@ -96,6 +97,11 @@ absl::Status Survey::Read() {
   absl::string_view text;
   while (true) {
     const auto more = (*reader)->Next(&text);
+    if (absl::IsDataLoss(more.status()) && Count(ChooseScanKind()) > 0) {
+      damage_ = absl::StrCat(more.status().message(), "; read up to line ",
+                             (*reader)->line_number());
+      break;
+    }
     if (!more.ok()) return more.status();
     if (!*more) break;
     ParseCarmenLine(text, &line);
@@ -216,6 +222,14 @@ Pose2 Survey::ChooseLaserPose(CarmenKind scan_kind,
 
 void Survey::WarnOfIgnored(CarmenPlan* const plan) const {
   SensorSourceInfo& info = plan->info;
+  if (!damage_.empty()) {
+    info.warnings.push_back(absl::StrCat(
+        damage_,
+        lines_.empty() ? ""
+                       : absl::StrCat(", to the stamp ",
+                                      FormatTime(lines_.back().time), " s"),
+        "; what is behind it is lost, and the last lines may be damaged"));
+  }
   if (stamps_lost_) {
     info.warnings.push_back(absl::StrCat(
         filename_,
@@ -342,6 +356,7 @@ absl::StatusOr<CarmenPlan> Survey::Plan(
   CarmenPlan plan;
   plan.scan_kind = scan_kind_;
   plan.is_filter_log = is_filter_log_;
+  plan.is_damaged = !damage_.empty();
   plan.line_spacing = stamps_lost_ ? kLineSpacing : 0;
   SensorSourceInfo& info = plan.info;
   info.format = "carmen";

@@ -31,6 +31,7 @@ struct CarmenPlan {
   // Scans and ODOM lines are this far apart, in the order of the file; 0: as
   // their stamps say.
   TimeNs line_spacing = 0;
+  bool is_damaged = false;  // the compressed data, at some place
   ReorderPlan reordering;
   SensorSourceInfo info;
 };

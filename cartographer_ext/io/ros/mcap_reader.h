@@ -3,8 +3,10 @@
 //
 // MCAP files of ROS 2 (schemas "ros2msg" or "ros2idl", messages in CDR), read
 // from the beginning to the end without their index. A truncated file, as from
-// a killed recorder, is read up to the truncation, with a warning; damage
-// before the end is an error.
+// a killed recorder, is read up to the truncation, with a warning. A damaged
+// chunk is left out, with a warning; where the damage hides the next record,
+// the summary at the end of the file says where the next chunk begins. A file
+// of which nothing can be read is an error.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_MCAP_READER_H_
 #define CARTOGRAPHER_EXT_IO_ROS_MCAP_READER_H_
 

@@ -46,10 +46,6 @@ class RosContainer {
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
-// The type of a topic as used by ChooseTopics: "sensor_msgs/msg/LaserScan" has
-// the fields of the ROS 1 type "sensor_msgs/LaserScan" and gets its checksum.
-RosTopicType TypeOfRos2(const std::string& name);
-
 // Opens the recording in a container. Errors and warnings name `filename`.
 absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosRecording(
     const std::string& filename, std::unique_ptr<RosContainer> container,

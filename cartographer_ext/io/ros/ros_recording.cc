@@ -63,6 +63,14 @@ class RosRecording : public SensorSource {
   }
 
   absl::Status Open(const SensorSourceOptions& options);
+  // What is missing may be in a part of the file that could not be read.
+  absl::Status Explained(const absl::Status& status) const {
+    std::vector<std::string> texts = {std::string(status.message())};
+    for (std::string& warning : container_->warnings())
+      texts.push_back(std::move(warning));
+    if (absl::IsDataLoss(status)) return status;
+    return absl::Status(status.code(), absl::StrJoin(texts, "; "));
+  }
 
   const SensorSourceInfo& info() const override { return info_; }
 
@@ -419,28 +427,13 @@ absl::Status RosRecording::Advance() {
 
 }  // namespace
 
-RosTopicType TypeOfRos2(const std::string& name) {
-  RosTopicType type;
-  type.name = name;
-  const size_t at = name.find("/msg/");
-  if (at == std::string::npos) return type;
-  const std::string ros1 =
-      absl::StrCat(name.substr(0, at), "/", name.substr(at + 5));
-  for (const RosType& known :
-       {kRosLaserScan, kRosMultiEchoLaserScan, kRosPointCloud2, kRosOdometry,
-        kRosImu, kRosTransforms}) {
-    if (ros1 == known.name) type.md5sum = known.md5sum;
-  }
-  return type;
-}
-
 absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosRecording(
     const std::string& filename, std::unique_ptr<RosContainer> container,
     const SensorSourceOptions& options) {
   auto source =
       absl::make_unique<RosRecording>(filename, std::move(container), options);
   const absl::Status status = source->Open(options);
-  if (!status.ok()) return status;
+  if (!status.ok()) return source->Explained(status);
   return std::unique_ptr<SensorSource>(std::move(source));
 }
 

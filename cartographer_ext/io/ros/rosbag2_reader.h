@@ -3,7 +3,8 @@
 //
 // Recordings of rosbag2: its SQLite databases (.db3) and its folders, whose
 // files (.db3 or .mcap, in order of the number in their names) are one
-// recording.
+// recording. Messages on damaged pages of a database are left out, with a
+// warning, and so are files of a folder of which nothing can be read.
 #ifndef CARTOGRAPHER_EXT_IO_ROS_ROSBAG2_READER_H_
 #define CARTOGRAPHER_EXT_IO_ROS_ROSBAG2_READER_H_
 

@@ -4,7 +4,9 @@
 // ROS 1 bags (format 2.0; chunks plain, bz2 or lz4) as a SensorSource. They are
 // read from the beginning to the end; the index is not used, so bags without
 // one (from a killed recorder) or with a wrong one are read as well, with a
-// warning. The rest holds for ROS 2 recordings as well.
+// warning. A damaged chunk is left out, with a warning; where the damage hides
+// the next record, the index says where the next chunk begins. The rest holds
+// for ROS 2 recordings as well.
 //
 // Topics. Scans: sensor_msgs/LaserScan, MultiEchoLaserScan, or PointCloud2 of a
 // laser that measures in one plane; nav_msgs/Odometry and sensor_msgs/Imu. They
@@ -37,8 +39,8 @@
 namespace cartographer_ext {
 namespace io {
 
-// Damaged bags and bags without scans are errors. Single messages that cannot be decoded are
-// skipped and counted in a warning.
+// Bags of which nothing can be read and bags without scans are errors. Single
+// messages that cannot be decoded are skipped and counted in a warning.
 absl::StatusOr<std::unique_ptr<SensorSource>> OpenRosbag(
     const std::string& filename, const SensorSourceOptions& options);
 

@@ -119,5 +119,20 @@ absl::StatusOr<ChosenTopics> ChooseTopics(const RosTopics& topics,
   return chosen;
 }
 
+RosTopicType TypeOfRos2(const std::string& name) {
+  RosTopicType type;
+  type.name = name;
+  const size_t at = name.find("/msg/");
+  if (at == std::string::npos) return type;
+  const std::string ros1 =
+      absl::StrCat(name.substr(0, at), "/", name.substr(at + 5));
+  for (const RosType& known :
+       {kRosLaserScan, kRosMultiEchoLaserScan, kRosPointCloud2, kRosOdometry,
+        kRosImu, kRosTransforms}) {
+    if (ros1 == known.name) type.md5sum = known.md5sum;
+  }
+  return type;
+}
+
 }  // namespace io
 }  // namespace cartographer_ext

@@ -36,6 +36,10 @@ struct ChosenTopics {
   std::vector<std::string> warnings;
 };
 
+// The type of a topic as used by ChooseTopics: "sensor_msgs/msg/LaserScan" has
+// the fields of the ROS 1 type "sensor_msgs/LaserScan" and gets its checksum.
+RosTopicType TypeOfRos2(const std::string& name);
+
 // "/odom (nav_msgs/Odometry), /scan (sensor_msgs/LaserScan)".
 std::string ListTopics(const RosTopics& topics);
 
