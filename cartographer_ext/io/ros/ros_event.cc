@@ -89,6 +89,8 @@ bool RosEventDecoder::DecodeScan(const RosMessage& message,
     scan.time_increment = 0.;
     scan.point_times.clear();
   }
+  scan.range_max =
+      std::min(scan.range_max, codes_.RangeMax(message.topic, header->frame));
   if (topics_.scans.size() > 1) scan.sensor_id = message.topic;
   decoded->frame = header->frame;
   decoded->event = std::move(scan);
@@ -113,8 +115,8 @@ bool RosEventDecoder::FindOdometry(const RosMessage& message,
   return false;
 }
 
-void AddScanTiming(const std::string& topic, const RosEvent& decoded,
-                   ScanTiming* const timing) {
+void AddScan(const std::string& topic, const RosEvent& decoded,
+             ScanTiming* const timing, NoReturnCodes* const codes) {
   const LaserScan& scan = absl::get<LaserScan>(decoded.event);
   const double sweep = SweepSeconds(scan);
   // Points do not show directions without returns of a rotating laser.
@@ -124,6 +126,7 @@ void AddScanTiming(const std::string& topic, const RosEvent& decoded,
                                 static_cast<double>(scan.ranges.size());
   timing->Add(topic, decoded.frame, scan.time - FromSeconds(sweep), sweep,
               field_of_view);
+  codes->Add(topic, decoded.frame, scan);
 }
 
 }  // namespace io

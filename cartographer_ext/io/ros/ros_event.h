@@ -7,6 +7,7 @@
 #include <string>
 
 #include "Eigen/Geometry"
+#include "cartographer_ext/io/ros/no_return_code.h"
 #include "cartographer_ext/io/ros/ros1/rosbag_topics.h"
 #include "cartographer_ext/io/ros/ros_container.h"
 #include "cartographer_ext/io/ros/ros_messages.h"
@@ -30,11 +31,15 @@ struct RosEvent {
 // Turns messages of the chosen topics into events.
 class RosEventDecoder {
  public:
-  // Both must outlive the decoder; scans of sensors whose `timing` is
-  // implausible are treated as instantaneous.
+  // All must outlive the decoder; scans of sensors whose `timing` is
+  // implausible are treated as instantaneous, readings of a code and beyond as
+  // no return.
   RosEventDecoder(RosEncoding encoding, const ChosenTopics* topics,
-                  const ScanTiming* timing)
-      : encoding_(encoding), topics_(*topics), timing_(*timing) {}
+                  const ScanTiming* timing, const NoReturnCodes* codes)
+      : encoding_(encoding),
+        topics_(*topics),
+        timing_(*timing),
+        codes_(*codes) {}
 
   // False for damaged messages, and for transforms without odometry.
   bool Decode(const RosMessage& message, RosEvent* decoded) const;
@@ -48,11 +53,12 @@ class RosEventDecoder {
   const RosEncoding encoding_;
   const ChosenTopics& topics_;
   const ScanTiming& timing_;
+  const NoReturnCodes& codes_;
 };
 
-// Adds the beam times of a decoded scan.
-void AddScanTiming(const std::string& topic, const RosEvent& decoded,
-                   ScanTiming* timing);
+// Adds the beam times and the readings of a decoded scan.
+void AddScan(const std::string& topic, const RosEvent& decoded,
+             ScanTiming* timing, NoReturnCodes* codes);
 
 }  // namespace io
 }  // namespace cartographer_ext

@@ -56,7 +56,7 @@ class RosRecording : public SensorSource {
       : filename_(filename),
         container_(std::move(container)),
         tracking_frame_(options.tracking_frame),
-        decoder_(container_->encoding(), &topics_, &timing_) {
+        decoder_(container_->encoding(), &topics_, &timing_, &codes_) {
     if (!tracking_frame_.empty() && tracking_frame_[0] == '/') {
       tracking_frame_.erase(0, 1);
     }
@@ -123,6 +123,7 @@ class RosRecording : public SensorSource {
   SensorSourceInfo info_;
   ChosenTopics topics_;
   ScanTiming timing_;
+  NoReturnCodes codes_;
   RosEventDecoder decoder_;
   RosFrames frames_;
   std::set<std::string> seen_frames_[kNumRanks];
@@ -194,7 +195,7 @@ absl::Status RosRecording::ReadKeys(std::vector<EventKey>* keys) {
     std::set<std::string>& frames = seen_frames_[decoded.rank];
     if (frames.size() < kMaxSensorFrames) frames.insert(decoded.frame);
     if (decoded.rank == kScanRank)
-      AddScanTiming(message.topic, decoded, &timing_);
+      AddScan(message.topic, decoded, &timing_, &codes_);
     if (!decoded.cloud.points.empty()) {
       ++num_clouds_;
       if (IsPlanar(decoded.cloud.points)) ++num_planar_clouds_;
@@ -218,8 +219,11 @@ absl::Status RosRecording::Survey() {
   absl::Status status = ReadKeys(&keys);
   if (!status.ok()) return status;
   timing_.Judge();
-  for (const std::string& warning : timing_.Warnings())
-    info_.warnings.push_back(absl::StrCat(filename_, ": ", warning));
+  codes_.Judge();
+  for (const auto& warnings : {timing_.Warnings(), codes_.Warnings()}) {
+    for (const std::string& warning : warnings)
+      info_.warnings.push_back(absl::StrCat(filename_, ": ", warning));
+  }
   // Stamps of scans without the time that their beams claim to take.
   if (timing_.AnyImpossible() && !(status = ReadKeys(&keys)).ok())
     return status;
