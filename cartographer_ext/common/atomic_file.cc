@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iostream>
 
 #include "absl/strings/match.h"
@@ -55,31 +56,40 @@ std::string ResolveLinks(const std::string& path) {
 }
 
 // Temporary files that exist, for the signal handler, which may neither lock
-// nor allocate. Names are never freed, so that it cannot meet one that is being
-// freed. Files beyond the table, and those of a parent process, are left alone.
+// nor allocate. Files beyond the table, those with longer names and those of a
+// parent process are left alone.
 struct TemporaryName {
-  std::atomic<const char*> name{nullptr};
+  enum State { kFree, kBeingFilled, kKnown };
+  std::atomic<int> state{kFree};
   std::atomic<pid_t> process{0};
+  std::atomic<size_t> hash{0};  // of the name
+  char name[PATH_MAX];
 };
 constexpr int kMaxTemporaryNames = 64;
 TemporaryName temporary_names[kMaxTemporaryNames];
 
 void RememberTemporary(const std::string& name) {
-  const char* const copy = ::strdup(name.c_str());
+  if (name.size() >= sizeof(TemporaryName::name)) return;
   for (TemporaryName& entry : temporary_names) {
-    const char* expected = nullptr;
-    if (!entry.name.compare_exchange_strong(expected, copy)) continue;
+    int expected = TemporaryName::kFree;
+    if (!entry.state.compare_exchange_strong(expected,
+                                             TemporaryName::kBeingFilled)) {
+      continue;
+    }
+    std::memcpy(entry.name, name.c_str(), name.size() + 1);
     entry.process = ::getpid();
+    entry.hash = std::hash<std::string>()(name);
+    entry.state = TemporaryName::kKnown;
     return;
   }
 }
 
 void ForgetTemporary(const std::string& name) {
+  const size_t hash = std::hash<std::string>()(name);
   for (TemporaryName& entry : temporary_names) {
-    const char* const known = entry.name;
-    if (known == nullptr || name != known) continue;
-    entry.process = 0;
-    entry.name = nullptr;
+    if (entry.state == TemporaryName::kKnown && entry.hash == hash) {
+      entry.state = TemporaryName::kFree;
+    }
   }
 }
 
@@ -90,8 +100,9 @@ void RemoveTemporary(const std::string& name) {
 
 void RemoveTemporariesAndEnd(const int signal_number) {
   for (const TemporaryName& entry : temporary_names) {
-    const char* const name = entry.name;
-    if (name != nullptr && entry.process == ::getpid()) ::unlink(name);
+    if (entry.state == TemporaryName::kKnown && entry.process == ::getpid()) {
+      ::unlink(entry.name);
+    }
   }
   // The handler is reset to the default, which ends the process.
   ::raise(signal_number);

@@ -27,8 +27,9 @@ constexpr char kHead[] =
     "num_reference,travelled,threshold,score_variance,lambda,final_score,"
     "probability,false_weight,false_mean_grid,false_mean_temporal,true_weight,"
     "true_mean_grid,true_mean_temporal,innovation_x,innovation_y,"
-    "innovation_theta,innovation_chi_square,innovation_bound,support,"
-    "contradictions,subset_size,num_tests,exact,translation_weight,"
+    "innovation_theta,innovation_chi_square,innovation_bound,closed_sigma,"
+    "neighbours_found,neighbours_missed,support,contradictions,subset_size,num_"
+    "tests,exact,translation_weight,"
     "rotation_weight,search_seconds,temporal_seconds,fusion_seconds,"
     "refinement_seconds,subset_seconds\n";
 
@@ -122,6 +123,11 @@ std::string CsvLine(const LoopDecision& decision) {
   line.Number(innovation.pose().theta());
   line.Number(innovation.chi_square());
   line.Number(innovation.bound());
+  line.Begin(innovation.closed_sigma() > 0.);
+  line.Number(innovation.closed_sigma());
+  line.Begin(decision.has_neighbours());
+  line.Integer(decision.neighbours().num_found());
+  line.Integer(decision.neighbours().num_missed());
   const auto& subset = decision.subset();
   line.Begin(decision.has_subset());
   line.Integer(subset.support());

@@ -134,9 +134,16 @@ LoopDecision MakeDecisionRecord(const LoopCandidate& candidate,
   }
   if (candidate.innovation.has_value()) {
     RecordInnovation(*candidate.innovation, record.mutable_innovation());
+    record.mutable_innovation()->set_closed_sigma(
+        candidate.closed_sigma.value_or(0.));
   }
   if (candidate.weights.has_value()) {
     RecordInformation(candidate, record.mutable_information());
+  }
+  if (candidate.followed.has_value()) {
+    LoopDecision::Neighbours* const neighbours = record.mutable_neighbours();
+    neighbours->set_num_found(candidate.followed->num_found);
+    neighbours->set_num_missed(candidate.followed->num_missed);
   }
   if (candidate.consensus.has_value()) {
     RecordConsensus(*candidate.consensus, record.mutable_subset());

@@ -31,6 +31,13 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
+// How many neighbours of a match, of those where the robot had been, were found
+// where it predicts them (dropin/second_look.h).
+struct FollowedMatch {
+  int num_found = 0;
+  int num_missed = 0;
+};
+
 // Result of the consensus stage.
 struct ConsensusResult {
   SubsetDecision decision;
@@ -99,6 +106,7 @@ struct LoopCandidate {
   // Metres, standard deviation of the prediction over loops that were accepted
   // after the search; where it is set, `innovation` is from this prediction.
   absl::optional<double> closed_sigma;
+  absl::optional<FollowedMatch> followed;
   absl::optional<ConsensusResult> consensus;
 
   // --- The verdict, with the reason for it. ---

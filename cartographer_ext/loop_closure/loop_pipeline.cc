@@ -8,6 +8,7 @@
 
 #include "cartographer_ext/loop_closure/consensus/candidate_edge.h"
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
+#include "cartographer_ext/loop_closure/consensus/neighbour_odds.h"
 #include "cartographer_ext/loop_closure/information/loop_information.h"
 
 namespace cartographer_ext {
@@ -143,8 +144,14 @@ std::vector<LoopCandidate> LoopPipeline::Decide(const bool at_end) {
   RunState state = RunState::kGoesOn;
   if (at_end) {
     const bool any_wrong =
-        std::any_of(vetoed_.begin(), vetoed_.end(), [](const auto& candidate) {
-          return candidate.FinalScore() >= kConfirmingScore;
+        std::any_of(vetoed_.begin(), vetoed_.end(), [&](const auto& candidate) {
+          // What merely matches, but not where its neighbours should, is no
+          // place that looks alike.
+          return candidate.FinalScore() >= kConfirmingScore &&
+                 (!candidate.followed.has_value() ||
+                  OddsOfNeighbours(candidate.followed->num_found,
+                                   candidate.followed->num_missed,
+                                   share_alike_.Mean()) >= 1.);
         });
     state = any_wrong ? RunState::kEnds : RunState::kEndsUnalike;
   }
@@ -180,6 +187,25 @@ bool LoopPipeline::PredictAgain(const PathBetween& path_between) {
     EstimateProbability(options_.search, candidate);
     return true;
   }) > 0;
+}
+
+absl::optional<double> LoopPipeline::Score(
+    LoopCandidate* const candidate) const {
+  if (!candidate->match.found) return 0.;
+  scores_.ComputeTemporalScore(history_, candidate);
+  return scores_.FinalScore(*candidate);
+}
+
+void LoopPipeline::SetFollowed(const int64_t number,
+                               const FollowedMatch& followed) {
+  consensus_.SetFollowed(number, followed);
+  for (LoopCandidate& candidate : vetoed_) {
+    if (candidate.number != number) continue;
+    candidate.followed = followed;
+    // Local SLAM does not drift so far: a wrong match.
+    share_alike_.AddWrong(followed.num_found, followed.num_missed);
+    consensus_.SetShareAlike(share_alike_.Mean());
+  }
 }
 
 std::vector<LoopCandidate> LoopPipeline::Undecided() const {

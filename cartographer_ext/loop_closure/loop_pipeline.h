@@ -32,9 +32,11 @@
 #include <vector>
 
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/consensus/closed_prediction.h"
 #include "cartographer_ext/loop_closure/consensus/drift_learner.h"
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 #include "cartographer_ext/loop_closure/consensus/loop_consensus.h"
+#include "cartographer_ext/loop_closure/consensus/neighbour_odds.h"
 #include "cartographer_ext/loop_closure/information/constraint_information.h"
 #include "cartographer_ext/loop_closure/information/typical_step.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
@@ -68,6 +70,7 @@ class LoopPipeline {
     return scores_.temporal_options();
   }
   const uncertainty::PathUncertainty& paths() const { return paths_; }
+  const NodeHistory& history() const { return history_; }
 
   // Processes the next candidate after the search, including skipped and
   // unmatched ones. It is numbered and will be in exactly one result of
@@ -82,6 +85,13 @@ class LoopPipeline {
   // Predicts the undecided candidates again, over the loops accepted since they
   // were searched. Returns whether some of them may be decided now.
   bool PredictAgain(const PathBetween& path_between);
+
+  // The final score of a candidate after its search, which has no consequences:
+  // 0 if it was not found or fails verification, empty if that is not possible.
+  absl::optional<double> Score(LoopCandidate* candidate) const;
+  // Adds what following an undecided candidate, known by its number, has shown.
+  void SetFollowed(int64_t number, const FollowedMatch& followed);
+  int num_wrong_followed() const { return share_alike_.num_wrong(); }
 
   // The undecided candidates with their reasons, in the order of their numbers:
   // they wait for other loops, or for evidence of a larger drift of local SLAM.
@@ -128,6 +138,7 @@ class LoopPipeline {
   // numbers.
   std::deque<LoopCandidate> vetoed_;
   std::vector<LoopCandidate> settled_;
+  ShareAlike share_alike_;  // of the vetoed candidates that were followed
 };
 
 }  // namespace loop_closure

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "absl/types/optional.h"
-#include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
+#include "cartographer_ext/loop_closure/consensus/closed_prediction.h"
 #include "cartographer_ext/loop_closure/loop_pipeline.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"

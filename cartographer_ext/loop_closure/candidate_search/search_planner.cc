@@ -108,18 +108,23 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
   return true;
 }
 
+bool SearchPlanner::IsRedundant(const LoopCandidate& candidate) const {
+  const auto memory = submaps_.find(candidate.submap);
+  return memory != submaps_.end() &&
+         HasNear(memory->second.accepted, candidate,
+                 options_.redundant_distance, options_.redundant_time);
+}
+
 SearchPlan SearchPlanner::PlanAlone(const LoopCandidate& candidate) {
   SearchPlan plan;
   // First what costs little: most candidates end here.
-  const auto found = submaps_.find(candidate.submap);
-  const SubmapMemory* const memory =
-      found == submaps_.end() ? nullptr : &found->second;
-  if (memory != nullptr &&
-      HasNear(memory->accepted, candidate, options_.redundant_distance,
-              options_.redundant_time)) {
+  if (IsRedundant(candidate)) {
     plan.skipped = LoopDecision::SKIPPED_REDUNDANT;
     return plan;
   }
+  const auto found = submaps_.find(candidate.submap);
+  const SubmapMemory* const memory =
+      found == submaps_.end() ? nullptr : &found->second;
   const bool near_searched =
       memory != nullptr &&
       HasNear(memory->searched, candidate, options_.search_spacing,

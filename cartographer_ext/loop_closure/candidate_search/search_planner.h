@@ -123,6 +123,9 @@ class SearchPlanner {
     return least_uncertain_paths_.Between(a, b);
   }
 
+  // Whether a loop near the candidate was accepted.
+  bool IsRedundant(const LoopCandidate& candidate) const;
+
   // (anchor <- node) of a candidate that was accepted.
   void AddAcceptedLoop(const LoopCandidate& accepted,
                        const uncertainty::LoopEdge& loop);

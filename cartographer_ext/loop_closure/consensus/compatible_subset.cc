@@ -103,9 +103,15 @@ void CompatibleSubset::UpdatePrior(const LoopEvidence& loop) {
   for (Cluster& cluster : clusters_) {
     for (LoopEvidence& undecided : cluster.undecided) {
       if (undecided.id != loop.id) continue;
+      undecided.score = loop.score;
       undecided.probability = loop.probability;
       undecided.prior_sigma = loop.prior_sigma;
+      undecided.odds_of_neighbours = loop.odds_of_neighbours;
       cluster.least_sigma = std::min(cluster.least_sigma, loop.prior_sigma);
+      if (!cluster.accepted) cluster.best_score = 0.;
+      for (const LoopEvidence& other : cluster.undecided) {
+        cluster.best_score = std::max(cluster.best_score, other.score);
+      }
       changed_ = true;
       return;
     }

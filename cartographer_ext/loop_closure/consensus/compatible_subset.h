@@ -28,8 +28,9 @@
 //              is accepted if it is probable: a robot that comes back to its
 //              start and stops there leaves no second revisit. If no match of
 //              the run was wrong, places do not look alike: then two revisits
-//              are enough in a weak prior, too, and after some that were right
-//              a single one.
+//              are enough in a weak prior, too, and after some that were right,
+//              or whose neighbours were found where they should be, a single
+//              one.
 //
 // Pairwise tests of true loops fail occasionally; `tolerance` allows a small
 // share of contradictions so that long runs do not lose true loops. Zero is the
@@ -66,12 +67,16 @@ struct LoopEvidence {
   // Vertex from which the distance of revisits is measured, the same for all
   // loops of a submap; empty: edge.a.
   absl::optional<uncertainty::VertexId> anchor;
-  double score = 0.;  // the fused score, in [0, 1]
+  // The fused score, in [0, 1]; where the neighbours of the match were looked at,
+  // with what they say.
+  double score = 0.;
   // The calibrated probability that the loop is true; 0: unknown.
   double probability = 0.;
   // Standard deviation of the prediction before the search, metres; infinity
   // without a prediction.
   double prior_sigma = 0.;
+  // The factor on the odds by which they changed it; 1: not looked at.
+  double odds_of_neighbours = 1.;
 };
 
 // Least best score of a cluster that may confirm others: rather true than
@@ -123,7 +128,7 @@ struct CompatibleSubsetOptions {
   // look-alike place.
   double single_strong_sigma = 0.5;  // metres
   // A loop without enough support is accepted at the end of a run with at least
-  // this probability, if single_strong_enabled.
+  // this probability, given its neighbours, if single_strong_enabled.
   double probability_at_end = 0.9;
   // If the sigma of the prediction exceeds this, more revisits must agree.
   double weak_prior_sigma = 1.;  // metres
@@ -172,8 +177,8 @@ class CompatibleSubset {
   // clusters are kept.
   std::vector<SubsetDecision> Flush();
 
-  // Takes the probability and the prior of an undecided loop, known by its id,
-  // from `loop`, where they have become better known.
+  // Takes the score, the probability and the prior of an undecided loop, known by
+  // its id, from `loop`, where they have become better known.
   void UpdatePrior(const LoopEvidence& loop);
 
   // Repeats all pairwise tests, after a change of the drift of the paths.

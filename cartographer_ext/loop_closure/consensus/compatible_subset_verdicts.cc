@@ -17,12 +17,21 @@ namespace {
 // without support.
 constexpr double kSureOdds = 19.;
 constexpr int kEnoughRight = 3;
+// Or how much its neighbours must say for it.
+constexpr double kOddsOfFollowed = 5.;
 
 // Factor on the odds of a loop of a cluster with this support.
 double OddsOfSupport(const CompatibleSubsetOptions& options,
                      const int support) {
   return std::pow(options.odds_per_revisit,
                   std::min(support, options.max_revisits_for_odds));
+}
+
+bool FindsNeighbours(const std::vector<LoopEvidence>& undecided) {
+  return std::any_of(undecided.begin(), undecided.end(),
+                     [](const LoopEvidence& loop) {
+                       return loop.odds_of_neighbours >= kOddsOfFollowed;
+                     });
 }
 
 // Removes the loops that fulfil the condition and returns them, both in order.
@@ -65,6 +74,10 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
   if (cluster.least_sigma > options_.weak_prior_sigma) {
     needed = std::max(needed, options_.weak_prior_revisits);
   }
+  // What matches wherever the robot went is worth another revisit.
+  if (FindsNeighbours(cluster.undecided)) {
+    needed = std::max(options_.min_revisits, needed - 1);
+  }
   if (std::isinf(cluster.least_sigma)) {
     needed = std::max(needed, options_.unpredicted_revisits);
   }
@@ -99,7 +112,9 @@ std::vector<LoopEvidence> CompatibleSubset::TakeLikely(
 
 absl::optional<int> CompatibleSubset::NumRightFarOff(
     const RunState state) const {
-  if (state != RunState::kEndsUnalike) return absl::nullopt;
+  if (state != RunState::kEndsUnalike || !options_.scores_are_probabilities) {
+    return absl::nullopt;
+  }
   int num_right = 0;
   for (const Cluster& cluster : clusters_) {
     if (!cluster.in_subset && cluster.best_score >= kConfirmingScore) {
@@ -114,7 +129,8 @@ absl::optional<int> CompatibleSubset::NumRightFarOff(
 bool CompatibleSubset::IsSureFarOff(const Cluster& cluster,
                                     const LoopEvidence& loop,
                                     const int num_right) const {
-  if (cluster.support + 1 < options_.min_revisits && num_right < kEnoughRight) {
+  if (cluster.support + 1 < options_.min_revisits && num_right < kEnoughRight &&
+      loop.odds_of_neighbours < kOddsOfFollowed) {
     return false;
   }
   // The rule of succession: the odds that the next one is right, too.

@@ -58,28 +58,5 @@ void VetoByInnovation(const LoopOptions& options,
   }
 }
 
-bool PredictAgain(const LoopOptions& options,
-                  const uncertainty::PathUncertainty& paths,
-                  const PathBetween& path_between,
-                  LoopCandidate* const candidate) {
-  if (candidate->is_inter_trajectory()) return false;
-  const uncertainty::LoopEdge loop = CandidateEdge(options, paths, *candidate);
-  if (!loop.a.is_node()) return false;
-  const absl::optional<uncertainty::UncertainPose> path =
-      path_between(loop.a, loop.b);
-  if (!path.has_value()) return false;
-  const double sigma = uncertainty::WorstTranslationSigma(path->covariance);
-  if (sigma >=
-      candidate->closed_sigma.value_or(candidate->plan.translation_sigma)) {
-    return false;
-  }
-  const InnovationResult innovation =
-      TestInnovation(options.innovation_veto, *path, loop.pose);
-  if (innovation.vetoed) return false;
-  candidate->closed_sigma = sigma;
-  candidate->innovation = innovation;
-  return true;
-}
-
 }  // namespace loop_closure
 }  // namespace cartographer_ext

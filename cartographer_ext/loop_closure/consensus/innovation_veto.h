@@ -15,11 +15,7 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 
-#include <functional>
-
-#include "absl/types/optional.h"
 #include "cartographer_ext/uncertainty/cycle_consistency.h"
-#include "cartographer_ext/uncertainty/ids.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
 namespace cartographer_ext {
@@ -58,18 +54,6 @@ InnovationResult TestInnovation(const InnovationOptions& options,
 void VetoByInnovation(const LoopOptions& options,
                       const uncertainty::PathUncertainty& paths,
                       LoopCandidate* candidate);
-
-// The path from the anchor to the node, both of them known.
-using PathBetween = std::function<absl::optional<uncertainty::UncertainPose>(
-    const uncertainty::VertexId&, const uncertainty::VertexId&)>;
-
-// Predicts an undecided candidate within one trajectory again, by a path over
-// all loops that are accepted by now. If it predicts the place better than the
-// search knew it, and the candidate lies there, returns true and sets
-// `closed_sigma` and `innovation`; otherwise the candidate stays as it is.
-bool PredictAgain(const LoopOptions& options,
-                  const uncertainty::PathUncertainty& paths,
-                  const PathBetween& path_between, LoopCandidate* candidate);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

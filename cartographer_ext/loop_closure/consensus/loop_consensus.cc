@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cartographer_ext/loop_closure/consensus/candidate_edge.h"
+#include "cartographer_ext/loop_closure/consensus/neighbour_odds.h"
 #include "cartographer_ext/loop_closure/information/loop_information.h"
 #include "cartographer_ext/loop_closure/stage_timer.h"
 #include "glog/logging.h"
@@ -53,13 +54,22 @@ double PriorSigma(const LoopCandidate& candidate) {
   return std::min(sigma, offset);
 }
 
+// The literal subset of the paper knows no scores.
+bool ScoresAreProbabilities(const LoopOptions& options) {
+  return options.fusion.enabled &&
+         options.fusion.mode == FusionMode::kLikelihoodRatio &&
+         options.compatible_subset.cycle.test !=
+             uncertainty::CycleTest::kFixedBound;
+}
+
+// A probability after a factor on its odds.
+double WithOdds(const double probability, const double odds) {
+  return probability * odds / (probability * odds + 1. - probability);
+}
+
 CompatibleSubsetOptions SubsetOptions(const LoopOptions& options) {
   CompatibleSubsetOptions subset = options.compatible_subset;
-  // The literal subset of the paper knows no scores.
-  subset.scores_are_probabilities =
-      options.fusion.enabled &&
-      options.fusion.mode == FusionMode::kLikelihoodRatio &&
-      subset.cycle.test != uncertainty::CycleTest::kFixedBound;
+  subset.scores_are_probabilities = ScoresAreProbabilities(options);
   return subset;
 }
 
@@ -69,7 +79,8 @@ LoopConsensus::LoopConsensus(const LoopOptions& options,
                              const uncertainty::PathUncertainty* const paths)
     : options_(options),
       paths_(CHECK_NOTNULL(paths)),
-      subset_(SubsetOptions(options), paths) {}
+      subset_(SubsetOptions(options), paths),
+      share_alike_(ShareAlike().Mean()) {}
 
 LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
   LoopEvidence evidence;
@@ -86,6 +97,16 @@ LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
     evidence.probability = candidate.fusion->probability;
   }
   evidence.prior_sigma = PriorSigma(candidate);
+  if (candidate.followed.has_value()) {
+    const double odds =
+        OddsOfNeighbours(candidate.followed->num_found,
+                         candidate.followed->num_missed, share_alike_);
+    evidence.odds_of_neighbours = odds;
+    evidence.probability = WithOdds(evidence.probability, odds);
+    if (ScoresAreProbabilities(options_)) {
+      evidence.score = WithOdds(evidence.score, odds);
+    }
+  }
   return evidence;
 }
 
@@ -144,6 +165,23 @@ int LoopConsensus::PredictAgain(const Predict& predict) {
     ++num_predicted;
   }
   return num_predicted;
+}
+
+void LoopConsensus::SetFollowed(const int64_t number,
+                                const FollowedMatch& followed) {
+  const auto it = waiting_.find(number);
+  if (it == waiting_.end()) return;
+  it->second.candidate.followed = followed;
+  subset_.UpdatePrior(MakeEvidence(it->second.candidate));
+}
+
+void LoopConsensus::SetShareAlike(const double share_alike) {
+  if (share_alike == share_alike_) return;
+  share_alike_ = share_alike;
+  for (const auto& entry : waiting_) {
+    if (!entry.second.candidate.followed.has_value()) continue;
+    subset_.UpdatePrior(MakeEvidence(entry.second.candidate));
+  }
 }
 
 std::vector<LoopCandidate> LoopConsensus::Remove(const Condition& condition) {

@@ -52,6 +52,11 @@ class LoopConsensus {
   // Predicts all undecided candidates again; returns how many are known better.
   int PredictAgain(const Predict& predict);
 
+  // Adds what following an undecided candidate has shown.
+  void SetFollowed(int64_t number, const FollowedMatch& followed);
+  // The share of wrong places that look like the right one.
+  void SetShareAlike(double share_alike);
+
   // To be called after a change of the drift of `paths`.
   void DriftChanged() { subset_.RelateAll(); }
 
@@ -82,6 +87,7 @@ class LoopConsensus {
   const uncertainty::PathUncertainty* const paths_;
   CompatibleSubset subset_;
   std::map<int64_t, Waiting> waiting_;  // by number
+  double share_alike_;
 };
 
 }  // namespace loop_closure

@@ -70,7 +70,9 @@ LoopClosure2D::LoopClosure2D(
       relocalizer_(extension.relocalization,
                    options.global_localization_min_score()),
       typical_fit_(extension.search.enabled ? extension.typical_fit
-                                            : NoTypicalFit()) {
+                                            : NoTypicalFit()),
+      second_look_(extension, &searcher_, &typical_fit_, &submaps_, &planner_,
+                   &pipeline_) {
   LOG_IF(ERROR, !log_.status().ok())
       << "cartographer_ext: no log of loop decisions: " << log_.status();
   context_->Get<uncertainty::DriftModel>()->SetPrior(extension.path_noise);
@@ -149,6 +151,7 @@ void LoopClosure2D::RememberNode(const Proposal& proposal) {
   node.node_index = id.node_index;
   node.time = cartographer::common::ToUniversal(proposal.node->time);
   node.local_pose = LocalPose(*proposal.node);
+  node.aligned_theta = AlignedFromTracking(*proposal.node).theta;
   if (extension_.temporal.enabled) {
     DescribeScan(pipeline_.temporal_options(), PlanarPoints(*proposal.node),
                  &node);
@@ -225,10 +228,11 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   num_jobs_due_ = 0;
   num_queries_due_ = 0;
   std::vector<Constraint> constraints;
-  Decide(&constraints);
-  for (int i = 0; at_end_ && i < kMostPredictions; ++i) {
-    PredictAgain();
-    if (!Decide(&constraints)) break;
+  Decide(false, &constraints);
+  if (at_end_) {
+    DecideAtEnd(&constraints);
+  } else if (second_look_.FollowUndecided(false)) {
+    Decide(false, &constraints);
   }
   auto* const drift = context_->Get<uncertainty::DriftModel>();
   for (const auto& estimate : pipeline_.drift().Estimates()) {
@@ -238,13 +242,27 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   return constraints;
 }
 
-bool LoopClosure2D::Decide(std::vector<Constraint>* const constraints) {
-  const std::vector<LoopCandidate> decided = pipeline_.Decide(at_end_);
+void LoopClosure2D::DecideAtEnd(std::vector<Constraint>* const constraints) {
+  second_look_.FollowUndecided(true);
+  Decide(true, constraints);
+  for (int i = 0; i < kMostPredictions; ++i) {
+    PredictAgain();
+    if (!Decide(true, constraints) && !second_look_.SearchAroundAccepted() &&
+        !second_look_.FollowUndecided(true)) {
+      break;
+    }
+  }
+}
+
+bool LoopClosure2D::Decide(const bool at_end,
+                           std::vector<Constraint>* const constraints) {
+  const std::vector<LoopCandidate> decided = pipeline_.Decide(at_end);
   Record(decided);
   bool has_closed = false;
   for (const LoopCandidate& candidate : decided) {
     if (!candidate.is_accepted()) continue;
     Close(candidate, constraints);
+    second_look_.AddAccepted(candidate);
     has_closed = true;
   }
   return has_closed;
@@ -332,6 +350,7 @@ void LoopClosure2D::DeleteSubmap(const SubmapId& submap_id) {
   pipeline_.DeleteSubmap(id);
   pipeline_.DeleteNodes(id.trajectory_id, newest_node);
   relocalizer_.DeleteNodes(id.trajectory_id, newest_node);
+  second_look_.DeleteNodes(id.trajectory_id, newest_node);
   planner_.DeleteSubmap(id);
   if (is_known && !submaps_.HasSubmapsOf(id.trajectory_id)) {
     dormant_since_[id.trajectory_id] = num_nodes_added_;
@@ -350,6 +369,7 @@ void LoopClosure2D::FreeDormantTrajectories() {
     planner_.DeleteTrajectory(trajectory_id);
     submaps_.DeleteTrajectory(trajectory_id);
     relocalizer_.DeleteTrajectory(trajectory_id);
+    second_look_.DeleteTrajectory(trajectory_id);
     typical_fit_.DeleteTrajectory(trajectory_id);
     inter_trajectory_loops_.DeleteTrajectory(trajectory_id);
     context_->Get<uncertainty::DriftModel>()->DeleteTrajectory(trajectory_id);

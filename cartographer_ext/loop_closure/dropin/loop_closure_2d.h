@@ -56,6 +56,7 @@
 #include "cartographer_ext/loop_closure/dropin/pair_planner.h"
 #include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
 #include "cartographer_ext/loop_closure/dropin/relocalizer.h"
+#include "cartographer_ext/loop_closure/dropin/second_look.h"
 #include "cartographer_ext/loop_closure/dropin/submap_store.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/loop_pipeline.h"
@@ -127,9 +128,11 @@ class LoopClosure2D {
   void ProcessQuery(const PlaceQuery& query);
   // Decides what can be decided, with the constraints of the accepted ones;
   // returns whether there are any.
-  bool Decide(std::vector<Constraint>* constraints);
+  bool Decide(bool at_end, std::vector<Constraint>* constraints);
   // As LoopPipeline::PredictAgain, over the accepted loops.
   void PredictAgain();
+  // Decides what the end of a run allows to decide.
+  void DecideAtEnd(std::vector<Constraint>* constraints);
   // Adds the constraint of an accepted candidate, and the marks of the loops
   // that are withdrawn on its account (common/withdrawn_loops.h).
   void Close(const LoopCandidate& accepted,
@@ -154,6 +157,7 @@ class LoopClosure2D {
   PairPlanner planner_;
   Relocalizer relocalizer_;
   TypicalFit typical_fit_;
+  SecondLook second_look_;
   InterTrajectoryLoops inter_trajectory_loops_;
   // Jobs of all nodes since the last `Verify`, at stable addresses. The first
   // ones, as many as are due, belong to the next `Verify`.

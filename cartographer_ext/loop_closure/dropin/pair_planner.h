@@ -69,6 +69,11 @@ class PairPlanner {
     return search_planner_.PathBetween(a, b);
   }
 
+  // As SearchPlanner::IsRedundant.
+  bool IsRedundant(const LoopCandidate& candidate) const {
+    return search_planner_.IsRedundant(candidate);
+  }
+
   // Adds an accepted candidate, with its loop if the anchor is known. Returns
   // as MapLocalization::AddAcceptedLoop.
   bool AddAcceptedLoop(const LoopCandidate& accepted,

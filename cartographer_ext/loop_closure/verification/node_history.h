@@ -28,6 +28,8 @@ struct HistoryNode {
   int node_index = 0;
   int64_t time = 0;  // host ticks
   Pose2 local_pose;  // (local frame of the trajectory <- node)
+  // (gravity-aligned <- tracking frame), radians.
+  double aligned_theta = 0.;
   // Description of the scan for the temporal score, one of the two
   // (DescribeScan).
   std::vector<Beam> beams;

@@ -108,15 +108,18 @@ void ScoreVerifier::ComputeTemporalScore(const NodeHistory& history,
                      candidate->RefinedInTrackingFrame(), candidate->maps);
 }
 
+double ScoreVerifier::Threshold() const {
+  // As printed, it is the same for every robot.
+  return options_.threshold.direction ==
+                 ThresholdDirection::kStricterWhenUnstable
+             ? threshold_.Current() * mixture_.temporal_scale()
+             : threshold_.Current();
+}
+
 void ScoreVerifier::TestTemporalScore(LoopCandidate* const candidate) {
   if (!options_.threshold.enabled || !candidate->temporal.has_value()) return;
   TemporalScore& temporal = *candidate->temporal;
-  temporal.threshold = threshold_.Current();
-  if (options_.threshold.direction ==
-      ThresholdDirection::kStricterWhenUnstable) {
-    // As printed, it is the same for every robot.
-    temporal.threshold *= mixture_.temporal_scale();
-  }
+  temporal.threshold = Threshold();
   temporal.score_variance = threshold_.Variance();
   if (!temporal.is_scored()) return;
   threshold_.AddScore(temporal.result.score);
@@ -179,6 +182,14 @@ void ScoreVerifier::FuseByLikelihoodRatio(const LoopCandidate& candidate,
     mixture_.Add(grid_score, temporal_score, volume);
   }
   if (++num_mixture_candidates_ % kFitInterval == 0) mixture_.Fit();
+}
+
+absl::optional<double> ScoreVerifier::FinalScore(
+    const LoopCandidate& candidate) const {
+  if (!IsScored(candidate)) return absl::nullopt;
+  const double temporal_score = candidate.temporal->result.score;
+  if (options_.threshold.enabled && temporal_score < Threshold()) return 0.;
+  return mixture_.ProbabilityTrue(candidate.match.score, temporal_score);
 }
 
 void ScoreVerifier::Learn(const LoopCandidate& accepted) {

@@ -25,6 +25,7 @@
 
 #include <cstdint>
 
+#include "absl/types/optional.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/verification/dynamic_threshold.h"
@@ -55,10 +56,15 @@ class ScoreVerifier {
   // be called for rejected candidates as well, because their scores are used
   // for the fit.
   void FuseScores(LoopCandidate* candidate);
+  // S_final of a candidate with its temporal score, without consequences: 0
+  // where S_t < tau, empty where there is no S_t.
+  absl::optional<double> FinalScore(const LoopCandidate& candidate) const;
   // Adds the scores of a loop that others have confirmed.
   void Learn(const LoopCandidate& accepted);
 
  private:
+  // tau of C eq. 1 to 3.
+  double Threshold() const;
   // Whether the path to the node is so short that the match is certainly right.
   bool IsCertain(const LoopCandidate& candidate) const;
   void FuseByLikelihoodRatio(const LoopCandidate& candidate,

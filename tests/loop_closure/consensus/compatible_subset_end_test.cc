@@ -73,6 +73,8 @@ TEST_F(CompatibleSubsetEndTest, ProbableLoopsAreAccepted) {
 // Where no match of the run was wrong, fewer loops need agree in a weak prior.
 class FarOffTest : public CompatibleSubsetEndTest {
  protected:
+  FarOffTest() { options_.scores_are_probabilities = true; }
+
   static LoopEvidence Strong(int i, double score) {
     LoopEvidence loop = Last(i, i, 0.1);
     loop.score = score;
@@ -121,6 +123,36 @@ TEST_F(FarOffTest, ASingleOneAfterThreeThatWereRight) {
       EXPECT_THAT(accepted, IsEmpty());
     }
   }
+}
+
+TEST_F(FarOffTest, NeighboursDecideAboutASingleOne) {
+  options_.informative_sigma = 1e-3;
+  for (const double score_of_wrong : {0.2, 0.7}) {
+    CompatibleSubset subset(options_, &paths_);
+    LoopEvidence loop = Strong(10, 0.7);
+    LoopEvidence wrong = Strong(70, 0.6);
+    wrong.edge.pose.pose.x += 12.;
+    subset.Add(loop);
+    subset.Add(wrong);
+    EXPECT_THAT(Accepted(subset.Decide(RunState::kEndsUnalike)), IsEmpty());
+    loop.score = 0.96;
+    loop.odds_of_neighbours = 10.;
+    wrong.score = score_of_wrong;
+    subset.UpdatePrior(loop);
+    subset.UpdatePrior(wrong);
+    // Unless the other one, whose neighbours match, too, tells of places that
+    // look alike.
+    const auto accepted = Accepted(subset.Decide(RunState::kEndsUnalike));
+    if (score_of_wrong < 0.5) {
+      EXPECT_THAT(accepted, ElementsAre(10));
+    } else {
+      EXPECT_THAT(accepted, IsEmpty());
+    }
+  }
+  // A high score alone does not.
+  CompatibleSubset alone(options_, &paths_);
+  alone.Add(Strong(10, 0.96));
+  EXPECT_THAT(Accepted(alone.Decide(RunState::kEndsUnalike)), IsEmpty());
 }
 
 // Loops accepted meanwhile predict a place better: then fewer need agree.

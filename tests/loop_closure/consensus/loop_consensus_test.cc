@@ -88,6 +88,42 @@ TEST_F(LoopConsensusTest, RemovedCandidatesConfirmNothing) {
   EXPECT_EQ(rest[0].reason, LoopDecision::UNSUPPORTED);
 }
 
+// Of two matches that contradict each other the one is right that finds its
+// neighbours where they should be.
+TEST_F(LoopConsensusTest, NeighboursOfAMatchChangeItsScore) {
+  options_.compatible_subset.single_strong_enabled = true;
+  options_.compatible_subset.single_strong_sigma = 0.;
+  consensus_.reset(new LoopConsensus(options_, &paths_));
+  LoopCandidate right = Candidate(5);
+  LoopCandidate wrong = Candidate(5);
+  wrong.match.refined.x += 8.;
+  for (LoopCandidate* const candidate : {&right, &wrong}) {
+    candidate->plan.translation_sigma = 9.;
+    candidate->plan.full_submap = true;
+    candidate->predicted->y += 9.;
+    consensus_->Add(*candidate);
+  }
+  EXPECT_THAT(consensus_->Decide(RunState::kEndsUnalike), IsEmpty());
+  FollowedMatch confirmed;
+  confirmed.num_found = 14;
+  confirmed.num_missed = 1;
+  consensus_->SetFollowed(right.number, confirmed);
+  FollowedMatch refuted;
+  refuted.num_found = 1;
+  refuted.num_missed = 14;
+  consensus_->SetFollowed(wrong.number, refuted);
+  consensus_->SetFollowed(1000, refuted);  // unknown
+  const std::vector<LoopCandidate> accepted =
+      consensus_->Decide(RunState::kEndsUnalike);
+  ASSERT_EQ(accepted.size(), 1u);
+  EXPECT_EQ(accepted[0].number, right.number);
+  EXPECT_EQ(accepted[0].reason, LoopDecision::LIKELY_AT_END);
+  EXPECT_EQ(accepted[0].followed->num_found, 14);
+  const std::vector<LoopCandidate> undecided = consensus_->Undecided();
+  ASSERT_EQ(undecided.size(), 1u);
+  EXPECT_EQ(undecided[0].followed->num_missed, 14);
+}
+
 }  // namespace
 }  // namespace loop_closure
 }  // namespace cartographer_ext

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/loop_closure/consensus/closed_prediction.h"
+
+#include "cartographer_ext/loop_closure/consensus/candidate_edge.h"
+#include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
+#include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
+
+namespace cartographer_ext {
+namespace loop_closure {
+
+bool PredictAgain(const LoopOptions& options,
+                  const uncertainty::PathUncertainty& paths,
+                  const PathBetween& path_between,
+                  LoopCandidate* const candidate) {
+  if (candidate->is_inter_trajectory()) return false;
+  const uncertainty::LoopEdge loop = CandidateEdge(options, paths, *candidate);
+  if (!loop.a.is_node()) return false;
+  const absl::optional<uncertainty::UncertainPose> path =
+      path_between(loop.a, loop.b);
+  if (!path.has_value()) return false;
+  const double sigma = uncertainty::WorstTranslationSigma(path->covariance);
+  if (sigma >=
+      candidate->closed_sigma.value_or(candidate->plan.translation_sigma)) {
+    return false;
+  }
+  const InnovationResult innovation =
+      TestInnovation(options.innovation_veto, *path, loop.pose);
+  if (innovation.vetoed) return false;
+  candidate->closed_sigma = sigma;
+  candidate->innovation = innovation;
+  return true;
+}
+
+}  // namespace loop_closure
+}  // namespace cartographer_ext
