@@ -82,6 +82,8 @@ SecondLook::SecondLook(const LoopOptions& options,
                        SubmapStore* const submaps, PairPlanner* const planner,
                        LoopPipeline* const pipeline)
     : options_(options),
+      is_on_(options.search.enabled &&
+             options.compatible_subset.single_strong_enabled),
       searcher_(CHECK_NOTNULL(searcher)),
       typical_fit_(CHECK_NOTNULL(typical_fit)),
       submaps_(CHECK_NOTNULL(submaps)),
@@ -89,7 +91,7 @@ SecondLook::SecondLook(const LoopOptions& options,
       pipeline_(CHECK_NOTNULL(pipeline)) {}
 
 void SecondLook::AddAccepted(const LoopCandidate& accepted) {
-  if (accepted.is_inter_trajectory() ||
+  if (!is_on_ || accepted.is_inter_trajectory() ||
       (!accepted.plan.full_submap &&
        accepted.plan.translation_sigma < options_.search.saturated_sigma)) {
     return;
@@ -284,11 +286,12 @@ bool SecondLook::IsWorthFollowingNow(const LoopCandidate& candidate) const {
 }
 
 bool SecondLook::FollowUndecided(const bool at_end) {
+  if (!is_on_) return false;
   std::vector<LoopCandidate> matches;
   for (LoopCandidate& candidate : pipeline_->Undecided()) {
     if (!candidate.is_inter_trajectory() &&
         candidate.FinalScore() >= kConfirmingScore &&
-        followed_.count(candidate.number) == 0 &&
+        !candidate.followed.has_value() &&
         (at_end || IsWorthFollowingNow(candidate))) {
       matches.push_back(std::move(candidate));
     }
@@ -306,7 +309,6 @@ bool SecondLook::FollowUndecided(const bool at_end) {
     if (num_searches >= (at_end ? kMaxFollowingSearches : kMaxEarlySearches)) {
       break;
     }
-    followed_.insert(match.number);
     const FollowedMatch followed = Follow(match);
     num_searches += followed.num_found + followed.num_missed;
     pipeline_->SetFollowed(match.number, followed);

@@ -23,11 +23,11 @@
 // robot sees there, in a narrow window. The scans are those of the history, so
 // that nothing is asked of the host, which may have deleted the nodes.
 //
-// Within one trajectory only. Not thread-safe.
+// Within one trajectory only, and only with `search` and single strong loops
+// enabled. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SECOND_LOOK_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SECOND_LOOK_H_
 
-#include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
@@ -94,6 +94,8 @@ class SecondLook {
   bool IsLookedAt(const uncertainty::NodeId& node) const;
 
   const LoopOptions options_;
+  // Not in the literal modes of the papers.
+  const bool is_on_;
   const PairSearcher* const searcher_;
   const TypicalFit* const typical_fit_;
   SubmapStore* const submaps_;
@@ -101,7 +103,6 @@ class SecondLook {
   LoopPipeline* const pipeline_;
   std::deque<LoopCandidate> accepted_;  // to be looked around
   std::set<uncertainty::NodeId> looked_at_;
-  std::set<int64_t> followed_;            // numbers of candidates
   std::map<int, int> last_deleted_node_;  // by trajectory
 };
 

@@ -203,7 +203,7 @@ TEST_F(SecondLookTest, TheNeighboursTellARightMatchFromAWrongOne) {
 TEST_F(SecondLookTest, BeforeTheEndFarMatchesThatWereLeftBehindAreFollowed) {
   // They must not decide about each other.
   options_.compatible_subset.min_revisits = 10;
-  options_.compatible_subset.single_strong_enabled = false;
+  options_.compatible_subset.single_strong_score = 2.;
   Make();
   LoopCandidate near = Match(Pose2());
   near.plan.translation_sigma = 0.5;
@@ -223,6 +223,16 @@ TEST_F(SecondLookTest, BeforeTheEndFarMatchesThatWereLeftBehindAreFollowed) {
   // The others at the end.
   EXPECT_TRUE(look_->FollowUndecided(true));
   EXPECT_TRUE(pipeline_->Undecided()[1].followed.has_value());
+}
+
+TEST_F(SecondLookTest, TheModesOfThePapersLookOnce) {
+  options_.compatible_subset.single_strong_enabled = false;
+  Make();
+  Accept(Match(Pose2()));
+  EXPECT_FALSE(look_->SearchAroundAccepted());
+  pipeline_->Process(Match(Pose2()));
+  EXPECT_THAT(pipeline_->Decide(), IsEmpty());
+  EXPECT_FALSE(look_->FollowUndecided(true));
 }
 
 }  // namespace
