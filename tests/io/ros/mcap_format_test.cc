@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/ros/mcap_format.h"
 
+#include <cstdint>
+#include <string>
+
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -26,7 +29,7 @@ TEST(McapFormatTest, FieldsEndWhereTheRecordEnds) {
 
 TEST(McapFormatTest, DecompressionInvertsCompression) {
   std::string text;
-  for (int i = 0; i < 200000; ++i) text += static_cast<char>(i * i % 251);
+  for (int64_t i = 0; i < 200000; ++i) text += static_cast<char>(i * i % 251);
   for (const std::string compression : {"", "lz4", "zstd"}) {
     for (const std::string& data : {text, std::string("x"), std::string()}) {
       const auto packed = McapCompress(compression, data);

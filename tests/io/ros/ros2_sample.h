@@ -38,7 +38,7 @@ inline void WriteRos2Sample(const std::string& filename,
   auto writer = io::OpenRosbag2Writer(filename, storage, options);
   ASSERT_TRUE(writer.ok()) << writer.status();
   for (int i = 1; i <= num_steps; ++i) {
-    const io::TimeNs time = 1000000000000 + i * 100000000;
+    const io::TimeNs time = 1000000000000 + i * io::TimeNs{100000000};
     io::OdometryReading odometry;
     odometry.time = time;
     odometry.pose = Pose2(0.1 * i, -0.1 * i, 0.01 * i);
@@ -63,7 +63,7 @@ inline void ExpectRos2Sample(io::SensorSource* const source,
   EXPECT_EQ(source->info().num_imu, num_steps);
   io::SensorEvent event;
   for (int i = 1; i <= num_steps; ++i) {
-    const io::TimeNs time = 1000000000000 + i * 100000000;
+    const io::TimeNs time = 1000000000000 + i * io::TimeNs{100000000};
     ASSERT_TRUE(source->Next(&event).value());
     ASSERT_TRUE(absl::holds_alternative<io::OdometryReading>(event));
     const io::OdometryReading odometry = absl::get<io::OdometryReading>(event);
