@@ -38,6 +38,17 @@ Pose2 HostPrediction(const uncertainty::PathUncertainty& paths,
 
 }  // namespace
 
+void SetWindow(const SearchPlannerOptions& options,
+               const Eigen::Matrix3d& covariance, SearchPlan* const plan) {
+  plan->translation_sigma = uncertainty::WorstTranslationSigma(covariance);
+  plan->rotation_sigma = std::sqrt(std::max(0., covariance(2, 2)));
+  plan->linear_window =
+      std::max(options.window_sigmas * plan->translation_sigma,
+               options.min_linear_window);
+  plan->angular_window = std::max(options.min_angular_window,
+                                  options.window_sigmas * plan->rotation_sigma);
+}
+
 SearchPlanner::SearchPlanner(const SearchPlannerOptions& options,
                              const Eigen::Matrix3d& loop_covariance,
                              const double reach,
@@ -85,9 +96,7 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
     plan->angular_window = default_angular_window_;
     return false;
   }
-  plan->translation_sigma =
-      uncertainty::WorstTranslationSigma(path->covariance);
-  plan->rotation_sigma = std::sqrt(std::max(0., path->covariance(2, 2)));
+  SetWindow(options_, path->covariance, plan);
   const double wanted = options_.window_sigmas * plan->translation_sigma;
   plan->full_submap =
       wanted > options_.max_linear_window && options_.global_search;
@@ -96,13 +105,11 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
       paths_->drift_version() > 0
           ? Between(path->pose, HostPrediction(*paths_, candidate))
           : Pose2();
-  plan->linear_window = std::min(std::max(wanted, options_.min_linear_window) +
-                                     offset.translation().norm(),
-                                 options_.max_linear_window);
-  plan->angular_window =
-      std::min(kPi, std::max(options_.min_angular_window,
-                             options_.window_sigmas * plan->rotation_sigma) +
-                        std::abs(NormalizeAngle(offset.theta)));
+  plan->linear_window =
+      std::min(plan->linear_window + offset.translation().norm(),
+               options_.max_linear_window);
+  plan->angular_window = std::min(
+      kPi, plan->angular_window + std::abs(NormalizeAngle(offset.theta)));
   plan->out_of_reach =
       distance > reach_ + (plan->full_submap ? wanted : plan->linear_window);
   return true;

@@ -96,6 +96,11 @@ struct SearchPlannerOptions {
   int max_passes_per_place = 3;
 };
 
+// Sets the standard deviations of a prediction with this covariance, and the
+// window that they ask for.
+void SetWindow(const SearchPlannerOptions& options,
+               const Eigen::Matrix3d& covariance, SearchPlan* plan);
+
 // Plans the searches of candidates, see above.
 class SearchPlanner {
  public:

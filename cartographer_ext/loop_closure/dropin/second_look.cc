@@ -166,19 +166,12 @@ absl::optional<LoopCandidate> SecondLook::SubmapAround(
 absl::optional<SearchJob> SecondLook::MakeJob(
     const NodeId& a, const NodeId& node, const SubmapId& near,
     const UncertainPose& prediction) const {
-  const SearchPlannerOptions& search = options_.search;
   const HistoryNode* const scan =
       pipeline_->history().Find(node.trajectory_id, node.node_index);
   const absl::optional<Pose2> a_pose = pipeline_->paths().LocalPose(a);
   if (scan == nullptr || scan->beams.empty() || !a_pose.has_value()) return {};
   SearchPlan plan;
-  plan.translation_sigma =
-      uncertainty::WorstTranslationSigma(prediction.covariance);
-  plan.rotation_sigma = std::sqrt(std::max(0., prediction.covariance(2, 2)));
-  plan.linear_window = std::max(search.min_linear_window,
-                                search.window_sigmas * plan.translation_sigma);
-  plan.angular_window = std::max(search.min_angular_window,
-                                 search.window_sigmas * plan.rotation_sigma);
+  SetWindow(options_.search, prediction.covariance, &plan);
   if (plan.linear_window > kWidest) return {};
   const Pose2 predicted = *a_pose * prediction.pose;
   // The other visit may be the earlier or the later one.
