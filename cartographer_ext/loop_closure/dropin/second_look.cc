@@ -11,6 +11,7 @@
 
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/point_cloud.h"
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/loop_closure/consensus/candidate_edge.h"
 #include "glog/logging.h"
 
@@ -54,9 +55,7 @@ double MappedDistance(const HistoryNode& scan) {
   std::vector<float> ranges;
   ranges.reserve(scan.beams.size());
   for (const Beam& beam : scan.beams) ranges.push_back(beam.range);
-  const auto median = ranges.begin() + ranges.size() / 2;
-  std::nth_element(ranges.begin(), median, ranges.end());
-  return std::max(kMapped, kMappedRanges * *median);
+  return std::max(kMapped, kMappedRanges * UpperMedian(std::move(ranges)));
 }
 
 TrajectoryNode::Data MakeData(const HistoryNode& node) {
