@@ -29,8 +29,14 @@ std::map<int, Trajectory> ReadOdometry(const io::Pbstream& pbstream) {
 
 namespace {
 
-// Fills in lasting_rotation of steps [begin, end), all of one trajectory and
-// with odometry; `rotations` are their signed differences in rotation.
+// Whether no node was trimmed between the two.
+bool IsNext(const GraphId& id, const GraphId& next_id) {
+  return next_id.trajectory_id == id.trajectory_id &&
+         next_id.index == id.index + 1;
+}
+
+// Fills in lasting_rotation of steps [begin, end), all of one trajectory, in
+// sequence and with odometry; `rotations` are their signed differences in rotation.
 void FillLastingRotation(const std::vector<double>& rotations,
                          const size_t begin, const size_t end,
                          std::vector<MotionStep>* const steps) {
@@ -55,8 +61,7 @@ void FillLastingRotations(const std::vector<double>& rotations,
   size_t begin = 0;
   for (size_t i = 0; i <= steps->size(); ++i) {
     if (i != steps->size() && (*steps)[i].has_odometry &&
-        (*steps)[i].node_id.trajectory_id ==
-            (*steps)[begin].node_id.trajectory_id) {
+        (i == begin || IsNext((*steps)[i - 1].node_id, (*steps)[i].node_id))) {
       continue;
     }
     FillLastingRotation(rotations, begin, i, steps);
@@ -73,10 +78,7 @@ MotionDisagreement CompareMotions(const MapGraph& graph,
   std::vector<double> signed_rotations;  // of each step
   for (auto it = graph.nodes.begin(); it != graph.nodes.end(); ++it) {
     const auto next = std::next(it);
-    if (next == graph.nodes.end() ||
-        next->first.trajectory_id != it->first.trajectory_id) {
-      continue;
-    }
+    if (next == graph.nodes.end() || !IsNext(it->first, next->first)) continue;
     MotionStep step;
     step.node_id = next->first;
     step.time = next->second.time;

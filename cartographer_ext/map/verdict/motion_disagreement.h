@@ -21,7 +21,8 @@ namespace evaluation {
 
 constexpr double kLastingSeconds = 5.;
 
-// The motion from the previous node to this one.
+// The motion from the previous node to this one. Where nodes in between were
+// trimmed, there is no step: over minutes even good odometry turns away.
 struct MotionStep {
   GraphId node_id;
   io::TimeNs time = 0;
@@ -41,7 +42,7 @@ struct MotionStep {
 };
 
 struct MotionDisagreement {
-  std::vector<MotionStep> steps;  // by id; first nodes have none
+  std::vector<MotionStep> steps;  // by id; none to first nodes, over gaps
   Statistics bend_translation;    // metres
   Statistics bend_rotation_degrees;
   Statistics odometry_translation;

@@ -97,6 +97,41 @@ MotionDisagreement Standing(const Heading& heading) {
   return CompareMotions(graph, odometry);
 }
 
+TEST(MotionDisagreementTest, TrimmedNodesLeaveNoStep) {
+  // The middle one of three nodes is gone; the wheels did not turn at all.
+  std::map<int, Trajectory> odometry;
+  odometry[0] = Trajectory(std::vector<StampedPose>{
+      {9 * kSecond, ToIsometry(Pose2())}, {14 * kSecond, ToIsometry(Pose2())}});
+  MapGraph graph = ThreeNodes();
+  AddNode({0, 3}, 14 * kSecond, Pose2(1., 0., kPi / 2.), Pose2(), &graph);
+  graph.nodes.erase(GraphId{0, 1});
+  const MotionDisagreement result = CompareMotions(graph, odometry);
+  ASSERT_EQ(result.steps.size(), 1u);
+  EXPECT_EQ(result.steps[0].node_id, (GraphId{0, 3}));
+  EXPECT_NEAR(result.steps[0].lasting_rotation, 0., 1e-12);
+  EXPECT_EQ(result.bend_translation.count, 1);
+  EXPECT_EQ(result.odometry_translation.count, 1);
+}
+
+TEST(MotionDisagreementTest, TheLastingTurnEndsAtTrimmedNodes) {
+  // By local SLAM a quarter turn before the gap and one behind it, within the
+  // seconds that one lasts; by the wheels none.
+  MapGraph graph;
+  AddNode({0, 0}, 10 * kSecond, Pose2(), Pose2(), &graph);
+  AddNode({0, 1}, 11 * kSecond, Pose2(0., 0., kPi / 2.), Pose2(), &graph);
+  AddNode({0, 3}, 13 * kSecond, Pose2(0., 0., kPi / 2.), Pose2(), &graph);
+  AddNode({0, 4}, 14 * kSecond, Pose2(0., 0., 0.), Pose2(), &graph);
+  const std::map<int, Trajectory> odometry = {
+      {0, Trajectory(
+              std::vector<StampedPose>{{9 * kSecond, ToIsometry(Pose2())},
+                                       {15 * kSecond, ToIsometry(Pose2())}})}};
+  const MotionDisagreement result = CompareMotions(graph, odometry);
+  ASSERT_EQ(result.steps.size(), 2u);
+  // What happened in between is unknown, so they do not cancel.
+  EXPECT_NEAR(result.steps[0].lasting_rotation, kPi / 2., 1e-12);
+  EXPECT_NEAR(result.steps[1].lasting_rotation, kPi / 2., 1e-12);
+}
+
 TEST(MotionDisagreementTest, ATurnThatIsCaughtUpWithDoesNotLast) {
   // One reading is off by 0.8 rad; the second trajectory loses a turn.
   const MotionDisagreement result =
