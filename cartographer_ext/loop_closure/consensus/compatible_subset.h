@@ -24,9 +24,9 @@
 //              without support is accepted by stricter rules of its own. What
 //              is neither stays buffered and is tested again when new evidence
 //              comes; `Flush` ends that. At the end of a run, when no more can
-//              come, a loop of the subset whose only fault is a lack of support
-//              is accepted if it is probable: a robot that comes back to its
-//              start and stops there leaves no second revisit. If no match of
+//              come, a loop of the subset without rivals is accepted if it is
+//              probable, whatever support it lacks: a robot that comes back to
+//              its start and stops there leaves no second revisit. If no match of
 //              the run was wrong, places do not look alike: then two revisits
 //              are enough in a weak prior, too, and after some that were right,
 //              or whose neighbours were found where they should be, a single
@@ -144,7 +144,7 @@ enum class SubsetReason {
   kSupported,      // accepted with its cluster
   kSingleStrong,   // accepted by the rule for single strong loops
   kJoinsAccepted,  // accepted, its cluster was accepted before
-  kLikelyAtEnd,    // accepted at the end of the run, without enough support
+  kLikelyAtEnd,    // accepted at the end of the run, as it is probable
   kContradicted,   // rejected, contradicts the compatible subset
   kRival,          // rejected, a contradicting cluster has as much support
   kUnsupported,    // rejected, not confirmed until the end
@@ -241,8 +241,8 @@ class CompatibleSubset {
   // Removes the loops that may be accepted from the undecided ones of an
   // accepted cluster and returns them.
   std::vector<LoopEvidence> TakeLikely(Cluster* cluster) const;
-  // The same of the loops that are accepted at the end of a run, if the cluster
-  // lacks support only. `num_right`: see NumRightFarOff.
+  // The same of the loops that are accepted at the end of a run, if nothing
+  // contradicts the cluster. `num_right`: see NumRightFarOff.
   std::vector<LoopEvidence> TakeProbable(const absl::optional<int>& num_right,
                                          Cluster* cluster) const;
   // Of the clusters in a weak prior, how many were right. Empty if another one

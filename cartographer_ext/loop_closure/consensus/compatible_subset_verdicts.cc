@@ -141,16 +141,16 @@ bool CompatibleSubset::IsSureFarOff(const Cluster& cluster,
 
 std::vector<LoopEvidence> CompatibleSubset::TakeProbable(
     const absl::optional<int>& num_right, Cluster* const cluster) const {
-  SubsetReason reason;
   if (!options_.single_strong_enabled || !cluster->in_subset ||
-      cluster->rival_support >= 0 || std::isinf(cluster->least_sigma) ||
-      MayAccept(*cluster, &reason) || reason != SubsetReason::kUnsupported) {
+      cluster->rival_support >= 0 || std::isinf(cluster->least_sigma)) {
     return {};
   }
+  SubsetReason reason;
+  const bool lacks_support = !MayAccept(*cluster, &reason);
   return TakeIf(
       [&](const LoopEvidence& loop) {
         return loop.probability >= options_.probability_at_end ||
-               (num_right.has_value() &&
+               (lacks_support && num_right.has_value() &&
                 IsSureFarOff(*cluster, loop, *num_right));
       },
       &cluster->undecided);

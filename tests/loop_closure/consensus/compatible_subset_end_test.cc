@@ -70,6 +70,28 @@ TEST_F(CompatibleSubsetEndTest, ProbableLoopsAreAccepted) {
   EXPECT_THAT(Accepted(literal.Decide(RunState::kEnds)), IsEmpty());
 }
 
+TEST_F(CompatibleSubsetEndTest, ProbableLoopsOfAConfirmedRevisitAreAccepted) {
+  options_.scores_are_probabilities = true;
+  options_.weak_prior_revisits = 2;
+  CompatibleSubset subset(options_, &paths_);
+  const auto add = [&subset](const int64_t id, const int i, const double score,
+                             const double probability) {
+    LoopEvidence loop = Last(id, i, probability);
+    loop.score = score;
+    subset.Add(loop);
+  };
+  // Two revisits confirm each other; the second loop of each scores badly.
+  add(0, 10, 0.9, 0.5);
+  add(1, 11, 0.05, 0.89);
+  add(2, 25, 0.9, 0.5);
+  add(3, 26, 0.05, 0.9);
+  EXPECT_THAT(Accepted(subset.Decide()), ElementsAre(0, 2));
+  const auto at_end = subset.Decide(RunState::kEnds);
+  EXPECT_THAT(Accepted(at_end), ElementsAre(3));
+  EXPECT_EQ(at_end[0].reason, SubsetReason::kLikelyAtEnd);
+  EXPECT_EQ(subset.num_undecided(), 1);
+}
+
 // Where no match of the run was wrong, fewer loops need agree in a weak prior.
 class FarOffTest : public CompatibleSubsetEndTest {
  protected:
