@@ -219,7 +219,7 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   const StageMeter meter(metrics.verification_cpu);
   for (size_t i = 0; i < num_jobs_due_; ++i) {
     LoopCandidate candidate = jobs_[i].candidate;
-    if (candidate.match.has_pose) submaps_.AddMaps(&candidate);
+    if (candidate.match.found) submaps_.AddMaps(&candidate);
     pipeline_.Process(std::move(candidate));
   }
   for (size_t i = 0; i < num_queries_due_; ++i) ProcessQuery(queries_[i]);

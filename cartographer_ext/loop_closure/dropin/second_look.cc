@@ -220,7 +220,7 @@ void SecondLook::Match(SearchJob* const job) const {
   job->node = &data;
   searcher_->Search(job);
   job->node = nullptr;
-  if (job->candidate.match.has_pose) submaps_->AddMaps(&job->candidate);
+  if (job->candidate.match.found) submaps_->AddMaps(&job->candidate);
 }
 
 bool SecondLook::IsLookedAt(const NodeId& node) const {

@@ -3,12 +3,15 @@
 #include "cartographer/mapping/internal/2d/overlapping_submaps_trimmer_2d.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <tuple>
+#include <memory>
 #include <utility>
 #include <vector>
 
+#include "absl/memory/memory.h"
 #include "cartographer/common/time.h"
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/mapping/2d/xy_index.h"
@@ -50,33 +53,52 @@ std::map<SubmapId, common::Time> TimesOfNewestNodes(
   return times;
 }
 
-// A cell of the coverage grid that a submap covers.
-struct Coverage {
-  int64 x;
-  int64 y;
-  common::Time time;
-  SubmapId submap_id;
+// Counts how often the cells of a global grid, in which all submaps are
+// compared, were covered. Memory is taken by blocks that are covered at all.
+class CoverageCounter {
+ public:
+  CoverageCounter(const Eigen::Vector2d& max, const double resolution)
+      : max_(max), resolution_(resolution) {}
 
-  bool SameCell(const Coverage& other) const {
-    return x == other.x && y == other.y;
+  double resolution() const { return resolution_; }
+
+  // Covers the cell of a point once more, metres; returns how often it was
+  // covered before, at most 65535 times.
+  int Cover(const Eigen::Vector2d& point) {
+    const Eigen::Vector2d cell = (max_ - point) / resolution_;
+    const int64 x = std::llround(cell.x());
+    const int64 y = std::llround(cell.y());
+    const std::pair<int64, int64> id(x >> kBlockBits, y >> kBlockBits);
+    if (block_ == nullptr || id != block_id_) {
+      block_id_ = id;
+      std::unique_ptr<Block>& block = blocks_[id];
+      if (block == nullptr) block = absl::make_unique<Block>();
+      block_ = block.get();
+    }
+    uint16& count =
+        (*block_)[((y & kBlockMask) << kBlockBits) | (x & kBlockMask)];
+    const int before = count;
+    if (count < std::numeric_limits<uint16>::max()) ++count;
+    return before;
   }
-  // By cell, within a cell from new to old.
-  bool operator<(const Coverage& other) const {
-    return std::tie(x, y, other.time, submap_id) <
-           std::tie(other.x, other.y, time, other.submap_id);
-  }
+
+ private:
+  static constexpr int kBlockBits = 6;
+  static constexpr int64 kBlockMask = (1 << kBlockBits) - 1;
+  using Block = std::array<uint16, 1 << (2 * kBlockBits)>;
+
+  const Eigen::Vector2d max_;
+  const double resolution_;
+  std::map<std::pair<int64, int64>, std::unique_ptr<Block>> blocks_;
+  std::pair<int64, int64> block_id_;  // of the last point
+  Block* block_ = nullptr;
 };
 
-// The global grid that all submaps are compared in.
-struct CoverageGrid {
-  Eigen::Vector2d max;
-  double resolution;
-};
-
-void AppendCoverage(const CoverageGrid& coverage_grid, const SubmapId& id,
-                    const PoseGraphInterface::SubmapData& data,
-                    const common::Time time,
-                    std::vector<Coverage>* const coverage) {
+// Covers the known cells of a submap; returns how many of them were covered
+// less than `fresh_submaps_count` times before.
+int64 CoverFreshCells(const PoseGraphInterface::SubmapData& data,
+                      const int fresh_submaps_count,
+                      CoverageCounter* const counter) {
   const Grid2D& grid = GridOf(data);
   const transform::Rigid2d global_from_local =
       transform::Project2D(data.pose * data.submap->local_pose().inverse());
@@ -84,6 +106,7 @@ void AppendCoverage(const CoverageGrid& coverage_grid, const SubmapId& id,
   CellLimits cell_limits;
   grid.ComputeCroppedLimits(&offset, &cell_limits);
   const double resolution = grid.limits().resolution();
+  int64 num_fresh = 0;
   for (const Eigen::Array2i& cropped_index :
        XYIndexRangeIterator(cell_limits)) {
     const Eigen::Array2i index = cropped_index + offset;
@@ -95,26 +118,9 @@ void AppendCoverage(const CoverageGrid& coverage_grid, const SubmapId& id,
         Eigen::Vector2d(
             grid.limits().max().x() - resolution * (index.y() + 0.5),
             grid.limits().max().y() - resolution * (index.x() + 0.5));
-    const Eigen::Vector2d cell =
-        (coverage_grid.max - center) / coverage_grid.resolution;
-    coverage->push_back(
-        Coverage{std::llround(cell.x()), std::llround(cell.y()), time, id});
+    num_fresh += counter->Cover(center) < fresh_submaps_count;
   }
-}
-
-// How many cells belong to each submap.
-std::map<SubmapId, int64> CountCells(std::vector<Coverage> coverage,
-                                     const int fresh_submaps_count) {
-  std::sort(coverage.begin(), coverage.end());
-  std::map<SubmapId, int64> counts;
-  int rank = 0;
-  for (size_t i = 0; i < coverage.size(); ++i) {
-    rank = i > 0 && coverage[i].SameCell(coverage[i - 1]) ? rank + 1 : 0;
-    if (rank < fresh_submaps_count) {
-      ++counts[coverage[i].submap_id];
-    }
-  }
-  return counts;
+  return num_fresh;
 }
 
 }  // namespace
@@ -125,34 +131,30 @@ void OverlappingSubmapsTrimmer2D::Trim(Trimmable* const pose_graph) {
       num_submaps_after_last_trim_ + min_added_submaps_count_) {
     return;
   }
+  // From new to old.
+  std::vector<std::pair<common::Time, SubmapId>> candidates;
+  for (const auto& id_time : TimesOfNewestNodes(*pose_graph, submaps)) {
+    if (submaps.at(id_time.first).submap->insertion_finished()) {
+      candidates.emplace_back(id_time.second, id_time.first);
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const std::pair<common::Time, SubmapId>& a,
+                      const std::pair<common::Time, SubmapId>& b) {
+                     return a.first > b.first;
+                   });
   const MapLimits& first_limits = GridOf((*submaps.begin()).data).limits();
-  const CoverageGrid coverage_grid{first_limits.max(),
-                                   first_limits.resolution()};
-  const std::map<SubmapId, common::Time> times =
-      TimesOfNewestNodes(*pose_graph, submaps);
-  std::vector<Coverage> coverage;
-  std::vector<SubmapId> candidates;
-  for (const auto& id_time : times) {
-    const PoseGraphInterface::SubmapData& data = submaps.at(id_time.first);
-    if (!data.submap->insertion_finished()) {
-      continue;
-    }
-    candidates.push_back(id_time.first);
-    AppendCoverage(coverage_grid, id_time.first, data, id_time.second,
-                   &coverage);
-  }
-  const std::map<SubmapId, int64> num_cells =
-      CountCells(std::move(coverage), fresh_submaps_count_);
-  const int64 min_num_cells =
-      static_cast<int64>(min_covered_area_ /
-                         (coverage_grid.resolution * coverage_grid.resolution));
+  CoverageCounter counter(first_limits.max(), first_limits.resolution());
+  const int64 min_num_cells = static_cast<int64>(
+      min_covered_area_ / (counter.resolution() * counter.resolution()));
   std::vector<SubmapId> removed;
-  for (const SubmapId& id : candidates) {
-    const auto it = num_cells.find(id);
-    if (it == num_cells.end() || it->second < min_num_cells) {
-      removed.push_back(id);
+  for (const auto& time_id : candidates) {
+    if (CoverFreshCells(submaps.at(time_id.second), fresh_submaps_count_,
+                        &counter) < std::max<int64>(min_num_cells, 1)) {
+      removed.push_back(time_id.second);
     }
   }
+  std::sort(removed.begin(), removed.end());
   num_submaps_after_last_trim_ = submaps.size() - removed.size();
   for (const SubmapId& id : removed) {
     pose_graph->TrimSubmap(id);
