@@ -23,8 +23,8 @@ constexpr int kUnfolded = 20;
 constexpr double kSameOptimum = 1e-9;
 // Larger graphs are taken at their word.
 constexpr size_t kMaxEdgesForNoise = 100000;
-// 99.9 % quantile of chi2 with three degrees of freedom.
-constexpr double kWideGate = 16.26623619623813;
+// How often one of the right loops of a graph lies beyond the wide gate.
+constexpr double kBeyondWideGate = 0.001;
 // Loops whose leave-one-out innovation is looked at.
 constexpr size_t kMaxInnovations = 100;
 
@@ -132,6 +132,23 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
   count(PolishNear(edges, adapted, most, &result->poses, &result->weights));
 }
 
+// Share of chi2 with three degrees of freedom beyond a value.
+double ShareBeyond(const double chi2) {
+  return std::erfc(std::sqrt(0.5 * chi2)) +
+         std::sqrt(2. * chi2 / kPi) * std::exp(-0.5 * chi2);
+}
+
+// The gate that all of so many right loops pass, but for one graph in a
+// thousand.
+double WideGate(const size_t loops) {
+  double low = kChi2Gate, high = 100.;
+  while (high - low > 1e-6) {
+    const double middle = 0.5 * (low + high);
+    (ShareBeyond(middle) * loops > kBeyondWideGate ? low : high) = middle;
+  }
+  return high;
+}
+
 // Step 5. A gate of 99 % rejects one right loop in a hundred.
 void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   const std::vector<WhitenedEdge>& edges = portfolio->edges();
@@ -147,9 +164,13 @@ void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   if (rejected.empty() || rejected.size() > 0.05 * loops + 2.) return;
   const std::vector<Innovation> innovations =
       PredictLoops(rejected, in_force, result->poses, portfolio->solver());
+  const double gate = WideGate(loops), log_area = LogArea(result->poses);
   std::vector<int> near;
   for (size_t k = 0; k != innovations.size(); ++k) {
-    if (innovations[k].chi2 < kWideGate) near.push_back(rejected[k]);
+    if (innovations[k].chi2 < gate &&
+        LogEvidence(edges[rejected[k]], innovations[k], log_area) > 0.) {
+      near.push_back(rejected[k]);
+    }
   }
   // Where most rejected loops lie farther out, those are outliers, and some of
   // them will be near, too.

@@ -87,7 +87,7 @@ class Regrower {
       Decided map = start_;
       // The cheap ones first: of what is released with others much grows anew.
       if (!Grow(&map) && !ForceNearest(start_, options_.max_near, &forced_) &&
-          !ReleaseAlone() && !ReleaseWithSmaller()) {
+          !ReleaseAlone() && !ReleaseWithSmaller() && !StartFromGroup()) {
         break;
       }
       ++kept;
@@ -253,6 +253,37 @@ class Regrower {
     return false;
   }
 
+  // Grows a map anew from one group, the largest first, where most loops are
+  // rejected.
+  bool StartFromGroup() {
+    std::vector<std::pair<int, int>> order;
+    int loops = 0, in_force = 0;
+    for (size_t g = 0; g != support_.groups.size(); ++g) {
+      const std::vector<int>& group = support_.groups[g];
+      loops += group.size();
+      for (const int i : group) in_force += start_.weights[i] > 0.;
+      if (group.size() > 1)
+        order.push_back({-static_cast<int>(group.size()), g});
+    }
+    if (2 * in_force >= loops) return false;
+    std::sort(order.begin(), order.end());
+    int failures = 0;
+    for (const auto& entry : order) {
+      if (failures == options_.max_starts || !MayTry()) break;
+      if (!started_.insert(entry.second).second) continue;
+      ++failures;
+      Decided map = start_;
+      for (size_t i = 0; i != edges_.size(); ++i) {
+        if (edges_[i].is_loop) map.weights[i] = 0.;
+      }
+      for (const int i : support_.groups[entry.second]) map.weights[i] = 1.;
+      if (!GrowChanged(&map)) continue;
+      Forget();
+      return true;
+    }
+    return false;
+  }
+
   const LoopSupport& support_;
   const RegrowOptions& options_;
   RobustSolver& solver_;
@@ -262,6 +293,7 @@ class Regrower {
   const double most_work_;
   int trials_ = 0;
   std::set<int> released_, released_alone_;  // groups that were tried
+  std::set<int> started_;                    // groups that maps were grown from
   std::set<int> forced_;                     // loops that were tried
   Decided start_;
   std::vector<GroupInForce> groups_;  // of start_

@@ -60,6 +60,20 @@ int CountLoops(const std::vector<WhitenedEdge>& edges,
   return result;
 }
 
+// The least number of rare events that happens in less than one case in a
+// thousand (Poisson).
+double MoreThanExpected(const double expected) {
+  constexpr double kMany = 10.;  // nearly normally distributed
+  if (expected > kMany) return expected + 3. * std::sqrt(expected) + 2.;
+  double beyond = 1., probability = std::exp(-expected);
+  int number = 0;
+  while (beyond >= 0.001) {
+    beyond -= probability;
+    probability *= expected / ++number;
+  }
+  return number;
+}
+
 // Whether right loops seem to lie behind the gate: more loops just beyond it
 // than it rejects right ones, and fewer farther out. Wrong loops, which may lead
 // anywhere, are three times as many from two to four gates as from one to two.
@@ -69,8 +83,7 @@ bool LieBehindGate(const std::vector<double>& weights, const int accepted,
   for (size_t i = 0; i != weights.size(); ++i) {
     if (weights[i] == 0.) rejected.push_back(i);
   }
-  const double expected = 0.01 * accepted;
-  const double many = expected + 3. * std::sqrt(expected) + 2.;
+  const double many = MoreThanExpected(0.01 * accepted);
   // More than these have many wrong ones among them.
   if (rejected.size() < many || rejected.size() > 0.5 * accepted) return false;
   const std::vector<int> looked_at = Thinned(rejected, kMaxInnovations);
@@ -81,7 +94,7 @@ bool LieBehindGate(const std::vector<double>& weights, const int accepted,
     near += gates < 2.;
     far += gates >= 2. && gates < 4.;
   }
-  return near * rejected.size() > many * looked_at.size() && near > far;
+  return near * rejected.size() >= many * looked_at.size() && near > far;
 }
 
 // Whether the noise may be larger than the matrices say.

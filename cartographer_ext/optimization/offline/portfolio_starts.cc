@@ -263,6 +263,7 @@ void Portfolio::Regrow() {
   if (Size() < kCheapMoves) {
     regrow.max_near = 20;
     regrow.max_forced = 5;
+    regrow.max_starts = 30;
     regrow.max_trials = 300;
   }
   if (RegrowGroups(support(), regrow, &solver_, &poses, &alternatives_) > 0) {

@@ -3,6 +3,7 @@
 #include "cartographer_ext/optimization/offline/auto_search.h"
 
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
 
@@ -93,6 +94,29 @@ TEST(AutoSearchTest, LoopsJustBehindTheGateAreKept) {
   const AutoResult result = SearchAutomatically(graph, AutoOptions());
   EXPECT_NEAR(result.applied_loop_scale, 1.7, 0.3);
   EXPECT_GE(CountAccepted(graph, result), 0.98 * loops);
+}
+
+// One right loop of a hundred lies beyond a gate that most samples pass, wherever
+// its value is likely for the largest of so many.
+TEST(AutoSearchTest, TheWorstOfManyRightLoopsIsKept) {
+  const test::GridWorld world = test::MakeGridWorld(250, 5, 1);
+  for (const bool likely : {true, false}) {
+    PoseGraph graph = world.graph;
+    const int last = graph.edges.size() - 1;
+    ASSERT_TRUE(graph.edges[last].is_loop);
+    graph.edges[last].measurement.x += likely ? 0.145 : 0.18;
+    const AutoResult result = SearchAutomatically(graph, AutoOptions());
+    std::vector<double> in_force(graph.edges.size(), 1.);
+    in_force[last] = 0.;
+    const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+    RobustSolver solver(edges);
+    const double innovation =
+        PredictLoops({last}, in_force, result.poses, &solver)[0].chi2;
+    EXPECT_EQ(result.weights[last], 0.);
+    EXPECT_EQ(innovation < 24., likely) << innovation;
+    EXPECT_GT(innovation, 17.) << innovation;
+    EXPECT_EQ(result.accepted[last], likely);
+  }
 }
 
 // Where kernels that agree end the search, the map of the narrower gate, which

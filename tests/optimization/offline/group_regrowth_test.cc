@@ -139,6 +139,38 @@ TEST(GroupRegrowthTest, AWrongGroupIsReleasedWhateverItsSize) {
   EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 1e-3);
 }
 
+// Several right groups together explain more than a wrong one that is larger
+// than each of them and all that is in force.
+TEST(GroupRegrowthTest, AMapGrowsAnewFromAGroupThatIsRejected) {
+  ThereAndBack world(240, kPi, 0.02, 0.05);
+  for (const int from : {20, 45, 70, 95}) {
+    world.AddGroup(from, 3, 0.1, 0.05, 0.);
+  }
+  const size_t first_wrong = world.graph.edges.size();
+  world.AddGroup(57, 8, 0.1, 0.05, 8.);
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  SolverOptions wrong;
+  wrong.edge_weights.assign(edges.size(), 1.);
+  for (size_t i = 0; i != first_wrong; ++i) {
+    if (edges[i].is_loop) wrong.edge_weights[i] = 0.;
+  }
+  std::vector<Pose2> folded = world.poses;
+  solver.Solve(wrong, &folded);
+  PolishTruncated(kChi2Gate, 30, &solver, &folded, nullptr);
+  ASSERT_GT(TruncatedCost(edges, folded), 10. * kChi2Gate);
+  RegrowOptions options;  // none of the other moves
+  options.max_failures = 0;
+  options.max_near = 0;
+  options.max_starts = 0;
+  std::vector<Pose2> poses = folded;
+  EXPECT_EQ(RegrowGroups(world.support, options, &solver, &poses, nullptr), 0);
+  options.max_starts = 5;
+  EXPECT_GT(RegrowGroups(world.support, options, &solver, &poses, nullptr), 0);
+  EXPECT_NEAR(TruncatedCost(edges, poses), 8. * kChi2Gate, 1e-3);
+  EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 1e-3);
+}
+
 // What remains when a wrong group is released does not unfold by descent.
 TEST(GroupRegrowthTest, AReleasedRingUnfolds) {
   for (const uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {

@@ -6,6 +6,7 @@
 
 #include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
 #include "tests/optimization/weak_ring.h"
@@ -69,6 +70,54 @@ TEST(NoiseMetricTest, WrongLoopsWithinTheGateDoNotHideTheRatio) {
   EXPECT_EQ(found.metric.odometry, 1.);
   EXPECT_NEAR(found.metric.loops, 1. / kClaimed, 0.4 / kClaimed);
   EXPECT_NEAR(found.accepted, 0.8 * map.loops, 0.05 * map.loops);
+}
+
+// Right loops beyond a gate that one of a hundred does not pass: three of
+// thirteen are too many, two are not.
+TEST(NoiseMetricTest, FewLoopsBehindTheGateOfFewAreMany) {
+  for (const int num_behind : {2, 3}) {
+    PoseGraph graph = test::MakeGridWorld(300, 5, 3).graph;
+    std::vector<PoseGraphEdge> edges;
+    std::vector<int> behind;
+    int loops = 0;
+    for (const PoseGraphEdge& edge : graph.edges) {
+      if (edge.is_loop && (++loops % 30 != 0 || loops > 13 * 30)) continue;
+      if (edge.is_loop && loops % 120 == 0 &&
+          static_cast<int>(behind.size()) < num_behind) {
+        behind.push_back(edges.size());
+      }
+      edges.push_back(edge);
+    }
+    graph.edges = std::move(edges);
+    SolverOptions others;
+    others.edge_weights.assign(graph.edges.size(), 1.);
+    for (const int i : behind) others.edge_weights[i] = 0.;
+    const std::vector<WhitenedEdge> as_measured = Whiten(graph.edges);
+    RobustSolver solver(as_measured);
+    std::vector<Pose2> poses = graph.poses;
+    solver.Solve(others, &poses);
+    for (const int i : behind) {
+      PoseGraphEdge& edge = graph.edges[i];
+      const Pose2 predicted = Between(poses[edge.from], poses[edge.to]);
+      const auto set = [&](const double error) {
+        edge.measurement = predicted * Pose2(error, 0., 0.);
+      };
+      set(1.);
+      const std::vector<WhitenedEdge> far_off = Whiten(graph.edges);
+      RobustSolver predictor(far_off);
+      set(std::sqrt(
+          19. /
+          PredictLoops({i}, others.edge_weights, poses, &predictor)[0].chi2));
+    }
+    Portfolio portfolio(graph, PortfolioOptions());
+    portfolio.Run();
+    const NoiseOfMap map = MeasureNoise(&portfolio);
+    EXPECT_EQ(map.loops, 13);
+    EXPECT_EQ(map.accepted, 13 - num_behind);
+    NoiseHypothesis found;
+    EXPECT_EQ(FindLargerNoise(NoiseMetric(), map, &portfolio, &found),
+              num_behind == 3);
+  }
 }
 
 TEST(NoiseMetricTest, AMapOfFewLoopsSaysNothing) {
