@@ -41,9 +41,14 @@ constexpr int kFewAccepted = 100;
 constexpr double kAnother = 3.;
 constexpr int kMaxMaps = 3;  // in turn
 
-// Factors of the odometry that are tried where there are few loops, and the
-// logarithm of the odds that one needs.
-constexpr double kFewLoopsScales[] = {1.5, 2., 3.};
+// Factors of the odometry that are tried where there are few loops or few are in
+// force, the last ones not with less than ten, and the logarithm of the odds that
+// one needs.
+constexpr double kFewLoopsScales[] = {1.5, 2., 3., 5., 8.};
+constexpr double kLargestOfFew = 3.;
+// What a loop may say against itself: nothing is known of where uncertain odometry
+// leads before the first one.
+constexpr double kFirstOfMany = -10.;
 const double kFewLoopsOdds = std::log(1000.);
 
 enum class Floor {
@@ -216,10 +221,10 @@ double Rounded(const double scale) {
 }
 
 // What few loops say if put in force one by one, the likeliest first, as long as
-// that says something: the logarithm of their density over that of wrong ones,
-// which lead anywhere. `map`: the poses and how many were put in force.
+// that says more than `least`: the logarithm of their density over that of wrong
+// ones, which lead anywhere. `map`: the poses and how many were put in force.
 double EvidenceOfLoops(const std::vector<WhitenedEdge>& edges,
-                       const std::vector<Pose2>& chained,
+                       const std::vector<Pose2>& chained, const double least,
                        NoiseHypothesis* const map) {
   RobustSolver solver(edges);
   std::vector<double> weights(edges.size(), 1.);
@@ -236,7 +241,7 @@ double EvidenceOfLoops(const std::vector<WhitenedEdge>& edges,
     const std::vector<Innovation> innovations =
         PredictLoops(rejected, weights, map->poses, &solver);
     const double log_area = LogArea(map->poses);
-    double highest = 0.;
+    double highest = least;
     size_t best = rejected.size();
     for (size_t k = 0; k != innovations.size(); ++k) {
       if (innovations[k].chi2 >= kChi2Gate) continue;
@@ -304,21 +309,28 @@ bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
 bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                          Portfolio* const portfolio,
                          NoiseHypothesis* const found) {
-  if (map.loops < 2 || map.loops >= kMinLoops || map.accepted == map.loops) {
+  if (map.loops < 2 || map.loops > kFewAccepted || map.accepted >= kMinLoops ||
+      map.accepted == map.loops) {
     return false;
   }
+  const bool few = map.loops < kMinLoops;
+  // Of many loops wrong ones that confirm each other may be some.
+  const double least = few ? 2. : kMostly * map.loops;
+  const double least_said = few ? 0. : kFirstOfMany;
   const std::vector<Pose2> chained = ChainOdometry(portfolio->graph());
   NoiseHypothesis given;
   double highest =
-      EvidenceOfLoops(portfolio->edges(), chained, &given) + kFewLoopsOdds;
+      EvidenceOfLoops(portfolio->edges(), chained, least_said, &given) +
+      kFewLoopsOdds;
   found->valid = false;
   for (const double scale : kFewLoopsScales) {
+    if (few && scale > kLargestOfFew) break;
     NoiseHypothesis hypothesis;
     const double evidence =
         EvidenceOfLoops(WithNoiseScale(portfolio->edges(), scale, 1.), chained,
-                        &hypothesis) -
+                        least_said, &hypothesis) -
         0.5 * std::log2(scale) * std::log2(scale);
-    if (evidence <= highest || hypothesis.accepted < 2 ||
+    if (evidence <= highest || hypothesis.accepted < least ||
         hypothesis.accepted <= map.accepted) {
       continue;
     }

@@ -58,6 +58,8 @@ bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
 //
 // where loops are put in force one by one, as in loop_growth.h; it has to exceed
 // that of the given noise by odds of 1000, and each loop to be within the gate.
+// Also where fewer than ten loops of up to a hundred are in force and three
+// quarters of them could be.
 bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                          Portfolio* portfolio, NoiseHypothesis* found);
 // The actual ratio of the noise of odometry and loops, if it differs from that of
