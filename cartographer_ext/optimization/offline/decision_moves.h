@@ -131,8 +131,8 @@ struct RegrowOptions {
   // alone; and of loops that are put in force after each of these.
   int max_near = 5;
   int max_forced = 2;
-  // The same of groups that maps are grown from anew.
-  int max_starts = 5;
+  // The same of groups that maps are grown from anew: each takes a whole growth.
+  int max_starts = 0;
   double max_work = kMaxMoveWork;
 };
 

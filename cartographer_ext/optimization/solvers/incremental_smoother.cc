@@ -101,6 +101,8 @@ absl::Status IncrementalSmoother::AddPose(
     return absl::InvalidArgumentError(
         absl::StrCat("pose ", number, " comes without odometry"));
   }
+  TakeOverEpoch();
+  if (!status_.ok()) return status_;
   for (const PoseGraphEdge& edge : edges) {
     if (!edge.is_loop) RefreshPose(std::min(edge.from, edge.to));
   }
@@ -133,12 +135,12 @@ absl::Status IncrementalSmoother::AddPose(
   }
   // The end of an epoch takes time in proportion to the poses, so that epochs
   // of a fixed length would take time in proportion to their square.
-  const int epoch_poses =
-      num_poses() <= options_.large_map
-          ? options_.epoch_poses
-          : std::max(options_.epoch_poses, num_poses() / 10);
-  if (poses_in_epoch_ >= epoch_poses) {
-    EndEpoch();
+  const double share =
+      num_poses() <= options_.large_map ? options_.epoch_share : 0.1;
+  if (poses_in_epoch_ >=
+      std::max<double>(options_.epoch_poses, share * num_poses())) {
+    SolveEpoch();
+    if (num_poses() <= options_.two_step_map) TakeOverEpoch();
     result.epoch = true;
   }
   result.cpu_seconds = ThreadCpuSeconds() - start;

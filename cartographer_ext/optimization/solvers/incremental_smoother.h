@@ -29,11 +29,14 @@
 // true one is accepted again (readmission); both can be disabled.
 //
 // A step is bounded: at most `max_loops_per_step` loops are tested, the rest
-// are deferred to the next steps.
+// are deferred to the next steps. The end of an epoch on a large map takes two
+// steps: the last one of the epoch solves the graph, and the next one rebuilds
+// the factor and tries hypotheses before its pose is added.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
 
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -53,6 +56,10 @@ enum class SwitchEstimate {
 // Options of steps and epochs.
 struct SmootherOptions {
   int epoch_poses = 100;
+  // An epoch is at least as long as this share of the poses.
+  double epoch_share = 0.025;
+  // With more poses than this the end of an epoch takes two steps.
+  int two_step_map = 7000;
   // With more poses than this an epoch is as long as a tenth of them.
   int large_map = 12000;
   // Pointwise is the default: the joint estimate closes larger gaps at once,
@@ -92,6 +99,8 @@ class IncrementalSmoother {
  public:
   // The first pose is fixed at `origin`.
   IncrementalSmoother(const SmootherOptions& options, const Pose2& origin);
+  IncrementalSmoother(const IncrementalSmoother&) = delete;
+  IncrementalSmoother& operator=(const IncrementalSmoother&) = delete;
 
   // Adds pose number num_poses(). `edges` end in it: `from` or `to` is the new
   // number and the other end exists. At least one is not a loop; the first such
@@ -133,6 +142,10 @@ class IncrementalSmoother {
     double innovation = 0.;  // r' (I + Q)^-1 r
   };
 
+  // The two parts of the end of an epoch; the second does nothing without the
+  // first.
+  void SolveEpoch();
+  void TakeOverEpoch();
   void UpdateFactor(const LinearFactor& factor, double weight);
   LinearFactor LinearizeEdge(const WhitenedEdge& edge) const;
   Eigen::Vector3d Offset(int pose) const;
@@ -171,6 +184,7 @@ class IncrementalSmoother {
   absl::Status status_;
   int poses_in_epoch_ = 0;
   int first_edge_of_epoch_ = 0;
+  std::unique_ptr<RobustSolver> batch_;  // of an epoch whose factor is to come
   int num_late_rejections_ = 0;
   int num_readmissions_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Eigen/Cholesky"
+#include "absl/memory/memory.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/optimization/solvers/incremental_smoother.h"
 
@@ -67,6 +68,12 @@ int NewRevisits(const std::vector<WhitenedEdge>& edges,
 }  // namespace
 
 void IncrementalSmoother::EndEpoch() {
+  TakeOverEpoch();
+  SolveEpoch();
+  TakeOverEpoch();
+}
+
+void IncrementalSmoother::SolveEpoch() {
   poses_in_epoch_ = 0;
   if (num_poses() < 2 || !status_.ok()) return;
   waiting_.clear();  // the batch below weighs them with all others
@@ -81,19 +88,25 @@ void IncrementalSmoother::EndEpoch() {
       }
     }
   }
-  RobustSolver batch(edges_, RobustSolver::LastPoseLast());
-  batch.Solve(solver, &poses_);
+  batch_ =
+      absl::make_unique<RobustSolver>(edges_, RobustSolver::LastPoseLast());
+  batch_->Solve(solver, &poses_);
   if (options_.late_rejection && options_.readmission && KernelIsNarrow()) {
-    PolishTruncated(options_.gate, options_.polish_rounds, &batch, &poses_,
-                    nullptr);
+    PolishTruncated(options_.gate, options_.polish_rounds, batch_.get(),
+                    &poses_, nullptr);
   }
   DecideLoops();
-  RebuildFactor(&batch);
+}
+
+void IncrementalSmoother::TakeOverEpoch() {
+  if (batch_ == nullptr) return;
+  const std::unique_ptr<RobustSolver> batch = std::move(batch_);
+  RebuildFactor(batch.get());
   if (!status_.ok()) return;
   UpdateEstimate();
-  if (TryHypotheses(first_edge_of_epoch_, kEpochMajority, &batch)) {
+  if (TryHypotheses(first_edge_of_epoch_, kEpochMajority, batch.get())) {
     DecideLoops();
-    RebuildFactor(&batch);
+    RebuildFactor(batch.get());
     if (!status_.ok()) return;
     UpdateEstimate();
   }

@@ -188,6 +188,43 @@ TEST(IncrementalSmootherTest, TheCapDelaysLoopsOnly) {
   EXPECT_GT(accepted, 0.95 * total);
 }
 
+// The second half comes with the next pose and changes nothing but the time.
+TEST(IncrementalSmootherTest, AnEpochOfALargeMapEndsInTwoSteps) {
+  test::GridWorld world = test::MakeGridWorld(330, 8, 4);
+  OutlierOptions outliers;
+  outliers.count = 60;
+  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  SmootherOptions options;
+  options.epoch_poses = 20;
+  options.two_step_map = 100;
+  IncrementalSmoother in_two_steps(options, world.graph.poses[0]);
+  options.epoch_poses = 1000;
+  IncrementalSmoother at_once(options, world.graph.poses[0]);
+  const auto edges_of_pose = ByPose(world.graph);
+  int split = 0;
+  bool epoch = false;
+  for (size_t k = 1; k != edges_of_pose.size(); ++k) {
+    StepReport report;
+    ASSERT_TRUE(in_two_steps.AddPose(edges_of_pose[k], &report).ok());
+    ASSERT_TRUE(at_once.AddPose(edges_of_pose[k], nullptr).ok());
+    if (epoch) {
+      EXPECT_EQ(in_two_steps.factor_blocks(), at_once.factor_blocks()) << k;
+    }
+    epoch = report.epoch;
+    if (!epoch) continue;
+    at_once.EndEpoch();
+    split += in_two_steps.factor_blocks() != at_once.factor_blocks();
+  }
+  EXPECT_GT(split, 5);
+  in_two_steps.Finish();
+  at_once.Finish();
+  EXPECT_EQ(in_two_steps.accepted(), at_once.accepted());
+  for (size_t k = 0; k != world.truth.size(); ++k) {
+    EXPECT_EQ(in_two_steps.poses()[k].x, at_once.poses()[k].x);
+    EXPECT_EQ(in_two_steps.poses()[k].y, at_once.poses()[k].y);
+  }
+}
+
 TEST(IncrementalSmootherTest, Errors) {
   const SmootherOptions options;
   IncrementalSmoother smoother(options, Pose2(0., 0., 0.));
