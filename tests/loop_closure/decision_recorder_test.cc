@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 
+#include <cmath>
+
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -39,6 +41,27 @@ TEST(DecisionRecorderTest, CountsBeyondItsCapacity) {
   EXPECT_EQ(recorder.All().size(), 4u);
   EXPECT_EQ(recorder.All().back().candidate(), 3);
   EXPECT_EQ(recorder.num_dropped(), 3);
+}
+
+TEST(DecisionRecorderTest, ManyRecordsComeBackUnchanged) {
+  // Several megabytes.
+  constexpr int kCount = 20000;
+  DecisionRecorder::Decisions decisions = Some(0, kCount);
+  for (proto::LoopDecision& decision : decisions) {
+    decision.mutable_fusion()->set_final_score(1. / (decision.candidate() + 3));
+    decision.mutable_temporal()->set_score(std::sqrt(decision.candidate()));
+    decision.mutable_innovation()->set_chi_square(1e300);
+  }
+  DecisionRecorder recorder;
+  recorder.Start(2 * kCount);
+  recorder.Record(decisions);
+  recorder.Record(decisions);
+  const DecisionRecorder::Decisions all = recorder.All();
+  ASSERT_EQ(all.size(), 2u * kCount);
+  for (int i = 0; i < 2 * kCount; ++i) {
+    ASSERT_EQ(all[i].SerializeAsString(),
+              decisions[i % kCount].SerializeAsString());
+  }
 }
 
 TEST(DecisionRecorderTest, AsksForWhatIsPending) {
