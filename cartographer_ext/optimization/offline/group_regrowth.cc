@@ -254,7 +254,8 @@ class Regrower {
   }
 
   // Grows a map anew from one group, the largest first, where most loops are
-  // rejected.
+  // rejected. What fails once fails again: it does not start from the loops in
+  // force.
   bool StartFromGroup() {
     std::vector<std::pair<int, int>> order;
     int loops = 0, in_force = 0;
@@ -262,8 +263,9 @@ class Regrower {
       const std::vector<int>& group = support_.groups[g];
       loops += group.size();
       for (const int i : group) in_force += start_.weights[i] > 0.;
-      if (group.size() > 1)
+      if (group.size() > 1) {
         order.push_back({-static_cast<int>(group.size()), g});
+      }
     }
     if (2 * in_force >= loops) return false;
     std::sort(order.begin(), order.end());

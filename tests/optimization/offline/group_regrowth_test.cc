@@ -106,6 +106,21 @@ TEST(GroupRegrowthTest, LoopsComeInTogetherThatAloneCostMoreThanTheGate) {
   EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 0.05);
 }
 
+// The map without the loops among the edges [first, last), polished.
+std::vector<Pose2> SolvedWithoutLoops(const size_t first, const size_t last,
+                                      std::vector<Pose2> poses,
+                                      RobustSolver* const solver) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  SolverOptions options;
+  options.edge_weights.assign(edges.size(), 1.);
+  for (size_t i = first; i != last; ++i) {
+    if (edges[i].is_loop) options.edge_weights[i] = 0.;
+  }
+  solver->Solve(options, &poses);
+  PolishTruncated(kChi2Gate, 30, solver, &poses, nullptr);
+  return poses;
+}
+
 // Groups of one to five loops are released before it, and each alone leads
 // nowhere.
 TEST(GroupRegrowthTest, AWrongGroupIsReleasedWhateverItsSize) {
@@ -121,12 +136,8 @@ TEST(GroupRegrowthTest, AWrongGroupIsReleasedWhateverItsSize) {
   const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
   RobustSolver solver(edges);
   // Start with the wrong group and those that are far from it.
-  SolverOptions wrong;
-  wrong.edge_weights.assign(edges.size(), 1.);
-  for (size_t i = first_out; i != first_wrong; ++i) wrong.edge_weights[i] = 0.;
-  std::vector<Pose2> poses = world.poses;
-  solver.Solve(wrong, &poses);
-  PolishTruncated(kChi2Gate, 30, &solver, &poses, nullptr);
+  std::vector<Pose2> poses =
+      SolvedWithoutLoops(first_out, first_wrong, world.poses, &solver);
   ASSERT_GT(TruncatedCost(edges, poses), 10. * kChi2Gate);
   for (size_t i = first_wrong; i != edges.size(); ++i) {
     ASSERT_LT(Chi2(edges[i], poses[edges[i].from], poses[edges[i].to]),
@@ -150,14 +161,8 @@ TEST(GroupRegrowthTest, AMapGrowsAnewFromAGroupThatIsRejected) {
   world.AddGroup(57, 8, 0.1, 0.05, 8.);
   const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
   RobustSolver solver(edges);
-  SolverOptions wrong;
-  wrong.edge_weights.assign(edges.size(), 1.);
-  for (size_t i = 0; i != first_wrong; ++i) {
-    if (edges[i].is_loop) wrong.edge_weights[i] = 0.;
-  }
-  std::vector<Pose2> folded = world.poses;
-  solver.Solve(wrong, &folded);
-  PolishTruncated(kChi2Gate, 30, &solver, &folded, nullptr);
+  const std::vector<Pose2> folded =
+      SolvedWithoutLoops(0, first_wrong, world.poses, &solver);
   ASSERT_GT(TruncatedCost(edges, folded), 10. * kChi2Gate);
   RegrowOptions options;  // none of the other moves
   options.max_failures = 0;
