@@ -283,7 +283,8 @@ std::vector<double> Chi2OfEdges(const std::vector<WhitenedEdge>& edges,
                                 const std::vector<Pose2>& poses) {
   std::vector<Eigen::Vector2d> rotations(poses.size());
   for (size_t i = 0; i != poses.size(); ++i) {
-    rotations[i] << std::cos(poses[i].theta), std::sin(poses[i].theta);
+    const double theta = poses[i].theta;
+    rotations[i] = Eigen::Vector2d(std::cos(theta), std::sin(theta));
   }
   std::vector<double> result;
   result.reserve(edges.size());

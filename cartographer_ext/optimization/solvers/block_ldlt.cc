@@ -51,6 +51,25 @@ Adjacency FullAdjacency(const int size,
   return result;
 }
 
+// Sum of the transposed blocks times the rows.
+Eigen::Vector3d TransposedSum(const Eigen::Matrix3d* const blocks,
+                              const int* const rows, const int count,
+                              const std::vector<Eigen::Vector3d>& x) {
+  TransposedProducts products;
+  for (int k = 0; k != count; ++k) products.Add(blocks[k], x[rows[k]]);
+  return products.Sum();
+}
+
+Eigen::Matrix3d TransposedSum(const Eigen::Matrix3d* const blocks,
+                              const int* const rows, const int count,
+                              const std::vector<Eigen::Matrix3d>& x) {
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  for (int k = 0; k != count; ++k) {
+    result.noalias() += blocks[k].transpose() * x[rows[k]];
+  }
+  return result;
+}
+
 // Room for the next, somewhat larger pattern, without copies of old values.
 void ReserveForMore(const size_t size,
                     std::vector<Eigen::Matrix3d>* const blocks) {
@@ -305,11 +324,10 @@ void BlockLdlt::SolveRows(Rhs* const rhs) const {
     }
   }
   for (int j = n - 1; j >= 0; --j) {
-    Row value = pivot_inverses_[j] * x[j];
-    for (int p = starts_[j]; p != starts_[j + 1]; ++p) {
-      value.noalias() -= blocks_[p].transpose() * x[rows_[p]];
-    }
-    x[j] = value;
+    const Row value = pivot_inverses_[j] * x[j];
+    x[j] = value - TransposedSum(blocks_.data() + starts_[j],
+                                 rows_.data() + starts_[j],
+                                 starts_[j + 1] - starts_[j], x);
   }
   for (int j = 0; j != n; ++j)
     rhs->template middleRows<3>(3 * order_[j]) = x[j];

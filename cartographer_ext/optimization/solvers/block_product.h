@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Many products a * b of 3 x 3 blocks with the same b, which dominate the time
-// of factorisations. The upper two values of a column are computed together, in
+// of factorisations, and sums of products, which dominate that of
+// substitutions. The upper two values of a column are computed together, in
 // the same order as one by one, so results are identical.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_PRODUCT_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_PRODUCT_H_
@@ -95,6 +96,28 @@ class RightFactor {
   }
 
   PackedColumn values_[3][3];  // by column and row
+};
+
+// The sum of a' * x over many blocks a, as a backward substitution needs it. The
+// products with a column of a are added one below another, so that none waits
+// for the one before.
+class TransposedProducts {
+ public:
+  void Add(const Eigen::Matrix3d& a, const Eigen::Vector3d& x) {
+    const PackedColumn values(x.data());
+    for (int c = 0; c != 3; ++c) {
+      sums_[c] = sums_[c] + PackedColumn(a.data() + 3 * c) * values;
+    }
+  }
+  Eigen::Vector3d Sum() const {
+    Eigen::Matrix3d sums;
+    for (int c = 0; c != 3; ++c) sums_[c].CopyTo(sums.data() + 3 * c);
+    return sums.colwise().sum();
+  }
+
+ private:
+  PackedColumn sums_[3] = {PackedColumn(0.), PackedColumn(0.),
+                           PackedColumn(0.)};
 };
 
 }  // namespace optimization

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "cartographer_ext/optimization/solvers/block_kernels.h"
+#include "cartographer_ext/optimization/solvers/block_product.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -45,6 +46,15 @@ void IncrementalFactor::Reset(const BlockLdlt& factor,
   }
 }
 
+bool IncrementalFactor::Column::Include(const int row) {
+  const auto place = std::lower_bound(rows.begin(), rows.end(), row);
+  if (place != rows.end() && *place == row) return false;
+  blocks.insert(blocks.begin() + (place - rows.begin()),
+                Eigen::Matrix3d::Zero());
+  rows.insert(place, row);
+  return true;
+}
+
 int IncrementalFactor::Append() {
   Column column;
   column.pivot.setZero();
@@ -66,49 +76,24 @@ bool IncrementalFactor::Update(const LinearFactor& factor,
   last_update_blocks_ = 0;
   if (weight == 0. || (factor.a < 0 && factor.b < 0)) return true;
   ++version_;
-  // W holds J' by blocks; the pattern of W below the current column is kept
-  // sorted in `pattern`.
-  std::vector<int> pattern;
-  if (factor.a >= 0) {
-    pattern.push_back(position_[factor.a]);
-    work_[pattern.back()] = factor.jacobian_a.transpose();
-  }
-  if (factor.b >= 0) {
-    pattern.push_back(position_[factor.b]);
-    work_[pattern.back()] = factor.jacobian_b.transpose();
-  }
-  std::sort(pattern.begin(), pattern.end());
+  // W holds J' by blocks. Its rows below the current column are those of the
+  // column: a parent has the rows of its children, and at most `last`, the later
+  // end of the measurement, is missing.
+  int j = kEnd, last = -1;
+  const auto start_at = [&](const int position,
+                            const Eigen::Matrix3d& jacobian) {
+    work_[position] = jacobian.transpose();
+    j = std::min(j, position);
+    last = std::max(last, position);
+  };
+  if (factor.a >= 0) start_at(position_[factor.a], factor.jacobian_a);
+  if (factor.b >= 0) start_at(position_[factor.b], factor.jacobian_b);
   Eigen::RowVector3d work_rhs = factor.target.transpose();
   Eigen::Matrix3d middle = weight * Eigen::Matrix3d::Identity();
   bool ok = true;
-  bool grown = true;  // `pattern` may hold rows the next column lacks
-  std::vector<int> merged;
-  int j = pattern.front();
   while (true) {
     Column& column = columns_[j];
-    if (grown) {
-      // Fill: rows of W below j which the column does not have yet.
-      merged.clear();
-      std::set_union(column.rows.begin(), column.rows.end(),
-                     pattern.begin() + 1, pattern.end(),
-                     std::back_inserter(merged));
-      grown = merged.size() != column.rows.size();
-      if (grown) {
-        std::vector<Eigen::Matrix3d> blocks(merged.size());
-        size_t old = 0;
-        for (size_t k = 0; k != merged.size(); ++k) {
-          if (old != column.rows.size() && column.rows[old] == merged[k]) {
-            blocks[k] = column.blocks[old++];
-          } else {
-            blocks[k].setZero();
-          }
-        }
-        column.blocks.swap(blocks);
-        column.rows = merged;
-      }
-      // From here on the pattern of W is that of the column.
-      pattern = column.rows;
-    }
+    if (j < last && !column.Include(last)) last = -1;
     const Eigen::Matrix3d head = work_[j];
     work_[j].setZero();
     const Eigen::Matrix3d middle_head = middle * head.transpose();
@@ -177,12 +162,11 @@ Eigen::Vector3d IncrementalFactor::SolveFor(const int variable) const {
   }
   for (auto it = path.rbegin(); it != path.rend(); ++it) {
     const Column& column = columns_[*it];
-    Eigen::Vector3d value = column.rhs;
+    TransposedProducts products;
     for (size_t k = 0; k != column.rows.size(); ++k) {
-      value.noalias() -=
-          column.blocks[k].transpose() * work_solution_[column.rows[k]];
+      products.Add(column.blocks[k], work_solution_[column.rows[k]]);
     }
-    work_solution_[*it] = value;
+    work_solution_[*it] = column.rhs - products.Sum();
     solution_version_[*it] = version_;
   }
   return work_solution_[position_[variable]];
@@ -192,13 +176,12 @@ void IncrementalFactor::Solve(Eigen::VectorXd* const solution) const {
   solution->resize(3 * columns_.size());
   for (int j = static_cast<int>(columns_.size()) - 1; j >= 0; --j) {
     const Column& column = columns_[j];
-    Eigen::Vector3d value = column.rhs;
+    TransposedProducts products;
     for (size_t k = 0; k != column.rows.size(); ++k) {
-      value.noalias() -=
-          column.blocks[k].transpose() * work_solution_[column.rows[k]];
+      products.Add(column.blocks[k], work_solution_[column.rows[k]]);
     }
-    work_solution_[j] = value;
-    solution->segment<3>(3 * variable_[j]) = value;
+    work_solution_[j] = column.rhs - products.Sum();
+    solution->segment<3>(3 * variable_[j]) = work_solution_[j];
   }
 }
 
@@ -214,12 +197,12 @@ void IncrementalFactor::SolveSystem(Eigen::VectorXd* const rhs) const {
   }
   for (int j = n - 1; j >= 0; --j) {
     const Column& column = columns_[j];
-    Eigen::Vector3d value = column.pivot_inverse * x[j];
+    TransposedProducts products;
     for (size_t k = 0; k != column.rows.size(); ++k) {
-      value.noalias() -= column.blocks[k].transpose() * x[column.rows[k]];
+      products.Add(column.blocks[k], x[column.rows[k]]);
     }
-    x[j] = value;
-    rhs->segment<3>(3 * variable_[j]) = value;
+    x[j] = column.pivot_inverse * x[j] - products.Sum();
+    rhs->segment<3>(3 * variable_[j]) = x[j];
   }
 }
 

@@ -72,6 +72,9 @@ class IncrementalFactor {
 
  private:
   struct Column {
+    // Adds a row of zeros unless there is that row; returns whether it did.
+    bool Include(int row);
+
     std::vector<int> rows;  // positions, ascending
     std::vector<Eigen::Matrix3d> blocks;
     Eigen::Matrix3d pivot;

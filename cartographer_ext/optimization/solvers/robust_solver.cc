@@ -31,6 +31,15 @@ constexpr double kRoom = 1e-2;
 // then.
 constexpr size_t kFewChanges = 5;
 constexpr double kMaxGrowth = 1.1;
+// A factor serves again while the gain that it promises is at most this share
+// of what the last step has gained, and the damping is negligible.
+constexpr double kContraction = 0.3;
+constexpr double kNegligibleLambda = 1e-6;
+// A solution that may end farther from the optimum than this has no steps to
+// spare: what they gain with a new factor is part of it.
+constexpr double kToTheEnd = 1e-4;
+// Share of the promised gain that shows it to serve.
+constexpr double kServes = 0.5;
 // What an edge takes of the work of an iteration, in multiplications of the
 // factorisation.
 constexpr double kWorkOfEdge = 200.;
@@ -67,17 +76,8 @@ SolverSummary RobustSolver::Solve(const SolverOptions& options,
     const bool analysed = UpdatePattern(descent.now.weights);
     summary.analyses += analysed;
     Assemble(descent.now.weights);
-    if (descent.settling && !analysed) {
-      // What the next step would gain, by the factor of the last one.
-      descent.step = -gradient_;
-      factor_.Solve(&descent.step);
-      if (-gradient_.dot(descent.step) <=
-          options.cost_tolerance * descent.now.cost) {
-        summary.converged = true;
-        break;
-      }
-    }
     const std::vector<Pose2> from = poses_;
+    if (!analysed && TryLastFactor(from, &descent)) continue;
     bool accepted = false;
     while (!accepted && !descent.done &&
            summary.iterations < options.max_iterations) {
@@ -104,6 +104,42 @@ void RobustSolver::ComputeCovarianceNorms() {
   }
 }
 
+// Ends the descent if the next step would, by the factor of the last one, gain
+// nothing, or takes that step if it is nearly as good as with a new factor.
+bool RobustSolver::TryLastFactor(const std::vector<Pose2>& from,
+                                 Descent* const descent) {
+  if (!descent->factor_serves) return false;
+  Evaluation& now = descent->now;
+  Evaluation& next = descent->next;
+  Eigen::VectorXd& step = descent->step;
+  step = -gradient_;
+  factor_.Solve(&step);
+  const double gain = -gradient_.dot(step);
+  if (descent->settling && gain <= options_.cost_tolerance * now.cost) {
+    descent->done = true;
+    descent->summary.converged = true;
+    return true;
+  }
+  descent->factor_serves = false;
+  if (options_.cost_tolerance > kToTheEnd ||
+      descent->lambda > kNegligibleLambda || !descent->undecided.empty() ||
+      gain > kContraction * descent->last_decrease) {
+    return false;
+  }
+  SetPoses(Stepped(from, step));
+  Evaluate(&now.shapes, &next);
+  const double decrease = now.cost - next.cost;
+  if (!(decrease >= kServes * gain)) {
+    SetPoses(from);
+    return false;
+  }
+  work_ += kWorkOfEdge * edges_.size();
+  ++descent->summary.iterations;
+  Judge(decrease, step.cwiseAbs().maxCoeff(), descent);
+  TakeNext(decrease, descent);
+  return true;
+}
+
 // One step of Levenberg-Marquardt from the poses `from`, at which the system is
 // assembled. Returns whether it lowers the cost; if not, the next one is
 // shorter.
@@ -113,6 +149,7 @@ bool RobustSolver::TryStep(const std::vector<Pose2>& from,
   Eigen::VectorXd& step = descent->step;
   Evaluation& now = descent->now;
   Evaluation& next = descent->next;
+  ++descent->summary.factorizations;
   if (!Factorize(lambda)) {
     lambda = std::max(10. * lambda, 1e-8);
     descent->done = lambda > kMaxLambda;
@@ -143,13 +180,30 @@ bool RobustSolver::TryStep(const std::vector<Pose2>& from,
   } else if (ratio < 0.25) {
     lambda = std::min(4. * lambda, kMaxLambda);
   }
-  descent->done = decrease <= options_.cost_tolerance * now.cost ||
-                  largest < options_.step_tolerance;
-  descent->summary.converged = descent->done;
-  descent->settling = decrease <= kSettling * now.cost;
+  Judge(decrease, largest, descent);
   if (descent->settling && !descent->done && !carried && ratio > kShedding) {
     Prolong(from, step, now.shapes, &next);
   }
+  TakeNext(decrease, descent);
+  return true;
+}
+
+// Whether a step that lowers the cost so far, and moves no pose farther than
+// `largest`, is the last one or one of the last.
+void RobustSolver::Judge(const double decrease, const double largest,
+                         Descent* const descent) const {
+  const double cost = descent->now.cost;
+  descent->done = decrease <= options_.cost_tolerance * cost ||
+                  largest < options_.step_tolerance;
+  descent->summary.converged = descent->done;
+  descent->settling = decrease <= kSettling * cost;
+  descent->last_decrease = decrease;
+  descent->factor_serves = true;
+}
+
+void RobustSolver::TakeNext(const double decrease, Descent* const descent) {
+  Evaluation& now = descent->now;
+  Evaluation& next = descent->next;
   // A kernel with a moving shape is weighed anew; the cost reported belongs to
   // the last shapes.
   if (options_.kernel.type == KernelType::kAcsPaper) Evaluate(nullptr, &next);
@@ -157,7 +211,6 @@ bool RobustSolver::TryStep(const std::vector<Pose2>& from,
   if (decrease <= kNearing * next.cost) {
     descent->undecided = UndecidedLoops(next.weights, now.weights);
   }
-  return true;
 }
 
 // Doubles an accepted step as long as that lowers the cost.
@@ -198,7 +251,8 @@ void RobustSolver::SetPoses(const std::vector<Pose2>& poses) {
   poses_ = poses;
   rotations_.resize(poses.size());
   for (size_t i = 0; i != poses.size(); ++i) {
-    rotations_[i] << std::cos(poses[i].theta), std::sin(poses[i].theta);
+    const double theta = poses[i].theta;
+    rotations_[i] = Eigen::Vector2d(std::cos(theta), std::sin(theta));
   }
 }
 

@@ -29,6 +29,7 @@
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_ROBUST_SOLVER_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_ROBUST_SOLVER_H_
 
+#include <deque>
 #include <utility>
 #include <vector>
 
@@ -59,6 +60,7 @@ struct SolverOptions {
 // Summary of one solution.
 struct SolverSummary {
   int iterations = 0;        // linear systems solved
+  int factorizations = 0;    // of them, those with a factor of their own
   int analyses = 0;          // symbolic factorisations
   double initial_cost = 0.;  // sum of rho, that is without the usual factor 1/2
   double final_cost = 0.;
@@ -69,6 +71,10 @@ struct SolverSummary {
 
 // Solves the same graph repeatedly, from different poses, with different
 // kernels or edge weights, and reuses the factor's pattern where possible.
+//
+// A step near the end takes the factor of the step before as long as it still
+// gains what that promises: a gradient and a substitution cost a third of a
+// factorisation.
 class RobustSolver {
  public:
   // The edges must refer to existing poses and outlive the solver. Which of
@@ -94,6 +100,13 @@ class RobustSolver {
                           const std::vector<double>& weights,
                           Eigen::VectorXd* rhs);
 
+  // Replaces the poses by those of an earlier solution with these weights and
+  // the plain kernel, noted by Remember(), if they cost no more; false if there
+  // is none. Edges that have changed since then are noticed.
+  bool Recall(const std::vector<double>& weights, std::vector<Pose2>* poses);
+  void Remember(const std::vector<double>& weights,
+                const std::vector<Pose2>& poses);
+
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
 
   // What all solutions and factors so far have taken, in multiplications: unlike
@@ -108,20 +121,32 @@ class RobustSolver {
     std::vector<double> shapes;  // of the literal ACS kernel only
   };
 
+  // A solution with given weights.
+  struct Solution {
+    std::vector<double> weights;
+    std::vector<Pose2> poses;
+    double cost = 0.;
+  };
+
   // State of one call of Solve().
   struct Descent {
     Evaluation now;
     Evaluation next;
     Eigen::VectorXd step;
     double lambda = 0.;
+    double last_decrease = 0.;
     bool settling = false;
+    bool factor_serves = false;  // for another step
     std::vector<int> undecided;  // loops about to be rejected or accepted
     bool done = false;
     SolverSummary summary;
   };
 
   void ComputeCovarianceNorms();
+  bool TryLastFactor(const std::vector<Pose2>& from, Descent* descent);
   bool TryStep(const std::vector<Pose2>& from, Descent* descent);
+  void Judge(double decrease, double largest, Descent* descent) const;
+  void TakeNext(double decrease, Descent* descent);
   void SetPoses(const std::vector<Pose2>& poses);
   void Evaluate(const std::vector<double>* held_shapes, Evaluation* result);
   void Prolong(const std::vector<Pose2>& from, Eigen::VectorXd step,
@@ -149,7 +174,8 @@ class RobustSolver {
   std::vector<std::pair<int, int>> pattern_;  // (edge, pair of factor_ or -1)
   int num_pairs_ = 0;
   BlockLdlt factor_;
-  size_t ordered_blocks_ = 0;  // of the factor when it was last ordered
+  std::deque<Solution> solutions_;  // the last ones that are remembered
+  size_t ordered_blocks_ = 0;       // of the factor when it was last ordered
   double work_ = 0.;
   Eigen::VectorXd gradient_;
   Eigen::VectorXd diagonal_;

@@ -5,6 +5,7 @@
 // polish by it.
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "cartographer_ext/common/thread_time.h"
@@ -16,6 +17,16 @@ namespace {
 
 // Rounds of a polish after which loops are taken to come in one by one.
 constexpr int kSlowPolish = 5;
+
+// Solutions that are remembered: polishes from neighbouring maps meet in a few.
+constexpr size_t kMaxSolutions = 8;
+
+double WeightedCost(const std::vector<WhitenedEdge>& edges,
+                    const std::vector<double>& weights,
+                    const std::vector<Pose2>& poses) {
+  const std::vector<double> chi2 = Chi2OfEdges(edges, poses);
+  return std::inner_product(chi2.begin(), chi2.end(), weights.begin(), 0.);
+}
 
 // Solves with a kernel as wide as the gate, and keeps that where it lowers the
 // truncated cost.
@@ -107,6 +118,29 @@ SolverSummary SolveGnc(const GncOptions& options, RobustSolver* const solver,
   return total;
 }
 
+bool RobustSolver::Recall(const std::vector<double>& weights,
+                          std::vector<Pose2>* const poses) {
+  const auto known = std::find_if(
+      solutions_.begin(), solutions_.end(), [&](const Solution& solution) {
+        return solution.weights == weights &&
+               solution.poses.size() == poses->size();
+      });
+  if (known == solutions_.end()) return false;
+  if (WeightedCost(edges_, weights, known->poses) != known->cost) {
+    solutions_.erase(known);
+    return false;
+  }
+  if (!(known->cost <= WeightedCost(edges_, weights, *poses))) return false;
+  *poses = known->poses;
+  return true;
+}
+
+void RobustSolver::Remember(const std::vector<double>& weights,
+                            const std::vector<Pose2>& poses) {
+  if (solutions_.size() == kMaxSolutions) solutions_.pop_front();
+  solutions_.push_back({weights, poses, WeightedCost(edges_, weights, poses)});
+}
+
 std::vector<double> DecideLoops(const std::vector<WhitenedEdge>& edges,
                                 const std::vector<Pose2>& poses,
                                 const double gate) {
@@ -143,11 +177,13 @@ SolverSummary PolishTruncated(const double gate, const int max_rounds,
     }
     const bool soften = round == kSlowPolish && round + 1 < max_rounds;
     if (!soften) options.edge_weights = decisions;
+    if (!soften && solver->Recall(decisions, poses)) continue;
     const SolverSummary summary =
         soften ? Soften(gate, solver, poses) : solver->Solve(options, poses);
     total.iterations += summary.iterations;
     total.analyses += summary.analyses;
     total.factor_blocks = summary.factor_blocks;
+    if (!soften && summary.converged) solver->Remember(decisions, *poses);
   }
   if (weights != nullptr) *weights = options.edge_weights;
   total.final_cost = TruncatedCost(edges, *poses);

@@ -46,6 +46,20 @@ TEST(BlockProductTest, CopiesABlock) {
   EXPECT_EQ(copy, block);
 }
 
+TEST(TransposedProductsTest, SumsLikeOneByOne) {
+  Random random(3);
+  TransposedProducts products;
+  EXPECT_EQ(products.Sum(), Eigen::Vector3d(Eigen::Vector3d::Zero()));
+  Eigen::Vector3d expected = Eigen::Vector3d::Zero();
+  for (int k = 0; k != 7; ++k) {
+    const Eigen::Matrix3d a = RandomBlock(&random);
+    const Eigen::Vector3d x(random.Normal(), random.Normal(), random.Normal());
+    products.Add(a, x);
+    expected += a.transpose() * x;
+  }
+  EXPECT_LT((products.Sum() - expected).cwiseAbs().maxCoeff(), 1e-13);
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext
