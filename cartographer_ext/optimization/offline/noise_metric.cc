@@ -407,7 +407,11 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
       lowest = cost;
       other = &member;
     }
-    if (other == nullptr) {
+    // A metric moves a little each time a map is solved with it: what costs less
+    // in the end may be the same map.
+    if (other == nullptr ||
+        (k + 1 == kMaxMaps &&
+         DifferNearGateOnly(edges, other->poses, found->poses))) {
       found->valid =
           lowest < ours - kAnother * kChi2Gate && is_another(found->poses);
       break;

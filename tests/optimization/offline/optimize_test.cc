@@ -233,6 +233,26 @@ TEST(OptimizeDataTest, KernelsThatAgreeOnALargeGraphMayBeWrong) {
             replayed->truncated_chi2_as_given * (1. + 1e-6));
 }
 
+// All kernels find the right map. Ten wrong loops in force cost a little less as
+// long as the matrices claim six times the noise, and much more without.
+TEST(OptimizeDataTest, AGroupThatFitsNoiseWhichIsNotThereIsRefused) {
+  const std::string file =
+      cartographer_ext::test::SharedData("g2o/manhattan_g2o.g2o.xz");
+  CARTOGRAPHER_EXT_SKIP_WITHOUT(file);
+  PoseGraph graph = test::ReadGraph(file);
+  std::vector<Pose2> optimum = graph.poses;
+  SolveRobust(Whiten(graph.edges), SolverOptions(), &optimum);
+  OutlierOptions outliers;
+  outliers.type = OutlierType::kRandomGrouped;
+  outliers.count = 1000;
+  outliers.seed = 173;
+  test::AppendOutliers(graph, outliers, &graph.edges);
+  const auto automatic = Optimize(graph, OptimizeOptions());
+  ASSERT_TRUE(automatic.ok());
+  EXPECT_LT(automatic->applied_loop_scale, 0.5);
+  EXPECT_LT(AbsoluteTrajectoryError(automatic->poses, optimum), 0.05);
+}
+
 // They reject nearly all loops of a right map; softer ones keep all.
 TEST(OptimizeDataTest, KernelsThatAgreeOnNothingEndTheSearchOfAGoodGraph) {
   const std::string file =
