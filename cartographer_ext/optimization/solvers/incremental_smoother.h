@@ -128,6 +128,8 @@ class IncrementalSmoother {
   // Loops that changed from accepted to rejected, and back, at an epoch's end.
   int num_late_rejections() const { return num_late_rejections_; }
   int num_readmissions() const { return num_readmissions_; }
+  // Hypotheses tried so far.
+  int num_hypotheses() const { return num_hypotheses_; }
   // Not OK if the factor is lost.
   const absl::Status& status() const { return status_; }
   size_t factor_blocks() const { return factor_.num_blocks(); }
@@ -187,6 +189,7 @@ class IncrementalSmoother {
   std::unique_ptr<RobustSolver> batch_;  // of an epoch whose factor is to come
   int num_late_rejections_ = 0;
   int num_readmissions_ = 0;
+  int num_hypotheses_ = 0;
 };
 
 // Result of replaying a graph.

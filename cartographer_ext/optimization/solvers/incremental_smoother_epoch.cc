@@ -267,11 +267,19 @@ bool IncrementalSmoother::TryHypotheses(const int first_edge,
   std::vector<Pose2> best;
   SolverOptions solver = EpochSolverOptions();
   solver.kernel.parameter = std::max(solver.kernel.parameter, options_.gate);
-  for (const int seed : ChooseSeeds(candidates)) {
+  const std::vector<int> seeds = ChooseSeeds(candidates);
+  std::set<int> explained;
+  for (const int seed : seeds) {
+    if (explained.count(seed) > 0) continue;
+    ++num_hypotheses_;
     std::vector<Pose2> poses = poses_;
     edges_[seed].is_loop = false;  // in force whatever its error
     batch->Solve(solver, &poses);
     edges_[seed].is_loop = true;
+    // Another one that fits this map would lead to it.
+    for (const int other : seeds) {
+      if (Agrees(edges_[other], poses, options_.gate)) explained.insert(other);
+    }
     // Most hypotheses stand alone; that shows before the polish.
     if (!LoopsAgree(edges_, poses, kWideGate, majority)) continue;
     batch->Solve(solver, &poses);

@@ -225,6 +225,43 @@ TEST(IncrementalSmootherTest, AnEpochOfALargeMapEndsInTwoSteps) {
   }
 }
 
+// A way of 60 m and back with a bent odometry: all loops that are rejected at
+// the end of the epoch lead to the same map.
+TEST(IncrementalSmootherTest, LoopsThatLeadToTheSameMapAreOneHypothesis) {
+  constexpr int kLength = 60;
+  std::vector<Pose2> truth;
+  for (int i = 0; i != 2 * kLength; ++i) {
+    const bool back = i >= kLength;
+    truth.push_back(back ? Pose2(2 * kLength - 1 - i, 0.5, kPi)
+                         : Pose2(i, 0., 0.));
+  }
+  SmootherOptions options;
+  options.epoch_poses = 1000;
+  IncrementalSmoother smoother(options, truth[0]);
+  for (int i = 1; i != 2 * kLength; ++i) {
+    PoseGraphEdge odometry;
+    odometry.from = i - 1;
+    odometry.to = i;
+    odometry.measurement = Between(truth[i - 1], truth[i]);
+    odometry.measurement.theta += 0.002;
+    odometry.information = Eigen::Vector3d(1e4, 1e4, 1e3).asDiagonal();
+    std::vector<PoseGraphEdge> edges = {odometry};
+    if (i > kLength + 20 && i % 2 == 0) {
+      PoseGraphEdge loop;
+      loop.from = 2 * kLength - 1 - i;
+      loop.to = i;
+      loop.measurement = Between(truth[loop.from], truth[i]);
+      loop.information = Eigen::Vector3d(1e4, 1e4, 1e4).asDiagonal();
+      loop.is_loop = true;
+      edges.push_back(loop);
+    }
+    ASSERT_TRUE(smoother.AddPose(edges, nullptr).ok());
+  }
+  smoother.EndEpoch();
+  EXPECT_EQ(smoother.num_hypotheses(), 1);
+  for (const bool accepted : smoother.accepted()) EXPECT_TRUE(accepted);
+}
+
 TEST(IncrementalSmootherTest, Errors) {
   const SmootherOptions options;
   IncrementalSmoother smoother(options, Pose2(0., 0., 0.));
