@@ -21,6 +21,7 @@
 #include "cartographer_ext/loop_closure/candidate_search/search_result.h"
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
 #include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
+#include "cartographer_ext/loop_closure/consensus/neighbour_odds.h"
 #include "cartographer_ext/loop_closure/information/constraint_information.h"
 #include "cartographer_ext/loop_closure/verification/beam_agreement.h"
 #include "cartographer_ext/loop_closure/verification/occupancy_view.h"
@@ -30,13 +31,6 @@
 
 namespace cartographer_ext {
 namespace loop_closure {
-
-// How many neighbours of a match, of those where the robot had been, were found
-// where it predicts them (dropin/second_look.h).
-struct FollowedMatch {
-  int num_found = 0;
-  int num_missed = 0;
-};
 
 // Result of the consensus stage.
 struct ConsensusResult {

@@ -149,9 +149,8 @@ std::vector<LoopCandidate> LoopPipeline::Decide(const bool at_end) {
           // place that looks alike.
           return candidate.FinalScore() >= kConfirmingScore &&
                  (!candidate.followed.has_value() ||
-                  OddsOfNeighbours(candidate.followed->num_found,
-                                   candidate.followed->num_missed,
-                                   share_alike_.Mean()) >= 1.);
+                  OddsOfNeighbours(*candidate.followed, share_alike_.Mean()) >=
+                      1.);
         });
     state = any_wrong ? RunState::kEnds : RunState::kEndsUnalike;
   }
@@ -203,7 +202,7 @@ void LoopPipeline::SetFollowed(const int64_t number,
     if (candidate.number != number) continue;
     candidate.followed = followed;
     // Local SLAM does not drift so far: a wrong match.
-    share_alike_.AddWrong(followed.num_found, followed.num_missed);
+    share_alike_.AddWrong(followed);
     consensus_.SetShareAlike(share_alike_.Mean());
   }
 }

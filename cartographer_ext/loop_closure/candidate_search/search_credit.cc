@@ -9,9 +9,10 @@ namespace loop_closure {
 namespace {
 
 // Half widths of windows, square metres times radians: up to the first a search
-// costs nothing worth counting, from the second on as much as a whole submap.
+// costs nothing worth counting, from the second on as much as any.
 constexpr double kNarrowWindow = 10.;
-constexpr double kWholeSubmap = 200.;
+constexpr double kWidestWindow = 200.;
+constexpr double kWorkOfWholeSubmap = 0.25;
 
 }  // namespace
 
@@ -20,10 +21,10 @@ constexpr double SearchCredit::kMostCredit;
 constexpr double SearchCredit::kRewardFactor;
 
 double SearchWork(const SearchPlan& plan) {
-  if (plan.full_submap) return 1.;
+  if (plan.full_submap) return kWorkOfWholeSubmap;
   const double window =
       plan.linear_window * plan.linear_window * plan.angular_window;
-  return window <= kNarrowWindow ? 0. : std::min(1., window / kWholeSubmap);
+  return window <= kNarrowWindow ? 0. : std::min(1., window / kWidestWindow);
 }
 
 void SearchCredit::AddNode(const uncertainty::NodeId& node) {

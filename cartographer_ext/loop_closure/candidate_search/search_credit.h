@@ -3,9 +3,10 @@
 //
 // Bounds the cost of wide searches, per node and over the whole run.
 //
-// The cost of a search grows with its window: a whole submap takes a hundred
-// times as long as a window of a metre, and longest if there is no match. So
-// wide searches consume credit. Every node earns a little, so that the cost per
+// The cost of a search grows with its window, and is largest if there is no
+// match. A window of 15 m takes a hundred times as long as one of a metre; a
+// whole submap, in which the place is first searched roughly, a quarter of that.
+// So wide searches consume credit. Every node earns a little, so that the cost per
 // node does not grow with the length of the run; credit is accumulated up to a
 // limit, to be available where it is needed; and wide searches that lead to
 // accepted loops earn more.
@@ -22,13 +23,14 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// Cost of a search, in units of a search of a whole submap; 0 for a narrow one.
+// Cost of a search, in units of a search in the widest window; 0 for a narrow
+// one.
 double SearchWork(const SearchPlan& plan);
 
 // Credit for wide searches, see above.
 class SearchCredit {
  public:
-  // In searches of whole submaps.
+  // In searches of the widest window.
   static constexpr double kCreditPerNode = 0.2;
   static constexpr double kMostCredit = 50.;
   static constexpr double kRewardFactor = 10.;

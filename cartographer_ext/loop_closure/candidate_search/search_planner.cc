@@ -17,8 +17,8 @@ namespace {
 
 using proto::LoopDecision;
 
-// A whole submap costs a hundred windows.
-constexpr size_t kFullSearchesPerNode = 1;
+// A whole submap costs about 25 windows.
+constexpr size_t kFullSearchesPerNode = 6;
 // Loops nearer than this to each other give the same paths, metres.
 constexpr double kLoopSpacing = 3.;
 // Standard deviations of a loop below which a path tells nearly as much.

@@ -76,7 +76,7 @@ struct SearchPlannerOptions {
   double redundant_distance = 2.;
   double redundant_time = 10.;
   // The same distance after any search, in a window and in a whole submap,
-  // which costs a hundred times as much. Half a metre is the spacing of the
+  // which costs some 25 times as much. Half a metre is the spacing of the
   // nodes that temporal verification compares.
   double search_spacing = 0.5;
   double full_search_spacing = 3.;

@@ -26,8 +26,10 @@ namespace loop_closure {
 struct TypicalFitOptions {
   double reference = 0.65;    // in (0, 1]; 0: the scale is always 1
   double least_scale = 0.85;  // in (0, 1]
-  size_t window = 200;        // most recent scores used
-  size_t min_fits = 20;       // with fewer the scale is 1
+  // The same in whole submaps, where matches need more evidence than a score.
+  double least_scale_of_whole = 0.7;
+  size_t window = 200;   // most recent scores used
+  size_t min_fits = 20;  // with fewer the scale is 1
 };
 
 // Typical scores by trajectory, see above.
@@ -39,8 +41,9 @@ class TypicalFit {
   bool is_on() const { return options_.reference > 0.; }
   // `fit`: mean probability under the points of a scan, in [0, 1].
   void Add(int trajectory_id, double fit);
-  // Factor on minimum scores, in [least_scale, 1].
-  double Scale(int trajectory_id) const;
+  // Factor on minimum scores of a search in a window or a whole submap, in
+  // [least_scale, 1].
+  double Scale(int trajectory_id, bool is_whole) const;
   void DeleteTrajectory(int trajectory_id) { fits_.erase(trajectory_id); }
 
  private:

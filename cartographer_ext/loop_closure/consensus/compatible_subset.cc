@@ -3,6 +3,7 @@
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "glog/logging.h"
@@ -13,6 +14,11 @@ namespace {
 
 // In the subset, of a cluster about which next to nothing speaks.
 constexpr double kLeastClusterWeight = 0.1;
+// Of the sigmas of both predictions: a cycle that closes within it would hardly
+// do so by chance.
+constexpr double kFarOffShare = 0.1;
+// Of odds_per_far_revisit_.
+constexpr double kMostOddsPerFarRevisit = 10.;
 // Of the best score of a cluster; rivals below are none.
 constexpr double kRivalScore = 0.5;
 // After a clique search that reached its limit, the next ones continue from its
@@ -26,6 +32,40 @@ uncertainty::LoopEdge Reversed(const uncertainty::LoopEdge& edge) {
   reversed.b = edge.a;
   reversed.pose = Invert(edge.pose);
   return reversed;
+}
+
+// Seen from the first vertex of `u`. From that of the other loop it is the same
+// up to the first order only: errors of half a radian, which a path of a
+// kilometre explains, may look too large from one end of a long arm. Empty if
+// no path connects the loops.
+absl::optional<uncertainty::CycleResult> TestCycle(
+    const uncertainty::CycleConsistencyOptions& options,
+    const uncertainty::PathUncertainty& paths, const uncertainty::LoopEdge& u,
+    const uncertainty::LoopEdge& v) {
+  const absl::optional<uncertainty::UncertainPose> path_b =
+      paths.Between(u.b, v.b);
+  const absl::optional<uncertainty::UncertainPose> path_a =
+      paths.Between(v.a, u.a);
+  if (!path_a.has_value() || !path_b.has_value()) return absl::nullopt;
+  return uncertainty::TestCycle(options, u.pose, *path_b, v.pose, *path_a);
+}
+
+// Of the largest first, as many as `most` in all.
+double SumOfBest(std::vector<std::pair<double, double>> shares,
+                 const double most) {
+  std::sort(shares.begin(), shares.end(),
+            [](const std::pair<double, double>& a,
+               const std::pair<double, double>& b) {
+              return a.first != b.first ? a.first > b.first
+                                        : a.second > b.second;
+            });
+  double sum = 0.;
+  double left = most;
+  for (const auto& share : shares) {
+    sum += share.first * std::min(left, share.second);
+    left = std::max(0., left - share.second);
+  }
+  return sum;
 }
 
 bool SameTrajectory(const uncertainty::LoopEdge& edge) {
@@ -43,21 +83,24 @@ CompatibleSubset::CompatibleSubset(
 }
 
 CompatibleSubset::Relation CompatibleSubset::Relate(
-    const uncertainty::LoopEdge& u, const uncertainty::LoopEdge& v) const {
-  uncertainty::LoopEdge other = v;
-  if (!u.a.InSequenceWith(v.a)) other = Reversed(v);
-  const absl::optional<uncertainty::UncertainPose> path_b =
-      paths_->Between(u.b, other.b);
-  const absl::optional<uncertainty::UncertainPose> path_a =
-      paths_->Between(other.a, u.a);
-  if (!path_a.has_value() || !path_b.has_value()) return Relation::kUntestable;
-  const uncertainty::CycleResult cycle = uncertainty::TestCycle(
-      options_.cycle, u.pose, *path_b, other.pose, *path_a);
-  if (!cycle.compatible) return Relation::kContradicts;
-  return uncertainty::WorstTranslationSigma(cycle.covariance) <=
-                 options_.informative_sigma
-             ? Relation::kSupports
-             : Relation::kVague;
+    const LoopEvidence& u, const LoopEvidence& v) const {
+  uncertainty::LoopEdge other = v.edge;
+  if (!u.edge.a.InSequenceWith(other.a)) other = Reversed(other);
+  absl::optional<uncertainty::CycleResult> cycle =
+      TestCycle(options_.cycle, *paths_, u.edge, other);
+  if (!cycle.has_value()) return Relation::kUntestable;
+  if (!cycle->compatible) {
+    cycle = TestCycle(options_.cycle, *paths_, other, u.edge);
+    if (!cycle->compatible) return Relation::kContradicts;
+  }
+  const double sigma = uncertainty::WorstTranslationSigma(cycle->covariance);
+  if (sigma > options_.informative_sigma) return Relation::kVague;
+  const double prior_sigma = std::min(u.prior_sigma, v.prior_sigma);
+  return SameTrajectory(u.edge) && SameTrajectory(v.edge) &&
+                 prior_sigma > options_.weak_prior_sigma &&
+                 sigma <= kFarOffShare * prior_sigma
+             ? Relation::kSupportsFarOff
+             : Relation::kSupports;
 }
 
 bool CompatibleSubset::SameRevisit(const LoopEvidence& u,
@@ -73,8 +116,8 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
   changed_ = true;
   for (Cluster& cluster : clusters_) {
     if (!SameRevisit(cluster.leader, loop)) continue;
-    const Relation relation = Relate(cluster.leader.edge, loop.edge);
-    if (relation != Relation::kSupports && relation != Relation::kVague) {
+    const Relation relation = Relate(cluster.leader, loop);
+    if (!IsSupport(relation) && relation != Relation::kVague) {
       continue;
     }
     cluster.undecided.push_back(loop);
@@ -87,7 +130,7 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
   std::vector<Relation> relations;
   relations.reserve(clusters_.size());
   for (const Cluster& cluster : clusters_) {
-    relations.push_back(Relate(cluster.leader.edge, loop.edge));
+    relations.push_back(Relate(cluster.leader, loop));
   }
   Cluster cluster;
   cluster.leader = loop;
@@ -118,33 +161,45 @@ void CompatibleSubset::UpdatePrior(const LoopEvidence& loop) {
   }
 }
 
+void CompatibleSubset::SetOddsPerFarRevisit(const double odds) {
+  odds_per_far_revisit_ = std::min(kMostOddsPerFarRevisit, odds);
+  changed_ = true;
+}
+
 void CompatibleSubset::RelateAll() {
   changed_ = true;
   for (int i = 0; i < num_clusters(); ++i) {
     for (int j = 0; j < i; ++j) {
-      relations_[i][j] =
-          Relate(clusters_[j].leader.edge, clusters_[i].leader.edge);
+      relations_[i][j] = Relate(clusters_[j].leader, clusters_[i].leader);
     }
   }
 }
 
-// How many support a cluster, all of them or those of the subset.
-int CompatibleSubset::Support(const int index, const bool of_subset) const {
+double CompatibleSubset::Support(const int index, const bool of_subset,
+                                 double* const log_odds) const {
   const uncertainty::LoopEdge& edge = clusters_[index].leader.edge;
   std::vector<uncertainty::VertexId> vertices;
+  // Logarithm of the factor on the odds, share.
+  std::vector<std::pair<double, double>> shares;
+  double sum = 0.;
   for (int j = 0; j < num_clusters(); ++j) {
-    if (j == index || (of_subset && !clusters_[j].in_subset) ||
-        (options_.scores_are_probabilities &&
-         clusters_[j].best_score < kConfirmingScore) ||
-        relations_[std::max(index, j)][std::min(index, j)] !=
-            Relation::kSupports) {
-      continue;
-    }
+    if (j == index || (of_subset && !clusters_[j].in_subset)) continue;
+    const Relation relation =
+        relations_[std::max(index, j)][std::min(index, j)];
+    if (!IsSupport(relation)) continue;
+    const double odds = OddsPerRevisit(relation);
+    const double share = ShareOfSupport(clusters_[j], odds);
+    if (share <= 0.) continue;
+    sum += share;
+    shares.emplace_back(std::log(odds), share);
     // The end in the same run.
     const uncertainty::LoopEdge& other = clusters_[j].leader.edge;
     vertices.push_back(other.b.InSequenceWith(edge.b) ? other.b : other.a);
   }
-  if (SameTrajectory(edge)) return static_cast<int>(vertices.size());
+  if (log_odds != nullptr) {
+    *log_odds = SumOfBest(std::move(shares), options_.max_revisits_for_odds);
+  }
+  if (SameTrajectory(edge)) return sum;
   std::sort(vertices.begin(), vertices.end());
   std::vector<uncertainty::VertexId> places = {edge.b};
   for (const uncertainty::VertexId& vertex : vertices) {
@@ -156,7 +211,12 @@ int CompatibleSubset::Support(const int index, const bool of_subset) const {
         });
     if (!is_near) places.push_back(vertex);
   }
-  return static_cast<int>(places.size()) - 1;
+  const double num_places = static_cast<double>(places.size() - 1);
+  if (log_odds != nullptr) {
+    *log_odds = std::min<double>(num_places, options_.max_revisits_for_odds) *
+                std::log(options_.odds_per_revisit);
+  }
+  return num_places;
 }
 
 double CompatibleSubset::Weight(const Cluster& cluster) const {
@@ -200,11 +260,11 @@ void CompatibleSubset::Solve() {
     return relations_[std::max(i, j)][std::min(i, j)];
   };
   num_overturned_ = 0;
-  std::vector<int> total_support(n, 0);
+  std::vector<double> total_support(n, 0.);
   for (int i = 0; i < n; ++i) {
     Cluster& cluster = clusters_[i];
-    cluster.support = Support(i, true);
-    total_support[i] = Support(i, false);
+    cluster.support = Support(i, true, &cluster.log_odds);
+    total_support[i] = Support(i, false, nullptr);
     cluster.contradictions = 0;
     for (int j = 0; j < n; ++j) {
       if (j == i || !clusters_[j].in_subset) continue;
@@ -213,7 +273,7 @@ void CompatibleSubset::Solve() {
     if (cluster.accepted && !cluster.in_subset) ++num_overturned_;
   }
   for (int i = 0; i < n; ++i) {
-    clusters_[i].rival_support = -1;
+    clusters_[i].rival_support = -1.;
     for (int j = 0; j < n; ++j) {
       // A rival whose camp the subset outnumbers is beaten, and so is one that
       // scores far worse.
@@ -237,7 +297,7 @@ void CompatibleSubset::Emit(
     decision.id = loop.id;
     decision.accepted = accepted;
     decision.reason = reason;
-    decision.support = cluster.support;
+    decision.support = static_cast<int>(cluster.support);
     decision.contradictions = cluster.contradictions;
     decision.subset_size = subset_size_;
     decisions->push_back(decision);

@@ -16,7 +16,10 @@
 //   subset     The maximum clique of the graph without the contradictions
 //              (eq. 21), every cluster counting once, those accepted before a
 //              little more. Where scores are probabilities, a cluster counts
-//              by the best one of its loops, and unlikely ones confirm nobody.
+//              by the best one of its loops. An unlikely one with the odds o
+//              supports others by max(0, 1 + ln o / ln r), with r the factor on
+//              the odds for each revisit that agrees: what its agreement says
+//              for it, less what its score says against it.
 //   verdicts   A cluster is accepted when it is in the clique, has support from
 //              enough others, and no rival has as much. A rival is a cluster
 //              that contradicts it, unless more clusters of the subset
@@ -181,6 +184,11 @@ class CompatibleSubset {
   // its id, from `loop`, where they have become better known.
   void UpdatePrior(const LoopEvidence& loop);
 
+  // The factor on the odds for a revisit that agrees where both were searched
+  // far off: wrong ones agree as often as places look alike. At least
+  // `odds_per_revisit` and at most 10 are used.
+  void SetOddsPerFarRevisit(double odds);
+
   // Repeats all pairwise tests, after a change of the drift of the paths.
   void RelateAll();
 
@@ -211,8 +219,13 @@ class CompatibleSubset {
     kUntestable,  // no path between the loops
     kVague,       // closes, but is not informative
     kSupports,
+    kSupportsFarOff,  // as both were searched in far more than it leaves open
     kContradicts,
   };
+  static bool IsSupport(const Relation relation) {
+    return relation == Relation::kSupports ||
+           relation == Relation::kSupportsFarOff;
+  }
   struct Cluster {
     LoopEvidence leader;
     std::vector<LoopEvidence> undecided;
@@ -222,15 +235,21 @@ class CompatibleSubset {
     bool accepted = false;
     // Of the last `Solve`.
     bool in_subset = false;
-    int support = 0;
+    double support = 0.;
+    double log_odds = 0.;  // that the support adds
     int contradictions = 0;
-    int rival_support = -1;  // of the strongest rival, -1 without one
+    double rival_support = -1.;  // of the strongest rival, -1 without one
   };
 
-  Relation Relate(const uncertainty::LoopEdge& u,
-                  const uncertainty::LoopEdge& v) const;
+  Relation Relate(const LoopEvidence& u, const LoopEvidence& v) const;
   bool SameRevisit(const LoopEvidence& u, const LoopEvidence& v) const;
-  int Support(int index, bool of_subset) const;
+  // Factor on the odds of a cluster that another one supports.
+  double OddsPerRevisit(Relation relation) const;
+  // Of how many likely clusters a cluster counts as support, in [0, 1].
+  double ShareOfSupport(const Cluster& cluster, double odds_per_revisit) const;
+  // How many clusters support one of them, all or those of the subset.
+  // `log_odds`, unless null, receives by how much they raise its odds.
+  double Support(int index, bool of_subset, double* log_odds) const;
   // Weight of a cluster in the clique, by the best score of its loops.
   double Weight(const Cluster& cluster) const;
   void FindSubset();
@@ -265,6 +284,7 @@ class CompatibleSubset {
   // relations_[i][j] for j < i.
   std::vector<std::vector<Relation>> relations_;
   std::vector<SubsetDecision> overflow_;  // decided by MakeRoom
+  double odds_per_far_revisit_ = 10.;
   bool changed_ = false;
   bool exact_ = true;
   int64_t num_clique_steps_ = 0;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The verdicts of the compatible subset: which loops may be accepted.
+// The verdicts of the compatible subset: what support is worth, and which loops
+// may be accepted.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -19,13 +20,6 @@ constexpr double kSureOdds = 19.;
 constexpr int kEnoughRight = 3;
 // Or how much its neighbours must say for it.
 constexpr double kOddsOfFollowed = 5.;
-
-// Factor on the odds of a loop of a cluster with this support.
-double OddsOfSupport(const CompatibleSubsetOptions& options,
-                     const int support) {
-  return std::pow(options.odds_per_revisit,
-                  std::min(support, options.max_revisits_for_odds));
-}
 
 bool FindsNeighbours(const std::vector<LoopEvidence>& undecided) {
   return std::any_of(undecided.begin(), undecided.end(),
@@ -47,6 +41,26 @@ std::vector<LoopEvidence> TakeIf(const Condition& condition,
 
 }  // namespace
 
+double CompatibleSubset::OddsPerRevisit(const Relation relation) const {
+  return relation == Relation::kSupportsFarOff
+             ? std::max(options_.odds_per_revisit, odds_per_far_revisit_)
+             : options_.odds_per_revisit;
+}
+
+double CompatibleSubset::ShareOfSupport(const Cluster& cluster,
+                                        const double odds_per_revisit) const {
+  if (!options_.scores_are_probabilities) return 1.;
+  const double score = cluster.best_score;
+  if (score >= kConfirmingScore) return 1.;
+  // Between trajectories an unlikely match confirms nobody.
+  const uncertainty::LoopEdge& edge = cluster.leader.edge;
+  if (score <= 0. || edge.a.trajectory_id() != edge.b.trajectory_id()) {
+    return 0.;
+  }
+  return std::max(
+      0., 1. + std::log(score / (1. - score)) / std::log(odds_per_revisit));
+}
+
 bool CompatibleSubset::MayAccept(const Cluster& cluster,
                                  SubsetReason* const reason) const {
   if (!cluster.in_subset) {
@@ -62,7 +76,7 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
       return false;
     }
   } else if (cluster.rival_support >= cluster.support && !cluster.accepted) {
-    *reason = cluster.support == 0 ? SubsetReason::kUnsupported
+    *reason = cluster.support < 1. ? SubsetReason::kUnsupported
                                    : SubsetReason::kRival;
     return false;
   }
@@ -99,7 +113,7 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
 bool CompatibleSubset::MayAcceptLoop(const Cluster& cluster,
                                      const LoopEvidence& loop) const {
   if (!options_.scores_are_probabilities) return true;
-  return loop.score * OddsOfSupport(options_, cluster.support) >=
+  return loop.score * std::exp(cluster.log_odds) >=
          (1. - loop.score) * options_.odds_per_revisit;
 }
 
@@ -134,8 +148,7 @@ bool CompatibleSubset::IsSureFarOff(const Cluster& cluster,
     return false;
   }
   // The rule of succession: the odds that the next one is right, too.
-  return loop.score * OddsOfSupport(options_, cluster.support) *
-             (num_right + 1) >=
+  return loop.score * std::exp(cluster.log_odds) * (num_right + 1) >=
          (1. - loop.score) * kSureOdds;
 }
 

@@ -98,9 +98,7 @@ LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
   }
   evidence.prior_sigma = PriorSigma(candidate);
   if (candidate.followed.has_value()) {
-    const double odds =
-        OddsOfNeighbours(candidate.followed->num_found,
-                         candidate.followed->num_missed, share_alike_);
+    const double odds = OddsOfNeighbours(*candidate.followed, share_alike_);
     evidence.odds_of_neighbours = odds;
     evidence.probability = WithOdds(evidence.probability, odds);
     if (ScoresAreProbabilities(options_)) {
@@ -178,6 +176,7 @@ void LoopConsensus::SetFollowed(const int64_t number,
 void LoopConsensus::SetShareAlike(const double share_alike) {
   if (share_alike == share_alike_) return;
   share_alike_ = share_alike;
+  subset_.SetOddsPerFarRevisit(1. / share_alike);
   for (const auto& entry : waiting_) {
     if (!entry.second.candidate.followed.has_value()) continue;
     subset_.UpdatePrior(MakeEvidence(entry.second.candidate));

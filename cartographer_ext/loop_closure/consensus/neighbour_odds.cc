@@ -16,28 +16,30 @@ double LogBeta(const double a, const double b) {
   return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b);
 }
 
-double Likelihood(const double a, const double b, const int num_found,
-                  const int num_missed) {
-  return std::exp(LogBeta(a + num_found, b + num_missed) - LogBeta(a, b));
+double Likelihood(const double a, const double b,
+                  const FollowedMatch& followed) {
+  return std::exp(LogBeta(a + followed.num_found, b + followed.num_missed) -
+                  LogBeta(a, b));
 }
 
 }  // namespace
 
-void ShareAlike::AddWrong(const int num_found, const int num_missed) {
-  if (num_found + num_missed == 0) return;
+void ShareAlike::AddWrong(const FollowedMatch& followed) {
+  if (followed.num_found + followed.num_missed == 0) return;
   ++num_wrong_;
   // More likely those of a right one.
-  num_alike_ += OddsOfNeighbours(num_found, num_missed, 0.) > 1.;
+  num_alike_ += OddsOfNeighbours(followed, 0.) > 1.;
 }
 
 double ShareAlike::Mean() const {
   return (kPriorAlike + num_alike_) / (kPriorWrong + num_wrong_);
 }
 
-double OddsOfNeighbours(const int num_found, const int num_missed,
+double OddsOfNeighbours(const FollowedMatch& followed,
                         const double share_alike) {
-  const double right = Likelihood(2., 1., num_found, num_missed);
-  const double wrong = Likelihood(1., 4., num_found, num_missed);
+  const double right = Likelihood(2., 1., followed);
+  const double wrong =
+      Likelihood(1., followed.by_verification ? 2. : 4., followed);
   return right / ((1. - share_alike) * wrong + share_alike * right);
 }
 

@@ -64,7 +64,7 @@ LoopClosure2D::LoopClosure2D(
       recorder_(context_->Get<DecisionRecorder>()),
       log_(extension.log_directory, "loops", DecisionCsvHead()),
       submaps_(options, extension),
-      searcher_(options, extension.slide_test, submaps_.cache()),
+      searcher_(options, extension, submaps_.cache()),
       pipeline_(extension, StockWeights(options)),
       planner_(options, extension, &pipeline_.paths()),
       relocalizer_(extension.relocalization,
@@ -185,7 +185,8 @@ void LoopClosure2D::ScheduleSearch(SearchJob* const job,
                                    Task* const end_of_node) {
   const LoopCandidate& candidate = job->candidate;
   if (!candidate.is_inter_trajectory()) {
-    job->score_scale = typical_fit_.Scale(candidate.node.trajectory_id);
+    job->score_scale = typical_fit_.Scale(candidate.node.trajectory_id,
+                                          candidate.plan.full_submap);
   }
   auto task = absl::make_unique<Task>();
   task->SetWorkItem([this, job]() { searcher_.Search(job); });

@@ -21,9 +21,10 @@ using proto::LoopDecision;
 PairSearcher::PairSearcher(
     const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
         options,
-    const bool slide_test, SubmapCache* const cache)
+    const LoopOptions& extension, SubmapCache* const cache)
     : options_(options),
-      slide_test_(slide_test),
+      slide_test_(extension.slide_test),
+      search_places_(extension.search.enabled),
       ceres_scan_matcher_(options.ceres_scan_matcher_options()),
       cache_(cache) {}
 
@@ -32,24 +33,19 @@ void PairSearcher::Search(SearchJob* const job) const {
   const SubmapEntry& entry = *job->entry;
   const SearchPlan& plan = job->candidate.plan;
   const auto& cloud = job->node->filtered_gravity_aligned_point_cloud;
-  std::shared_ptr<const SubmapMatcher> matcher;
-  {
-    const StageMeter meter(metrics.build_cpu);
-    matcher = cache_->Matcher(entry.cached.get());
-  }
   SubmapMatch found;
-  {
+  if (plan.full_submap) {
     const StageMeter meter(metrics.search_cpu);
-    if (plan.full_submap) {
-      metrics.searched_global->Increment();
-      found = matcher->MatchFullSubmap(
-          cloud, job->score_scale * options_.global_localization_min_score());
-    } else {
-      metrics.searched_local->Increment();
-      found = matcher->Match(entry.local_pose * job->candidate.SearchCenter(),
-                             plan.linear_window, plan.angular_window, cloud,
-                             job->score_scale * options_.min_score());
-    }
+    metrics.searched_global->Increment();
+    found = SearchWhole(*job);
+    job->candidate.times.search = meter.seconds();
+  } else {
+    const std::shared_ptr<const SubmapMatcher> matcher = Matcher(entry);
+    const StageMeter meter(metrics.search_cpu);
+    metrics.searched_local->Increment();
+    found = matcher->Match(entry.local_pose * job->candidate.SearchCenter(),
+                           plan.linear_window, plan.angular_window, cloud,
+                           job->score_scale * options_.min_score());
     job->candidate.times.search = meter.seconds();
   }
   SearchMatch& match = job->candidate.match;
@@ -69,6 +65,23 @@ void PairSearcher::Search(SearchJob* const job) const {
       MatchInformation(*entry.submap->grid(), cloud, refined, entry.local_pose);
   if (slide_test_) match.slide_odds = SlideOddsOf(*job, refined);
   job->candidate.times.refinement = meter.seconds();
+}
+
+std::shared_ptr<const SubmapMatcher> PairSearcher::Matcher(
+    const SubmapEntry& entry) const {
+  const StageMeter meter(ConstraintMetrics::Global()->build_cpu);
+  return cache_->Matcher(entry.cached.get());
+}
+
+SubmapMatch PairSearcher::SearchWhole(const SearchJob& job) const {
+  const auto& cloud = job.node->filtered_gravity_aligned_point_cloud;
+  const double min_score =
+      job.score_scale * options_.global_localization_min_score();
+  if (!search_places_) {
+    return Matcher(*job.entry)->MatchFullSubmap(cloud, min_score);
+  }
+  return cache_->Places(job.entry->cached.get())
+      ->Match(cloud, min_score, [this, &job]() { return Matcher(*job.entry); });
 }
 
 double PairSearcher::SlideOddsOf(const SearchJob& job,

@@ -19,6 +19,7 @@
 #include "cartographer_ext/loop_closure/dropin/place_search.h"
 #include "cartographer_ext/loop_closure/dropin/submap_store.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
+#include "cartographer_ext/loop_closure/loop_options.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -44,10 +45,10 @@ struct PlaceQuery {
 // Searches pairs, see above. Thread-safe.
 class PairSearcher {
  public:
-  explicit PairSearcher(
+  PairSearcher(
       const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
           options,
-      bool slide_test, SubmapCache* cache);
+      const LoopOptions& extension, SubmapCache* cache);
 
   // Fills `match` of the candidate.
   void Search(SearchJob* job) const;
@@ -56,12 +57,16 @@ class PairSearcher {
   void SearchPlace(PlaceQuery* query) const;
 
  private:
+  std::shared_ptr<const SubmapMatcher> Matcher(const SubmapEntry& entry) const;
+  // The search of the whole submap.
+  SubmapMatch SearchWhole(const SearchJob& job) const;
   // (grid <- node) `refined` is that of the match.
   double SlideOddsOf(const SearchJob& job, const Pose2& refined) const;
 
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
       options_;
   const bool slide_test_;
+  const bool search_places_;  // otherwise whole submaps are searched exactly
   const cartographer::mapping::scan_matching::CeresScanMatcher2D
       ceres_scan_matcher_;
   SubmapCache* const cache_;

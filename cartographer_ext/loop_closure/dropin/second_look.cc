@@ -46,6 +46,10 @@ constexpr int kMaxFollowingSearches = 1000;
 // The same before the end, of one round of verification.
 constexpr int kMaxEarlySearches = 200;
 constexpr int kEnoughWrong = 20;
+// Least score of a match in a whole submap that is followed. It may show the
+// place from another side, where scores are lower than those that the mixture
+// learns from short paths.
+constexpr double kLeastFollowed = 0.02;
 // Neighbours of a submap that may see what it sees.
 constexpr int kSubmapsAround = 6;
 constexpr int kNodesPerSide = 400;
@@ -56,6 +60,10 @@ double MappedDistance(const HistoryNode& scan) {
   ranges.reserve(scan.beams.size());
   for (const Beam& beam : scan.beams) ranges.push_back(beam.range);
   return std::max(kMapped, kMappedRanges * UpperMedian(std::move(ranges)));
+}
+
+double LeastFollowed(const LoopCandidate& candidate) {
+  return candidate.plan.full_submap ? kLeastFollowed : kConfirmingScore;
 }
 
 TrajectoryNode::Data MakeData(const HistoryNode& node) {
@@ -163,7 +171,7 @@ absl::optional<LoopCandidate> SecondLook::SubmapAround(
 }
 
 absl::optional<SearchJob> SecondLook::MakeJob(
-    const NodeId& a, const NodeId& node, const SubmapId& near,
+    const LoopCandidate& match, const NodeId& a, const NodeId& node,
     const UncertainPose& prediction) const {
   const HistoryNode* const scan =
       pipeline_->history().Find(node.trajectory_id, node.node_index);
@@ -190,7 +198,8 @@ absl::optional<SearchJob> SecondLook::MakeJob(
               .norm() > MappedDistance(*scan)) {
     return {};
   }
-  absl::optional<LoopCandidate> candidate = SubmapAround(*seen_by, near);
+  absl::optional<LoopCandidate> candidate =
+      SubmapAround(*seen_by, match.submap);
   if (!candidate.has_value() ||
       (node.node_index >= candidate->first_submap_node &&
        node.node_index <= candidate->last_submap_node)) {
@@ -198,7 +207,8 @@ absl::optional<SearchJob> SecondLook::MakeJob(
   }
   SearchJob job;
   job.entry = submaps_->Find(candidate->submap);
-  job.score_scale = typical_fit_->Scale(node.trajectory_id);
+  job.score_scale =
+      typical_fit_->Scale(node.trajectory_id, match.plan.full_submap);
   job.candidate = std::move(*candidate);
   job.candidate.node = node;
   job.candidate.node_time = scan->time;
@@ -248,8 +258,8 @@ bool SecondLook::SearchAroundAccepted() {
           planner_->PathBetween(edge.a, node);
       if (!path.has_value()) return;
       absl::optional<SearchJob> job =
-          MakeJob(NodeId{edge.a.trajectory_id(), edge.a.index()}, node,
-                  accepted.submap, *path);
+          MakeJob(accepted, NodeId{edge.a.trajectory_id(), edge.a.index()},
+                  node, *path);
       if (!job.has_value() || planner_->IsRedundant(job->candidate)) return;
       looked_at_.insert(node);
       Match(&*job);
@@ -282,7 +292,7 @@ bool SecondLook::FollowUndecided(const bool at_end) {
   std::vector<LoopCandidate> matches;
   for (LoopCandidate& candidate : pipeline_->Undecided()) {
     if (!candidate.is_inter_trajectory() &&
-        candidate.FinalScore() >= kConfirmingScore &&
+        candidate.FinalScore() >= LeastFollowed(candidate) &&
         !candidate.followed.has_value() &&
         (at_end || IsWorthFollowingNow(candidate))) {
       matches.push_back(std::move(candidate));
@@ -313,20 +323,23 @@ FollowedMatch SecondLook::Follow(const LoopCandidate& candidate) const {
   const uncertainty::LoopEdge edge =
       CandidateEdge(options_, pipeline_->paths(), candidate);
   if (!edge.a.is_node()) return followed;
+  followed.by_verification = candidate.plan.full_submap;
   Walk(candidate.node, kBeyondUndecided, kAroundUndecided,
        [&](const NodeId& node) {
          const absl::optional<UncertainPose> path =
              pipeline_->paths().Between(edge.b, node);
          if (!path.has_value()) return;
          absl::optional<SearchJob> job =
-             MakeJob(NodeId{edge.a.trajectory_id(), edge.a.index()}, node,
-                     candidate.submap, uncertainty::Compose(edge.pose, *path));
+             MakeJob(candidate, NodeId{edge.a.trajectory_id(), edge.a.index()},
+                     node, uncertainty::Compose(edge.pose, *path));
          if (!job.has_value()) return;
          Match(&*job);
          const absl::optional<double> score = pipeline_->Score(&job->candidate);
          if (!score.has_value()) return;
-         ++(*score >= kConfirmingScore ? followed.num_found
-                                       : followed.num_missed);
+         const bool is_found = followed.by_verification
+                                   ? *score > 0.
+                                   : *score >= kConfirmingScore;
+         ++(is_found ? followed.num_found : followed.num_missed);
        });
   return followed;
 }

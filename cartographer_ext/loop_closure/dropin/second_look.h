@@ -73,11 +73,12 @@ class SecondLook {
   void DeleteTrajectory(int trajectory_id);
 
  private:
-  // A search of one node predicted at (a <- node). Empty where nothing is mapped
-  // there, or where it is not known well enough.
+  // A search of a neighbour of `match` predicted at (a <- node), with the least
+  // score of that match. Empty where nothing is mapped there, or where it is not
+  // known well enough.
   absl::optional<SearchJob> MakeJob(
-      const uncertainty::NodeId& a, const uncertainty::NodeId& node,
-      const uncertainty::SubmapId& near,
+      const LoopCandidate& match, const uncertainty::NodeId& a,
+      const uncertainty::NodeId& node,
       const uncertainty::UncertainPose& prediction) const;
   // A candidate without node of the submap that covers best what is seen at a
   // node of its own; near another submap.

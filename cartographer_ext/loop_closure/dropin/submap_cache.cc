@@ -14,6 +14,7 @@ using cartographer::mapping::scan_matching::proto::
 size_t MemoryBytes(const SubmapMatcher& matcher) {
   return matcher.MemoryBytes();
 }
+size_t MemoryBytes(const PlaceMatcher& places) { return places.MemoryBytes(); }
 size_t MemoryBytes(const OccupancyView& view) { return view.memory_bytes(); }
 
 }  // namespace
@@ -56,6 +57,15 @@ std::shared_ptr<const SubmapMatcher> SubmapCache::Matcher(
                             });
 }
 
+std::shared_ptr<const PlaceMatcher> SubmapCache::Places(
+    CachedSubmap* const submap) {
+  return Get<PlaceMatcher>(Key(submap->number, Kind::kPlaces), &submap->places,
+                           [this, submap]() {
+                             return std::make_shared<const PlaceMatcher>(
+                                 *submap->submap->grid(), matcher_options_);
+                           });
+}
+
 std::shared_ptr<const OccupancyView> SubmapCache::View(
     CachedSubmap* const submap) {
   return Get<OccupancyView>(
@@ -68,6 +78,7 @@ std::shared_ptr<const OccupancyView> SubmapCache::View(
 void SubmapCache::Erase(const CachedSubmap& submap) {
   absl::MutexLock lock(&mutex_);
   kept_.Erase(Key(submap.number, Kind::kMatcher));
+  kept_.Erase(Key(submap.number, Kind::kPlaces));
   kept_.Erase(Key(submap.number, Kind::kView));
   ConstraintMetrics::Global()->cache_bytes->Set(
       static_cast<double>(kept_.bytes()));

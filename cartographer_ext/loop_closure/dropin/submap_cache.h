@@ -46,6 +46,7 @@ struct CachedSubmap {
   const int64_t number;  // unique over the lifetime of the cache
   const cartographer::mapping::Submap2D* const submap;  // finished
   CachedOfSubmap<SubmapMatcher> matcher;
+  CachedOfSubmap<PlaceMatcher> places;
   CachedOfSubmap<OccupancyView> view;
 };
 
@@ -60,6 +61,7 @@ class SubmapCache {
 
   // Never null.
   std::shared_ptr<const SubmapMatcher> Matcher(CachedSubmap* submap);
+  std::shared_ptr<const PlaceMatcher> Places(CachedSubmap* submap);
   std::shared_ptr<const OccupancyView> View(CachedSubmap* submap);
   // Removes a submap that is no longer needed.
   void Erase(const CachedSubmap& submap);
@@ -67,7 +69,7 @@ class SubmapCache {
   size_t bytes() const;  // kept
 
  private:
-  enum class Kind { kMatcher, kView };
+  enum class Kind { kMatcher, kPlaces, kView };
   using Key = std::pair<int64_t, Kind>;
 
   template <typename Value>

@@ -12,6 +12,7 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/loop_closure/verification/beam_agreement.h"
+#include "cartographer_ext/scan_matching/correlative_search/coarse_grid.h"
 #include "cartographer_ext/scan_matching/dropin/grid_rows.h"
 
 namespace cartographer_ext {
@@ -33,6 +34,24 @@ constexpr double kSubsampledScoreMargin = 0.05;
 // Then all points are matched within this window around the places found.
 constexpr double kClosestWindowMetres = 0.2;
 constexpr double kClosestWindowRadians = 0.02;
+
+// Cells of a rough search, in cells of the grid.
+constexpr int kPlaceCells = 4;
+// Of a rough search. What the map does not show costs all of it.
+constexpr int64_t kMaxPlaces = 250000;
+// Of the window around the best place, in rough cells and rotations.
+constexpr double kPlaceWindow = 2.;
+
+// Of the farthest point, metres.
+double FarthestRange(const scan_matching::PlanarCloud& cloud) {
+  double farthest = 0.;
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const double range = std::hypot(static_cast<double>(cloud.x[i]),
+                                    static_cast<double>(cloud.y[i]));
+    if (std::isfinite(range)) farthest = std::max(farthest, range);
+  }
+  return farthest;
+}
 
 SubmapMatch ToMatch(const scan_matching::SearchResult& result) {
   SubmapMatch match;
@@ -73,6 +92,29 @@ SubmapMatch SubmapMatcher::MatchFullSubmap(
     const double min_score) const {
   return ToMatch(
       matcher_.MatchFullSubmap(cloud, static_cast<float>(min_score), Budget()));
+}
+
+PlaceMatcher::PlaceMatcher(const Grid2D& grid,
+                           const cartographer::mapping::scan_matching::proto::
+                               FastCorrelativeScanMatcherOptions2D& options)
+    : resolution_(kPlaceCells * grid.limits().resolution()),
+      search_(scan_matching::CoarseGrid(scan_matching::ToSearchGrid(grid),
+                                        kPlaceCells),
+              scan_matching::ToSearchOptions(options)) {}
+
+SubmapMatch PlaceMatcher::Match(
+    const cartographer::sensor::PointCloud& cloud, const double min_score,
+    const std::function<std::shared_ptr<const SubmapMatcher>()>& exact) const {
+  const scan_matching::PlanarCloud points = scan_matching::ToPlanarCloud(cloud);
+  scan_matching::SearchBudget budget;
+  budget.max_candidates = kMaxPlaces;
+  const scan_matching::SearchResult place =
+      search_.MatchFullSubmap(points, static_cast<float>(min_score), budget);
+  if (!place.found) return SubmapMatch();
+  const double linear = kPlaceWindow * resolution_;
+  const double range = std::max(resolution_, FarthestRange(points));
+  return exact()->Match(place.pose, linear, std::min(kPi, linear / range),
+                        cloud, min_score);
 }
 
 std::vector<SubmapRanking> MatchBestSubmaps(

@@ -5,6 +5,11 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
 
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
 #include "cartographer/mapping/2d/grid_2d.h"
 #include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/proto/scan_matching/fast_correlative_scan_matcher_options_2d.pb.h"
@@ -52,6 +57,32 @@ class SubmapMatcher {
 
  private:
   const scan_matching::FastCorrelativeMatcher2D matcher_;
+};
+
+// Finds in which part of a whole submap a scan fits best, in cells of a few
+// decimetres: a thousand times fewer poses than SubmapMatcher has, and the
+// place is the same unless two score alike. Does not refer to the grid after
+// construction. Thread-safe.
+class PlaceMatcher {
+ public:
+  PlaceMatcher(const cartographer::mapping::Grid2D& grid,
+               const cartographer::mapping::scan_matching::proto::
+                   FastCorrelativeScanMatcherOptions2D& options);
+  PlaceMatcher(const PlaceMatcher&) = delete;
+  PlaceMatcher& operator=(const PlaceMatcher&) = delete;
+
+  // The best match in the whole submap, not better than `exact` finds it in the
+  // window around the best place. `exact` (of the same grid) is called if there
+  // is a place where the scan may score more than `min_score`.
+  SubmapMatch Match(
+      const cartographer::sensor::PointCloud& cloud, double min_score,
+      const std::function<std::shared_ptr<const SubmapMatcher>()>& exact) const;
+
+  size_t MemoryBytes() const { return search_.MemoryBytes(); }
+
+ private:
+  const double resolution_;  // metres
+  const scan_matching::FastCorrelativeSearch2D search_;
 };
 
 // The best poses of the scan in the `num_best` submaps that match best, best

@@ -22,6 +22,8 @@ constexpr int64_t kFitInterval = 10;
 constexpr int kScanPerNode = 50;
 // Probability of a candidate about which nothing is known.
 constexpr double kNeutralScore = 0.5;
+// The same of a match in a whole submap: many poses compete there.
+constexpr double kUnverifiedWhole = 0.05;
 
 bool IsScored(const LoopCandidate& candidate) {
   return candidate.temporal.has_value() && candidate.temporal->is_scored();
@@ -167,8 +169,10 @@ void ScoreVerifier::FuseByLikelihoodRatio(const LoopCandidate& candidate,
           ? DensityInWindow(options_.search, candidate)
           : result->search_density;
   if (!IsScored(candidate)) {
-    result->final_score =
-        std::min(kNeutralScore, mixture_.ProbabilityTrue(grid_score));
+    result->final_score = std::min(
+        candidate.plan.full_submap && !candidate.relocalized ? kUnverifiedWhole
+                                                             : kNeutralScore,
+        mixture_.ProbabilityTrue(grid_score));
     result->wrong_density = mixture_.WrongDensity(grid_score);
     return;
   }

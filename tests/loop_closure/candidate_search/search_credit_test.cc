@@ -27,7 +27,7 @@ TEST(SearchCreditTest, WorkGrowsWithTheWindow) {
   // 10 m x 10 m x 1 rad of 200.
   EXPECT_DOUBLE_EQ(SearchWork(Window(10., 1.)), 0.5);
   EXPECT_EQ(SearchWork(Window(15., 3.)), 1.);
-  EXPECT_EQ(SearchWork(WholeSubmap()), 1.);
+  EXPECT_DOUBLE_EQ(SearchWork(WholeSubmap()), 0.25);
 }
 
 TEST(SearchCreditTest, NarrowSearchesAreFree) {
@@ -46,9 +46,9 @@ TEST(SearchCreditTest, CostPerNodeIsBounded) {
     credit.AddNode(uncertainty::NodeId{0, i / 2});
     while (credit.Pay(WholeSubmap())) ++searched;
   }
-  EXPECT_NEAR(searched,
+  EXPECT_NEAR(searched * SearchWork(WholeSubmap()),
               SearchCredit::kMostCredit + SearchCredit::kCreditPerNode * kNodes,
-              1.5);
+              1.5 * SearchWork(WholeSubmap()));
 }
 
 TEST(SearchCreditTest, CreditIsSavedUpToALimit) {
@@ -65,7 +65,8 @@ TEST(SearchCreditTest, AcceptedLoopsEarnFurtherSearches) {
   credit.Reward(Window(1., 0.2));
   EXPECT_EQ(credit.credit(), before);
   credit.Reward(WholeSubmap());
-  EXPECT_EQ(credit.credit(), before + SearchCredit::kRewardFactor);
+  EXPECT_DOUBLE_EQ(credit.credit(), before + SearchCredit::kRewardFactor *
+                                                 SearchWork(WholeSubmap()));
 }
 
 TEST(SearchCreditTest, TrajectoriesEarnEachForItself) {

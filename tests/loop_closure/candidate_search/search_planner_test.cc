@@ -194,12 +194,18 @@ TEST_F(SearchPlannerTest, CapsTheSearchesOfANode) {
   EXPECT_EQ(PlanOne(Pair(0, 0, 101, 14.)).skipped, LoopDecision::NONE);
 }
 
-TEST_F(SearchPlannerTest, OneWholeSubmapANode) {
+TEST_F(SearchPlannerTest, SixWholeSubmapsANode) {
+  options_.max_searches_per_node = 100;
   MakePlanner();
-  const std::vector<SearchPlan> plans =
-      PlanAll({Pair(0, 0, 200, 3.), Pair(1, 0, 200, 3.)});
-  EXPECT_EQ(plans[0].skipped, LoopDecision::NONE);
-  EXPECT_EQ(plans[1].skipped, LoopDecision::SKIPPED_BUDGET);
+  std::vector<LoopCandidate> pairs;
+  for (int i = 0; i < 8; ++i) pairs.push_back(Pair(i, 0, 200, 3.));
+  const std::vector<SearchPlan> plans = PlanAll(pairs);
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_TRUE(plans[i].full_submap) << i;
+    EXPECT_EQ(plans[i].skipped,
+              i < 6 ? LoopDecision::NONE : LoopDecision::SKIPPED_BUDGET)
+        << i;
+  }
 }
 
 TEST_F(SearchPlannerTest, LoopsOfADeletedTrajectoryNoLongerPredict) {

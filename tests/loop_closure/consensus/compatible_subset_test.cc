@@ -75,6 +75,27 @@ TEST_F(CompatibleSubsetTest, UnlikelyLoopsConfirmNobody) {
   }
 }
 
+// Each counts as 1 + ln(0.4 / 0.6) / ln 3 = 0.63: of three the odds rise to
+// 2/3 x 3^1.26 = 2.7, of four to 2/3 x 3^1.89 = 5.3.
+TEST_F(CompatibleSubsetTest, RatherUnlikelyLoopsConfirmEachOtherInPart) {
+  options_.scores_are_probabilities = true;
+  CompatibleSubset subset(options_, &paths_);
+  subset.Add(Loop(1, 10, 0., 0.4));
+  subset.Add(Loop(2, 30, 0., 0.4));
+  subset.Add(Loop(3, 50, 0., 0.4));
+  EXPECT_THAT(Accepted(subset.Decide()), IsEmpty());
+  EXPECT_EQ(subset.Undecided()[0].support, 1);
+  subset.Add(Loop(4, 70, 0., 0.4));
+  EXPECT_THAT(Accepted(subset.Decide()), ElementsAre(1, 2, 3, 4));
+  // Any number of those with the odds 1 / 3.5.
+  CompatibleSubset unlikely(options_, &paths_);
+  for (int i = 0; i < 8; ++i) {
+    unlikely.Add(Loop(i, 10 + 10 * i, 0., 1. / 4.5));
+  }
+  EXPECT_THAT(Accepted(unlikely.Decide()), IsEmpty());
+  EXPECT_EQ(unlikely.Undecided()[0].support, 0);
+}
+
 TEST_F(CompatibleSubsetTest, TheLessLikelyTheMoreRevisitsHaveToAgree) {
   options_.scores_are_probabilities = true;
   CompatibleSubset subset(options_, &paths_);

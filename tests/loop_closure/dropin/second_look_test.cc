@@ -58,7 +58,8 @@ class SecondLookTest : public testing::Test {
     const auto stock = test::StockOptions();
     pipeline_ = absl::make_unique<LoopPipeline>(options_, ConstraintWeights());
     store_ = absl::make_unique<SubmapStore>(stock, options_);
-    searcher_ = absl::make_unique<PairSearcher>(stock, false, store_->cache());
+    searcher_ =
+        absl::make_unique<PairSearcher>(stock, options_, store_->cache());
     planner_ =
         absl::make_unique<PairPlanner>(stock, options_, &pipeline_->paths());
     look_ = absl::make_unique<SecondLook>(options_, searcher_.get(),

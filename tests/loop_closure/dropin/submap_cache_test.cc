@@ -58,6 +58,22 @@ TEST_F(SubmapCacheTest, KeepsUpToItsLimit) {
   EXPECT_TRUE(a.view.in_use.expired());
 }
 
+TEST_F(SubmapCacheTest, PlacesAreKeptBesideMatchers) {
+  CachedSubmap submap(0, &submap_);
+  const auto cache = Cache(1 << 30);
+  const PlaceMatcher* const places = cache->Places(&submap).get();
+  const size_t bytes = cache->bytes();
+  EXPECT_EQ(bytes, places->MemoryBytes());
+  EXPECT_EQ(cache->Places(&submap).get(), places);
+  EXPECT_EQ(cache->bytes(), bytes);
+  cache->Matcher(&submap);
+  EXPECT_GT(cache->bytes(), bytes);
+  EXPECT_EQ(cache->Places(&submap).get(), places);
+  cache->Erase(submap);
+  EXPECT_EQ(cache->bytes(), 0u);
+  EXPECT_TRUE(submap.places.in_use.expired());
+}
+
 // What is in use is not built a second time, kept or not.
 TEST_F(SubmapCacheTest, BuildsWhatIsInUseOnce) {
   CachedSubmap submap(0, &submap_);

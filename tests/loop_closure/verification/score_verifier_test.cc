@@ -61,6 +61,19 @@ TEST(ScoreVerifierTest, WithoutATemporalScoreTheFinalOneIsNeutralAtBest) {
   }
 }
 
+TEST(ScoreVerifierTest, WithoutATemporalScoreAWholeSubmapSaysLittle) {
+  ScoreVerifier verifier(Options(FusionMode::kLikelihoodRatio));
+  LoopCandidate candidate = Scored(0.9, 0.);
+  candidate.temporal->result.outcome = TemporalOutcome::kShortHistory;
+  candidate.plan.full_submap = true;
+  verifier.FuseScores(&candidate);
+  EXPECT_EQ(candidate.FinalScore(), 0.05);
+  // Whose place has been tracked is verified otherwise.
+  candidate.relocalized = true;
+  verifier.FuseScores(&candidate);
+  EXPECT_EQ(candidate.FinalScore(), 0.5);
+}
+
 TEST(ScoreVerifierTest, ProbabilityByHand) {
   LoopCandidate candidate = Scored(0.7, 0.9);
   const SearchPlannerOptions options;
