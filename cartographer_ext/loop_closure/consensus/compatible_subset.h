@@ -12,14 +12,18 @@
 //   relations  Leaders are tested in pairs by the cycle of eq. 20. A closed
 //              cycle supports only when it could well have failed: where the
 //              path between the loops is so uncertain that anything closes,
-//              the pair is merely not in contradiction.
+//              the pair is merely not in contradiction. A pair contradicts if
+//              the cycle fails from both ends: to the first order errors of
+//              large angles are not the same from both.
 //   subset     The maximum clique of the graph without the contradictions
 //              (eq. 21), every cluster counting once, those accepted before a
 //              little more. Where scores are probabilities, a cluster counts
 //              by the best one of its loops. An unlikely one with the odds o
 //              supports others by max(0, 1 + ln o / ln r), with r the factor on
 //              the odds for each revisit that agrees: what its agreement says
-//              for it, less what its score says against it.
+//              for it, less what its score says against it. Where both were
+//              predicted ten times worse than the cycle leaves open, r is one
+//              over the share of wrong places that look alike.
 //   verdicts   A cluster is accepted when it is in the clique, has support from
 //              enough others, and no rival has as much. A rival is a cluster
 //              that contradicts it, unless more clusters of the subset

@@ -33,21 +33,11 @@ void PairSearcher::Search(SearchJob* const job) const {
   const SubmapEntry& entry = *job->entry;
   const SearchPlan& plan = job->candidate.plan;
   const auto& cloud = job->node->filtered_gravity_aligned_point_cloud;
-  SubmapMatch found;
-  if (plan.full_submap) {
-    const StageMeter meter(metrics.search_cpu);
-    metrics.searched_global->Increment();
-    found = SearchWhole(*job);
-    job->candidate.times.search = meter.seconds();
-  } else {
-    const std::shared_ptr<const SubmapMatcher> matcher = Matcher(entry);
-    const StageMeter meter(metrics.search_cpu);
-    metrics.searched_local->Increment();
-    found = matcher->Match(entry.local_pose * job->candidate.SearchCenter(),
-                           plan.linear_window, plan.angular_window, cloud,
-                           job->score_scale * options_.min_score());
-    job->candidate.times.search = meter.seconds();
-  }
+  (plan.full_submap ? metrics.searched_global : metrics.searched_local)
+      ->Increment();
+  const SubmapMatch found = plan.full_submap && search_places_
+                                ? SearchPlaces(job)
+                                : SearchExactly(job);
   SearchMatch& match = job->candidate.match;
   match.score = found.score;
   if (!found.found) return;
@@ -73,15 +63,49 @@ std::shared_ptr<const SubmapMatcher> PairSearcher::Matcher(
   return cache_->Matcher(entry.cached.get());
 }
 
-SubmapMatch PairSearcher::SearchWhole(const SearchJob& job) const {
-  const auto& cloud = job.node->filtered_gravity_aligned_point_cloud;
-  const double min_score =
-      job.score_scale * options_.global_localization_min_score();
-  if (!search_places_) {
-    return Matcher(*job.entry)->MatchFullSubmap(cloud, min_score);
+SubmapMatch PairSearcher::SearchExactly(SearchJob* const job) const {
+  const SearchPlan& plan = job->candidate.plan;
+  const auto& cloud = job->node->filtered_gravity_aligned_point_cloud;
+  const std::shared_ptr<const SubmapMatcher> matcher = Matcher(*job->entry);
+  const StageMeter meter(ConstraintMetrics::Global()->search_cpu);
+  const SubmapMatch found =
+      plan.full_submap
+          ? matcher->MatchFullSubmap(cloud, MinScore(*job))
+          : matcher->Match(
+                job->entry->local_pose * job->candidate.SearchCenter(),
+                plan.linear_window, plan.angular_window, cloud, MinScore(*job));
+  job->candidate.times.search = meter.seconds();
+  return found;
+}
+
+SubmapMatch PairSearcher::SearchPlaces(SearchJob* const job) const {
+  const ConstraintMetrics& metrics = *ConstraintMetrics::Global();
+  const auto& cloud = job->node->filtered_gravity_aligned_point_cloud;
+  std::shared_ptr<const PlaceMatcher> places;
+  {
+    const StageMeter meter(metrics.build_cpu);
+    places = cache_->Places(job->entry->cached.get());
   }
-  return cache_->Places(job.entry->cached.get())
-      ->Match(cloud, min_score, [this, &job]() { return Matcher(*job.entry); });
+  absl::optional<Pose2> place;
+  {
+    const StageMeter meter(metrics.search_cpu);
+    place = places->Find(cloud, MinScore(*job));
+    job->candidate.times.search = meter.seconds();
+  }
+  if (!place.has_value()) return SubmapMatch();
+  const scan_matching::SearchWindow window = places->WindowOf(cloud);
+  const std::shared_ptr<const SubmapMatcher> matcher = Matcher(*job->entry);
+  const StageMeter meter(metrics.search_cpu);
+  const SubmapMatch found = matcher->Match(
+      *place, window.linear, window.angular, cloud, MinScore(*job));
+  job->candidate.times.search += meter.seconds();
+  return found;
+}
+
+double PairSearcher::MinScore(const SearchJob& job) const {
+  return job.score_scale * (job.candidate.plan.full_submap
+                                ? options_.global_localization_min_score()
+                                : options_.min_score());
 }
 
 double PairSearcher::SlideOddsOf(const SearchJob& job,

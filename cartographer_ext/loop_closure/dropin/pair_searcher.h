@@ -58,8 +58,12 @@ class PairSearcher {
 
  private:
   std::shared_ptr<const SubmapMatcher> Matcher(const SubmapEntry& entry) const;
-  // The search of the whole submap.
-  SubmapMatch SearchWhole(const SearchJob& job) const;
+  double MinScore(const SearchJob& job) const;
+  // The best match in the window or in the whole submap; (frame of the grid <-
+  // node).
+  SubmapMatch SearchExactly(SearchJob* job) const;
+  // The same in the whole submap by way of its best place.
+  SubmapMatch SearchPlaces(SearchJob* job) const;
   // (grid <- node) `refined` is that of the match.
   double SlideOddsOf(const SearchJob& job, const Pose2& refined) const;
 

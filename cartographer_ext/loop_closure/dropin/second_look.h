@@ -12,7 +12,9 @@
 //   around single matches   A match that nobody supports predicts its
 //                           neighbours, too. If the place is right, most of them
 //                           match where it puts them; in a place that merely
-//                           looks alike they soon do not. Such searches decide
+//                           looks alike they soon do not. Around a match in a
+//                           whole submap, which may show the place from another
+//                           side, it is enough that they pass verification. Such searches decide
 //                           about the match and give no loops themselves. They
 //                           are made when the robot has left the place, or at
 //                           the end of the run. Some matches that are certainly

@@ -102,19 +102,26 @@ PlaceMatcher::PlaceMatcher(const Grid2D& grid,
                                         kPlaceCells),
               scan_matching::ToSearchOptions(options)) {}
 
-SubmapMatch PlaceMatcher::Match(
-    const cartographer::sensor::PointCloud& cloud, const double min_score,
-    const std::function<std::shared_ptr<const SubmapMatcher>()>& exact) const {
-  const scan_matching::PlanarCloud points = scan_matching::ToPlanarCloud(cloud);
+absl::optional<Pose2> PlaceMatcher::Find(
+    const cartographer::sensor::PointCloud& cloud,
+    const double min_score) const {
   scan_matching::SearchBudget budget;
   budget.max_candidates = kMaxPlaces;
   const scan_matching::SearchResult place =
-      search_.MatchFullSubmap(points, static_cast<float>(min_score), budget);
-  if (!place.found) return SubmapMatch();
-  const double linear = kPlaceWindow * resolution_;
-  const double range = std::max(resolution_, FarthestRange(points));
-  return exact()->Match(place.pose, linear, std::min(kPi, linear / range),
-                        cloud, min_score);
+      search_.MatchFullSubmap(scan_matching::ToPlanarCloud(cloud),
+                              static_cast<float>(min_score), budget);
+  if (!place.found) return absl::nullopt;
+  return place.pose;
+}
+
+scan_matching::SearchWindow PlaceMatcher::WindowOf(
+    const cartographer::sensor::PointCloud& cloud) const {
+  scan_matching::SearchWindow window;
+  window.linear = kPlaceWindow * resolution_;
+  const double range =
+      std::max(resolution_, FarthestRange(scan_matching::ToPlanarCloud(cloud)));
+  window.angular = std::min(kPi, window.linear / range);
+  return window;
 }
 
 std::vector<SubmapRanking> MatchBestSubmaps(

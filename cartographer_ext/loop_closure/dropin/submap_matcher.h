@@ -6,10 +6,9 @@
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_SUBMAP_MATCHER_H_
 
 #include <cstddef>
-#include <functional>
-#include <memory>
 #include <vector>
 
+#include "absl/types/optional.h"
 #include "cartographer/mapping/2d/grid_2d.h"
 #include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/proto/scan_matching/fast_correlative_scan_matcher_options_2d.pb.h"
@@ -59,9 +58,9 @@ class SubmapMatcher {
   const scan_matching::FastCorrelativeMatcher2D matcher_;
 };
 
-// Finds in which part of a whole submap a scan fits best, in cells of a few
-// decimetres: a thousand times fewer poses than SubmapMatcher has, and the
-// place is the same unless two score alike. Does not refer to the grid after
+// Finds in which part of a whole submap a scan fits best, in cells of four times
+// the size: sixty times fewer poses than SubmapMatcher has, and the place is the
+// same unless two score alike. Does not refer to the grid after
 // construction. Thread-safe.
 class PlaceMatcher {
  public:
@@ -71,12 +70,13 @@ class PlaceMatcher {
   PlaceMatcher(const PlaceMatcher&) = delete;
   PlaceMatcher& operator=(const PlaceMatcher&) = delete;
 
-  // The best match in the whole submap, not better than `exact` finds it in the
-  // window around the best place. `exact` (of the same grid) is called if there
-  // is a place where the scan may score more than `min_score`.
-  SubmapMatch Match(
-      const cartographer::sensor::PointCloud& cloud, double min_score,
-      const std::function<std::shared_ptr<const SubmapMatcher>()>& exact) const;
+  // (frame of the grid <- cloud) of the best place, or empty if the scan scores
+  // more than `min_score` nowhere.
+  absl::optional<Pose2> Find(const cartographer::sensor::PointCloud& cloud,
+                             double min_score) const;
+  // In which SubmapMatcher finds the pose around such a place.
+  scan_matching::SearchWindow WindowOf(
+      const cartographer::sensor::PointCloud& cloud) const;
 
   size_t MemoryBytes() const { return search_.MemoryBytes(); }
 

@@ -45,7 +45,11 @@ class PlaceMatcherTest : public testing::Test {
   }
   SubmapMatch Match(const cartographer::sensor::PointCloud& cloud,
                     const double min_score) {
-    return places_.Match(cloud, min_score, [this]() { return Exact(); });
+    const absl::optional<Pose2> place = places_.Find(cloud, min_score);
+    if (!place.has_value()) return SubmapMatch();
+    const scan_matching::SearchWindow window = places_.WindowOf(cloud);
+    return Exact()->Match(*place, window.linear, window.angular, cloud,
+                          min_score);
   }
 
   host::ValueConversionTables tables_;
@@ -95,6 +99,17 @@ TEST_F(PlaceMatcherTest, TakesPointsThatAreNotFinite) {
   const SubmapMatch match = Match(cloud, 0.5);
   ASSERT_TRUE(match.found);
   EXPECT_LT(Between(pose, match.pose).translation().norm(), 0.06);
+}
+
+// Two cells of 0.2 m, and what they are at the range of the farthest point.
+TEST_F(PlaceMatcherTest, TheWindowFollowsTheRange) {
+  cartographer::sensor::PointCloud cloud;
+  cloud.push_back({Eigen::Vector3f(3.f, 4.f, 0.f)});
+  cloud.push_back({Eigen::Vector3f(1.f, 0.f, 0.f)});
+  EXPECT_NEAR(places_.WindowOf(cloud).linear, 0.4, 1e-12);
+  EXPECT_NEAR(places_.WindowOf(cloud).angular, 0.08, 1e-12);
+  // Nearer than a cell.
+  EXPECT_NEAR(places_.WindowOf({}).angular, 2., 1e-12);
 }
 
 TEST_F(PlaceMatcherTest, TakesAFractionOfTheMemory) {
