@@ -14,8 +14,11 @@ function(cartographer_ext_sanitize_all)
       add_library(cartographer_ext_uninstrumented_libraries OBJECT tests/thread_sanitizer/uninstrumented_libraries.cc)
       link_libraries($<TARGET_OBJECTS:cartographer_ext_uninstrumented_libraries>)
       foreach(symbol _ZN4absl7debian35Mutex4LockEv _ZN4absl7debian35Mutex6UnlockEv
-              _ZN4absl7debian35Mutex5AwaitERKNS0_9ConditionE _ZN4absl7debian312Notification6NotifyEv
+              _ZN4absl7debian35Mutex5AwaitERKNS0_9ConditionE _ZN4absl7debian35Mutex8LockWhenERKNS0_9ConditionE
+              _ZN4absl7debian35Mutex16AwaitWithTimeoutERKNS0_9ConditionENS0_8DurationE
+              _ZN4absl7debian312Notification6NotifyEv
               _ZNK4absl7debian312Notification19WaitForNotificationEv
+              _ZNK4absl7debian312Notification30WaitForNotificationWithTimeoutENS0_8DurationE
               _ZN4absl7debian315BlockingCounter14DecrementCountEv _ZN4absl7debian315BlockingCounter4WaitEv)
         add_link_options(-Wl,--wrap=${symbol})
       endforeach()

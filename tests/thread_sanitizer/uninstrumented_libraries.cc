@@ -14,9 +14,11 @@
 
 extern "C" {
 
-// CHOLMOD shares work among threads of OpenMP; neither library is instrumented.
+// CHOLMOD shares work among threads of OpenMP; neither library is instrumented,
+// nor is the deadlock detection of Abseil's mutex, which has its own lock.
 const char* __tsan_default_suppressions() {
-  return "called_from_lib:libcholmod\ncalled_from_lib:libgomp\n";
+  return "called_from_lib:libcholmod\ncalled_from_lib:libgomp\n"
+         "called_from_lib:libabsl_graphcycles_internal\n";
 }
 
 // The sanitizer's interface.
@@ -31,8 +33,15 @@ void __real__ZN4absl7debian35Mutex4LockEv(absl::Mutex* mutex);
 void __real__ZN4absl7debian35Mutex6UnlockEv(absl::Mutex* mutex);
 void __real__ZN4absl7debian35Mutex5AwaitERKNS0_9ConditionE(
     absl::Mutex* mutex, const absl::Condition& condition);
+void __real__ZN4absl7debian35Mutex8LockWhenERKNS0_9ConditionE(
+    absl::Mutex* mutex, const absl::Condition& condition);
+bool __real__ZN4absl7debian35Mutex16AwaitWithTimeoutERKNS0_9ConditionENS0_8DurationE(
+    absl::Mutex* mutex, const absl::Condition& condition,
+    absl::Duration timeout);
 void __real__ZN4absl7debian312Notification6NotifyEv(
     absl::Notification* notification);
+bool __real__ZNK4absl7debian312Notification30WaitForNotificationWithTimeoutENS0_8DurationE(
+    absl::Notification* notification, absl::Duration timeout);
 void __real__ZNK4absl7debian312Notification19WaitForNotificationEv(
     absl::Notification* notification);
 bool __real__ZN4absl7debian315BlockingCounter14DecrementCountEv(
@@ -63,6 +72,27 @@ void __wrap__ZN4absl7debian35Mutex5AwaitERKNS0_9ConditionE(
   __tsan_acquire(mutex);
 }
 
+void __wrap__ZN4absl7debian35Mutex8LockWhenERKNS0_9ConditionE(
+    absl::Mutex* const mutex, const absl::Condition& condition) {
+  AnnotateIgnoreReadsBegin(__FILE__, __LINE__);
+  __real__ZN4absl7debian35Mutex8LockWhenERKNS0_9ConditionE(mutex, condition);
+  AnnotateIgnoreReadsEnd(__FILE__, __LINE__);
+  __tsan_acquire(mutex);
+}
+
+bool __wrap__ZN4absl7debian35Mutex16AwaitWithTimeoutERKNS0_9ConditionENS0_8DurationE(
+    absl::Mutex* const mutex, const absl::Condition& condition,
+    const absl::Duration timeout) {
+  __tsan_release(mutex);
+  AnnotateIgnoreReadsBegin(__FILE__, __LINE__);
+  const bool holds =
+      __real__ZN4absl7debian35Mutex16AwaitWithTimeoutERKNS0_9ConditionENS0_8DurationE(
+          mutex, condition, timeout);
+  AnnotateIgnoreReadsEnd(__FILE__, __LINE__);
+  __tsan_acquire(mutex);
+  return holds;
+}
+
 void __wrap__ZN4absl7debian312Notification6NotifyEv(
     absl::Notification* const notification) {
   __tsan_release(notification);
@@ -73,6 +103,15 @@ void __wrap__ZNK4absl7debian312Notification19WaitForNotificationEv(
     absl::Notification* const notification) {
   __real__ZNK4absl7debian312Notification19WaitForNotificationEv(notification);
   __tsan_acquire(notification);
+}
+
+bool __wrap__ZNK4absl7debian312Notification30WaitForNotificationWithTimeoutENS0_8DurationE(
+    absl::Notification* const notification, const absl::Duration timeout) {
+  const bool notified =
+      __real__ZNK4absl7debian312Notification30WaitForNotificationWithTimeoutENS0_8DurationE(
+          notification, timeout);
+  __tsan_acquire(notification);
+  return notified;
 }
 
 bool __wrap__ZN4absl7debian315BlockingCounter14DecrementCountEv(
