@@ -21,6 +21,9 @@ const char* __tsan_default_suppressions() {
          "called_from_lib:libabsl_graphcycles_internal\n";
 }
 
+// Configurations are checked in a child process, which may start threads.
+const char* __tsan_default_options() { return "die_after_fork=0"; }
+
 // The sanitizer's interface.
 void __tsan_acquire(void* address);
 void __tsan_release(void* address);
