@@ -42,7 +42,7 @@ class TypicalFit {
   // `fit`: mean probability under the points of a scan, in [0, 1].
   void Add(int trajectory_id, double fit);
   // Factor on minimum scores of a search in a window or a whole submap, in
-  // [least_scale, 1].
+  // [least_scale, 1] or [least_scale_of_whole, 1].
   double Scale(int trajectory_id, bool is_whole) const;
   void DeleteTrajectory(int trajectory_id) { fits_.erase(trajectory_id); }
 

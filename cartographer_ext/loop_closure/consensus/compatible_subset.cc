@@ -17,8 +17,6 @@ constexpr double kLeastClusterWeight = 0.1;
 // Of the sigmas of both predictions: a cycle that closes within it would hardly
 // do so by chance.
 constexpr double kFarOffShare = 0.1;
-// Of odds_per_far_revisit_.
-constexpr double kMostOddsPerFarRevisit = 10.;
 // Of the best score of a cluster; rivals below are none.
 constexpr double kRivalScore = 0.5;
 // After a clique search that reached its limit, the next ones continue from its
@@ -73,6 +71,8 @@ bool SameTrajectory(const uncertainty::LoopEdge& edge) {
 }
 
 }  // namespace
+
+constexpr double CompatibleSubset::kMostOddsPerFarRevisit;
 
 CompatibleSubset::CompatibleSubset(
     const CompatibleSubsetOptions& options,
@@ -196,10 +196,12 @@ double CompatibleSubset::Support(const int index, const bool of_subset,
     const uncertainty::LoopEdge& other = clusters_[j].leader.edge;
     vertices.push_back(other.b.InSequenceWith(edge.b) ? other.b : other.a);
   }
-  if (log_odds != nullptr) {
-    *log_odds = SumOfBest(std::move(shares), options_.max_revisits_for_odds);
+  if (SameTrajectory(edge)) {
+    if (log_odds != nullptr) {
+      *log_odds = SumOfBest(std::move(shares), options_.max_revisits_for_odds);
+    }
+    return sum;
   }
-  if (SameTrajectory(edge)) return sum;
   std::sort(vertices.begin(), vertices.end());
   std::vector<uncertainty::VertexId> places = {edge.b};
   for (const uncertainty::VertexId& vertex : vertices) {

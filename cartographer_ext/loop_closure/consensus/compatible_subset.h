@@ -190,7 +190,7 @@ class CompatibleSubset {
 
   // The factor on the odds for a revisit that agrees where both were searched
   // far off: wrong ones agree as often as places look alike. At least
-  // `odds_per_revisit` and at most 10 are used.
+  // `odds_per_revisit` and at most kMostOddsPerFarRevisit are used.
   void SetOddsPerFarRevisit(double odds);
 
   // Repeats all pairwise tests, after a change of the drift of the paths.
@@ -219,6 +219,9 @@ class CompatibleSubset {
   int64_t num_clique_steps() const { return num_clique_steps_; }
 
  private:
+  // Of places of which a tenth look alike.
+  static constexpr double kMostOddsPerFarRevisit = 10.;
+
   enum class Relation : char {
     kUntestable,  // no path between the loops
     kVague,       // closes, but is not informative
@@ -288,7 +291,7 @@ class CompatibleSubset {
   // relations_[i][j] for j < i.
   std::vector<std::vector<Relation>> relations_;
   std::vector<SubsetDecision> overflow_;  // decided by MakeRoom
-  double odds_per_far_revisit_ = 10.;
+  double odds_per_far_revisit_ = kMostOddsPerFarRevisit;
   bool changed_ = false;
   bool exact_ = true;
   int64_t num_clique_steps_ = 0;

@@ -32,6 +32,20 @@ class RobustSolverReuseTest : public ::testing::Test {
     for (size_t i = 5; i < poses.size(); i += 10) poses[i].x += 0.5;
     return poses;
   }
+  // Of the solution of disturbed poses, at the cost of an exact one.
+  void ExpectSharedFactors(const std::vector<WhitenedEdge>& edges,
+                           SolverOptions options) const {
+    std::vector<Pose2> poses = Disturbed(), exact = poses;
+    options.initial_lambda = 1e-8;
+    const SolverSummary summary = SolveRobust(edges, options, &poses);
+    EXPECT_TRUE(summary.converged);
+    EXPECT_LT(summary.factorizations, summary.iterations);
+    options.cost_tolerance = 1e-14;
+    const SolverSummary reference = SolveRobust(edges, options, &exact);
+    EXPECT_NEAR(summary.final_cost, reference.final_cost,
+                1e-6 * reference.final_cost);
+  }
+
   test::GridWorld world_;
   std::vector<WhitenedEdge> clean_;
   std::vector<WhitenedEdge> dirty_;
@@ -39,16 +53,7 @@ class RobustSolverReuseTest : public ::testing::Test {
 };
 
 TEST_F(RobustSolverReuseTest, LastStepsShareAFactor) {
-  std::vector<Pose2> poses = Disturbed(), exact = poses;
-  SolverOptions options;
-  options.initial_lambda = 1e-8;
-  const SolverSummary summary = SolveRobust(clean_, options, &poses);
-  EXPECT_TRUE(summary.converged);
-  EXPECT_LT(summary.factorizations, summary.iterations);
-  options.cost_tolerance = 1e-14;
-  const SolverSummary reference = SolveRobust(clean_, options, &exact);
-  EXPECT_NEAR(summary.final_cost, reference.final_cost,
-              1e-6 * reference.final_cost);
+  ExpectSharedFactors(clean_, SolverOptions());
 }
 
 TEST_F(RobustSolverReuseTest, RoughSolutionsHaveNoStepsToSpare) {
@@ -62,17 +67,9 @@ TEST_F(RobustSolverReuseTest, RoughSolutionsHaveNoStepsToSpare) {
 }
 
 TEST_F(RobustSolverReuseTest, ReweightedStepsShareAFactor) {
-  std::vector<Pose2> poses = Disturbed(), exact = poses;
   SolverOptions options;
   options.kernel = DefaultKernel(KernelType::kGemanMcClure);
-  options.initial_lambda = 1e-8;
-  const SolverSummary summary = SolveRobust(dirty_, options, &poses);
-  EXPECT_TRUE(summary.converged);
-  EXPECT_LT(summary.factorizations, summary.iterations);
-  options.cost_tolerance = 1e-14;
-  const SolverSummary reference = SolveRobust(dirty_, options, &exact);
-  EXPECT_NEAR(summary.final_cost, reference.final_cost,
-              1e-6 * reference.final_cost);
+  ExpectSharedFactors(dirty_, options);
 }
 
 TEST_F(RobustSolverReuseTest, PolishesMeetInOneSolution) {
