@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "Eigen/Cholesky"
-#include "Eigen/LU"
 #include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
@@ -189,36 +188,6 @@ bool MorePossibleThanByChance(const std::vector<Innovation>& innovations) {
       innovations.begin(), innovations.end(),
       [](const Innovation& innovation) { return innovation.chi2 < kChi2Gate; });
   return possible > kMaxByChance;
-}
-
-double LogArea(const std::vector<Pose2>& poses) {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Pose2& pose : poses) mean += pose.translation();
-  mean /= poses.size();
-  double sum = 0.;
-  for (const Pose2& pose : poses) {
-    sum += (pose.translation() - mean).squaredNorm();
-  }
-  return std::log(kPi * std::max(1e-6, 2. * sum / poses.size()));
-}
-
-double LogVolume(const WhitenedEdge& edge, const double log_area) {
-  return log_area + std::log(2. * kPi) +
-         std::log(std::abs(edge.whitening.determinant())) -
-         1.5 * std::log(2. * kPi);
-}
-
-double LogEvidence(const WhitenedEdge& edge, const Innovation& innovation,
-                   const double log_area) {
-  return LogVolume(edge, log_area) -
-         0.5 * (innovation.chi2 + innovation.log_determinant);
-}
-
-double ChanceToFit(const WhitenedEdge& edge, const double log_area,
-                   const double gate) {
-  const double log_ball =
-      std::log(4. / 3. * kPi) + 1.5 * std::log(gate / (2. * kPi));
-  return std::exp(std::min(0., log_ball - LogVolume(edge, log_area)));
 }
 
 bool GrowLoops(const LoopSupport& support, const GrowthOptions& options,

@@ -25,6 +25,7 @@
 
 #include "cartographer_ext/optimization/graph/pose_graph.h"
 #include "cartographer_ext/optimization/offline/loop_support.h"
+#include "cartographer_ext/optimization/solvers/loop_evidence.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
@@ -43,12 +44,6 @@ struct GrowthOptions {
 // Poses times loops beyond which the search by groups is too expensive.
 constexpr double kMaxGrowthWork = 4e6;
 
-// Squared innovation of a loop and the size of its covariance.
-struct Innovation {
-  double chi2 = 0.;             // d2
-  double log_determinant = 0.;  // of S
-};
-
 // Innovations of `loops` with regard to the poses and the edges in force
 // (weight 1; loops with weight 0 are not). Empty when the edges in force do not
 // determine the poses.
@@ -60,22 +55,6 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
 // Whether more rejected loops are within the gate than expected of wrong ones
 // by chance: then the map may lack right ones.
 bool MorePossibleThanByChance(const std::vector<Innovation>& innovations);
-
-// Logarithm of the area (square metres) that poses are spread over.
-double LogArea(const std::vector<Pose2>& poses);
-
-// Logarithm of the volume of all relative poses within an area, in whitened
-// units of `edge`, over (2 pi)^(3/2): what a wrong loop's density is compared
-// with.
-double LogVolume(const WhitenedEdge& edge, double log_area);
-
-// log N(r; 0, S) - log 1 / (2 pi A det W^-1) of a loop with this innovation.
-double LogEvidence(const WhitenedEdge& edge, const Innovation& innovation,
-                   double log_area);
-
-// Probability that a loop which leads anywhere in the area has a chi2 below the
-// gate.
-double ChanceToFit(const WhitenedEdge& edge, double log_area, double gate);
 
 // Replaces `poses` by a solution with the accepted loops, given by `weights`,
 // one per edge. `solver` is that of `edges`. Odometry must reach all poses.

@@ -118,6 +118,13 @@ bool IncrementalFactor::Update(const LinearFactor& factor,
   return ok;
 }
 
+bool IncrementalFactor::Attach(const LinearFactor& factor) {
+  const int64_t version = version_;
+  const bool ok = Update(factor, 1.);
+  version_ = version;
+  return ok;
+}
+
 Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
     const LinearFactor& factor) const {
   const BlockKernels& kernels = BestBlockKernels();

@@ -51,8 +51,18 @@ class IncrementalFactor {
   // factor is then invalid.
   bool Update(const LinearFactor& factor, double weight);
 
+  // The same with weight one for the first measurement of the variable appended
+  // last, where that gives the variable its value: the solution of all others
+  // stays as it is, and what is known of it.
+  bool Attach(const LinearFactor& factor);
+
   // J H^-1 J' (3 x 3): covariance of the measurement's prediction.
   Eigen::Matrix3d PredictedCovariance(const LinearFactor& factor) const;
+
+  // Covariance (3 x 3) of the variable that is last in the order.
+  const Eigen::Matrix3d& LastCovariance() const {
+    return columns_.back().pivot_inverse;
+  }
 
   // Solution of H x = b for one variable, 0 for -1. Intermediate results are
   // reused by later calls until the factor changes.

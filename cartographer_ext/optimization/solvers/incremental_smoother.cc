@@ -5,12 +5,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Eigen/Cholesky"
 #include "Eigen/Eigenvalues"
+#include "Eigen/LU"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/common/thread_time.h"
+#include "cartographer_ext/optimization/solvers/loop_evidence.h"
 
 namespace cartographer_ext {
 namespace optimization {
+namespace {
+
+// Odds, times the number of rejected loops, that the evidence of a loop must
+// exceed: of all that are certain a few at most are expected to be wrong.
+constexpr double kOddsOfCertain = 10.;
+// Share of the poses after which an epoch on a large map ends in any case.
+constexpr double kLargeMapShare = 0.1;
+// Multiplications with a block, of an update and of a prediction.
+constexpr double kWorkOfUpdate = 54., kWorkOfPrediction = 27.;
+
+}  // namespace
 
 double MinimizeSwitch(const Eigen::Vector3d& squared_innovation,
                       const Eigen::Vector3d& predicted_variance,
@@ -106,14 +120,7 @@ absl::Status IncrementalSmoother::AddPose(
   for (const PoseGraphEdge& edge : edges) {
     if (!edge.is_loop) RefreshPose(std::min(edge.from, edge.to));
   }
-  const Pose2 pose =
-      odometry->to == number
-          ? poses_[odometry->from] * odometry->measurement
-          : poses_[odometry->to] * odometry->measurement.Inverse();
-  poses_.push_back(pose);
-  linearization_poses_.push_back(pose);
-  factor_.Append();
-  ++poses_in_epoch_;
+  AppendPose(*odometry);
   for (const PoseGraphEdge& edge : edges) {
     const int index = edges_.size();
     edges_.push_back(Whiten(edge));
@@ -121,9 +128,11 @@ absl::Status IncrementalSmoother::AddPose(
     decided_.push_back(!edge.is_loop);
     if (edge.is_loop) {
       waiting_.push_back(index);
+    } else if (&edge == odometry) {
+      NoteUpdate(factor_.Attach(LinearizeEdge(edges_.back())));
     } else {
-      UpdateFactor(LinearizeEdge(edges_.back()), 1.);
-      if (&edge != odometry) estimate_outdated_ = true;
+      NoteUpdate(factor_.Update(LinearizeEdge(edges_.back()), 1.));
+      estimate_outdated_ = true;
     }
   }
   StepReport result;
@@ -133,12 +142,8 @@ absl::Status IncrementalSmoother::AddPose(
     ++result.loops_tested;
     waiting_.pop_front();
   }
-  // The end of an epoch takes time in proportion to the poses, so that epochs
-  // of a fixed length would take time in proportion to their square.
-  const double share =
-      num_poses() <= options_.large_map ? options_.epoch_share : 0.1;
-  if (poses_in_epoch_ >=
-      std::max<double>(options_.epoch_poses, share * num_poses())) {
+  covariances_.resize(num_poses(), factor_.LastCovariance());
+  if (EpochIsDue()) {
     SolveEpoch();
     if (num_poses() <= options_.two_step_map) TakeOverEpoch();
     result.epoch = true;
@@ -148,9 +153,33 @@ absl::Status IncrementalSmoother::AddPose(
   return status_;
 }
 
-void IncrementalSmoother::UpdateFactor(const LinearFactor& factor,
-                                       const double weight) {
-  if (!factor_.Update(factor, weight)) {
+void IncrementalSmoother::AppendPose(const PoseGraphEdge& odometry) {
+  const int number = num_poses();
+  uncertainty::UncertainPose motion{odometry.measurement,
+                                    odometry.information.inverse()};
+  if (odometry.from == number) motion = uncertainty::Invert(motion);
+  drift_ = uncertainty::Compose(drift_, motion);
+  const Pose2 pose = poses_[std::min(odometry.from, odometry.to)] * motion.pose;
+  poses_.push_back(pose);
+  linearization_poses_.push_back(pose);
+  factor_.Append();
+  ++poses_in_epoch_;
+}
+
+bool IncrementalSmoother::EpochIsDue() const {
+  // The end of an epoch takes time in proportion to the poses, so that epochs
+  // of a fixed length would take time in proportion to their square.
+  const double share =
+      num_poses() <= options_.large_map || work_of_steps_ > work_of_last_end_
+          ? options_.epoch_share
+          : kLargeMapShare;
+  return poses_in_epoch_ >=
+         std::max<double>(options_.epoch_poses, share * num_poses());
+}
+
+void IncrementalSmoother::NoteUpdate(const bool succeeded) {
+  work_of_steps_ += kWorkOfUpdate * factor_.last_update_blocks();
+  if (!succeeded) {
     status_ = absl::InternalError(
         absl::StrCat("the factor is lost to rounding at pose ", num_poses() - 1,
                      ": information matrices are too uneven"));
@@ -169,6 +198,45 @@ double IncrementalSmoother::EstimateSwitch(
   return MinimizeSwitch(u.cwiseAbs2(), eigen.eigenvalues(), w);
 }
 
+bool IncrementalSmoother::SaysLittle(const WhitenedEdge& edge,
+                                     const LinearFactor& factor) const {
+  const int newest = num_poses() - 1;
+  Eigen::Matrix3d jacobian =
+      edge.from == newest ? factor.jacobian_a : factor.jacobian_b;
+  const double c = std::cos(poses_[newest].theta);
+  const double s = std::sin(poses_[newest].theta);
+  jacobian.leftCols<2>() *= (Eigen::Matrix2d() << c, -s, s, c).finished();
+  return (jacobian * drift_.covariance * jacobian.transpose()).trace() < 1.;
+}
+
+bool IncrementalSmoother::IsCertain(const WhitenedEdge& edge,
+                                    const LinearFactor& factor,
+                                    const Eigen::Vector3d& residual) {
+  // The difference of two poses varies by at most twice the sum of their
+  // covariances, which saves most predictions.
+  Eigen::Matrix3d bound = Eigen::Matrix3d::Identity();
+  const auto add = [&](const int pose, const Eigen::Matrix3d& jacobian) {
+    if (pose == 0) return;
+    const Eigen::Matrix3d& covariance =
+        pose < static_cast<int>(covariances_.size()) ? covariances_[pose]
+                                                     : factor_.LastCovariance();
+    bound += 2. * jacobian * covariance * jacobian.transpose();
+  };
+  add(edge.from, factor.jacobian_a);
+  add(edge.to, factor.jacobian_b);
+  if (residual.dot(bound.llt().solve(residual)) >= options_.gate) return false;
+  const Eigen::LLT<Eigen::Matrix3d> root(Eigen::Matrix3d::Identity() +
+                                         factor_.PredictedCovariance(factor));
+  work_of_steps_ += kWorkOfPrediction * factor_.last_prediction_blocks();
+  Innovation innovation;
+  innovation.chi2 = residual.dot(root.solve(residual));
+  innovation.log_determinant =
+      2. * root.matrixLLT().diagonal().array().log().sum();
+  return innovation.chi2 < options_.gate &&
+         LogEvidence(edge, innovation, log_area_) >
+             std::log(kOddsOfCertain * (1. + num_rejected_));
+}
+
 bool IncrementalSmoother::TestLoop(const int edge_index) {
   const WhitenedEdge& edge = edges_[edge_index];
   RefreshPose(edge.from);
@@ -176,9 +244,23 @@ bool IncrementalSmoother::TestLoop(const int edge_index) {
   const LinearFactor factor = LinearizeEdge(edge);
   const Eigen::Vector3d residual =
       Residual(edge, poses_[edge.from], poses_[edge.to]);
+  if (num_poses() > options_.large_map &&
+      residual.squaredNorm() < options_.gate && SaysLittle(edge, factor)) {
+    return false;
+  }
   const double s = EstimateSwitch(factor, residual);
-  if (s * s < options_.skip_weight) return false;
-  UpdateFactor(factor, s * s);
+  double weight = s * s;
+  if (weight < options_.skip_weight) {
+    if (num_poses() <= options_.large_map ||
+        !IsCertain(edge, factor, residual)) {
+      ++num_rejected_;
+      return false;
+    }
+    weight = 1.;
+    predicted_.push_back(edge_index);
+  }
+  NoteUpdate(factor_.Update(factor, weight));
+  drift_ = uncertainty::UncertainPose();
   accepted_[edge_index] = true;
   estimate_outdated_ = true;
   return true;

@@ -28,8 +28,21 @@
 // that a wrong loop accepted early is rejected later (late rejection) and a
 // true one is accepted again (readmission); both can be disabled.
 //
+// On a map of more than `large_map` poses epochs are long, and a loop costs a path through most of the
+// factor and fills it. There
+//   - a loop that is far from the current poses is predicted as soon as it
+//     comes, so that the map does not lag behind until hypotheses, of which most
+//     loops would have to agree, cannot help any more: if the uncertainty of the
+//     poses explains the loop and a wrong one would hardly be there by chance
+//     (loop_evidence.h), it enters with its full weight, and the end of the
+//     epoch is solved with it in force before it is judged with all others;
+//   - a loop that agrees waits for the end of the epoch while odometry since the
+//     last one is less uncertain than its own measurement;
+//   - an epoch ends early when its steps have taken as much work as the end of
+//     the last one.
+//
 // A step is bounded: at most `max_loops_per_step` loops are tested, the rest
-// are deferred to the next steps. The end of an epoch on a large map takes two
+// are deferred to the next steps. Beyond `two_step_map` the end of an epoch takes two
 // steps: the last one of the epoch solves the graph, and the next one rebuilds
 // the factor and tries hypotheses before its pose is added.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
@@ -43,6 +56,7 @@
 #include "cartographer_ext/optimization/graph/pose_graph.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -60,7 +74,8 @@ struct SmootherOptions {
   double epoch_share = 0.025;
   // With more poses than this the end of an epoch takes two steps.
   int two_step_map = 7000;
-  // With more poses than this an epoch is as long as a tenth of them.
+  // With more poses than this an epoch is as long as a tenth of them unless its
+  // work ends it earlier, and loops are predicted or wait, see above.
   int large_map = 12000;
   // Pointwise is the default: the joint estimate closes larger gaps at once,
   // but accepts whatever the uncertainty allows, and fails when nine out of ten
@@ -148,17 +163,28 @@ class IncrementalSmoother {
   // first.
   void SolveEpoch();
   void TakeOverEpoch();
-  void UpdateFactor(const LinearFactor& factor, double weight);
+  void AppendPose(const PoseGraphEdge& odometry);
+  bool EpochIsDue() const;
+  // Counts the work of the last update of the factor and its success.
+  void NoteUpdate(bool succeeded);
   LinearFactor LinearizeEdge(const WhitenedEdge& edge) const;
   Eigen::Vector3d Offset(int pose) const;
   // Estimates the switch of a loop and adds it. Returns whether it was added.
   bool TestLoop(int edge_index);
+  // Whether odometry since the last loop that has entered is less uncertain than
+  // the loop, seen from the newest pose.
+  bool SaysLittle(const WhitenedEdge& edge, const LinearFactor& factor) const;
+  // Whether the uncertainty of the poses explains the residual of a right loop,
+  // while a wrong one would hardly come as close.
+  bool IsCertain(const WhitenedEdge& edge, const LinearFactor& factor,
+                 const Eigen::Vector3d& residual);
   double EstimateSwitch(const LinearFactor& factor,
                         const Eigen::Vector3d& residual) const;
   void UpdateEstimate() const;
   // Updates the estimate of one pose.
   void RefreshPose(int pose);
   SolverOptions EpochSolverOptions() const;
+  void SolveWithPredicted(const SolverOptions& options);
   void DecideLoops();
   void RebuildFactor(RobustSolver* batch);
   std::vector<Candidate> FindCandidates(int first_edge, double majority) const;
@@ -177,8 +203,15 @@ class IncrementalSmoother {
   const SmootherOptions options_;
   std::vector<WhitenedEdge> edges_;
   std::vector<bool> accepted_;
-  std::vector<bool> decided_;  // loops that went through an epoch
-  std::deque<int> waiting_;    // loops not yet tested
+  std::vector<bool> decided_;   // loops that went through an epoch
+  std::deque<int> waiting_;     // loops not yet tested
+  std::vector<int> predicted_;  // loops of this epoch that entered as certain
+  int num_rejected_ = 0;        // loops that are not in force
+  // Of each pose when it was new. More loops only make a pose more certain.
+  std::vector<Eigen::Matrix3d> covariances_;
+  // Motion by odometry since the last loop that has entered.
+  uncertainty::UncertainPose drift_;
+  double log_area_ = 0.;  // LogArea() at the end of the last epoch
   mutable std::vector<Pose2> poses_;
   std::vector<Pose2> linearization_poses_;
   IncrementalFactor factor_;
@@ -186,6 +219,9 @@ class IncrementalSmoother {
   absl::Status status_;
   int poses_in_epoch_ = 0;
   int first_edge_of_epoch_ = 0;
+  // Multiplications.
+  double work_of_steps_ = 0.;  // in this epoch
+  double work_of_last_end_ = 0.;
   std::unique_ptr<RobustSolver> batch_;  // of an epoch whose factor is to come
   int num_late_rejections_ = 0;
   int num_readmissions_ = 0;

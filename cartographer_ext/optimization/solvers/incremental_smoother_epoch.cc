@@ -10,6 +10,7 @@
 #include "absl/memory/memory.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/optimization/solvers/incremental_smoother.h"
+#include "cartographer_ext/optimization/solvers/loop_evidence.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -90,12 +91,22 @@ void IncrementalSmoother::SolveEpoch() {
   }
   batch_ =
       absl::make_unique<RobustSolver>(edges_, RobustSolver::LastPoseLast());
+  SolveWithPredicted(solver);
   batch_->Solve(solver, &poses_);
+  log_area_ = LogArea(poses_);
   if (options_.late_rejection && options_.readmission && KernelIsNarrow()) {
     PolishTruncated(options_.gate, options_.polish_rounds, batch_.get(),
                     &poses_, nullptr);
   }
   DecideLoops();
+}
+
+void IncrementalSmoother::SolveWithPredicted(const SolverOptions& options) {
+  if (predicted_.empty()) return;
+  for (const int i : predicted_) edges_[i].is_loop = false;
+  batch_->Solve(options, &poses_);
+  for (const int i : predicted_) edges_[i].is_loop = true;
+  predicted_.clear();
 }
 
 void IncrementalSmoother::TakeOverEpoch() {
@@ -111,14 +122,18 @@ void IncrementalSmoother::TakeOverEpoch() {
     UpdateEstimate();
   }
   first_edge_of_epoch_ = edges_.size();
+  work_of_steps_ = 0.;
+  work_of_last_end_ = batch->work();
 }
 
 void IncrementalSmoother::DecideLoops() {
+  num_rejected_ = 0;
   for (size_t i = 0; i != edges_.size(); ++i) {
     const WhitenedEdge& edge = edges_[i];
     if (!edge.is_loop) continue;
     const bool accept =
         Chi2(edge, poses_[edge.from], poses_[edge.to]) < options_.gate;
+    num_rejected_ += !accept;
     if (!decided_[i]) {
       accepted_[i] = accept;
       decided_[i] = true;
@@ -323,11 +338,16 @@ void IncrementalSmoother::Finish() {
 }
 
 bool IncrementalSmoother::KernelIsNarrow() const {
-  if (!LoopsAgree(edges_, poses_, options_.gate, 0.5)) return false;
-  double weights = 0.;
-  int agreeing = 0;
+  // Too few to say: less than half of the loops, and no more than there may be
+  // by chance.
+  constexpr double kFewOverChance = 100.;
+  const double log_area = LogArea(poses_);
+  double weights = 0., by_chance = 0.;
+  int loops = 0, agreeing = 0;
   for (const WhitenedEdge& edge : edges_) {
     if (!edge.is_loop) continue;
+    ++loops;
+    by_chance += ChanceToFit(edge, log_area, options_.gate);
     const double chi2 = Chi2(edge, poses_[edge.from], poses_[edge.to]);
     if (chi2 >= options_.gate) continue;
     ++agreeing;
@@ -335,7 +355,8 @@ bool IncrementalSmoother::KernelIsNarrow() const {
                               AcsShape(options_.epoch_kernel))
                    .weight;
   }
-  return weights < 0.5 * agreeing;
+  return agreeing >= std::min(0.5 * loops, kFewOverChance * by_chance) &&
+         weights < 0.5 * agreeing;
 }
 
 void IncrementalSmoother::TryWiderKernels(RobustSolver* const batch) {

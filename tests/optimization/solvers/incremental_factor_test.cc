@@ -114,6 +114,32 @@ TEST_F(IncrementalFactorTest, PredictedCovariance) {
   ExpectEqual(1e-8);
 }
 
+TEST_F(IncrementalFactorTest, TheLastVariableHasItsCovariance) {
+  Grow(30, 20);
+  LinearFactor last;
+  last.b = 29;
+  last.jacobian_b.setIdentity();
+  EXPECT_LT((factor_.LastCovariance() - dense_.Predicted(last)).norm(), 1e-9);
+}
+
+// What a new variable gets from the first measurement moves no other one.
+TEST_F(IncrementalFactorTest, AttachingAVariableMovesNoOther) {
+  Grow(30, 20);
+  const Eigen::Vector3d before = factor_.SolveFor(3);
+  LinearFactor factor = RandomFactor(12, 30, &random_);
+  factor.target += factor.jacobian_a * factor_.SolveFor(12);
+  factor_.Append();
+  ASSERT_TRUE(factor_.Attach(factor));
+  dense_.Add(factor, 1.);
+  EXPECT_EQ(factor_.SolveFor(3), before);
+  ExpectEqual(1e-8);
+  // The jump of a later measurement is noticed.
+  Add(RandomFactor(2, 30, &random_), 1.);
+  EXPECT_NE(factor_.SolveFor(3), before);
+  EXPECT_LT((factor_.SolveFor(30) - dense_.Solve().segment<3>(90)).norm(),
+            1e-8);
+}
+
 TEST_F(IncrementalFactorTest, DowndateUndoesUpdate) {
   Grow(20, 20);
   Eigen::VectorXd before, after;

@@ -262,6 +262,112 @@ TEST(IncrementalSmootherTest, LoopsThatLeadToTheSameMapAreOneHypothesis) {
   for (const bool accepted : smoother.accepted()) EXPECT_TRUE(accepted);
 }
 
+PoseGraphEdge MakeEdge(const int from, const int to, const Pose2& measurement,
+                       const double sigma, const double angle_sigma) {
+  PoseGraphEdge edge;
+  edge.from = from;
+  edge.to = to;
+  edge.measurement = measurement;
+  edge.information = Eigen::Vector3d(1. / (sigma * sigma), 1. / (sigma * sigma),
+                                     1. / (angle_sigma * angle_sigma))
+                         .asDiagonal();
+  edge.is_loop = to != from + 1;
+  return edge;
+}
+
+// A lap of a circle of 100 m whose heading is off by a standard deviation, and
+// metres with it, when the loop to its start comes.
+TEST(IncrementalSmootherTest, ALargeMapTakesInWhatItsUncertaintyExplains) {
+  constexpr int kLap = 100;
+  for (const bool is_large : {false, true}) {
+    SmootherOptions options;
+    options.epoch_poses = 1000;
+    options.max_hypotheses = 0;
+    options.large_map = is_large ? 10 : 1000;
+    IncrementalSmoother smoother(options, Pose2());
+    for (int k = 1; k <= kLap; ++k) {
+      const double turn = 2. * kPi / kLap;
+      std::vector<PoseGraphEdge> edges = {
+          MakeEdge(k - 1, k, Pose2(1., 0., turn + 0.002), 0.01, 0.02)};
+      // The other side of the circle is not the start.
+      if (k == 60 || k == kLap) {
+        edges.push_back(MakeEdge(0, k, Pose2(), 0.05, 0.02));
+      }
+      if (k == kLap) smoother.EndEpoch();
+      StepReport report;
+      ASSERT_TRUE(smoother.AddPose(edges, &report).ok());
+      EXPECT_EQ(report.loops_entered, is_large && k == kLap) << k;
+    }
+    const auto distance = [&] {
+      return smoother.poses().back().translation().norm();
+    };
+    EXPECT_EQ(distance() < 0.5, is_large) << distance();
+    smoother.EndEpoch();
+    EXPECT_EQ(distance() < 0.1, is_large) << distance();
+    EXPECT_EQ(smoother.accepted().back(), is_large);
+    EXPECT_FALSE(smoother.accepted()[60]);
+  }
+}
+
+TEST(IncrementalSmootherTest, OnALargeMapLoopsThatSayLittleWait) {
+  for (const bool is_large : {false, true}) {
+    SmootherOptions options;
+    options.epoch_poses = 1000;
+    options.large_map = is_large ? 10 : 1000;
+    IncrementalSmoother smoother(options, Pose2());
+    int entered = 0;
+    for (int k = 1; k <= 40; ++k) {
+      std::vector<PoseGraphEdge> edges = {
+          MakeEdge(k - 1, k, Pose2(1., 0., 0.), 0.02, 0.002)};
+      if (k > 10) {
+        edges.push_back(MakeEdge(k - 10, k, Pose2(10., 0., 0.), 0.05, 0.01));
+      }
+      StepReport report;
+      ASSERT_TRUE(smoother.AddPose(edges, &report).ok());
+      entered += report.loops_entered;
+    }
+    if (is_large) {
+      EXPECT_GE(entered, 6);
+      EXPECT_LE(entered, 12);
+    } else {
+      EXPECT_EQ(entered, 30);
+    }
+    smoother.EndEpoch();
+    for (const bool accepted : smoother.accepted()) EXPECT_TRUE(accepted);
+  }
+}
+
+// Loops whose noise is that of their matrices have hardly any weight with the
+// kernel of the epochs, which rejects some until they are decided and solved in
+// turn. Also where most loops are wrong.
+TEST(IncrementalSmootherTest, EpochsKeepRightLoopsAmongMoreWrongOnes) {
+  Random random(5);
+  const auto noise = [&](const double sigma, const double angle_sigma) {
+    return Pose2(sigma * random.Normal(), sigma * random.Normal(),
+                 angle_sigma * random.Normal());
+  };
+  const SmootherOptions options;
+  IncrementalSmoother smoother(options, Pose2());
+  int right = 0;
+  for (int k = 1; k <= 300; ++k) {
+    std::vector<PoseGraphEdge> edges = {MakeEdge(
+        k - 1, k, Pose2(1., 0., 0.) * noise(0.02, 0.001), 0.02, 0.001)};
+    if (k > 20) {
+      edges.push_back(MakeEdge(
+          k - 20, k, Pose2(20., 0., 0.) * noise(0.05, 0.01), 0.05, 0.01));
+      edges.push_back(MakeEdge(k / 3, k, noise(0.3, 0.2), 0.05, 0.01));
+      edges.push_back(MakeEdge(k / 5, k, noise(0.3, 0.2), 0.05, 0.01));
+      ++right;
+    }
+    ASSERT_TRUE(smoother.AddPose(edges, nullptr).ok());
+  }
+  int accepted = 0;
+  for (size_t i = 0; i != smoother.edges().size(); ++i) {
+    accepted += smoother.edges()[i].is_loop && smoother.accepted()[i];
+  }
+  EXPECT_GE(accepted, 0.96 * right) << right;
+}
+
 TEST(IncrementalSmootherTest, Errors) {
   const SmootherOptions options;
   IncrementalSmoother smoother(options, Pose2(0., 0., 0.));
