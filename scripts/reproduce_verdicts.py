@@ -20,7 +20,7 @@ KINDS = ("office", "hotel", "warehouse")
 LASERS = ("ld06", "rplidar_a1", "urg_04lx", "sick_lms", "utm_30lx", "depth_camera")
 GRADES = ("fair", "poor")
 TREATMENTS = ("ours", "stock", "credulous", "ours", "bent", "moved", "ours", "no_loops", "floors")
-SEED = 3000  # of the first case
+SEED = 30000  # of the first case
 SOUND_LOOP_ERROR = 0.2  # metres, mean over relations of revisits, and over those of any two scans
 PAIRS = 500  # of scans at any two times
 TRUTHS = ("sound", "bent", "broken")
@@ -54,12 +54,14 @@ LUA_END = "return { map_builder = MAP_BUILDER, trajectory_builder = TRAJECTORY_B
 
 
 def cases(count):
-    """`count` cases (kind, laser, grade, seed, treatment)."""
+    """`count` cases (kind, laser, grade, seed, treatment): of 162 cases each treatment has every kind with every laser once, of 324 with
+    both grades."""
     result = []
+    pairs = len(KINDS) * len(LASERS)
     for i in range(count):
-        block = i // len(TREATMENTS)
-        result.append((KINDS[(i + block) % len(KINDS)], LASERS[(i + block) % len(LASERS)], GRADES[(i // 3 + block) % len(GRADES)],
-                       SEED + i, TREATMENTS[i % len(TREATMENTS)]))
+        block, place = divmod(i, len(TREATMENTS))
+        result.append((KINDS[(place + block) % len(KINDS)], LASERS[(place + block // len(KINDS)) % len(LASERS)],
+                       GRADES[(place // 3 + block + block // pairs) % len(GRADES)], SEED + i, TREATMENTS[place]))
     return result
 
 

@@ -16,6 +16,21 @@ namespace {
 
 constexpr size_t kChunkBytes = 1 << 20;
 
+// Of several records of a candidate, one that was withdrawn, only the last.
+void KeepLast(DecisionRecorder::Decisions* const decisions) {
+  std::map<int64_t, size_t> last;
+  for (size_t i = 0; i < decisions->size(); ++i) {
+    last[(*decisions)[i].candidate()] = i;
+  }
+  DecisionRecorder::Decisions kept;
+  for (size_t i = 0; i < decisions->size(); ++i) {
+    if (last[(*decisions)[i].candidate()] == i) {
+      kept.push_back(std::move((*decisions)[i]));
+    }
+  }
+  *decisions = std::move(kept);
+}
+
 }  // namespace
 
 void DecisionRecorder::Start(const size_t capacity) {
@@ -25,6 +40,7 @@ void DecisionRecorder::Start(const size_t capacity) {
   num_dropped_ = 0;
   chunks_.clear();
   num_records_ = 0;
+  has_withdrawn_ = false;
 }
 
 void DecisionRecorder::Stop() {
@@ -50,6 +66,9 @@ void DecisionRecorder::Record(const Decisions& decisions) {
       chunks_.back().reserve(kChunkBytes + kChunkBytes / 64);
     }
     AppendDecision(decision, &chunks_.back());
+    if (decision.verdict() == proto::LoopDecision::UNDECIDED) {
+      has_withdrawn_ = true;
+    }
     ++num_records_;
   }
 }
@@ -81,6 +100,7 @@ DecisionRecorder::Decisions DecisionRecorder::All() const {
     std::move(decisions->begin(), decisions->end(), std::back_inserter(all));
   }
   std::move(undecided.begin(), undecided.end(), std::back_inserter(all));
+  if (has_withdrawn_) KeepLast(&all);
   return all;
 }
 

@@ -41,8 +41,8 @@ class DecisionRecorder {
       ABSL_LOCKS_EXCLUDED(mutex_);
   void RemovePending(int64_t id) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // All records in the order of their verdicts, followed by the currently
-  // undecided ones.
+  // The records of all candidates in the order of their verdicts, followed by
+  // the currently undecided ones. Of a candidate that was withdrawn, the last.
   Decisions All() const ABSL_LOCKS_EXCLUDED(mutex_);
   // Number of records beyond the capacity.
   int64_t num_dropped() const ABSL_LOCKS_EXCLUDED(mutex_);
@@ -58,6 +58,7 @@ class DecisionRecorder {
   // kChunkBytes long.
   std::vector<std::string> chunks_ ABSL_GUARDED_BY(mutex_);
   size_t num_records_ ABSL_GUARDED_BY(mutex_) = 0;
+  bool has_withdrawn_ ABSL_GUARDED_BY(mutex_) = false;
   std::map<int64_t, std::function<Decisions()>> pending_
       ABSL_GUARDED_BY(pending_mutex_);
   int64_t next_pending_ ABSL_GUARDED_BY(pending_mutex_) = 0;

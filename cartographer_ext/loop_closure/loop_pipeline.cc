@@ -20,6 +20,8 @@ namespace {
 
 // Candidates that wait for the drift to turn out larger, oldest given up first.
 constexpr size_t kMaxVetoed = 2000;
+// Right matches that are assumed before any were seen.
+constexpr double kPriorRight = 20.;
 
 }  // namespace
 
@@ -124,10 +126,10 @@ void LoopPipeline::Settle(std::vector<LoopCandidate> candidates) {
 std::vector<LoopCandidate> LoopPipeline::TakeSettled() {
   std::vector<LoopCandidate> candidates = std::move(settled_);
   settled_.clear();
-  std::sort(candidates.begin(), candidates.end(),
-            [](const LoopCandidate& a, const LoopCandidate& b) {
-              return a.number < b.number;
-            });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const LoopCandidate& a, const LoopCandidate& b) {
+                     return a.number < b.number;
+                   });
   return candidates;
 }
 
@@ -139,19 +141,33 @@ void LoopPipeline::UpdateDrift() {
   for (LoopCandidate& candidate : vetoed) Veto(std::move(candidate));
 }
 
+bool LoopPipeline::LooksAlike(const LoopCandidate& candidate) const {
+  // What merely matches, but not where its neighbours should, is no place that
+  // looks alike.
+  return candidate.FinalScore() >= kConfirmingScore &&
+         (!candidate.followed.has_value() ||
+          OddsOfNeighbours(*candidate.followed, share_alike_.Mean()) >= 1.);
+}
+
+void LoopPipeline::UpdateShareWrong() {
+  const auto num_vetoed =
+      std::count_if(vetoed_.begin(), vetoed_.end(), [&](const auto& candidate) {
+        return !candidate.plan.full_submap && LooksAlike(candidate);
+      });
+  const double num_wrong =
+      static_cast<double>(num_vetoed) + consensus_.NumWrong();
+  consensus_.SetShareWrong(num_wrong /
+                           (num_wrong + consensus_.num_right() + kPriorRight));
+}
+
 std::vector<LoopCandidate> LoopPipeline::Decide(const bool at_end) {
   UpdateDrift();
+  UpdateShareWrong();
   RunState state = RunState::kGoesOn;
   if (at_end) {
-    const bool any_wrong =
-        std::any_of(vetoed_.begin(), vetoed_.end(), [&](const auto& candidate) {
-          // What merely matches, but not where its neighbours should, is no
-          // place that looks alike.
-          return candidate.FinalScore() >= kConfirmingScore &&
-                 (!candidate.followed.has_value() ||
-                  OddsOfNeighbours(*candidate.followed, share_alike_.Mean()) >=
-                      1.);
-        });
+    const bool any_wrong = std::any_of(
+        vetoed_.begin(), vetoed_.end(),
+        [&](const auto& candidate) { return LooksAlike(candidate); });
     state = any_wrong ? RunState::kEnds : RunState::kEndsUnalike;
   }
   std::vector<LoopCandidate> decided = consensus_.Decide(state);
@@ -186,6 +202,14 @@ bool LoopPipeline::PredictAgain(const PathBetween& path_between) {
     EstimateProbability(options_.search, candidate);
     return true;
   }) > 0;
+}
+
+void LoopPipeline::Refute(const PathsWithout& paths_without) {
+  if (!options_.innovation_veto.enabled ||
+      !options_.compatible_subset.single_strong_enabled) {
+    return;
+  }
+  Settle(consensus_.Refute(paths_without));
 }
 
 absl::optional<double> LoopPipeline::Score(
@@ -226,6 +250,7 @@ void LoopPipeline::RejectIf(const LoopConsensus::Condition& condition,
       candidate.Reject(reason);
     }
   }
+  consensus_.ForgetAcceptedIf(condition);
   std::vector<LoopCandidate> removed = consensus_.Remove(condition);
   const auto kept = std::stable_partition(
       vetoed_.begin(), vetoed_.end(),

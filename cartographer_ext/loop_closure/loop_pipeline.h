@@ -73,18 +73,22 @@ class LoopPipeline {
   const NodeHistory& history() const { return history_; }
 
   // Processes the next candidate after the search, including skipped and
-  // unmatched ones. It is numbered and will be in exactly one result of
-  // `Decide` or `Flush`, now or later.
+  // unmatched ones. It is numbered and will be in one result of `Decide` or
+  // `Flush`, now or later, and again if it is withdrawn after that.
   void Process(LoopCandidate candidate);
 
   // Candidates that were accepted or rejected since the last call, in the order
-  // of their numbers. `Flush` leaves nothing undecided.
+  // of their numbers, and accepted ones of earlier calls that are withdrawn: these
+  // are undecided again. `Flush` leaves nothing undecided.
   std::vector<LoopCandidate> Decide(bool at_end = false);
   std::vector<LoopCandidate> Flush();
 
   // Predicts the undecided candidates again, over the loops accepted since they
   // were searched. Returns whether some of them may be decided now.
   bool PredictAgain(const PathBetween& path_between);
+
+  // As LoopConsensus::Refute. The next `Decide` returns what is withdrawn.
+  void Refute(const PathsWithout& paths_without);
 
   // The final score of a candidate after its search, which has no consequences:
   // 0 if it was not found or fails verification, empty if that is not possible.
@@ -120,6 +124,10 @@ class LoopPipeline {
   void Settle(std::vector<LoopCandidate> candidates);
   // Tests the innovation of a verified candidate, with its consequences.
   void Veto(LoopCandidate candidate);
+  // Whether a vetoed candidate shows that places look alike.
+  bool LooksAlike(const LoopCandidate& candidate) const;
+  // Counts what of the verified matches is wrong.
+  void UpdateShareWrong();
   // Updates the drift estimate and everything that depends on it.
   void UpdateDrift();
   std::vector<LoopCandidate> TakeSettled();

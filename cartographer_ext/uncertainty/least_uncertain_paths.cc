@@ -218,6 +218,17 @@ const absl::optional<UncertainPose>& LeastUncertainPaths::PoseOf(
   return tree->branches[vertex].pose;
 }
 
+LeastUncertainPaths LeastUncertainPaths::Without(
+    const std::function<bool(const LoopEdge&)>& condition) const {
+  LeastUncertainPaths others(spacing_, paths_, max_loops_);
+  for (const LoopEdge& loop : loops_) {
+    if (condition(loop)) continue;
+    others.loops_.push_back(loop);
+    others.ends_[loop.b].push_back(loop.a);
+  }
+  return others;
+}
+
 absl::optional<UncertainPose> LeastUncertainPaths::Between(const VertexId& a,
                                                            const VertexId& b) {
   absl::optional<UncertainPose> best = paths_->Between(a, b);

@@ -48,6 +48,10 @@ class LeastUncertainPaths {
   // (a <- b). Empty if no path connects them. Cheap for many b from the same a.
   absl::optional<UncertainPose> Between(const VertexId& a, const VertexId& b);
 
+  // Those without the loops for which the condition holds.
+  LeastUncertainPaths Without(
+      const std::function<bool(const LoopEdge&)>& condition) const;
+
   size_t num_loops() const { return loops_.size(); }
 
  private:

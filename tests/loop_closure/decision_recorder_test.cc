@@ -43,6 +43,29 @@ TEST(DecisionRecorderTest, CountsBeyondItsCapacity) {
   EXPECT_EQ(recorder.num_dropped(), 3);
 }
 
+// A loop that was withdrawn is undecided, or decided again.
+TEST(DecisionRecorderTest, OfSeveralRecordsOfACandidateTheLastCounts) {
+  DecisionRecorder recorder;
+  recorder.Start(100);
+  DecisionRecorder::Decisions first = Some(0, 3);
+  for (proto::LoopDecision& decision : first) {
+    decision.set_verdict(proto::LoopDecision::ACCEPTED);
+  }
+  recorder.Record(first);
+  DecisionRecorder::Decisions withdrawn = Some(1, 1);
+  withdrawn[0].set_verdict(proto::LoopDecision::UNDECIDED);
+  recorder.Record(withdrawn);
+  DecisionRecorder::Decisions pending = Some(1, 1);
+  pending[0].set_reason(proto::LoopDecision::OVERTURNED);
+  recorder.AddPending([&] { return pending; });
+  const DecisionRecorder::Decisions all = recorder.All();
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].candidate(), 0);
+  EXPECT_EQ(all[1].candidate(), 2);
+  EXPECT_EQ(all[2].candidate(), 1);
+  EXPECT_EQ(all[2].reason(), proto::LoopDecision::OVERTURNED);
+}
+
 TEST(DecisionRecorderTest, ManyRecordsComeBackUnchanged) {
   // Several megabytes.
   constexpr int kCount = 20000;
@@ -55,12 +78,16 @@ TEST(DecisionRecorderTest, ManyRecordsComeBackUnchanged) {
   DecisionRecorder recorder;
   recorder.Start(2 * kCount);
   recorder.Record(decisions);
-  recorder.Record(decisions);
+  DecisionRecorder::Decisions more = decisions;
+  for (proto::LoopDecision& decision : more) {
+    decision.set_candidate(decision.candidate() + kCount);
+  }
+  recorder.Record(more);
   const DecisionRecorder::Decisions all = recorder.All();
   ASSERT_EQ(all.size(), 2u * kCount);
   for (int i = 0; i < 2 * kCount; ++i) {
     ASSERT_EQ(all[i].SerializeAsString(),
-              decisions[i % kCount].SerializeAsString());
+              (i < kCount ? decisions : more)[i % kCount].SerializeAsString());
   }
 }
 

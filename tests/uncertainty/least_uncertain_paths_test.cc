@@ -68,6 +68,25 @@ TEST_F(LeastUncertainPathsTest, WithoutLoopsThePathIsTheTrajectory) {
   EXPECT_EQ(Variance(10, 400), -1.);
 }
 
+TEST_F(LeastUncertainPathsTest, PathsThatDoNotLeadOverSomeLoops) {
+  AddLoop(0, 100);
+  AddLoop(90, 200);
+  LeastUncertainPaths without =
+      least_.Without([](const LoopEdge& loop) { return loop.a.index() == 90; });
+  EXPECT_EQ(without.num_loops(), 1u);
+  // 100 <- 200: 100 m of driving; 0 <- 100: the loop that is left.
+  const auto path = without.Between(NodeId{0, 0}, NodeId{0, 200});
+  ASSERT_TRUE(path.has_value());
+  EXPECT_NEAR(path->covariance(0, 0), 0.25 + 100., 1e-6);
+  // It is not added again near itself.
+  LoopEdge near;
+  near.a = NodeId{0, 1};
+  near.b = NodeId{0, 101};
+  without.Add(near);
+  EXPECT_EQ(without.num_loops(), 1u);
+  EXPECT_NEAR(Variance(0, 200), 0.25 + 10. + 0.25, 1e-6);
+}
+
 TEST_F(LeastUncertainPathsTest, PathsLeadOverSeveralLoops) {
   AddLoop(0, 100);
   AddLoop(90, 200);

@@ -312,6 +312,14 @@ std::vector<SearchPlan> SearchPlanner::Plan(
   return plans;
 }
 
+void SearchPlanner::RemoveAcceptedLoop(const uncertainty::VertexId& anchor,
+                                       const uncertainty::NodeId& node) {
+  const uncertainty::VertexId end = node;
+  least_uncertain_paths_.RemoveIf([&](const uncertainty::LoopEdge& loop) {
+    return loop.a == anchor && loop.b == end;
+  });
+}
+
 void SearchPlanner::AddAcceptedLoop(const LoopCandidate& candidate,
                                     const uncertainty::LoopEdge& loop) {
   credit_.Reward(candidate.plan);

@@ -34,6 +34,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -131,9 +132,18 @@ class SearchPlanner {
   // Whether a loop near the candidate was accepted.
   bool IsRedundant(const LoopCandidate& candidate) const;
 
+  // Paths over the accepted loops for which the condition does not hold.
+  uncertainty::LeastUncertainPaths PathsWithout(
+      const std::function<bool(const uncertainty::LoopEdge&)>& condition)
+      const {
+    return least_uncertain_paths_.Without(condition);
+  }
   // (anchor <- node) of a candidate that was accepted.
   void AddAcceptedLoop(const LoopCandidate& accepted,
                        const uncertainty::LoopEdge& loop);
+  // The same when it is withdrawn.
+  void RemoveAcceptedLoop(const uncertainty::VertexId& anchor,
+                          const uncertainty::NodeId& node);
   // Accepted loops between nodes of a trajectory up to an index and submaps of
   // another one are no longer used to predict its nodes.
   void ForgetLoops(int trajectory_id, int submap_trajectory_id,

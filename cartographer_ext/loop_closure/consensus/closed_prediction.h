@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Predicts an undecided loop over the loops that were accepted after its search.
+// Predicts a loop over the loops that were accepted after its search: an
+// undecided one, which may be accepted then, or an accepted one, which may be
+// withdrawn.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_CLOSED_PREDICTION_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_CLOSED_PREDICTION_H_
 
 #include <functional>
+#include <set>
+#include <utility>
 
 #include "absl/types/optional.h"
 #include "cartographer_ext/uncertainty/ids.h"
@@ -21,6 +25,10 @@ struct LoopOptions;
 // The path from the anchor to the node, both of them known.
 using PathBetween = std::function<absl::optional<uncertainty::UncertainPose>(
     const uncertainty::VertexId&, const uncertainty::VertexId&)>;
+// The paths that do not lead over loops with these ends.
+using LoopEnds =
+    std::set<std::pair<uncertainty::VertexId, uncertainty::VertexId>>;
+using PathsWithout = std::function<PathBetween(const LoopEnds&)>;
 
 // Predicts an undecided candidate within one trajectory again, by a path over
 // all loops that are accepted by now. If it predicts the place better than the
@@ -29,6 +37,15 @@ using PathBetween = std::function<absl::optional<uncertainty::UncertainPose>(
 bool PredictAgain(const LoopOptions& options,
                   const uncertainty::PathUncertainty& paths,
                   const PathBetween& path_between, LoopCandidate* candidate);
+
+// Whether an accepted candidate lies so far from where its search expected it
+// that the loops accepted since should be asked.
+bool IsFarFromPrediction(const LoopCandidate& candidate);
+
+// Whether a path over other loops contradicts an accepted candidate. If so, its `innovation` and `closed_sigma` are those of this path.
+bool ContradictsPath(const LoopOptions& options,
+                     const uncertainty::PathUncertainty& paths,
+                     const PathBetween& path_between, LoopCandidate* candidate);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

@@ -66,10 +66,6 @@ double SumOfBest(std::vector<std::pair<double, double>> shares,
   return sum;
 }
 
-bool SameTrajectory(const uncertainty::LoopEdge& edge) {
-  return edge.a.trajectory_id() == edge.b.trajectory_id();
-}
-
 }  // namespace
 
 constexpr double CompatibleSubset::kMostOddsPerFarRevisit;
@@ -94,9 +90,11 @@ CompatibleSubset::Relation CompatibleSubset::Relate(
     if (!cycle->compatible) return Relation::kContradicts;
   }
   const double sigma = uncertainty::WorstTranslationSigma(cycle->covariance);
-  if (sigma > options_.informative_sigma) return Relation::kVague;
+  if (sigma > InformativeSigma(std::min(u.linear_window, v.linear_window))) {
+    return Relation::kVague;
+  }
   const double prior_sigma = std::min(u.prior_sigma, v.prior_sigma);
-  return SameTrajectory(u.edge) && SameTrajectory(v.edge) &&
+  return u.is_within_trajectory() && v.is_within_trajectory() &&
                  prior_sigma > options_.weak_prior_sigma &&
                  sigma <= kFarOffShare * prior_sigma
              ? Relation::kSupportsFarOff
@@ -166,6 +164,11 @@ void CompatibleSubset::SetOddsPerFarRevisit(const double odds) {
   changed_ = true;
 }
 
+void CompatibleSubset::SetShareWrong(const double share_wrong) {
+  share_wrong_ = share_wrong;
+  changed_ = true;
+}
+
 void CompatibleSubset::RelateAll() {
   changed_ = true;
   for (int i = 0; i < num_clusters(); ++i) {
@@ -196,7 +199,7 @@ double CompatibleSubset::Support(const int index, const bool of_subset,
     const uncertainty::LoopEdge& other = clusters_[j].leader.edge;
     vertices.push_back(other.b.InSequenceWith(edge.b) ? other.b : other.a);
   }
-  if (SameTrajectory(edge)) {
+  if (clusters_[index].leader.is_within_trajectory()) {
     if (log_odds != nullptr) {
       *log_odds = SumOfBest(std::move(shares), options_.max_revisits_for_odds);
     }
@@ -298,7 +301,11 @@ void CompatibleSubset::Emit(
     SubsetDecision decision;
     decision.id = loop.id;
     decision.accepted = accepted;
-    decision.reason = reason;
+    decision.reason =
+        loop.was_accepted &&
+                (loop.is_refuted || reason == SubsetReason::kContradicted)
+            ? SubsetReason::kOverturned
+            : reason;
     decision.support = static_cast<int>(cluster.support);
     decision.contradictions = cluster.contradictions;
     decision.subset_size = subset_size_;
@@ -312,13 +319,13 @@ std::vector<SubsetDecision> CompatibleSubset::Decide(const RunState state) {
   if (changed_) {
     changed_ = false;
     Solve();
+    Withdraw(&decisions);
     for (Cluster& cluster : clusters_) {
       SubsetReason reason;
       if (cluster.undecided.empty() || !MayAccept(cluster, &reason)) continue;
       const std::vector<LoopEvidence> likely = TakeLikely(&cluster);
       if (likely.empty()) continue;
-      Emit(cluster, likely, true, reason, &decisions);
-      cluster.accepted = true;
+      Accept(likely, reason, &cluster, &decisions);
     }
   }
   const absl::optional<int> num_right = NumRightFarOff(state);
@@ -327,13 +334,14 @@ std::vector<SubsetDecision> CompatibleSubset::Decide(const RunState state) {
     const std::vector<LoopEvidence> probable =
         TakeProbable(num_right, &cluster);
     if (probable.empty()) continue;
-    Emit(cluster, probable, true, SubsetReason::kLikelyAtEnd, &decisions);
-    cluster.accepted = true;
+    Accept(probable, SubsetReason::kLikelyAtEnd, &cluster, &decisions);
     changed_ = true;
   }
+  BoundAcceptedLoops();
   std::stable_sort(decisions.begin(), decisions.end(),
                    [](const SubsetDecision& a, const SubsetDecision& b) {
-                     return a.id < b.id;
+                     return a.withdrawn != b.withdrawn ? a.withdrawn
+                                                       : a.id < b.id;
                    });
   return decisions;
 }
@@ -376,18 +384,9 @@ std::vector<int64_t> CompatibleSubset::Remove(
   return ids;
 }
 
-void CompatibleSubset::ForgetAccepted(
-    const std::function<bool(const LoopEvidence&)>& condition) {
-  for (int i = num_clusters() - 1; i >= 0; --i) {
-    Cluster& cluster = clusters_[i];
-    if (!cluster.accepted || !condition(cluster.leader)) continue;
-    changed_ = true;
-    cluster.accepted = false;
-    if (cluster.undecided.empty()) Erase(i);
-  }
-}
-
 void CompatibleSubset::Erase(const int index) {
+  num_accepted_loops_ -=
+      static_cast<int>(clusters_[index].accepted_loops.size());
   clusters_.erase(clusters_.begin() + index);
   relations_.erase(relations_.begin() + index);
   for (size_t i = static_cast<size_t>(index); i < relations_.size(); ++i) {
@@ -408,9 +407,17 @@ void CompatibleSubset::MakeRoom() {
     Solve();
     SubsetReason reason;
     if (MayAccept(cluster, &reason)) {
-      Emit(cluster, TakeLikely(&cluster), true, reason, &overflow_);
+      const std::vector<LoopEvidence> likely = TakeLikely(&cluster);
+      if (!likely.empty()) Accept(likely, reason, &cluster, &overflow_);
     }
-    Emit(cluster, cluster.undecided, false, WhyNot(cluster), &overflow_);
+    const SubsetReason why_not = WhyNot(cluster);
+    Emit(cluster, cluster.undecided, false, why_not, &overflow_);
+    if (why_not == SubsetReason::kContradicted &&
+        cluster.leader.is_within_trajectory()) {
+      num_wrong_ += static_cast<int>(std::count_if(
+          cluster.undecided.begin(), cluster.undecided.end(),
+          [](const LoopEvidence& loop) { return loop.is_verified; }));
+    }
   }
   Erase(oldest);
 }

@@ -30,7 +30,9 @@
 //              contradict the rival than support it. A single strong loop
 //              without support is accepted by stricter rules of its own. What
 //              is neither stays buffered and is tested again when new evidence
-//              comes; `Flush` ends that. At the end of a run, when no more can
+//              comes; `Flush` ends that. Where scores are probabilities, an
+//              accepted cluster that is no longer in the clique and contradicts it
+//              is withdrawn: its loops wait again. At the end of a run, when no more can
 //              come, a loop of the subset without rivals is accepted if it is
 //              probable, whatever support it lacks: a robot that comes back to
 //              its start and stops there leaves no second revisit. If no match of
@@ -56,6 +58,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "absl/types/optional.h"
@@ -82,8 +85,18 @@ struct LoopEvidence {
   // Standard deviation of the prediction before the search, metres; infinity
   // without a prediction.
   double prior_sigma = 0.;
+  // Half width of the search, metres.
+  double linear_window = std::numeric_limits<double>::infinity();
   // The factor on the odds by which they changed it; 1: not looked at.
   double odds_of_neighbours = 1.;
+  bool was_accepted = false;  // and withdrawn since
+  // Paths over other accepted loops contradict it; not to be accepted.
+  bool is_refuted = false;
+
+  bool is_within_trajectory() const {
+    return edge.a.trajectory_id() == edge.b.trajectory_id();
+  }
+  bool is_verified = false;  // its own scores are rather those of a true match
 };
 
 // Least best score of a cluster that may confirm others: rather true than
@@ -105,7 +118,8 @@ struct CompatibleSubsetOptions {
   // Loops nearer than this along the trajectory, on both sides, are one
   // revisit.
   double revisit_distance = 5.;  // metres, >= 0
-  // A cycle supports only if the sigma of its translation is at most this.
+  // A cycle supports only if the sigma of its translation is at most this and,
+  // where scores are probabilities, small enough for the windows searched.
   double informative_sigma = 1.;  // metres, > 0
   int min_revisits = 2;           // that agree, including the loop itself, >= 1
   // Tolerated share of contradictions among the informative relations to the
@@ -155,12 +169,15 @@ enum class SubsetReason {
   kContradicted,   // rejected, contradicts the compatible subset
   kRival,          // rejected, a contradicting cluster has as much support
   kUnsupported,    // rejected, not confirmed until the end
+  kOverturned,     // was accepted, contradicts the subset since
 };
 
 // The decision on one loop.
 struct SubsetDecision {
   int64_t id = 0;
   bool accepted = false;
+  // A loop that was accepted is undecided again.
+  bool withdrawn = false;
   SubsetReason reason = SubsetReason::kUnsupported;
   int support = 0;         // clusters in the subset that support its cluster
   int contradictions = 0;  // clusters in the subset that contradict it
@@ -176,7 +193,8 @@ class CompatibleSubset {
 
   void Add(const LoopEvidence& loop);
 
-  // Returns the decisions that can be made now, in the order of adding. Cheap
+  // Returns the decisions that can be made now, in the order of adding, those
+  // that withdraw accepted loops first. Cheap
   // if nothing was added since the last call. After the end of a run further
   // loops may be added.
   std::vector<SubsetDecision> Decide(RunState state = RunState::kGoesOn);
@@ -193,6 +211,11 @@ class CompatibleSubset {
   // `odds_per_revisit` and at most kMostOddsPerFarRevisit are used.
   void SetOddsPerFarRevisit(double odds);
 
+  // The share of wrong ones among the verified matches of the run, in [0, 1). The
+  // more there are, the more often they agree with each other: places that look
+  // alike follow one another.
+  void SetShareWrong(double share_wrong);
+
   // Repeats all pairwise tests, after a change of the drift of the paths.
   void RelateAll();
 
@@ -200,6 +223,17 @@ class CompatibleSubset {
   // deleted; returns their ids in the order of adding.
   std::vector<int64_t> Remove(
       const std::function<bool(const LoopEvidence&)>& condition);
+
+  // Withdraws accepted loops, known by their ascending ids, and does not accept
+  // them again. Returns the decisions in the order of their clusters.
+  std::vector<SubsetDecision> Refute(const std::vector<int64_t>& ids);
+
+  // Drops accepted loops that can no longer be withdrawn, such as those of
+  // submaps that are deleted.
+  void ForgetAcceptedLoops(
+      const std::function<bool(const LoopEvidence&)>& condition);
+  // The accepted loops that may still be withdrawn, ascending.
+  std::vector<int64_t> AcceptedLoops() const;
 
   // Drops accepted revisits whose first loop fulfils the condition.
   void ForgetAccepted(
@@ -209,6 +243,10 @@ class CompatibleSubset {
   // order of adding.
   std::vector<SubsetDecision> Undecided() const;
   int num_undecided() const;
+  // Verified loops within one trajectory: accepted ones, and those that
+  // contradict the subset or did so when they were rejected.
+  int num_right() const { return num_right_; }
+  int NumWrong() const;
   int num_clusters() const { return static_cast<int>(clusters_.size()); }
   // Number of accepted clusters outside the subset at the last `Decide`,
   // contradicted by later evidence.
@@ -219,6 +257,8 @@ class CompatibleSubset {
   int64_t num_clique_steps() const { return num_clique_steps_; }
 
  private:
+  // That are kept in case they are withdrawn.
+  static constexpr int kMostAcceptedLoops = 5000;
   // Of places of which a tenth look alike.
   static constexpr double kMostOddsPerFarRevisit = 10.;
 
@@ -236,7 +276,8 @@ class CompatibleSubset {
   struct Cluster {
     LoopEvidence leader;
     std::vector<LoopEvidence> undecided;
-    int num_loops = 0;  // ever
+    std::vector<LoopEvidence> accepted_loops;  // that may be withdrawn
+    int num_loops = 0;                         // ever
     double best_score = 0.;
     double least_sigma = 0.;  // of its loops
     bool accepted = false;
@@ -248,6 +289,8 @@ class CompatibleSubset {
     double rival_support = -1.;  // of the strongest rival, -1 without one
   };
 
+  // A cycle supports only if the sigma of its translation is at most this, metres.
+  double InformativeSigma(double linear_window) const;
   Relation Relate(const LoopEvidence& u, const LoopEvidence& v) const;
   bool SameRevisit(const LoopEvidence& u, const LoopEvidence& v) const;
   // Factor on the odds of a cluster that another one supports.
@@ -282,6 +325,13 @@ class CompatibleSubset {
   void Emit(const Cluster& cluster, const std::vector<LoopEvidence>& loops,
             bool accepted, SubsetReason reason,
             std::vector<SubsetDecision>* decisions) const;
+  // Emits and keeps them.
+  void Accept(const std::vector<LoopEvidence>& loops, SubsetReason reason,
+              Cluster* cluster, std::vector<SubsetDecision>* decisions);
+  // Makes accepted clusters that contradict the subset undecided again.
+  void Withdraw(std::vector<SubsetDecision>* decisions);
+  // Forgets the oldest accepted loops beyond kMostAcceptedLoops.
+  void BoundAcceptedLoops();
   void Erase(int index);
   void MakeRoom();
 
@@ -291,11 +341,15 @@ class CompatibleSubset {
   // relations_[i][j] for j < i.
   std::vector<std::vector<Relation>> relations_;
   std::vector<SubsetDecision> overflow_;  // decided by MakeRoom
+  double share_wrong_ = 0.;
   double odds_per_far_revisit_ = kMostOddsPerFarRevisit;
   bool changed_ = false;
   bool exact_ = true;
   int64_t num_clique_steps_ = 0;
   int subset_size_ = 0;
+  int num_accepted_loops_ = 0;  // kept
+  int num_right_ = 0;
+  int num_wrong_ = 0;  // rejected
   int num_overturned_ = 0;
 };
 

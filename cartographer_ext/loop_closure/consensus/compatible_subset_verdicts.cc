@@ -18,6 +18,8 @@ namespace {
 // without support.
 constexpr double kSureOdds = 19.;
 constexpr int kEnoughRight = 3;
+// By how much wrong matches take from the odds of agreement.
+constexpr double kAgreementOfWrong = 3.;
 // Or how much its neighbours must say for it.
 constexpr double kOddsOfFollowed = 5.;
 
@@ -41,10 +43,21 @@ std::vector<LoopEvidence> TakeIf(const Condition& condition,
 
 }  // namespace
 
+double CompatibleSubset::InformativeSigma(const double linear_window) const {
+  if (!options_.scores_are_probabilities) return options_.informative_sigma;
+  // The odds that a closed cycle gives: its density, 1 / (2 pi sigma^2), against
+  // that of a wrong match, which lies anywhere in the window.
+  const double window_sigma =
+      linear_window * std::sqrt(2. / (kPi * options_.odds_per_revisit));
+  return std::min(options_.informative_sigma, window_sigma);
+}
+
 double CompatibleSubset::OddsPerRevisit(const Relation relation) const {
-  return relation == Relation::kSupportsFarOff
-             ? std::max(options_.odds_per_revisit, odds_per_far_revisit_)
-             : options_.odds_per_revisit;
+  const double odds =
+      relation == Relation::kSupportsFarOff
+          ? std::max(options_.odds_per_revisit, odds_per_far_revisit_)
+          : options_.odds_per_revisit;
+  return 1. + (odds - 1.) / (1. + kAgreementOfWrong * share_wrong_);
 }
 
 double CompatibleSubset::ShareOfSupport(const Cluster& cluster,
@@ -53,10 +66,7 @@ double CompatibleSubset::ShareOfSupport(const Cluster& cluster,
   const double score = cluster.best_score;
   if (score >= kConfirmingScore) return 1.;
   // Between trajectories an unlikely match confirms nobody.
-  const uncertainty::LoopEdge& edge = cluster.leader.edge;
-  if (score <= 0. || edge.a.trajectory_id() != edge.b.trajectory_id()) {
-    return 0.;
-  }
+  if (score <= 0. || !cluster.leader.is_within_trajectory()) return 0.;
   return std::max(
       0., 1. + std::log(score / (1. - score)) / std::log(odds_per_revisit));
 }
@@ -112,6 +122,7 @@ bool CompatibleSubset::MayAccept(const Cluster& cluster,
 
 bool CompatibleSubset::MayAcceptLoop(const Cluster& cluster,
                                      const LoopEvidence& loop) const {
+  if (loop.is_refuted) return false;
   if (!options_.scores_are_probabilities) return true;
   return loop.score * std::exp(cluster.log_odds) >=
          (1. - loop.score) * options_.odds_per_revisit;
@@ -162,9 +173,10 @@ std::vector<LoopEvidence> CompatibleSubset::TakeProbable(
   const bool lacks_support = !MayAccept(*cluster, &reason);
   return TakeIf(
       [&](const LoopEvidence& loop) {
-        return loop.probability >= options_.probability_at_end ||
-               (lacks_support && num_right.has_value() &&
-                IsSureFarOff(*cluster, loop, *num_right));
+        return !loop.is_refuted &&
+               (loop.probability >= options_.probability_at_end ||
+                (lacks_support && num_right.has_value() &&
+                 IsSureFarOff(*cluster, loop, *num_right)));
       },
       &cluster->undecided);
 }

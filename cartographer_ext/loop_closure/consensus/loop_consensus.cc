@@ -3,6 +3,8 @@
 #include "cartographer_ext/loop_closure/consensus/loop_consensus.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -32,6 +34,8 @@ LoopDecision::Reason ToReason(const SubsetReason reason) {
       return LoopDecision::CONTRADICTED;
     case SubsetReason::kRival:
       return LoopDecision::RIVAL;
+    case SubsetReason::kOverturned:
+      return LoopDecision::OVERTURNED;
     case SubsetReason::kUnsupported:
       break;
   }
@@ -67,6 +71,17 @@ double WithOdds(const double probability, const double odds) {
   return probability * odds / (probability * odds + 1. - probability);
 }
 
+// How probable a match can be where so large a share of the verified ones is
+// wrong: scores do not tell these from right ones, but they lie anywhere in
+// the search, and right ones where they are predicted.
+double MostProbable(const LoopCandidate& candidate, const double share_wrong) {
+  if (!candidate.fusion.has_value() || candidate.fusion->true_density == 0.) {
+    return 1.;
+  }
+  const double density = candidate.fusion->true_density;
+  return density / (density + share_wrong * candidate.fusion->search_density);
+}
+
 CompatibleSubsetOptions SubsetOptions(const LoopOptions& options) {
   CompatibleSubsetOptions subset = options.compatible_subset;
   subset.scores_are_probabilities = ScoresAreProbabilities(options);
@@ -93,8 +108,19 @@ LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
     evidence.anchor = *candidate.anchor;
   }
   evidence.score = candidate.FinalScore();
+  evidence.is_verified = evidence.score >= kConfirmingScore;
+  if (!candidate.plan.full_submap && candidate.plan.linear_window > 0. &&
+      !candidate.is_inter_trajectory()) {
+    evidence.linear_window = std::max(candidate.plan.linear_window,
+                                      options_.search.min_linear_window);
+  }
   if (candidate.fusion.has_value()) {
     evidence.probability = candidate.fusion->probability;
+  }
+  if (ScoresAreProbabilities(options_) && !candidate.is_inter_trajectory()) {
+    const double most = MostProbable(candidate, share_wrong_);
+    evidence.score = std::min(evidence.score, most);
+    evidence.probability = std::min(evidence.probability, most);
   }
   evidence.prior_sigma = PriorSigma(candidate);
   if (candidate.followed.has_value()) {
@@ -131,19 +157,56 @@ std::vector<LoopCandidate> LoopConsensus::Settle(
   for (auto& entry : waiting_) ++entry.second.num_tests;
   std::vector<LoopCandidate> settled;
   for (const SubsetDecision& decision : decisions) {
+    if (decision.withdrawn) {
+      settled.push_back(Withdraw(decision));
+      continue;
+    }
     const auto it = waiting_.find(decision.id);
     CHECK(it != waiting_.end());
     LoopCandidate& candidate = it->second.candidate;
     candidate.consensus = MakeResult(decision, it->second);
     if (decision.accepted) {
       candidate.Accept(ToReason(decision.reason));
+      if (!candidate.is_inter_trajectory()) accepted_.insert(*it);
     } else {
       candidate.Reject(ToReason(decision.reason));
     }
     settled.push_back(std::move(candidate));
     waiting_.erase(it);
   }
+  PruneAccepted();
   return settled;
+}
+
+LoopCandidate LoopConsensus::Withdraw(const SubsetDecision& decision) {
+  const auto it = accepted_.find(decision.id);
+  CHECK(it != accepted_.end());
+  Waiting& waiting = waiting_[decision.id];
+  waiting = std::move(it->second);
+  accepted_.erase(it);
+  LoopCandidate& candidate = waiting.candidate;
+  candidate.consensus = MakeResult(decision, waiting);
+  candidate.verdict = LoopDecision::UNDECIDED;
+  candidate.reason = ToReason(decision.reason);
+  return candidate;
+}
+
+void LoopConsensus::PruneAccepted() {
+  const std::vector<int64_t> kept = subset_.AcceptedLoops();
+  if (kept.size() == accepted_.size()) return;
+  for (auto it = accepted_.begin(); it != accepted_.end();) {
+    it = std::binary_search(kept.begin(), kept.end(), it->first)
+             ? std::next(it)
+             : accepted_.erase(it);
+  }
+}
+
+void LoopConsensus::ForgetAcceptedIf(const Condition& condition) {
+  subset_.ForgetAcceptedLoops([&](const LoopEvidence& evidence) {
+    const auto it = accepted_.find(evidence.id);
+    return it != accepted_.end() && condition(it->second.candidate);
+  });
+  PruneAccepted();
 }
 
 std::vector<LoopCandidate> LoopConsensus::Decide(const RunState state) {
@@ -152,6 +215,30 @@ std::vector<LoopCandidate> LoopConsensus::Decide(const RunState state) {
 
 std::vector<LoopCandidate> LoopConsensus::Flush() {
   return Settle(subset_.Flush());
+}
+
+std::vector<LoopCandidate> LoopConsensus::Refute(
+    const PathsWithout& paths_without) {
+  std::vector<LoopCandidate*> suspects;
+  LoopEnds ends;
+  for (auto& entry : accepted_) {
+    LoopCandidate& candidate = entry.second.candidate;
+    if (!IsFarFromPrediction(candidate)) continue;
+    suspects.push_back(&candidate);
+    const uncertainty::LoopEdge edge =
+        CandidateEdge(options_, *paths_, candidate);
+    ends.emplace(edge.a, edge.b);
+  }
+  if (suspects.empty()) return {};
+  const PathBetween path_between = paths_without(ends);
+  std::vector<int64_t> refuted;
+  for (LoopCandidate* const candidate : suspects) {
+    if (ContradictsPath(options_, *paths_, path_between, candidate)) {
+      refuted.push_back(candidate->number);
+    }
+  }
+  return refuted.empty() ? std::vector<LoopCandidate>()
+                         : Settle(subset_.Refute(refuted));
 }
 
 int LoopConsensus::PredictAgain(const Predict& predict) {
@@ -179,6 +266,16 @@ void LoopConsensus::SetShareAlike(const double share_alike) {
   subset_.SetOddsPerFarRevisit(1. / share_alike);
   for (const auto& entry : waiting_) {
     if (!entry.second.candidate.followed.has_value()) continue;
+    subset_.UpdatePrior(MakeEvidence(entry.second.candidate));
+  }
+}
+
+void LoopConsensus::SetShareWrong(const double share_wrong) {
+  // Smaller changes decide nothing.
+  if (std::abs(share_wrong - share_wrong_) <= 0.1 * share_wrong_) return;
+  share_wrong_ = share_wrong;
+  subset_.SetShareWrong(share_wrong);
+  for (const auto& entry : waiting_) {
     subset_.UpdatePrior(MakeEvidence(entry.second.candidate));
   }
 }

@@ -21,6 +21,7 @@
 #include <map>
 #include <vector>
 
+#include "cartographer_ext/loop_closure/consensus/closed_prediction.h"
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
@@ -45,9 +46,15 @@ class LoopConsensus {
 
   // Returns the candidates that can be decided now, accepted or rejected, by
   // other rules at the end of a run (compatible_subset.h);
-  // `Flush` rejects all that are still undecided.
+  // `Flush` rejects all that are still undecided. Accepted candidates that
+  // contradict the others since are returned again, first and undecided: they
+  // are withdrawn, and wait.
   std::vector<LoopCandidate> Decide(RunState state = RunState::kGoesOn);
   std::vector<LoopCandidate> Flush();
+
+  // Withdraws the accepted candidates far from their prediction that the paths
+  // over the other loops contradict; they are not accepted again.
+  std::vector<LoopCandidate> Refute(const PathsWithout& paths_without);
 
   // Predicts all undecided candidates again; returns how many are known better.
   int PredictAgain(const Predict& predict);
@@ -56,12 +63,17 @@ class LoopConsensus {
   void SetFollowed(int64_t number, const FollowedMatch& followed);
   // The share of wrong places that look like the right one.
   void SetShareAlike(double share_alike);
+  // The share of wrong ones among the verified matches of the run.
+  void SetShareWrong(double share_wrong);
 
   // To be called after a change of the drift of `paths`.
   void DriftChanged() { subset_.RelateAll(); }
 
   // Removes the undecided candidates for which the condition holds.
   std::vector<LoopCandidate> Remove(const Condition& condition);
+  // Drops the accepted candidates for which the condition holds; they can no
+  // longer be withdrawn.
+  void ForgetAcceptedIf(const Condition& condition);
   // Drops the accepted loops between nodes of a trajectory up to an index and
   // submaps of another one.
   void ForgetAccepted(int trajectory_id, int submap_trajectory_id,
@@ -69,6 +81,9 @@ class LoopConsensus {
 
   // The undecided candidates with their reasons, in the order of their numbers.
   std::vector<LoopCandidate> Undecided() const;
+  // Verified candidates, as CompatibleSubset.
+  int num_right() const { return subset_.num_right(); }
+  int NumWrong() const { return subset_.NumWrong(); }
   int num_undecided() const { return subset_.num_undecided(); }
 
  private:
@@ -82,12 +97,18 @@ class LoopConsensus {
                              const Waiting& waiting) const;
   std::vector<LoopCandidate> Settle(
       const std::vector<SubsetDecision>& decisions);
+  // Makes an accepted candidate undecided again, and returns it.
+  LoopCandidate Withdraw(const SubsetDecision& decision);
+  // Frees the accepted candidates that can no longer be withdrawn.
+  void PruneAccepted();
 
   const LoopOptions options_;
   const uncertainty::PathUncertainty* const paths_;
   CompatibleSubset subset_;
-  std::map<int64_t, Waiting> waiting_;  // by number
+  std::map<int64_t, Waiting> waiting_;   // by number
+  std::map<int64_t, Waiting> accepted_;  // that may be withdrawn
   double share_alike_;
+  double share_wrong_ = 0.;
 };
 
 }  // namespace loop_closure

@@ -11,37 +11,10 @@
 
 namespace cartographer_ext {
 namespace loop_closure {
+namespace {
 
-void InterTrajectoryLoops::Add(const Constraint& loop) {
-  const int trajectory_id = loop.node_id.trajectory_id;
-  const int map_trajectory_id = loop.submap_id.trajectory_id;
-  if (trajectory_id == map_trajectory_id) return;
-  loops_[std::make_pair(trajectory_id, map_trajectory_id)].push_back(loop);
-}
-
-void InterTrajectoryLoops::Withdraw(
-    const int trajectory_id, const int map_trajectory_id, const int last_node,
-    PoseGraphContext* const context,
-    std::vector<Constraint>* const constraints) {
-  const int last_trimmed = trimmed_nodes_[trajectory_id].possibly;
-  auto& loops = loops_[std::make_pair(trajectory_id, map_trajectory_id)];
-  const auto withdrawn = std::stable_partition(
-      loops.begin(), loops.end(), [last_node](const Constraint& loop) {
-        return loop.node_id.node_index > last_node;
-      });
-  const auto num_withdrawn = loops.end() - withdrawn;
-  for (auto loop = withdrawn; loop != loops.end(); ++loop) {
-    if (loop->node_id.node_index <= last_trimmed) {
-      // A constraint of a trimmed node would be fatal in the pose graph.
-      context->Get<WithdrawnLoops>()->Add(
-          MakeLoopId(loop->submap_id, loop->node_id));
-      continue;
-    }
-    loop->pose.translation_weight = 0.;
-    loop->pose.rotation_weight = 0.;
-    constraints->push_back(*loop);
-  }
-  loops.erase(withdrawn, loops.end());
+void Report(const int64_t num_withdrawn, const int trajectory_id,
+            const int map_trajectory_id) {
 #ifndef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
   LOG_IF(WARNING, num_withdrawn > 0)
       << num_withdrawn << " withdrawn loop constraints of trajectory "
@@ -55,6 +28,58 @@ void InterTrajectoryLoops::Withdraw(
       << " with the map of trajectory " << map_trajectory_id
       << " are withdrawn";
 #endif
+}
+
+}  // namespace
+
+void InterTrajectoryLoops::Add(const Constraint& loop) {
+  const int trajectory_id = loop.node_id.trajectory_id;
+  const int map_trajectory_id = loop.submap_id.trajectory_id;
+  if (trajectory_id == map_trajectory_id) return;
+  loops_[std::make_pair(trajectory_id, map_trajectory_id)].push_back(loop);
+}
+
+void InterTrajectoryLoops::Withdraw(
+    const int trajectory_id, const int map_trajectory_id, const int last_node,
+    PoseGraphContext* const context,
+    std::vector<Constraint>* const constraints) {
+  auto& loops = loops_[std::make_pair(trajectory_id, map_trajectory_id)];
+  const auto withdrawn = std::stable_partition(
+      loops.begin(), loops.end(), [last_node](const Constraint& loop) {
+        return loop.node_id.node_index > last_node;
+      });
+  const auto num_withdrawn = loops.end() - withdrawn;
+  for (auto loop = withdrawn; loop != loops.end(); ++loop) {
+    Mark(*loop, context, constraints);
+  }
+  loops.erase(withdrawn, loops.end());
+  Report(num_withdrawn, trajectory_id, map_trajectory_id);
+}
+
+void InterTrajectoryLoops::Withdraw(
+    Constraint loop, PoseGraphContext* const context,
+    std::vector<Constraint>* const constraints) {
+  Mark(loop, context, constraints);
+  if (!has_withdrawn_) {
+    Report(1, loop.node_id.trajectory_id, loop.submap_id.trajectory_id);
+  }
+  has_withdrawn_ = true;
+}
+
+void InterTrajectoryLoops::Mark(Constraint loop,
+                                PoseGraphContext* const context,
+                                std::vector<Constraint>* const constraints) {
+  const auto trimmed = trimmed_nodes_.find(loop.node_id.trajectory_id);
+  if (trimmed != trimmed_nodes_.end() &&
+      loop.node_id.node_index <= trimmed->second.possibly) {
+    // A constraint of a trimmed node would be fatal in the pose graph.
+    context->Get<WithdrawnLoops>()->Add(
+        MakeLoopId(loop.submap_id, loop.node_id));
+    return;
+  }
+  loop.pose.translation_weight = 0.;
+  loop.pose.rotation_weight = 0.;
+  constraints->push_back(loop);
 }
 
 void InterTrajectoryLoops::DeleteSubmap(

@@ -34,6 +34,9 @@ class InterTrajectoryLoops {
   void Withdraw(int trajectory_id, int map_trajectory_id, int last_node,
                 PoseGraphContext* context,
                 std::vector<Constraint>* constraints);
+  // Withdraws one loop.
+  void Withdraw(Constraint loop, PoseGraphContext* context,
+                std::vector<Constraint>* constraints);
   // The pose graph deletes the loops of a submap, and nodes of its trajectory
   // up to `newest_node`, with the submap.
   void DeleteSubmap(const cartographer::mapping::SubmapId& submap_id,
@@ -41,6 +44,10 @@ class InterTrajectoryLoops {
   void DeleteTrajectory(int trajectory_id);
 
  private:
+  // Withdraws a loop by a mark, or in the context.
+  void Mark(Constraint loop, PoseGraphContext* context,
+            std::vector<Constraint>* constraints);
+
   // Nodes up to these may have been trimmed after the last deletion of a
   // submap, the one before, and before that. A node belongs to two submaps, so
   // the last are gone.
@@ -53,6 +60,7 @@ class InterTrajectoryLoops {
   // By run and map.
   std::map<std::pair<int, int>, std::vector<Constraint>> loops_;
   std::map<int, TrimmedNodes> trimmed_nodes_;
+  bool has_withdrawn_ = false;  // a single one
 };
 
 }  // namespace loop_closure

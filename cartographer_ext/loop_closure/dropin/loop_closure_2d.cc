@@ -52,6 +52,16 @@ TypicalFitOptions NoTypicalFit() {
   return options;
 }
 
+LoopClosure2D::Constraint MakeConstraint(const LoopCandidate& accepted) {
+  return LoopClosure2D::Constraint{
+      SubmapId(accepted.submap.trajectory_id, accepted.submap.submap_index),
+      NodeId(accepted.node.trajectory_id, accepted.node.node_index),
+      LoopClosure2D::Constraint::Pose{
+          cartographer::transform::Embed3D(ToRigid2d(accepted.match.refined)),
+          accepted.weights->translation, accepted.weights->rotation},
+      LoopClosure2D::Constraint::INTER_SUBMAP};
+}
+
 }  // namespace
 
 LoopClosure2D::LoopClosure2D(
@@ -253,6 +263,9 @@ void LoopClosure2D::DecideAtEnd(std::vector<Constraint>* const constraints) {
       break;
     }
   }
+  pipeline_.Refute(
+      [this](const LoopEnds& ends) { return planner_.PathsWithout(ends); });
+  Decide(true, constraints);
 }
 
 bool LoopClosure2D::Decide(const bool at_end,
@@ -261,6 +274,9 @@ bool LoopClosure2D::Decide(const bool at_end,
   Record(decided);
   bool has_closed = false;
   for (const LoopCandidate& candidate : decided) {
+    if (candidate.verdict == LoopDecision::UNDECIDED) {
+      Withdraw(candidate, constraints);
+    }
     if (!candidate.is_accepted()) continue;
     Close(candidate, constraints);
     second_look_.AddAccepted(candidate);
@@ -301,13 +317,7 @@ void LoopClosure2D::ProcessQuery(const PlaceQuery& query) {
 
 void LoopClosure2D::Close(const LoopCandidate& accepted,
                           std::vector<Constraint>* const constraints) {
-  const Constraint constraint{
-      SubmapId(accepted.submap.trajectory_id, accepted.submap.submap_index),
-      NodeId(accepted.node.trajectory_id, accepted.node.node_index),
-      Constraint::Pose{
-          cartographer::transform::Embed3D(ToRigid2d(accepted.match.refined)),
-          accepted.weights->translation, accepted.weights->rotation},
-      Constraint::INTER_SUBMAP};
+  const Constraint constraint = MakeConstraint(accepted);
   if (!accepted.full_information.isZero(0.)) {
     context_->Get<LoopInformation>()->Set(
         MakeLoopId(constraint.submap_id, constraint.node_id),
@@ -336,6 +346,15 @@ void LoopClosure2D::Close(const LoopCandidate& accepted,
   }
   inter_trajectory_loops_.Add(constraint);
   constraints->push_back(constraint);
+}
+
+void LoopClosure2D::Withdraw(const LoopCandidate& accepted,
+                             std::vector<Constraint>* const constraints) {
+  if (accepted.anchor.has_value()) {
+    planner_.RemoveAcceptedLoop(*accepted.anchor, accepted.node);
+  }
+  inter_trajectory_loops_.Withdraw(MakeConstraint(accepted), context_.get(),
+                                   constraints);
 }
 
 void LoopClosure2D::Flush() { Record(pipeline_.Flush()); }
@@ -410,7 +429,13 @@ void LoopClosure2D::Record(const std::vector<LoopCandidate>& decided) {
     ConstraintMetrics::Global()->CountDecision(decisions.back());
   }
   recorder_->Record(decisions);
-  for (const LoopDecision& decision : decisions) counts_.Add(decision);
+  for (const LoopDecision& decision : decisions) {
+    if (decision.verdict() == LoopDecision::UNDECIDED) {
+      --counts_.accepted;  // withdrawn, was counted before
+    } else {
+      counts_.Add(decision);
+    }
+  }
   if (!log_.is_on()) return;
   std::string bytes;
   for (const LoopDecision& decision : decisions) {

@@ -137,6 +137,9 @@ class LoopClosure2D {
   // that are withdrawn on its account (common/withdrawn_loops.h).
   void Close(const LoopCandidate& accepted,
              std::vector<Constraint>* constraints);
+  // Adds the mark of an accepted candidate that is withdrawn.
+  void Withdraw(const LoopCandidate& accepted,
+                std::vector<Constraint>* constraints);
   // Frees trajectories that the pose graph has apparently deleted.
   void FreeDormantTrajectories();
   proto::LoopDecision Describe(const LoopCandidate& candidate) const;

@@ -3,10 +3,12 @@
 #include "cartographer_ext/loop_closure/dropin/pair_planner.h"
 
 #include <algorithm>
+#include <memory>
 #include <tuple>
 #include <utility>
 
 #include "cartographer_ext/loop_closure/loop_options.h"
+#include "cartographer_ext/uncertainty/least_uncertain_paths.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -193,6 +195,18 @@ std::vector<LoopCandidate> PairPlanner::Plan(
     candidates.back().plan = planned.plan;
   }
   return candidates;
+}
+
+loop_closure::PathBetween PairPlanner::PathsWithout(
+    const LoopEnds& ends) const {
+  const auto paths = std::make_shared<uncertainty::LeastUncertainPaths>(
+      search_planner_.PathsWithout([&](const uncertainty::LoopEdge& loop) {
+        return ends.count(std::make_pair(loop.a, loop.b)) != 0;
+      }));
+  return
+      [paths](const uncertainty::VertexId& a, const uncertainty::VertexId& b) {
+        return paths->Between(a, b);
+      };
 }
 
 bool PairPlanner::AddAcceptedLoop(

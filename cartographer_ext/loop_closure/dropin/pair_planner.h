@@ -28,6 +28,7 @@
 #include "cartographer/common/fixed_ratio_sampler.h"
 #include "cartographer/mapping/proto/pose_graph/constraint_builder_options.pb.h"
 #include "cartographer_ext/loop_closure/candidate_search/search_planner.h"
+#include "cartographer_ext/loop_closure/consensus/closed_prediction.h"
 #include "cartographer_ext/loop_closure/loop_candidate.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/relocalization/map_localization.h"
@@ -78,6 +79,14 @@ class PairPlanner {
   // as MapLocalization::AddAcceptedLoop.
   bool AddAcceptedLoop(const LoopCandidate& accepted,
                        const absl::optional<uncertainty::LoopEdge>& loop);
+  // The paths over the accepted loops without these ends.
+  loop_closure::PathBetween PathsWithout(const LoopEnds& ends) const;
+  // To be called when it is withdrawn; `anchor` and `node` are the ends of its
+  // edge.
+  void RemoveAcceptedLoop(const uncertainty::VertexId& anchor,
+                          const uncertainty::NodeId& node) {
+    search_planner_.RemoveAcceptedLoop(anchor, node);
+  }
   void DeleteSubmap(const uncertainty::SubmapId& submap);
   void DeleteTrajectory(int trajectory_id);
 

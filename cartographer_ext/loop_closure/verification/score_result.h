@@ -47,6 +47,8 @@ struct ScoreFusionResult {
   double wrong_density = 0.;
   double search_density = 0.;
   double predicted_density = 0.;
+  // Of a true match here, by all predictions (TrueDensity); 0: unknown.
+  double true_density = 0.;
   // False and true loops; the mixture in force, likelihood ratio only.
   absl::optional<std::array<MixtureDescription, 2>> mixture;
 };

@@ -235,6 +235,7 @@ void EstimateProbability(const SearchPlannerOptions& options,
   }
   const double density =
       TrueDensity(fusion.predicted_density, by_path, fusion.search_density);
+  fusion.true_density = density;
   fusion.probability = density / (density + fusion.wrong_density);
 }
 

@@ -124,6 +124,107 @@ TEST_F(LoopConsensusTest, NeighboursOfAMatchChangeItsScore) {
   EXPECT_EQ(undecided[0].followed->num_missed, 14);
 }
 
+// Two wrong candidates that agree, and four right ones that contradict them.
+TEST_F(LoopConsensusTest, WithdrawnCandidatesAreReturnedAgain) {
+  for (const bool forget : {false, true}) {
+    consensus_.reset(new LoopConsensus(options_, &paths_));
+    num_candidates_ = 0;
+    for (const int i : {5, 15}) {
+      LoopCandidate wrong = Candidate(i);
+      wrong.match.refined.x += 8.;
+      consensus_->Add(wrong);
+    }
+    EXPECT_EQ(consensus_->Decide().size(), 2u);
+    EXPECT_EQ(consensus_->num_right(), 2);
+    if (forget) {
+      // As of a submap that is deleted.
+      consensus_->ForgetAcceptedIf([](const LoopCandidate& candidate) {
+        return candidate.submap.submap_index == 5;
+      });
+    }
+    for (const int i : {10, 20, 30, 40}) consensus_->Add(Candidate(i));
+    const std::vector<LoopCandidate> decided = consensus_->Decide();
+    const size_t num_withdrawn = forget ? 1 : 2;
+    ASSERT_EQ(decided.size(), num_withdrawn + 4);
+    EXPECT_EQ(decided[0].number, forget ? 1 : 0);
+    for (size_t i = 0; i < decided.size(); ++i) {
+      EXPECT_EQ(decided[i].is_accepted(), i >= num_withdrawn);
+    }
+    EXPECT_EQ(decided[0].verdict, LoopDecision::UNDECIDED);
+    EXPECT_EQ(decided[0].reason, LoopDecision::OVERTURNED);
+    EXPECT_EQ(consensus_->NumWrong(), static_cast<int>(num_withdrawn));
+    const std::vector<LoopCandidate> undecided = consensus_->Undecided();
+    ASSERT_EQ(undecided.size(), num_withdrawn);
+    EXPECT_EQ(undecided[0].reason, LoopDecision::OVERTURNED);
+  }
+}
+
+// Four candidates, accepted; two of them were expected elsewhere, one of these by
+// the others as well.
+TEST_F(LoopConsensusTest,
+       PathsOverOthersRefuteCandidatesFarFromTheirPrediction) {
+  for (const int i : {5, 15, 25, 35}) {
+    LoopCandidate candidate = Candidate(i);
+    candidate.plan.translation_sigma = 0.2;
+    candidate.plan.rotation_sigma = 0.1;
+    if (i == 15 || i == 25) candidate.predicted->x += 0.7;
+    consensus_->Add(candidate);
+  }
+  EXPECT_EQ(consensus_->Decide().size(), 4u);
+  LoopEnds asked;
+  const std::vector<LoopCandidate> refuted =
+      consensus_->Refute([&](const LoopEnds& ends) -> PathBetween {
+        asked = ends;
+        return [&](const uncertainty::VertexId& a,
+                   const uncertainty::VertexId& b) {
+          uncertainty::UncertainPose path;
+          path.pose = Between(Truth(a.index()), Truth(b.index()));
+          if (a.index() == 15) path.pose.x += 0.7;
+          path.covariance = Eigen::Vector3d(0.01, 0.01, 1e-3).asDiagonal();
+          return absl::optional<uncertainty::UncertainPose>(path);
+        };
+      });
+  EXPECT_EQ(asked.size(), 2u);
+  ASSERT_EQ(refuted.size(), 1u);
+  EXPECT_EQ(refuted[0].number, 1);
+  EXPECT_EQ(refuted[0].verdict, LoopDecision::UNDECIDED);
+  EXPECT_EQ(refuted[0].reason, LoopDecision::OVERTURNED);
+  // The record says by what.
+  EXPECT_TRUE(refuted[0].innovation->vetoed);
+  EXPECT_NEAR(refuted[0].innovation->innovation.x, 0.7, 1e-9);
+  EXPECT_NEAR(*refuted[0].closed_sigma, 0.1, 1e-9);
+  EXPECT_THAT(consensus_->Decide(RunState::kEndsUnalike), IsEmpty());
+  EXPECT_EQ(consensus_->num_undecided(), 1);
+  // Without suspects nobody is asked.
+  EXPECT_THAT(consensus_->Refute([](const LoopEnds& ends) -> PathBetween {
+    EXPECT_EQ(ends.size(), 1u);
+    return [](const uncertainty::VertexId&, const uncertainty::VertexId&)
+               -> absl::optional<uncertainty::UncertainPose> {
+      return absl::nullopt;
+    };
+  }),
+              IsEmpty());
+}
+
+// Densities of 0.05 as predicted and of 0.1 anywhere, half of the verified
+// matches wrong: at most 0.5, which one revisit raises to odds of 1.8.
+TEST_F(LoopConsensusTest, ScoresSayLittleWhereManyMatchesAreWrong) {
+  for (const double share_wrong : {0., 0.5}) {
+    consensus_.reset(new LoopConsensus(options_, &paths_));
+    num_candidates_ = 0;
+    for (const int i : {5, 25}) {
+      LoopCandidate candidate = Candidate(i);
+      candidate.fusion = ScoreFusionResult();
+      candidate.fusion->final_score = 0.9;
+      candidate.fusion->true_density = 0.05;
+      candidate.fusion->search_density = 0.1;
+      consensus_->Add(candidate);
+    }
+    consensus_->SetShareWrong(share_wrong);
+    EXPECT_EQ(consensus_->Decide().size(), share_wrong == 0. ? 2u : 0u);
+  }
+}
+
 }  // namespace
 }  // namespace loop_closure
 }  // namespace cartographer_ext

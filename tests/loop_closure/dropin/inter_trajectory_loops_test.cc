@@ -94,6 +94,24 @@ TEST(InterTrajectoryLoopsTest, ForgetsWhatThePoseGraphDeletes) {
   EXPECT_TRUE(marks.empty());
 }
 
+// Of any trajectory, whether or not it was added.
+TEST(InterTrajectoryLoopsTest, WithdrawsSingleLoops) {
+  InterTrajectoryLoops loops;
+  PoseGraphContext context;
+  loops.DeleteSubmap(SubmapId(0, 0), 5, &context);
+  std::vector<Constraint> marks;
+  loops.Withdraw(Loop(SubmapId(0, 3), NodeId(0, 60)), &context, &marks);
+  ASSERT_EQ(marks.size(), 1u);
+  EXPECT_EQ(marks[0].submap_id, SubmapId(0, 3));
+  EXPECT_EQ(marks[0].node_id, NodeId(0, 60));
+  EXPECT_EQ(marks[0].pose.translation_weight, 0.);
+  EXPECT_EQ(marks[0].pose.rotation_weight, 0.);
+  EXPECT_EQ(marks[0].tag, Constraint::INTER_SUBMAP);
+  loops.Withdraw(Loop(SubmapId(0, 3), NodeId(0, 4)), &context, &marks);
+  EXPECT_EQ(marks.size(), 1u);
+  EXPECT_EQ(context.Get<WithdrawnLoops>()->All().size(), 1u);
+}
+
 }  // namespace
 }  // namespace loop_closure
 }  // namespace cartographer_ext
