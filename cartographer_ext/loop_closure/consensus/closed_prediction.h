@@ -42,7 +42,8 @@ bool PredictAgain(const LoopOptions& options,
 // that the loops accepted since should be asked.
 bool IsFarFromPrediction(const LoopCandidate& candidate);
 
-// Whether a path over other loops contradicts an accepted candidate. If so, its `innovation` and `closed_sigma` are those of this path.
+// Whether a path over other loops contradicts an accepted candidate. If so, its
+// `innovation` and `closed_sigma` are those of this path.
 bool ContradictsPath(const LoopOptions& options,
                      const uncertainty::PathUncertainty& paths,
                      const PathBetween& path_between, LoopCandidate* candidate);

@@ -414,9 +414,7 @@ void CompatibleSubset::MakeRoom() {
     Emit(cluster, cluster.undecided, false, why_not, &overflow_);
     if (why_not == SubsetReason::kContradicted &&
         cluster.leader.is_within_trajectory()) {
-      num_wrong_ += static_cast<int>(std::count_if(
-          cluster.undecided.begin(), cluster.undecided.end(),
-          [](const LoopEvidence& loop) { return loop.is_verified; }));
+      num_wrong_ += NumVerified(cluster.undecided);
     }
   }
   Erase(oldest);

@@ -31,9 +31,9 @@
 //              without support is accepted by stricter rules of its own. What
 //              is neither stays buffered and is tested again when new evidence
 //              comes; `Flush` ends that. Where scores are probabilities, an
-//              accepted cluster that is no longer in the clique and contradicts it
-//              is withdrawn: its loops wait again. At the end of a run, when no more can
-//              come, a loop of the subset without rivals is accepted if it is
+//              accepted cluster that is no longer in the clique and contradicts
+//              it is withdrawn: its loops wait again. At the end of a run, when
+//              no more can come, a loop of the subset without rivals is accepted if it is
 //              probable, whatever support it lacks: a robot that comes back to
 //              its start and stops there leaves no second revisit. If no match of
 //              the run was wrong, places do not look alike: then two revisits
@@ -234,6 +234,7 @@ class CompatibleSubset {
       const std::function<bool(const LoopEvidence&)>& condition);
   // The accepted loops that may still be withdrawn, ascending.
   std::vector<int64_t> AcceptedLoops() const;
+  int num_accepted_loops() const { return num_accepted_loops_; }
 
   // Drops accepted revisits whose first loop fulfils the condition.
   void ForgetAccepted(
@@ -328,7 +329,11 @@ class CompatibleSubset {
   // Emits and keeps them.
   void Accept(const std::vector<LoopEvidence>& loops, SubsetReason reason,
               Cluster* cluster, std::vector<SubsetDecision>* decisions);
-  // Makes accepted clusters that contradict the subset undecided again.
+  // Makes loops that were accepted, and are no longer kept, undecided again.
+  void WithdrawLoops(std::vector<LoopEvidence> loops, Cluster* cluster,
+                     std::vector<SubsetDecision>* decisions);
+  static int NumVerified(const std::vector<LoopEvidence>& loops);
+  // Withdraws accepted clusters that contradict the subset.
   void Withdraw(std::vector<SubsetDecision>* decisions);
   // Forgets the oldest accepted loops beyond kMostAcceptedLoops.
   void BoundAcceptedLoops();

@@ -4,6 +4,7 @@
 // The accepted loops of the compatible subset, which may be withdrawn.
 #include <algorithm>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
@@ -13,6 +14,12 @@ namespace loop_closure {
 
 constexpr int CompatibleSubset::kMostAcceptedLoops;
 
+int CompatibleSubset::NumVerified(const std::vector<LoopEvidence>& loops) {
+  return static_cast<int>(
+      std::count_if(loops.begin(), loops.end(),
+                    [](const LoopEvidence& loop) { return loop.is_verified; }));
+}
+
 int CompatibleSubset::NumWrong() const {
   int num_wrong = num_wrong_;
   for (const Cluster& cluster : clusters_) {
@@ -20,9 +27,7 @@ int CompatibleSubset::NumWrong() const {
         !cluster.leader.is_within_trajectory()) {
       continue;
     }
-    num_wrong += static_cast<int>(std::count_if(
-        cluster.undecided.begin(), cluster.undecided.end(),
-        [](const LoopEvidence& loop) { return loop.is_verified; }));
+    num_wrong += NumVerified(cluster.undecided);
   }
   return num_wrong;
 }
@@ -41,6 +46,22 @@ void CompatibleSubset::Accept(const std::vector<LoopEvidence>& loops,
   num_accepted_loops_ += static_cast<int>(loops.size());
 }
 
+void CompatibleSubset::WithdrawLoops(
+    std::vector<LoopEvidence> loops, Cluster* const cluster,
+    std::vector<SubsetDecision>* const decisions) {
+  for (LoopEvidence& loop : loops) {
+    loop.was_accepted = true;
+    num_right_ -= loop.is_verified;
+  }
+  num_accepted_loops_ -= static_cast<int>(loops.size());
+  const size_t first = decisions->size();
+  Emit(*cluster, loops, false, SubsetReason::kOverturned, decisions);
+  for (size_t i = first; i < decisions->size(); ++i) {
+    (*decisions)[i].withdrawn = true;
+  }
+  std::move(loops.begin(), loops.end(), std::back_inserter(cluster->undecided));
+}
+
 void CompatibleSubset::Withdraw(std::vector<SubsetDecision>* const decisions) {
   if (!options_.scores_are_probabilities) return;
   for (Cluster& cluster : clusters_) {
@@ -49,20 +70,9 @@ void CompatibleSubset::Withdraw(std::vector<SubsetDecision>* const decisions) {
         cluster.in_subset || MayAccept(cluster, &reason)) {
       continue;
     }
-    num_accepted_loops_ -= static_cast<int>(cluster.accepted_loops.size());
-    for (LoopEvidence& loop : cluster.accepted_loops) {
-      loop.was_accepted = true;
-      num_right_ -= loop.is_verified;
-    }
-    const size_t first = decisions->size();
-    Emit(cluster, cluster.accepted_loops, false, SubsetReason::kContradicted,
-         decisions);
-    for (size_t i = first; i < decisions->size(); ++i) {
-      (*decisions)[i].withdrawn = true;
-    }
-    std::move(cluster.accepted_loops.begin(), cluster.accepted_loops.end(),
-              std::back_inserter(cluster.undecided));
-    cluster.accepted_loops.clear();
+    std::vector<LoopEvidence> loops;
+    loops.swap(cluster.accepted_loops);
+    WithdrawLoops(std::move(loops), &cluster, decisions);
     cluster.accepted = false;
     changed_ = true;
   }
@@ -80,19 +90,8 @@ std::vector<SubsetDecision> CompatibleSubset::Refute(
     if (refuted == loops.end()) continue;
     std::vector<LoopEvidence> withdrawn(refuted, loops.end());
     loops.erase(refuted, loops.end());
-    num_accepted_loops_ -= static_cast<int>(withdrawn.size());
-    for (LoopEvidence& loop : withdrawn) {
-      loop.was_accepted = true;
-      loop.is_refuted = true;
-      num_right_ -= loop.is_verified;
-    }
-    const size_t first = decisions.size();
-    Emit(cluster, withdrawn, false, SubsetReason::kOverturned, &decisions);
-    for (size_t i = first; i < decisions.size(); ++i) {
-      decisions[i].withdrawn = true;
-    }
-    cluster.undecided.insert(cluster.undecided.end(), withdrawn.begin(),
-                             withdrawn.end());
+    for (LoopEvidence& loop : withdrawn) loop.is_refuted = true;
+    WithdrawLoops(std::move(withdrawn), &cluster, &decisions);
     if (loops.empty()) cluster.accepted = false;
     changed_ = true;
   }

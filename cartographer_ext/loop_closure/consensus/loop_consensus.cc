@@ -192,8 +192,10 @@ LoopCandidate LoopConsensus::Withdraw(const SubsetDecision& decision) {
 }
 
 void LoopConsensus::PruneAccepted() {
+  if (subset_.num_accepted_loops() == static_cast<int>(accepted_.size())) {
+    return;
+  }
   const std::vector<int64_t> kept = subset_.AcceptedLoops();
-  if (kept.size() == accepted_.size()) return;
   for (auto it = accepted_.begin(); it != accepted_.end();) {
     it = std::binary_search(kept.begin(), kept.end(), it->first)
              ? std::next(it)
