@@ -81,6 +81,17 @@ inline GridWorld MakeGridWorld(const int num_poses, const int blocks,
   return world;
 }
 
+// `count` wrong loops.
+inline OutlierOptions Outliers(const int count,
+                               const OutlierType type = OutlierType::kRandom,
+                               const uint64_t seed = 1) {
+  OutlierOptions options;
+  options.type = type;
+  options.count = count;
+  options.seed = seed;
+  return options;
+}
+
 // Appends the outliers that `options` make for `graph` to `edges`.
 inline void AppendOutliers(const PoseGraph& graph,
                            const OutlierOptions& options,
@@ -88,6 +99,11 @@ inline void AppendOutliers(const PoseGraph& graph,
   const std::vector<PoseGraphEdge> outliers =
       GenerateOutliers(graph, options).value();
   edges->insert(edges->end(), outliers.begin(), outliers.end());
+}
+
+// The same, to its own edges.
+inline void AddOutliers(const OutlierOptions& options, PoseGraph* const graph) {
+  AppendOutliers(*graph, options, &graph->edges);
 }
 
 // A g2o file as a graph; empty when it cannot be read.

@@ -38,10 +38,9 @@ TEST(AutoSearchTest, OverconfidentMatricesKeepTheirLoops) {
 TEST(AutoSearchTest, HonestMatricesAreTakenAtTheirWord) {
   for (const uint64_t seed : {1, 2, 3}) {
     test::GridWorld world = test::MakeGridWorld(250, 5, seed);
-    OutlierOptions outliers;
-    outliers.type = seed == 1 ? OutlierType::kLocal : OutlierType::kRandom;
-    outliers.count = 150;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(150, seed == 1 ? OutlierType::kLocal
+                                                    : OutlierType::kRandom),
+                      &world.graph);
     const AutoResult result = SearchAutomatically(world.graph, AutoOptions());
     EXPECT_EQ(result.applied_odometry_scale, 1.);
     EXPECT_EQ(result.applied_loop_scale, 1.);
@@ -70,9 +69,7 @@ TEST(AutoSearchTest, LoopsThatClaimTooLittleCountAsTheyAre) {
 // The second search knows what the first has found.
 TEST(AutoSearchTest, AnotherRatioCostsLessThanAnotherSearch) {
   test::GridWorld world = test::MakeGridWorld(250, 5, 1);
-  OutlierOptions outliers;
-  outliers.count = 150;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(150), &world.graph);
   const PoseGraph graph = WithNoiseScale(world.graph, 1., 5.);
   AutoOptions options;
   const AutoResult result = SearchAutomatically(graph, options);
@@ -123,9 +120,7 @@ TEST(AutoSearchTest, TheWorstOfManyRightLoopsIsKept) {
 // careful matrices ask for, may cost more than that of a solver left out.
 TEST(AutoSearchTest, IsNotAboveSolversThatTookNoPart) {
   test::GridWorld world = test::MakeGridWorld(400, 5, 3);
-  OutlierOptions outliers;
-  outliers.count = 30;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(30), &world.graph);
   const PoseGraph graph = WithNoiseScale(world.graph, 5., 5.);
   const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
   std::vector<Pose2> graduated = graph.poses;

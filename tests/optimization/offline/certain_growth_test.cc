@@ -14,10 +14,8 @@ namespace {
 
 test::GridWorld GridWithOutliers(const uint64_t seed, const int outliers) {
   test::GridWorld world = test::MakeGridWorld(1500, 14, seed);
-  OutlierOptions options;
-  options.count = outliers;
-  options.seed = seed;
-  test::AppendOutliers(world.graph, options, &world.graph.edges);
+  test::AddOutliers(test::Outliers(outliers, OutlierType::kRandom, seed),
+                    &world.graph);
   return world;
 }
 

@@ -140,10 +140,8 @@ TEST(DecisionMovesTest, WhatRaisesTheCostTooMuchIsGivenUp) {
 // Of the first trial nobody knows beforehand what it takes; then work counts.
 TEST(DecisionMovesTest, NoGroupIsTriedBeyondTheLimitOfWork) {
   test::GridWorld world = test::MakeWeakRing(6, 0.2, true);
-  OutlierOptions outliers;
-  outliers.type = OutlierType::kRandomGrouped;
-  outliers.count = 20;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(20, OutlierType::kRandomGrouped),
+                    &world.graph);
   std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
   std::vector<Pose2> start = world.graph.poses;
   PolishTruncated(edges, kChi2Gate, 30, &start, nullptr);
@@ -182,11 +180,8 @@ TEST(DecisionMovesTest, AChordalRelaxationUnfoldsARing) {
   int unfolded = 0;
   for (const uint64_t seed : {1, 6, 8, 10, 12, 14, 16}) {
     test::GridWorld world = test::MakeWeakRing(seed, 0.2, true);
-    OutlierOptions outliers;
-    outliers.type = OutlierType::kRandomGrouped;
-    outliers.count = 20;
-    outliers.seed = seed;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(20, OutlierType::kRandomGrouped, seed),
+                      &world.graph);
     std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
     RobustSolver solver(edges);
     std::vector<Pose2> start = world.graph.poses;

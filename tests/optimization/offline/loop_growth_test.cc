@@ -15,10 +15,8 @@ TEST(LoopGrowthTest, FindsRightLoopsWhereOdometrySaysLittle) {
   for (const uint64_t seed : {1, 2, 3}) {
     test::GridWorld world = test::MakeWeakRing(seed);
     const size_t clean = world.graph.edges.size();
-    OutlierOptions outliers;
-    outliers.count = 40;
-    outliers.seed = seed;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(40, OutlierType::kRandom, seed),
+                      &world.graph);
     const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
     RobustSolver solver(edges);
     std::vector<Pose2> poses = world.graph.poses;

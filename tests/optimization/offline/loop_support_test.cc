@@ -94,10 +94,8 @@ TEST(LoopSupportTest, ChiSquareOfCyclesIsHonest) {
 // What is kept of the paths costs memory and saves time.
 TEST(LoopSupportTest, IsTheSameHoweverManyPathsAreKept) {
   test::GridWorld world = test::MakeGridWorld(300, 8, 3);
-  OutlierOptions outliers;
-  outliers.type = OutlierType::kLocalGrouped;
-  outliers.count = 200;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(200, OutlierType::kLocalGrouped),
+                    &world.graph);
   const LoopSupport support =
       FindLoopSupport(world.graph, LoopSupportOptions());
   ASSERT_GT(support.cycle_chi2.size(), 500u);

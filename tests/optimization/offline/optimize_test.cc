@@ -17,9 +17,7 @@ using ::testing::HasSubstr;
 
 TEST(OptimizeTest, EveryMethodRuns) {
   test::GridWorld world = test::MakeGridWorld(120, 6, 2);
-  OutlierOptions outliers;
-  outliers.count = 20;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(20), &world.graph);
   for (const std::string& method : MethodNames()) {
     OptimizeOptions options;
     options.method = method;
@@ -48,10 +46,7 @@ TEST(OptimizeTest, AutoIsRightAndChoosesTheLowestTruncatedCost) {
     test::GridWorld world = test::MakeGridWorld(250, 8, 5);
     std::vector<Pose2> optimum = world.graph.poses;
     SolveRobust(Whiten(world.graph.edges), SolverOptions(), &optimum);
-    OutlierOptions outliers;
-    outliers.type = type;
-    outliers.count = 200;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(200, type), &world.graph);
     OptimizeOptions options;
     const auto result = Optimize(world.graph, options);
     ASSERT_TRUE(result.ok());
@@ -155,10 +150,8 @@ TEST(OptimizeTest, StartsFromGivenPoses) {
 TEST(OptimizeTest, ReplayEndsNearTheLowestCost) {
   for (const uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}) {
     test::GridWorld world = test::MakeWeakRing(seed);
-    OutlierOptions outliers;
-    outliers.count = 60;
-    outliers.seed = seed;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(60, OutlierType::kRandom, seed),
+                      &world.graph);
     OptimizeOptions options;
     options.estimate_noise = false;
     options.adaptive_gate = false;
@@ -199,7 +192,7 @@ TEST(OptimizeDataTest, IntelWithAThousandOutliers) {
   std::vector<Pose2> optimum = graph.poses;
   SolveRobust(Whiten(graph.edges), SolverOptions(), &optimum);
   const size_t clean = graph.edges.size();
-  test::AppendOutliers(graph, OutlierOptions(), &graph.edges);
+  test::AddOutliers(OutlierOptions(), &graph);
   for (const char* method : {"auto", "r_isam", "dcs", "acs"}) {
     OptimizeOptions options;
     options.method = method;
@@ -219,11 +212,8 @@ TEST(OptimizeDataTest, KernelsThatAgreeOnALargeGraphMayBeWrong) {
       cartographer_ext::test::SharedData("g2o/manhattan_olson.g2o.xz");
   CARTOGRAPHER_EXT_SKIP_WITHOUT(file);
   PoseGraph graph = test::ReadGraph(file);
-  OutlierOptions outliers;
-  outliers.type = OutlierType::kRandomGrouped;
-  outliers.count = 4000;
-  outliers.seed = 3;
-  test::AppendOutliers(graph, outliers, &graph.edges);
+  test::AddOutliers(test::Outliers(4000, OutlierType::kRandomGrouped, 3),
+                    &graph);
   const auto automatic = Optimize(graph, OptimizeOptions());
   OptimizeOptions options;
   options.method = "r_isam";
@@ -242,11 +232,8 @@ TEST(OptimizeDataTest, AGroupThatFitsNoiseWhichIsNotThereIsRefused) {
   PoseGraph graph = test::ReadGraph(file);
   std::vector<Pose2> optimum = graph.poses;
   SolveRobust(Whiten(graph.edges), SolverOptions(), &optimum);
-  OutlierOptions outliers;
-  outliers.type = OutlierType::kRandomGrouped;
-  outliers.count = 1000;
-  outliers.seed = 173;
-  test::AppendOutliers(graph, outliers, &graph.edges);
+  test::AddOutliers(test::Outliers(1000, OutlierType::kRandomGrouped, 173),
+                    &graph);
   const auto automatic = Optimize(graph, OptimizeOptions());
   ASSERT_TRUE(automatic.ok());
   EXPECT_LT(automatic->applied_loop_scale, 0.5);

@@ -27,10 +27,8 @@ class PolishNearTest : public ::testing::Test {
     optimum_ = clean.poses;
     SolveRobust(Whiten(clean.edges), SolverOptions(), &optimum_);
     graph_ = clean;
-    OutlierOptions outliers;
-    outliers.type = OutlierType::kLocal;
-    outliers.count = 300;
-    test::AppendOutliers(clean, outliers, &graph_.edges);
+    test::AppendOutliers(clean, test::Outliers(300, OutlierType::kLocal),
+                         &graph_.edges);
     edges_ = Whiten(graph_.edges);
     lowest_ = optimum_;
     PolishTruncated(edges_, kChi2Gate, 30, &lowest_, nullptr);

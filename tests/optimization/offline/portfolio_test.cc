@@ -27,10 +27,8 @@ TEST(PortfolioTest, IsNeverAboveAnySolver) {
   for (const uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     test::GridWorld world = seed % 2 == 0 ? test::MakeGridWorld(120, 5, seed)
                                           : test::MakeWeakRing(seed);
-    OutlierOptions outliers;
-    outliers.count = seed * 5;
-    outliers.seed = seed;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(seed * 5, OutlierType::kRandom, seed),
+                      &world.graph);
     Portfolio portfolio(world.graph, PortfolioOptions());
     portfolio.Run();
     for (const char* method :
@@ -48,10 +46,8 @@ TEST(PortfolioTest, IsNeverAboveAnySolver) {
 TEST(PortfolioTest, ALargeGraphIsSettledByLoopsThatAgree) {
   for (const uint64_t seed : {1, 2, 3}) {
     test::GridWorld world = test::MakeGridWorld(500, 8, seed);
-    OutlierOptions outliers;
-    outliers.count = 60;
-    outliers.seed = seed;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(60, OutlierType::kRandom, seed),
+                      &world.graph);
     // As careful as the matrices of large public graphs.
     for (PoseGraphEdge& edge : world.graph.edges) edge.information /= 100.;
     PortfolioOptions options;
@@ -72,12 +68,11 @@ TEST(PortfolioTest, ALargeGraphIsSettledByLoopsThatAgree) {
 TEST(PortfolioTest, ALargeGraphWithWrongGroupsIsSettledAtOnce) {
   for (const bool local : {false, true}) {
     test::GridWorld world = test::MakeGridWorld(900, 10, 1);
-    OutlierOptions outliers;
-    outliers.type =
-        local ? OutlierType::kLocalGrouped : OutlierType::kRandomGrouped;
-    outliers.count = local ? 12000 : 3000;
+    OutlierOptions outliers = test::Outliers(
+        local ? 12000 : 3000,
+        local ? OutlierType::kLocalGrouped : OutlierType::kRandomGrouped);
     outliers.group_size = local ? 3 : 10;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(outliers, &world.graph);
     for (PoseGraphEdge& edge : world.graph.edges) edge.information /= 100.;
     PortfolioOptions options;
     options.large_search = 0.;
@@ -104,10 +99,9 @@ bool HasMember(const Portfolio& portfolio, const std::string& name) {
 TEST(PortfolioTest, AReplayIsAskedWhereSupportedLoopsAreNoStart) {
   for (const bool local : {false, true}) {
     test::GridWorld world = test::MakeGridWorld(900, 10, 1);
-    OutlierOptions outliers;
-    outliers.type = local ? OutlierType::kLocal : OutlierType::kRandomGrouped;
-    outliers.count = 4000;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(4000, local ? OutlierType::kLocal
+                                                 : OutlierType::kRandomGrouped),
+                      &world.graph);
     for (PoseGraphEdge& edge : world.graph.edges) edge.information /= 100.;
     Portfolio portfolio(world.graph, PortfolioOptions());
     ASSERT_GT(portfolio.Size(), kMaxGrowthWork);
@@ -124,9 +118,7 @@ TEST(PortfolioTest, AReplayIsAskedWhereSupportedLoopsAreNoStart) {
 // and what keeps all loops is not waited for.
 TEST(PortfolioTest, UnfoldsALargerGraphWithoutAllSolvers) {
   test::GridWorld world = test::MakeGridWorld(900, 10, 1);
-  OutlierOptions outliers;
-  outliers.count = 4000;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(4000), &world.graph);
   for (PoseGraphEdge& edge : world.graph.edges) edge.information /= 100.;
   // The second half is turned over.
   for (size_t i = world.graph.poses.size() / 2; i != world.graph.poses.size();
@@ -146,9 +138,7 @@ TEST(PortfolioTest, UnfoldsALargerGraphWithoutAllSolvers) {
 TEST(PortfolioTest, SearchesOnWhereWrongLoopsFitByChance) {
   for (const double share : {1e-2, 1e-3}) {
     test::GridWorld world = test::MakeGridWorld(500, 5, 1);
-    OutlierOptions outliers;
-    outliers.count = 300;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(300), &world.graph);
     for (PoseGraphEdge& edge : world.graph.edges) edge.information *= share;
     Portfolio portfolio(world.graph, PortfolioOptions());
     portfolio.Run();
@@ -186,10 +176,8 @@ TEST(PortfolioTest, ContinuesInAnotherMetric) {
   for (const uint64_t seed : {1, 2, 3}) {
     test::GridWorld world = seed == 1 ? test::MakeGridWorld(250, 5, seed)
                                       : test::MakeWeakRing(seed);
-    OutlierOptions outliers;
-    outliers.count = 60;
-    outliers.seed = seed;
-    test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+    test::AddOutliers(test::Outliers(60, OutlierType::kRandom, seed),
+                      &world.graph);
     Portfolio first(world.graph, PortfolioOptions());
     first.Run();
     const PoseGraph scaled = WithNoiseScale(world.graph, 0.5, 1.);
@@ -206,9 +194,7 @@ TEST(PortfolioTest, ContinuesInAnotherMetric) {
 // that does the same: what bends both has hardly any curvature.
 TEST(PortfolioTest, TakesOverWhatSolversFoundWithOtherNoise) {
   test::GridWorld world = test::MakeGridWorld(120, 5, 2);
-  OutlierOptions outliers;
-  outliers.count = 20;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(20), &world.graph);
   Portfolio first(world.graph, PortfolioOptions());
   first.Run();
   EXPECT_TRUE(first.ran_all_solvers());
@@ -266,9 +252,7 @@ TEST(PortfolioTest, SolvesFlatValleysToTheEnd) {
 TEST(PortfolioTest, KnowsWhatAllLoopsCost) {
   test::GridWorld world = test::MakeGridWorld(400, 5, 1);
   EXPECT_TRUE(Portfolio(world.graph, PortfolioOptions()).CanKeepAllLoops());
-  OutlierOptions outliers;
-  outliers.count = 4000;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(4000), &world.graph);
   EXPECT_FALSE(Portfolio(world.graph, PortfolioOptions()).CanKeepAllLoops());
 }
 

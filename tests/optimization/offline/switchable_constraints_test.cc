@@ -16,9 +16,7 @@ namespace {
 class SwitchableConstraintsTest : public ::testing::Test {
  protected:
   SwitchableConstraintsTest() : world_(test::MakeGridWorld(150, 6, 9)) {
-    OutlierOptions outliers;
-    outliers.count = 30;
-    test::AppendOutliers(world_.graph, outliers, &world_.graph.edges);
+    test::AddOutliers(test::Outliers(30), &world_.graph);
     edges_ = Whiten(world_.graph.edges);
   }
   test::GridWorld world_;

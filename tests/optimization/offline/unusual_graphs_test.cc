@@ -60,10 +60,8 @@ Eigen::Matrix3d Diagonal(const double xy, const double theta) {
 
 void AddWrongLoops(const int count, const Eigen::Matrix3d& information,
                    PoseGraph* const graph) {
-  OutlierOptions options;
-  options.count = count;
   const size_t first = graph->edges.size();
-  test::AppendOutliers(*graph, options, &graph->edges);
+  test::AddOutliers(test::Outliers(count), graph);
   for (size_t i = first; i != graph->edges.size(); ++i) {
     graph->edges[i].information = information;
   }

@@ -47,9 +47,7 @@ TEST(LoopSelectionTest, RightLoopsAreAllAcceptedAfterALongDrift) {
 TEST(LoopSelectionTest, WrongLoopsAreSwitchedOffAndComeBackWithEvidence) {
   test::GridWorld world = test::MakeGridWorld(250, 8, 5);
   const size_t clean = world.graph.edges.size();
-  OutlierOptions outliers;
-  outliers.count = 20;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(20), &world.graph);
   LoopSelection selection =
       SelectLoops(world.graph, Neighbours(world.graph), LoopSelectionOptions());
   int lost = 0, wrong = 0;

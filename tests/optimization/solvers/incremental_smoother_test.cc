@@ -79,9 +79,7 @@ TEST(IncrementalSmootherTest, SurvivesOutliers) {
   std::vector<Pose2> optimum = world.graph.poses;
   SolveRobust(Whiten(world.graph.edges), SolverOptions(), &optimum);
   const size_t clean = world.graph.edges.size();
-  OutlierOptions outliers;
-  outliers.count = 100;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(100), &world.graph);
   for (const SwitchEstimate estimate :
        {SwitchEstimate::kPointwise, SwitchEstimate::kJoint}) {
     SmootherOptions options;
@@ -191,9 +189,7 @@ TEST(IncrementalSmootherTest, TheCapDelaysLoopsOnly) {
 // The second half comes with the next pose and changes nothing but the time.
 TEST(IncrementalSmootherTest, AnEpochOfALargeMapEndsInTwoSteps) {
   test::GridWorld world = test::MakeGridWorld(330, 8, 4);
-  OutlierOptions outliers;
-  outliers.count = 60;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(60), &world.graph);
   SmootherOptions options;
   options.epoch_poses = 20;
   options.two_step_map = 100;

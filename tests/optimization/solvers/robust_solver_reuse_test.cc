@@ -18,10 +18,8 @@ class RobustSolverReuseTest : public ::testing::Test {
  protected:
   RobustSolverReuseTest() : world_(test::MakeGridWorld(250, 8, 5)) {
     clean_ = Whiten(world_.graph.edges);
-    OutlierOptions outliers;
-    outliers.count = 80;
     std::vector<PoseGraphEdge> edges = world_.graph.edges;
-    test::AppendOutliers(world_.graph, outliers, &edges);
+    test::AppendOutliers(world_.graph, test::Outliers(80), &edges);
     dirty_ = Whiten(edges);
     optimum_ = world_.graph.poses;
     SolveRobust(clean_, SolverOptions(), &optimum_);

@@ -30,10 +30,8 @@ class RobustSolverTest : public ::testing::Test {
     clean_ = Whiten(world_.graph.edges);
     optimum_ = world_.graph.poses;
     summary_ = SolveRobust(clean_, SolverOptions(), &optimum_);
-    OutlierOptions outliers;
-    outliers.count = 80;
     std::vector<PoseGraphEdge> edges = world_.graph.edges;
-    test::AppendOutliers(world_.graph, outliers, &edges);
+    test::AppendOutliers(world_.graph, test::Outliers(80), &edges);
     dirty_ = Whiten(edges);
   }
   test::GridWorld world_;
@@ -356,10 +354,8 @@ TEST_F(RobustSolverTest, GncFindsTheInliers) {
 // that start from it stay folded.
 TEST_F(RobustSolverTest, GncStartsEachRoundFromTheGivenPoses) {
   std::vector<PoseGraphEdge> edges = world_.graph.edges;
-  OutlierOptions outliers;
-  outliers.type = OutlierType::kRandomGrouped;
-  outliers.count = 120;
-  test::AppendOutliers(world_.graph, outliers, &edges);
+  test::AppendOutliers(
+      world_.graph, test::Outliers(120, OutlierType::kRandomGrouped), &edges);
   const std::vector<WhitenedEdge> dirty = Whiten(edges);
   GncOptions options;
   std::vector<Pose2> poses = world_.graph.poses;

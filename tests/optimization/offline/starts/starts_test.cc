@@ -72,9 +72,7 @@ TEST(StartsTest, TreePrefersShortPathsOverLoops) {
 
 TEST(StartsTest, RobustChordalPosesSurviveWrongLoops) {
   test::GridWorld world = test::MakeGridWorld(300, 6, 4);
-  OutlierOptions outliers;
-  outliers.count = 30;
-  test::AppendOutliers(world.graph, outliers, &world.graph.edges);
+  test::AddOutliers(test::Outliers(30), &world.graph);
   std::vector<Pose2> poses(world.truth.size(), Pose2());
   ASSERT_TRUE(RobustChordalPoses(Whiten(world.graph.edges), &poses));
   EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 0.5);
