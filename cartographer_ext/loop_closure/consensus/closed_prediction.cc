@@ -36,8 +36,8 @@ bool PredictAgain(const LoopOptions& options,
       candidate->closed_sigma.value_or(candidate->plan.translation_sigma)) {
     return false;
   }
-  const InnovationResult innovation =
-      TestInnovation(options.innovation_veto, *path, loop.pose);
+  const InnovationResult innovation = TestInnovation(
+      options.innovation_veto.chi_square_bound, *path, loop.pose);
   if (innovation.vetoed) return false;
   candidate->closed_sigma = sigma;
   candidate->innovation = innovation;
@@ -68,10 +68,8 @@ bool ContradictsPath(const LoopOptions& options,
   const absl::optional<uncertainty::UncertainPose> path =
       path_between(loop.a, loop.b);
   if (!path.has_value()) return false;
-  // The loop and the path close a cycle.
-  InnovationOptions bound = options.innovation_veto;
-  bound.chi_square_bound = options.compatible_subset.cycle.chi_square_bound;
-  const InnovationResult innovation = TestInnovation(bound, *path, loop.pose);
+  const InnovationResult innovation = TestInnovation(
+      options.compatible_subset.cycle.chi_square_bound, *path, loop.pose);
   if (!innovation.vetoed) return false;
   candidate->closed_sigma =
       uncertainty::WorstTranslationSigma(path->covariance);

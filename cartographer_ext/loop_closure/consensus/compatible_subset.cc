@@ -140,7 +140,7 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
   relations_.push_back(std::move(relations));
 }
 
-void CompatibleSubset::UpdatePrior(const LoopEvidence& loop) {
+void CompatibleSubset::UpdateEvidence(const LoopEvidence& loop) {
   for (Cluster& cluster : clusters_) {
     for (LoopEvidence& undecided : cluster.undecided) {
       if (undecided.id != loop.id) continue;

@@ -202,9 +202,10 @@ class CompatibleSubset {
   // clusters are kept.
   std::vector<SubsetDecision> Flush();
 
-  // Takes the score, the probability and the prior of an undecided loop, known by
-  // its id, from `loop`, where they have become better known.
-  void UpdatePrior(const LoopEvidence& loop);
+  // Takes the score, the probability, the prior and what the neighbours say of an
+  // undecided loop, known by its id, from `loop`, where they have become better
+  // known.
+  void UpdateEvidence(const LoopEvidence& loop);
 
   // The factor on the odds for a revisit that agrees where both were searched
   // far off: wrong ones agree as often as places look alike. At least

@@ -12,20 +12,20 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-InnovationResult TestInnovation(const InnovationOptions& options,
+InnovationResult TestInnovation(const double chi_square_bound,
                                 const uncertainty::UncertainPose& prior,
                                 const uncertainty::UncertainPose& loop) {
   // The cycle test with certain, empty paths asks the same.
   uncertainty::CycleConsistencyOptions cycle;
   cycle.test = uncertainty::CycleTest::kChiSquare;
-  cycle.chi_square_bound = options.chi_square_bound;
+  cycle.chi_square_bound = chi_square_bound;
   const uncertainty::CycleResult test =
       uncertainty::TestCycle(cycle, Invert(prior), uncertainty::UncertainPose(),
                              Invert(loop), uncertainty::UncertainPose());
   InnovationResult result;
   result.innovation = test.error;
   result.chi_square = test.chi_square;
-  result.bound = options.chi_square_bound;
+  result.bound = chi_square_bound;
   result.vetoed = !test.compatible;
   result.translation_sigma =
       uncertainty::WorstTranslationSigma(test.covariance);
@@ -51,8 +51,8 @@ void VetoByInnovation(const LoopOptions& options,
   const absl::optional<uncertainty::UncertainPose> prior =
       paths.Between(loop.a, loop.b);
   if (!prior.has_value()) return;
-  candidate->innovation =
-      TestInnovation(options.innovation_veto, *prior, loop.pose);
+  candidate->innovation = TestInnovation(
+      options.innovation_veto.chi_square_bound, *prior, loop.pose);
   if (candidate->innovation->vetoed) {
     candidate->Reject(proto::LoopDecision::INNOVATION_TOO_LARGE);
   }

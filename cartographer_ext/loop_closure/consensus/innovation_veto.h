@@ -35,15 +35,16 @@ struct InnovationResult {
   Pose2 innovation;        // E above; (b <- b), metres and radians
   double chi_square = 0.;  // infinity when E is not zero but certain to be
   double bound = 0.;       // on chi_square
-  bool vetoed = false;
+  bool vetoed = false;     // beyond the bound
   // Standard deviations of `innovation`, in the worst direction in metres, and
   // in radians.
   double translation_sigma = 0.;
   double rotation_sigma = 0.;
 };
 
-// Tests a loop (a <- b) against the prior (a <- b) from the path.
-InnovationResult TestInnovation(const InnovationOptions& options,
+// Tests a loop (a <- b) against the prior (a <- b) from the path, which together
+// close a cycle.
+InnovationResult TestInnovation(double chi_square_bound,
                                 const uncertainty::UncertainPose& prior,
                                 const uncertainty::UncertainPose& loop);
 

@@ -248,7 +248,7 @@ int LoopConsensus::PredictAgain(const Predict& predict) {
   for (auto& entry : waiting_) {
     LoopCandidate& candidate = entry.second.candidate;
     if (!predict(&candidate)) continue;
-    subset_.UpdatePrior(MakeEvidence(candidate));
+    subset_.UpdateEvidence(MakeEvidence(candidate));
     ++num_predicted;
   }
   return num_predicted;
@@ -259,17 +259,16 @@ void LoopConsensus::SetFollowed(const int64_t number,
   const auto it = waiting_.find(number);
   if (it == waiting_.end()) return;
   it->second.candidate.followed = followed;
-  subset_.UpdatePrior(MakeEvidence(it->second.candidate));
+  subset_.UpdateEvidence(MakeEvidence(it->second.candidate));
 }
 
 void LoopConsensus::SetShareAlike(const double share_alike) {
   if (share_alike == share_alike_) return;
   share_alike_ = share_alike;
   subset_.SetOddsPerFarRevisit(1. / share_alike);
-  for (const auto& entry : waiting_) {
-    if (!entry.second.candidate.followed.has_value()) continue;
-    subset_.UpdatePrior(MakeEvidence(entry.second.candidate));
-  }
+  UpdateEvidenceIf([](const LoopCandidate& candidate) {
+    return candidate.followed.has_value();
+  });
 }
 
 void LoopConsensus::SetShareWrong(const double share_wrong) {
@@ -277,8 +276,13 @@ void LoopConsensus::SetShareWrong(const double share_wrong) {
   if (std::abs(share_wrong - share_wrong_) <= 0.1 * share_wrong_) return;
   share_wrong_ = share_wrong;
   subset_.SetShareWrong(share_wrong);
+  UpdateEvidenceIf([](const LoopCandidate&) { return true; });
+}
+
+void LoopConsensus::UpdateEvidenceIf(const Condition& condition) {
   for (const auto& entry : waiting_) {
-    subset_.UpdatePrior(MakeEvidence(entry.second.candidate));
+    const LoopCandidate& candidate = entry.second.candidate;
+    if (condition(candidate)) subset_.UpdateEvidence(MakeEvidence(candidate));
   }
 }
 

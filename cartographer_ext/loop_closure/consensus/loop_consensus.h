@@ -99,6 +99,9 @@ class LoopConsensus {
       const std::vector<SubsetDecision>& decisions);
   // Makes an accepted candidate undecided again, and returns it.
   LoopCandidate Withdraw(const SubsetDecision& decision);
+  // Updates the evidence of the undecided candidates for which the condition
+  // holds.
+  void UpdateEvidenceIf(const Condition& condition);
   // Frees the accepted candidates that can no longer be withdrawn.
   void PruneAccepted();
 

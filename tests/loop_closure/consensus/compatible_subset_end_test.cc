@@ -160,8 +160,8 @@ TEST_F(FarOffTest, NeighboursDecideAboutASingleOne) {
     loop.score = 0.96;
     loop.odds_of_neighbours = 10.;
     wrong.score = score_of_wrong;
-    subset.UpdatePrior(loop);
-    subset.UpdatePrior(wrong);
+    subset.UpdateEvidence(loop);
+    subset.UpdateEvidence(wrong);
     // Unless the other one, whose neighbours match, too, tells of places that
     // look alike.
     const auto accepted = Accepted(subset.Decide(RunState::kEndsUnalike));
@@ -186,16 +186,16 @@ TEST_F(CompatibleSubsetEndTest, BetterPredictedLoopsNeedLessSupport) {
   EXPECT_THAT(Accepted(subset.Decide(RunState::kEnds)), IsEmpty());
   LoopEvidence known = Last(0, 10, 0.3);
   known.prior_sigma = 0.8;
-  subset.UpdatePrior(known);
+  subset.UpdateEvidence(known);
   const auto decisions = subset.Decide(RunState::kEnds);
   EXPECT_THAT(Accepted(decisions), ElementsAre(0));
   EXPECT_EQ(decisions[0].reason, SubsetReason::kSupported);
   // Nothing happens to a loop that is decided.
-  subset.UpdatePrior(known);
+  subset.UpdateEvidence(known);
   EXPECT_THAT(subset.Decide(RunState::kEnds), IsEmpty());
   // A probable loop needs none.
   known = Last(1, 25, 0.95);
-  subset.UpdatePrior(known);
+  subset.UpdateEvidence(known);
   EXPECT_THAT(Accepted(subset.Decide(RunState::kEnds)), ElementsAre(1));
 }
 

@@ -130,7 +130,7 @@ TEST_F(WithdrawalTest, RefutedLoopsAreNotAcceptedAgain) {
     LoopEvidence loop;
     loop.id = id;
     loop.score = loop.probability = 0.999;
-    subset.UpdatePrior(loop);
+    subset.UpdateEvidence(loop);
   }
   subset.Add(ForthAndBackLoop(10, 10, 0., 0.95));
   EXPECT_THAT(Accepted(subset.Decide(RunState::kEndsUnalike)), ElementsAre(10));
