@@ -14,6 +14,14 @@ void WithdrawnLoops::Add(const LoopId& id) {
   if (ids_.size() > kCapacity) ids_.pop_front();
 }
 
+bool WithdrawnLoops::Erase(const LoopId& id) {
+  const absl::MutexLock lock(&mutex_);
+  const auto erased = std::remove(ids_.begin(), ids_.end(), id);
+  const bool was_withdrawn = erased != ids_.end();
+  ids_.erase(erased, ids_.end());
+  return was_withdrawn;
+}
+
 void WithdrawnLoops::EraseSubmap(const int trajectory_id,
                                  const int submap_index) {
   const absl::MutexLock lock(&mutex_);

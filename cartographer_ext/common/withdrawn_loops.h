@@ -20,7 +20,7 @@
 //
 // A mark must not name a node that the pose graph has trimmed. If that is not
 // certain, the loop is withdrawn in WithdrawnLoops only, for the lifetime of
-// the pose graph.
+// the pose graph or until it is accepted again.
 #ifndef CARTOGRAPHER_EXT_COMMON_WITHDRAWN_LOOPS_H_
 #define CARTOGRAPHER_EXT_COMMON_WITHDRAWN_LOOPS_H_
 
@@ -42,6 +42,8 @@ class WithdrawnLoops {
   static constexpr size_t kCapacity = 100000;
 
   void Add(const LoopId& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns whether the loop was withdrawn.
+  bool Erase(const LoopId& id) ABSL_LOCKS_EXCLUDED(mutex_);
   // The pose graph deletes the loops of a submap together with it.
   void EraseSubmap(int trajectory_id, int submap_index)
       ABSL_LOCKS_EXCLUDED(mutex_);

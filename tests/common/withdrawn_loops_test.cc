@@ -81,6 +81,14 @@ TEST(WithdrawnLoopsTest, FollowsTheDeletionOfSubmaps) {
   EXPECT_EQ(loops.All().size(), 1u);
 }
 
+TEST(WithdrawnLoopsTest, ErasesLoopsThatAreAcceptedAgain) {
+  WithdrawnLoops loops;
+  for (const LoopId& id : {Id(0, 1), Id(0, 2), Id(0, 1)}) loops.Add(id);
+  EXPECT_TRUE(loops.Erase(Id(0, 1)));
+  EXPECT_EQ(loops.All(), std::set<LoopId>{Id(0, 2)});
+  EXPECT_FALSE(loops.Erase(Id(0, 1)));
+}
+
 TEST(WithdrawnLoopsTest, IsBounded) {
   WithdrawnLoops loops;
   for (size_t i = 0; i <= WithdrawnLoops::kCapacity; ++i) {

@@ -339,12 +339,12 @@ void LoopClosure2D::Close(const LoopCandidate& accepted,
     // Relocalised after it was lost.
     const int trajectory_id = accepted.node.trajectory_id;
     const int map_id = accepted.submap.trajectory_id;
-    inter_trajectory_loops_.Withdraw(
+    loop_withdrawer_.Withdraw(
         trajectory_id, map_id,
         planner_.localization()->LastNodeBeforeLost(trajectory_id, map_id),
         context_.get(), constraints);
   }
-  inter_trajectory_loops_.Add(constraint);
+  loop_withdrawer_.Add(constraint, context_.get(), constraints);
   constraints->push_back(constraint);
 }
 
@@ -353,8 +353,8 @@ void LoopClosure2D::Withdraw(const LoopCandidate& accepted,
   if (accepted.anchor.has_value()) {
     planner_.RemoveAcceptedLoop(*accepted.anchor, accepted.node);
   }
-  inter_trajectory_loops_.Withdraw(MakeConstraint(accepted), context_.get(),
-                                   constraints);
+  loop_withdrawer_.Withdraw(MakeConstraint(accepted), context_.get(),
+                            constraints);
 }
 
 void LoopClosure2D::Flush() { Record(pipeline_.Flush()); }
@@ -363,7 +363,7 @@ void LoopClosure2D::DeleteSubmap(const SubmapId& submap_id) {
   const uncertainty::SubmapId id = ToKey(submap_id);
   const bool is_known = submaps_.Find(id) != nullptr;
   const int newest_node = submaps_.Erase(id);
-  inter_trajectory_loops_.DeleteSubmap(
+  loop_withdrawer_.DeleteSubmap(
       submap_id,
       std::min(newest_node, submaps_.NewestNodeIndex(id.trajectory_id)),
       context_.get());
@@ -391,7 +391,7 @@ void LoopClosure2D::FreeDormantTrajectories() {
     relocalizer_.DeleteTrajectory(trajectory_id);
     second_look_.DeleteTrajectory(trajectory_id);
     typical_fit_.DeleteTrajectory(trajectory_id);
-    inter_trajectory_loops_.DeleteTrajectory(trajectory_id);
+    loop_withdrawer_.DeleteTrajectory(trajectory_id);
     context_->Get<uncertainty::DriftModel>()->DeleteTrajectory(trajectory_id);
     it = dormant_since_.erase(it);
   }

@@ -52,7 +52,7 @@
 #include "cartographer_ext/loop_closure/candidate_search/typical_fit.h"
 #include "cartographer_ext/loop_closure/decision_counts.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
-#include "cartographer_ext/loop_closure/dropin/inter_trajectory_loops.h"
+#include "cartographer_ext/loop_closure/dropin/loop_withdrawer.h"
 #include "cartographer_ext/loop_closure/dropin/pair_planner.h"
 #include "cartographer_ext/loop_closure/dropin/pair_searcher.h"
 #include "cartographer_ext/loop_closure/dropin/relocalizer.h"
@@ -161,7 +161,7 @@ class LoopClosure2D {
   Relocalizer relocalizer_;
   TypicalFit typical_fit_;
   SecondLook second_look_;
-  InterTrajectoryLoops inter_trajectory_loops_;
+  LoopWithdrawer loop_withdrawer_;
   // Jobs of all nodes since the last `Verify`, at stable addresses. The first
   // ones, as many as are due, belong to the next `Verify`.
   std::deque<SearchJob> jobs_;

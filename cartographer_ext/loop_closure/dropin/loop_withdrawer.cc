@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/loop_closure/dropin/inter_trajectory_loops.h"
+#include "cartographer_ext/loop_closure/dropin/loop_withdrawer.h"
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 
+#include "absl/strings/str_cat.h"
 #include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/swaps.h"
 #include "glog/logging.h"
@@ -13,36 +15,45 @@ namespace cartographer_ext {
 namespace loop_closure {
 namespace {
 
-void Report(const int64_t num_withdrawn, const int trajectory_id,
-            const int map_trajectory_id) {
+// `loops`: which loop constraints, in words.
+void Report(const std::string& loops) {
 #ifndef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
-  LOG_IF(WARNING, num_withdrawn > 0)
-      << num_withdrawn << " withdrawn loop constraints of trajectory "
-      << trajectory_id << " with the map of trajectory " << map_trajectory_id
-      << " still act: Cartographer is built without the swap "
-         "optimization_problem, which skips them. Build it, or remove them "
-         "from the saved state with cartographer_ext_optimize.";
+  LOG(WARNING) << "Loop constraints are withdrawn, but still act: " << loops
+               << ". Cartographer is built without the swap "
+                  "optimization_problem, which skips them. Build it, or remove "
+                  "them from the saved state with cartographer_ext_optimize.";
 #else
-  LOG_IF(INFO, num_withdrawn > 0)
-      << num_withdrawn << " loop constraints of trajectory " << trajectory_id
-      << " with the map of trajectory " << map_trajectory_id
-      << " are withdrawn";
+  LOG(INFO) << "Loop constraints are withdrawn: " << loops;
 #endif
+}
+
+// A loop constraint that withdraws those of its submap and node before it.
+LoopWithdrawer::Constraint MarkOf(LoopWithdrawer::Constraint loop) {
+  loop.pose.translation_weight = 0.;
+  loop.pose.rotation_weight = 0.;
+  return loop;
 }
 
 }  // namespace
 
-void InterTrajectoryLoops::Add(const Constraint& loop) {
+void LoopWithdrawer::Add(const Constraint& loop,
+                         PoseGraphContext* const context,
+                         std::vector<Constraint>* const constraints) {
+  // Its node was not trimmed, or the loop would not have been accepted again.
+  if (context->Get<WithdrawnLoops>()->Erase(
+          MakeLoopId(loop.submap_id, loop.node_id))) {
+    constraints->push_back(MarkOf(loop));
+  }
   const int trajectory_id = loop.node_id.trajectory_id;
   const int map_trajectory_id = loop.submap_id.trajectory_id;
   if (trajectory_id == map_trajectory_id) return;
   loops_[std::make_pair(trajectory_id, map_trajectory_id)].push_back(loop);
 }
 
-void InterTrajectoryLoops::Withdraw(
-    const int trajectory_id, const int map_trajectory_id, const int last_node,
-    PoseGraphContext* const context,
-    std::vector<Constraint>* const constraints) {
+void LoopWithdrawer::Withdraw(const int trajectory_id,
+                              const int map_trajectory_id, const int last_node,
+                              PoseGraphContext* const context,
+                              std::vector<Constraint>* const constraints) {
   auto& loops = loops_[std::make_pair(trajectory_id, map_trajectory_id)];
   const auto withdrawn = std::stable_partition(
       loops.begin(), loops.end(), [last_node](const Constraint& loop) {
@@ -50,25 +61,27 @@ void InterTrajectoryLoops::Withdraw(
       });
   const auto num_withdrawn = loops.end() - withdrawn;
   for (auto loop = withdrawn; loop != loops.end(); ++loop) {
-    Mark(*loop, context, constraints);
+    MarkOrNote(*loop, context, constraints);
   }
   loops.erase(withdrawn, loops.end());
-  Report(num_withdrawn, trajectory_id, map_trajectory_id);
+  if (num_withdrawn == 0) return;
+  Report(absl::StrCat(num_withdrawn, " of trajectory ", trajectory_id,
+                      " with the map of trajectory ", map_trajectory_id));
 }
 
-void InterTrajectoryLoops::Withdraw(
-    Constraint loop, PoseGraphContext* const context,
-    std::vector<Constraint>* const constraints) {
-  Mark(loop, context, constraints);
-  if (!has_withdrawn_) {
-    Report(1, loop.node_id.trajectory_id, loop.submap_id.trajectory_id);
-  }
-  has_withdrawn_ = true;
+void LoopWithdrawer::Withdraw(const Constraint& loop,
+                              PoseGraphContext* const context,
+                              std::vector<Constraint>* const constraints) {
+  MarkOrNote(loop, context, constraints);
+  const int trajectory_id = loop.node_id.trajectory_id;
+  if (!reported_.insert(trajectory_id).second) return;
+  Report(absl::StrCat("some within trajectory ", trajectory_id,
+                      " (reported once)"));
 }
 
-void InterTrajectoryLoops::Mark(Constraint loop,
-                                PoseGraphContext* const context,
-                                std::vector<Constraint>* const constraints) {
+void LoopWithdrawer::MarkOrNote(
+    const Constraint& loop, PoseGraphContext* const context,
+    std::vector<Constraint>* const constraints) const {
   const auto trimmed = trimmed_nodes_.find(loop.node_id.trajectory_id);
   if (trimmed != trimmed_nodes_.end() &&
       loop.node_id.node_index <= trimmed->second.possibly) {
@@ -77,12 +90,10 @@ void InterTrajectoryLoops::Mark(Constraint loop,
         MakeLoopId(loop.submap_id, loop.node_id));
     return;
   }
-  loop.pose.translation_weight = 0.;
-  loop.pose.rotation_weight = 0.;
-  constraints->push_back(loop);
+  constraints->push_back(MarkOf(loop));
 }
 
-void InterTrajectoryLoops::DeleteSubmap(
+void LoopWithdrawer::DeleteSubmap(
     const cartographer::mapping::SubmapId& submap_id, const int newest_node,
     PoseGraphContext* const context) {
   context->Get<WithdrawnLoops>()->EraseSubmap(submap_id.trajectory_id,
@@ -105,8 +116,9 @@ void InterTrajectoryLoops::DeleteSubmap(
   }
 }
 
-void InterTrajectoryLoops::DeleteTrajectory(const int trajectory_id) {
+void LoopWithdrawer::DeleteTrajectory(const int trajectory_id) {
   trimmed_nodes_.erase(trajectory_id);
+  reported_.erase(trajectory_id);
   for (auto it = loops_.begin(); it != loops_.end();) {
     const bool is_of_it =
         it->first.first == trajectory_id || it->first.second == trajectory_id;

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The accepted loops of runs with the maps of other trajectories. Those from
-// before a run was lost are withdrawn once it is located again
-// (common/withdrawn_loops.h).
+// Withdraws accepted loops (common/withdrawn_loops.h): single ones that others
+// contradict since, and those of a run with the map of another trajectory from
+// before it was lost, once it is located again.
 //
-// Keeps the same loops as the pose graph, which deletes them with their submaps
-// and nodes. Not thread-safe.
-#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_INTER_TRAJECTORY_LOOPS_H_
-#define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_INTER_TRAJECTORY_LOOPS_H_
+// For the latter it keeps the same loops as the pose graph, which deletes them
+// with their submaps and nodes. Not thread-safe.
+#ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_LOOP_WITHDRAWER_H_
+#define CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_LOOP_WITHDRAWER_H_
 
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -21,21 +22,23 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// Accepted inter-trajectory loops, see above.
-class InterTrajectoryLoops {
+// Withdraws accepted loops, see above. What withdraws them is added to
+// `constraints`, or to the context if a node may have been trimmed.
+class LoopWithdrawer {
  public:
   using Constraint = cartographer::mapping::PoseGraphInterface::Constraint;
 
-  // Adds an accepted loop. Those within one trajectory are ignored.
-  void Add(const Constraint& loop);
-  // Withdraws the loops of a run with a map, of nodes up to an index: their
-  // marks are added to `constraints`, or to the context if a node may have been
-  // trimmed.
+  // To be called for every accepted loop. Adds what it takes for a loop that was
+  // withdrawn to count again, before the loop itself.
+  void Add(const Constraint& loop, PoseGraphContext* context,
+           std::vector<Constraint>* constraints);
+  // Withdraws the loops of a run with the map of another trajectory, of nodes up
+  // to an index.
   void Withdraw(int trajectory_id, int map_trajectory_id, int last_node,
                 PoseGraphContext* context,
                 std::vector<Constraint>* constraints);
-  // Withdraws one loop.
-  void Withdraw(Constraint loop, PoseGraphContext* context,
+  // Withdraws one loop within a trajectory.
+  void Withdraw(const Constraint& loop, PoseGraphContext* context,
                 std::vector<Constraint>* constraints);
   // The pose graph deletes the loops of a submap, and nodes of its trajectory
   // up to `newest_node`, with the submap.
@@ -45,8 +48,8 @@ class InterTrajectoryLoops {
 
  private:
   // Withdraws a loop by a mark, or in the context.
-  void Mark(Constraint loop, PoseGraphContext* context,
-            std::vector<Constraint>* constraints);
+  void MarkOrNote(const Constraint& loop, PoseGraphContext* context,
+                  std::vector<Constraint>* constraints) const;
 
   // Nodes up to these may have been trimmed after the last deletion of a
   // submap, the one before, and before that. A node belongs to two submaps, so
@@ -57,13 +60,13 @@ class InterTrajectoryLoops {
     int certainly = -1;
   };
 
-  // By run and map.
+  // Inter-trajectory loops by run and map.
   std::map<std::pair<int, int>, std::vector<Constraint>> loops_;
   std::map<int, TrimmedNodes> trimmed_nodes_;
-  bool has_withdrawn_ = false;  // a single one
+  std::set<int> reported_;  // trajectories of single loops
 };
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_INTER_TRAJECTORY_LOOPS_H_
+#endif  // CARTOGRAPHER_EXT_LOOP_CLOSURE_DROPIN_LOOP_WITHDRAWER_H_
