@@ -11,6 +11,7 @@
 #include "Eigen/LU"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/solvers/incremental_factor.h"
+#include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -26,13 +27,6 @@ constexpr double kNoProgress = 1e-3;
 // Share of the loops in force that is worth another look at those that fit,
 // before any is predicted.
 constexpr double kMuch = 0.05;
-
-// Ad_T, which turns twists of a pose into twists of the map.
-Eigen::Matrix3d Adjoint(const Pose2& pose) {
-  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
-  return (Eigen::Matrix3d() << c, -s, pose.y, s, c, -pose.x, 0., 0., 1.)
-      .finished();
-}
 
 // Multiplications with a block.
 constexpr double kWorkOfBlock = 27.;
@@ -274,7 +268,7 @@ std::vector<Eigen::Matrix3d> PredictAlongChain(
   for (const PoseGraphEdge& edge : graph.edges) {
     if (edge.is_loop || std::abs(edge.to - edge.from) != 1) continue;
     // The noise is in the frame of the measured end.
-    const Eigen::Matrix3d adjoint = Adjoint(poses[edge.to]);
+    const Eigen::Matrix3d adjoint = uncertainty::Adjoint(poses[edge.to]);
     const int later = std::max(edge.from, edge.to);
     if (reached[later]) continue;
     reached[later] = true;
