@@ -272,4 +272,11 @@ CARTOGRAPHER_EXT.optimization_problem = {
   -- tenth, when new loops move the newest nodes by much, and in the end. 0:
   -- always the whole graph, as Cartographer does. [>= 0 and <= 1000000]
   recent_nodes = 0,
+  -- At the final optimisation, if several loops are more than three
+  -- loop_sigma from the map, optimise again with loops that may pull and with
+  -- single steps of local SLAM that may give way, as where wheels slip in a
+  -- corridor; kept if nearly all loops are in force then. Not where places
+  -- look alike, nor with landmarks or fixed frames. Needs our loop closure
+  -- and the swap full_information.
+  loops_in_force = true,
 }

@@ -16,6 +16,7 @@ POSE_GRAPH.optimization_problem.cartographer_ext =
   CARTOGRAPHER_EXT.optimization_problem
 POSE_GRAPH.optimization_problem.cartographer_ext.robust_loops = false
 POSE_GRAPH.optimization_problem.cartographer_ext.odometry_check = true
+POSE_GRAPH.optimization_problem.cartographer_ext.loops_in_force = false
 
 return {
   map_builder = MAP_BUILDER,

@@ -156,8 +156,8 @@ void LoopPipeline::UpdateShareWrong() {
       });
   const double num_wrong =
       static_cast<double>(num_vetoed) + consensus_.NumWrong();
-  consensus_.SetShareWrong(num_wrong /
-                           (num_wrong + consensus_.num_right() + kPriorRight));
+  share_wrong_ = num_wrong / (num_wrong + consensus_.num_right() + kPriorRight);
+  consensus_.SetShareWrong(share_wrong_);
 }
 
 std::vector<LoopCandidate> LoopPipeline::Decide(const bool at_end) {

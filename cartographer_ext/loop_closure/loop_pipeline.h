@@ -96,6 +96,8 @@ class LoopPipeline {
   // Adds what following an undecided candidate, known by its number, has shown.
   void SetFollowed(int64_t number, const FollowedMatch& followed);
   int num_wrong_followed() const { return share_alike_.num_wrong(); }
+  // Of the verified matches so far, as of the last decision; 0 to 1.
+  double share_wrong() const { return share_wrong_; }
 
   // The undecided candidates with their reasons, in the order of their numbers:
   // they wait for other loops, or for evidence of a larger drift of local SLAM.
@@ -134,6 +136,7 @@ class LoopPipeline {
 
   const LoopOptions options_;
   const ConstraintWeights stock_weights_;
+  double share_wrong_ = 0.;
   TypicalStep typical_step_;
   NodeHistory history_;
   // Paths between nodes and between submaps.

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The swap `full_information`: residuals of constraints whose whole information
-// matrix is known, and the optimisation that uses them.
+// matrix is known, residuals of the relaxed problem, and the optimisation that
+// uses them.
 #include <array>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/loop_information.h"
 #include "cartographer_ext/common/pose_graph_context.h"
+#include "cartographer_ext/optimization/graph/relaxation.h"
 #include "cartographer_ext/swaps.h"
 #include "gtest/gtest.h"
 
@@ -112,6 +114,91 @@ TEST_P(FullInformationSwapTest, DerivativesAreRight) {
     ASSERT_TRUE(cost->Evaluate(parameters, residual.data(), jacobians));
     EXPECT_LT((analytic[1 - block] - other).norm(), 1e-12);
     jacobians[block] = analytic[block].data();
+  }
+}
+
+// Half the squared norm of the residuals of a step.
+double CostOf(const ceres::CostFunction& cost, const Eigen::Vector3d& start,
+              const Eigen::Vector3d& end) {
+  const double* const parameters[] = {start.data(), end.data()};
+  std::vector<double> residuals(cost.num_residuals());
+  EXPECT_TRUE(cost.Evaluate(parameters, residuals.data(), nullptr));
+  double result = 0.;
+  for (const double residual : residuals) result += 0.5 * residual * residual;
+  return result;
+}
+
+TEST_P(FullInformationSwapTest, RelaxedStepsHaveHubersCost) {
+  // The error is (1, -2, 0.5), with weights of 2 and 8 of norm 6: sqrt(2 * 2 +
+  // 4 * 4 + 4 * 4).
+  Constraint::Pose pose = MakePose(Rigid2d({3., -5.}, 0.), 2.);
+  pose.rotation_weight = 8.;
+  const auto cost = [&pose](const double pull, const double scale) {
+    const cartographer_ext::optimization::ScopedRelaxation scope(
+        {pull, 2., 8., scale}, nullptr, nullptr);
+    return CostOf(*std::unique_ptr<ceres::CostFunction>(GetParam()(pose)),
+                  kStart, kEnd);
+  };
+  EXPECT_NEAR(cost(1., 7.), 18., 1e-12);           // 36 / 2
+  EXPECT_NEAR(cost(1., 6.), 18., 1e-12);           // where both parts meet
+  EXPECT_NEAR(cost(1., 2.), 2. * 6. - 2., 1e-12);  // b |r| - b^2 / 2
+  EXPECT_NEAR(cost(1., 0.5), 3. - 0.125, 1e-12);
+  // All of the sum is divided by k^2.
+  EXPECT_NEAR(cost(10., 7.), 0.18, 1e-12);
+  EXPECT_NEAR(cost(10., 2.), 0.1, 1e-12);
+}
+
+TEST_P(FullInformationSwapTest, RelaxedConstraintsAreDivided) {
+  const Constraint::Pose pose = MakePose(Rigid2d({3., -5.}, 0.), 10.);
+  const Constraint::Pose other = pose;
+  Eigen::Matrix3d information = 4. * Eigen::Matrix3d::Identity();
+  const ScopedSqrtInformation matrices(SqrtOf(other, information));
+  // With the weights of steps, but a constraint.
+  const cartographer_ext::optimization::ScopedRelaxation scope(
+      {5., 10., 10., 1.}, &pose, &pose + 1);
+  EXPECT_LT(
+      (Residual(GetParam(), pose, kStart, kEnd) - Eigen::Vector3d(2., -4., 1.))
+          .norm(),
+      1e-12);
+  EXPECT_LT((Residual(GetParam(), other, kStart, kEnd) -
+             Eigen::Vector3d(0.4, -0.8, 0.2))
+                .norm(),
+            1e-12);
+}
+
+TEST_P(FullInformationSwapTest, TheGradientOfARelaxedStepIsRight) {
+  const Constraint::Pose pose = MakePose(Rigid2d({0.3, -0.5}, 0.7), 10.);
+  for (const double scale : {0.1, 1., 100.}) {
+    const cartographer_ext::optimization::ScopedRelaxation scope(
+        {3., 10., 10., scale}, nullptr, nullptr);
+    const std::unique_ptr<ceres::CostFunction> cost(GetParam()(pose));
+    std::array<Eigen::Vector3d, 2> poses{
+        {Eigen::Vector3d(0.1, 0.2, -0.4), Eigen::Vector3d(0.5, -0.1, 0.6)}};
+    const double* const parameters[] = {poses[0].data(), poses[1].data()};
+    const int rows = cost->num_residuals();
+    Eigen::VectorXd residual(rows);
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    std::array<RowMajor, 2> jacobian{{RowMajor(rows, 3), RowMajor(rows, 3)}};
+    double* jacobians[] = {jacobian[0].data(), jacobian[1].data()};
+    ASSERT_TRUE(cost->Evaluate(parameters, residual.data(), jacobians));
+    constexpr double kStep = 1e-6;
+    for (int block = 0; block != 2; ++block) {
+      const Eigen::Vector3d gradient = jacobian[block].transpose() * residual;
+      for (int i = 0; i != 3; ++i) {
+        poses[block][i] += kStep;
+        const double after = CostOf(*cost, poses[0], poses[1]);
+        poses[block][i] -= 2. * kStep;
+        const double before = CostOf(*cost, poses[0], poses[1]);
+        poses[block][i] += kStep;
+        EXPECT_NEAR(gradient[i], (after - before) / (2. * kStep), 1e-6)
+            << "scale " << scale;
+      }
+    }
+    // The second block alone.
+    jacobians[0] = nullptr;
+    const RowMajor both = jacobian[1];
+    ASSERT_TRUE(cost->Evaluate(parameters, residual.data(), jacobians));
+    EXPECT_LT((jacobian[1] - both).norm(), 1e-12);
   }
 }
 

@@ -18,6 +18,7 @@
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
 #include "cartographer_ext/uncertainty/drift_model.h"
+#include "cartographer_ext/uncertainty/loop_ambiguity.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -236,8 +237,7 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   for (size_t i = 0; i < num_queries_due_; ++i) ProcessQuery(queries_[i]);
   queries_.erase(queries_.begin(), queries_.begin() + num_queries_due_);
   jobs_.erase(jobs_.begin(), jobs_.begin() + num_jobs_due_);
-  num_jobs_due_ = 0;
-  num_queries_due_ = 0;
+  num_jobs_due_ = num_queries_due_ = 0;
   std::vector<Constraint> constraints;
   Decide(false, &constraints);
   if (at_end_) {
@@ -249,6 +249,7 @@ std::vector<LoopClosure2D::Constraint> LoopClosure2D::Verify() {
   for (const auto& estimate : pipeline_.drift().Estimates()) {
     drift->Set(estimate.first, estimate.second);
   }
+  context_->Get<uncertainty::LoopAmbiguity>()->Set(pipeline_.share_wrong());
   metrics.undecided->Set(pipeline_.num_undecided());
   return constraints;
 }
@@ -423,7 +424,6 @@ LoopDecision LoopClosure2D::Describe(const LoopCandidate& candidate) const {
 
 void LoopClosure2D::Record(const std::vector<LoopCandidate>& decided) {
   std::vector<LoopDecision> decisions;
-  decisions.reserve(decided.size());
   for (const LoopCandidate& candidate : decided) {
     decisions.push_back(Describe(candidate));
     ConstraintMetrics::Global()->CountDecision(decisions.back());

@@ -91,7 +91,8 @@ class RobustOptimizationProblem2D
   }
   void SetMaxNumIterations(cartographer::int32 max_num_iterations) override {
     // PoseGraph2D does this before and after its final optimization.
-    if (max_num_iterations > stock_iterations_) {
+    is_final_ = max_num_iterations > stock_iterations_;
+    if (is_final_) {
       nodes_when_thorough_ = 0;
       nodes_when_whole_ = 0;
     }
@@ -172,12 +173,19 @@ class RobustOptimizationProblem2D
                       trajectories_state,
                   const std::map<std::string, LandmarkNode>& landmark_nodes,
                   PoseGraphContext* context);
+  bool HasFixedFrames() const;
+  // At the end of a run: with loops that the map contradicts put in force.
+  void PutInForce(const std::vector<Constraint>& constraints,
+                  const std::map<int, PoseGraphInterface::TrajectoryState>&
+                      trajectories_state,
+                  PoseGraphContext* context);
 
   const proto::RobustOptimizationOptions extension_;
   cartographer::mapping::optimization::proto::OptimizationProblemOptions
       options_;
   cartographer::mapping::optimization::StockOptimizationProblem2D stock_;
   int stock_iterations_;
+  bool is_final_ = false;
   // Number of nodes at the last thorough selection.
   int nodes_when_thorough_ = 0;
   std::set<LoopId> switched_off_;

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "absl/types/optional.h"
 #include "cartographer_ext/common/loop_information.h"
 #include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/optimization/dropin/stock_solve.h"
@@ -26,7 +27,7 @@ void StockSolve(
         trajectories_state,
     const std::map<std::string, PoseGraphInterface::LandmarkNode>&
         landmark_nodes,
-    PoseGraphContext* const context,
+    PoseGraphContext* const context, const Relaxation* const relaxation,
     cartographer::mapping::optimization::StockOptimizationProblem2D* const
         problem) {
   ScopedSqrtInformation::SqrtOfPose sqrt_of_pose;
@@ -46,6 +47,11 @@ void StockSolve(
     }
   }
   const ScopedSqrtInformation scope(std::move(sqrt_of_pose));
+  absl::optional<ScopedRelaxation> relaxed;
+  if (relaxation != nullptr) {
+    relaxed.emplace(*relaxation, constraints.data(),
+                    constraints.data() + constraints.size());
+  }
   problem->Solve(constraints, trajectories_state, landmark_nodes);
 }
 

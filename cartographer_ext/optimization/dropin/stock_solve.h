@@ -3,7 +3,8 @@
 //
 // Calls the stock optimisation; loops that have a full information matrix in
 // the context of the pose graph are weighted by it (common/loop_information.h),
-// if the swap `full_information` is built.
+// and the problem may be relaxed (optimization/graph/relaxation.h), if the swap
+// `full_information` is built.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_STOCK_SOLVE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_STOCK_SOLVE_H_
 
@@ -14,11 +15,12 @@
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer_ext/common/pose_graph_context.h"
+#include "cartographer_ext/optimization/graph/relaxation.h"
 
 namespace cartographer_ext {
 namespace optimization {
 
-// `context` may be null.
+// `context` and `relaxation` may be null.
 void StockSolve(
     const std::vector<cartographer::mapping::PoseGraphInterface::Constraint>&
         constraints,
@@ -28,7 +30,7 @@ void StockSolve(
     const std::map<std::string,
                    cartographer::mapping::PoseGraphInterface::LandmarkNode>&
         landmark_nodes,
-    PoseGraphContext* context,
+    PoseGraphContext* context, const Relaxation* relaxation,
     cartographer::mapping::optimization::StockOptimizationProblem2D* problem);
 
 // The constraints that are not withdrawn (common/withdrawn_loops.h). Returns

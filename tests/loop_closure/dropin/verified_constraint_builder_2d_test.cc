@@ -9,6 +9,7 @@
 #include "cartographer/common/thread_pool.h"
 #include "cartographer/mapping/2d/probability_grid.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/uncertainty/loop_ambiguity.h"
 #include "gtest/gtest.h"
 #include "tests/loop_closure/dropin/verified_constraint_builder_room.h"
 
@@ -38,6 +39,15 @@ TEST_F(VerifiedConstraintBuilder2DTest, CallsBackWithoutPairs) {
   builder.NotifyEndOfNode();
   EXPECT_TRUE(Collect(&builder).empty());
   EXPECT_EQ(builder.GetNumFinishedNodes(), 1);
+}
+
+TEST_F(VerifiedConstraintBuilder2DTest, TellsTheOptimizationHowManyAreWrong) {
+  const auto* const ambiguity = context_->Get<uncertainty::LoopAmbiguity>();
+  EXPECT_FALSE(ambiguity->share_wrong().has_value());
+  cartographer::common::ThreadPool pool(1);
+  Builder builder(StockOptions(), LoopOptions(), &pool);
+  Collect(&builder);
+  EXPECT_EQ(ambiguity->share_wrong(), 0.);
 }
 
 // What Cartographer's own test asks of its builder.

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "Eigen/Core"
+#include "absl/memory/memory.h"
 #include "cartographer_ext/common/loop_information.h"
+#include "cartographer_ext/optimization/graph/relaxation.h"
 #include "cartographer_ext/overlay/signature.h"
 
 #ifndef CARTOGRAPHER_EXT_OVERLAY_SPA_COST_FUNCTION_2D_H_
@@ -58,19 +62,80 @@ class WeightedCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
   double sqrt_information_[9];
 };
 
+// A residual r of three with Huber's loss (optimization/graph/relaxation.h), for a problem
+// that adds it without a loss. With rho(s) = 2 h(sqrt(s), a), s = r^T r, and rho'
+// its derivative, the four residuals
+//
+//   sqrt(rho') r,  sqrt(rho - rho' s)
+//
+// have the cost rho / 2. The derivatives handed over are sqrt(rho') J and zero:
+// the gradient is exact, J^T rho' r, and the approximation of the second
+// derivatives, J^T rho' J, is that of iteratively reweighted least squares, as
+// Ceres uses it for losses that grow more slowly than the square.
+class HuberCostFunction : public ceres::SizedCostFunction<4, 3, 3> {
+ public:
+  HuberCostFunction(std::unique_ptr<const ceres::CostFunction> error,
+                    const double scale)
+      : error_(std::move(error)), scale_(scale) {}
+
+  bool Evaluate(double const* const* const parameters, double* const residuals,
+                double** const jacobians) const override {
+    using Jacobian = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    using RobustJacobian = Eigen::Matrix<double, 4, 3, Eigen::RowMajor>;
+    Jacobian errors[2];
+    double* wanted[2] = {nullptr, nullptr};
+    for (int i = 0; jacobians != nullptr && i != 2; ++i) {
+      if (jacobians[i] != nullptr) wanted[i] = errors[i].data();
+    }
+    if (!error_->Evaluate(parameters, residuals,
+                          jacobians != nullptr ? wanted : nullptr)) {
+      return false;
+    }
+    Eigen::Map<Eigen::Vector3d> residual(residuals);
+    const double norm = residual.norm();
+    const double sqrt_slope = norm > scale_ ? std::sqrt(scale_ / norm) : 1.;
+    residual *= sqrt_slope;
+    residuals[3] = std::sqrt(std::max(0., scale_ * (norm - scale_)));
+    for (int i = 0; i != 2; ++i) {
+      if (wanted[i] == nullptr) continue;
+      Eigen::Map<RobustJacobian> jacobian(jacobians[i]);
+      jacobian.topRows<3>() = sqrt_slope * errors[i];
+      jacobian.row(3).setZero();
+    }
+    return true;
+  }
+
+ private:
+  const std::unique_ptr<const ceres::CostFunction> error_;
+  const double scale_;
+};
+
 ceres::CostFunction* Create(ceres::CostFunction* (*const stock)(const Pose&),
                             const Pose& pose) {
+  const auto* const relaxation =
+      ::cartographer_ext::optimization::ScopedRelaxation::Current();
+  const double factor = relaxation == nullptr ? 1. : relaxation->factor();
+  Pose weighted = pose;
   Eigen::Matrix3d sqrt_information;
-  if (!::cartographer_ext::ScopedSqrtInformation::Find(&pose,
-                                                       &sqrt_information)) {
-    return stock(pose);
+  if (::cartographer_ext::ScopedSqrtInformation::Find(&pose,
+                                                      &sqrt_information)) {
+    weighted.translation_weight = 1.;
+    weighted.rotation_weight = 1.;
+    return new WeightedCostFunction(
+        std::unique_ptr<const ceres::CostFunction>(stock(weighted)),
+        factor * sqrt_information);
   }
-  Pose unweighted = pose;
-  unweighted.translation_weight = 1.;
-  unweighted.rotation_weight = 1.;
-  return new WeightedCostFunction(
-      std::unique_ptr<const ceres::CostFunction>(stock(unweighted)),
-      sqrt_information);
+  if (relaxation == nullptr) return stock(pose);
+  weighted.translation_weight *= factor;
+  weighted.rotation_weight *= factor;
+  std::unique_ptr<ceres::CostFunction> result(stock(weighted));
+  const double step_scale = relaxation->StepScale(
+      &pose, pose.translation_weight, pose.rotation_weight);
+  if (step_scale > 0.) {
+    result =
+        absl::make_unique<HuberCostFunction>(std::move(result), step_scale);
+  }
+  return result.release();
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ void OptimizationProblem2D::Solve(
   if (stock_ != nullptr) {
     ::cartographer_ext::optimization::StockSolve(in_force, trajectories_state,
                                                  landmark_nodes, context.get(),
-                                                 stock_.get());
+                                                 nullptr, stock_.get());
   } else {
     const ScopedPoseGraphContext scope(context);
     robust_->Solve(in_force, trajectories_state, landmark_nodes);

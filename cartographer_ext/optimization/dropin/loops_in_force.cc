@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Only where the swap is selected; see the overlay.
+#include "cartographer_ext/swaps.h"
+#ifdef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
+#include <cmath>
+
+#include "cartographer/transform/transform.h"
+#include "cartographer_ext/optimization/dropin/loops_in_force.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+namespace mapping = cartographer::mapping;
+namespace transform = cartographer::transform;
+using Constraint = mapping::PoseGraphInterface::Constraint;
+
+// See the header.
+constexpr double kOffRadians = 0.1;
+constexpr double kPullOfLoops = 30.;
+constexpr double kStepHuberScale = 300.;
+constexpr int64_t kLeastOff = 5;
+constexpr double kShareOff = 0.02;
+constexpr double kShareStillOff = 0.1;
+constexpr double kStillOffOfThese = 0.25;
+
+}  // namespace
+
+LoopsOffMap CountLoopsOffMap(
+    const std::vector<Constraint>& constraints,
+    const mapping::MapById<mapping::NodeId, mapping::optimization::NodeSpec2D>&
+        nodes,
+    const mapping::MapById<mapping::SubmapId,
+                           mapping::optimization::SubmapSpec2D>& submaps,
+    const double distance) {
+  LoopsOffMap result;
+  for (const Constraint& constraint : constraints) {
+    if (constraint.tag != Constraint::INTER_SUBMAP ||
+        !nodes.Contains(constraint.node_id) ||
+        !submaps.Contains(constraint.submap_id)) {
+      continue;
+    }
+    const transform::Rigid2d error =
+        transform::Project2D(constraint.pose.zbar_ij).inverse() *
+        submaps.at(constraint.submap_id).global_pose.inverse() *
+        nodes.at(constraint.node_id).global_pose_2d;
+    ++result.loops;
+    result.off += error.translation().norm() > distance ||
+                  std::abs(error.normalized_angle()) > kOffRadians;
+  }
+  return result;
+}
+
+Relaxation RelaxationOf(
+    const mapping::optimization::proto::OptimizationProblemOptions& options) {
+  return Relaxation{kPullOfLoops, options.local_slam_pose_translation_weight(),
+                    options.local_slam_pose_rotation_weight(), kStepHuberScale};
+}
+
+LoopsPutInForce PutLoopsInForce(
+    const std::function<void(const Relaxation*)>& solve,
+    const std::function<LoopsOffMap()>& count, const Relaxation& relaxation) {
+  LoopsPutInForce result;
+  result.before = count();
+  result.after = result.before;
+  result.tried = result.before.off >= kLeastOff &&
+                 result.before.off >= kShareOff * result.before.loops;
+  if (!result.tried) return result;
+  solve(&relaxation);
+  result.after = count();
+  result.relaxed = result.after.off <= kShareStillOff * result.after.loops &&
+                   result.after.off <= kStillOffOfThese * result.before.off;
+  if (result.relaxed) return result;
+  solve(nullptr);
+  result.after = count();
+  return result;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+#endif  // CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/dropin/loops_in_force.h"
+
+#include <vector>
+
+#include "cartographer/transform/transform.h"
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+using cartographer::mapping::MapById;
+using cartographer::mapping::NodeId;
+using cartographer::mapping::PoseGraphInterface;
+using cartographer::mapping::SubmapId;
+using cartographer::mapping::optimization::NodeSpec2D;
+using cartographer::mapping::optimization::SubmapSpec2D;
+using cartographer::transform::Embed3D;
+using cartographer::transform::Rigid2d;
+using Constraint = PoseGraphInterface::Constraint;
+
+Constraint Loop(const int submap, const int node, const Rigid2d& pose,
+                const Constraint::Tag tag = Constraint::INTER_SUBMAP) {
+  return {SubmapId{0, submap}, NodeId{0, node}, {Embed3D(pose), 1., 1.}, tag};
+}
+
+TEST(CountLoopsOffMapTest, CountsLoopsByDistanceAndHeading) {
+  MapById<SubmapId, SubmapSpec2D> submaps;
+  submaps.Append(0, SubmapSpec2D{Rigid2d({10., 0.}, M_PI / 2.)});
+  MapById<NodeId, NodeSpec2D> nodes;
+  // At (3, 1) in the submap, turned by 0.5.
+  nodes.Append(0, NodeSpec2D{cartographer::common::FromUniversal(1),
+                             {},
+                             Rigid2d({9., 3.}, M_PI / 2. + 0.5),
+                             Eigen::Quaterniond::Identity()});
+  const std::vector<Constraint> constraints = {
+      Loop(0, 0, Rigid2d({3., 1.}, 0.5)),
+      Loop(0, 0, Rigid2d({3.19, 1.}, 0.5)),
+      Loop(0, 0, Rigid2d({3., 0.79}, 0.5)),  // off
+      Loop(0, 0, Rigid2d({3., 1.}, 0.59)),
+      Loop(0, 0, Rigid2d({3., 1.}, 0.39)),  // off
+      Loop(0, 0, Rigid2d({9., 9.}, 0.5), Constraint::INTRA_SUBMAP),
+      Loop(0, 1, Rigid2d({9., 9.}, 0.5)),   // no such node
+      Loop(1, 0, Rigid2d({9., 9.}, 0.5))};  // no such submap
+  const LoopsOffMap result = CountLoopsOffMap(constraints, nodes, submaps, 0.2);
+  EXPECT_EQ(result.loops, 5);
+  EXPECT_EQ(result.off, 2);
+}
+
+// What is solved, where so many of a hundred loops are off before, relaxed, and
+// solved again.
+struct Solutions {
+  std::vector<bool> relaxed;  // of each solution
+  LoopsPutInForce result;
+};
+
+Solutions PutInForce(const int before, const int relaxed, const int again) {
+  Solutions run;
+  int off = before;
+  const Relaxation relaxation = {30., 1., 1., 300.};
+  run.result = PutLoopsInForce(
+      [&](const Relaxation* const given) {
+        EXPECT_TRUE(given == nullptr || given->pull_of_loops == 30.);
+        run.relaxed.push_back(given != nullptr);
+        off = given != nullptr ? relaxed : again;
+      },
+      [&] {
+        return LoopsOffMap{100, off};
+      },
+      relaxation);
+  return run;
+}
+
+TEST(PutLoopsInForceTest, AFewLoopsThatAreOffStayOff) {
+  const Solutions run = PutInForce(4, 0, 4);
+  EXPECT_TRUE(run.relaxed.empty());
+  EXPECT_FALSE(run.result.tried);
+  EXPECT_EQ(run.result.after.off, 4);
+}
+
+TEST(PutLoopsInForceTest, TheRelaxedResultIsKeptIfNearlyAllAreInForce) {
+  const Solutions run = PutInForce(40, 10, 40);
+  EXPECT_EQ(run.relaxed, std::vector<bool>{true});
+  EXPECT_TRUE(run.result.relaxed);
+  EXPECT_EQ(run.result.before.off, 40);
+  EXPECT_EQ(run.result.after.off, 10);
+}
+
+TEST(PutLoopsInForceTest, OtherwiseTheProblemIsSolvedAsItWas) {
+  // More than a tenth of all, more than a quarter of those before.
+  for (const Solutions& run : {PutInForce(60, 11, 59), PutInForce(20, 6, 20)}) {
+    EXPECT_EQ(run.relaxed, (std::vector<bool>{true, false}));
+    EXPECT_TRUE(run.result.tried);
+    EXPECT_FALSE(run.result.relaxed);
+    EXPECT_GE(run.result.after.off, 20);
+  }
+}
+
+TEST(RelaxationOfTest, TakesTheWeightsOfLocalSlam) {
+  cartographer::mapping::optimization::proto::OptimizationProblemOptions
+      options;
+  options.set_local_slam_pose_translation_weight(2.);
+  options.set_local_slam_pose_rotation_weight(3.);
+  EXPECT_EQ(RelaxationOf(options).step_translation_weight, 2.);
+  EXPECT_EQ(RelaxationOf(options).step_rotation_weight, 3.);
+}
+
+}  // namespace
+}  // namespace optimization
+}  // namespace cartographer_ext
