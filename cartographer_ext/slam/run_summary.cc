@@ -126,6 +126,14 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
       {"loops_switched_off", switched.off.size()},
       {"selection_cpu_seconds", switched.selection_cpu_seconds},
       {"solution_cpu_seconds", switched.solution_cpu_seconds}};
+  const optimization::LoopsPutInForce& in_force = switched.in_force;
+  if (in_force.before.loops > 0) {
+    json["optimizations"]["loops_off_map"] = {
+        {"loops", in_force.after.loops},
+        {"before", in_force.before.off},
+        {"after", in_force.after.off},
+        {"steps_gave_way", in_force.relaxed}};
+  }
   json["metrics"] = run.metrics;
   json["warnings"] = run.input_warnings;
   for (const std::string& warning : run.warnings) {
@@ -170,6 +178,17 @@ std::string ToText(const SlamRun& run) {
         run.drift.num_cycles, RadToDeg(drift.mean(0)),
         RadToDeg(Sigma(drift, 0)), 100. * drift.mean(1), 100. * Sigma(drift, 1),
         100. * drift.mean(2), 100. * Sigma(drift, 2));
+  }
+  const optimization::LoopsPutInForce& in_force = run.switched_loops.in_force;
+  if (in_force.tried) {
+    absl::StrAppendFormat(
+        &text, "In force   all but %d of %d loops, %s\n", in_force.after.off,
+        in_force.after.loops,
+        in_force.relaxed
+            ? absl::StrFormat("all but %d before single steps of local SLAM "
+                              "gave way to them",
+                              in_force.before.off)
+            : "which no single steps of local SLAM explain");
   }
   return text;
 }

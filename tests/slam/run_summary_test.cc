@@ -82,6 +82,27 @@ TEST(RunSummaryTest, TellsTheLatency) {
                         "4.0); back end at most 0.3 s"));
 }
 
+TEST(RunSummaryTest, TellsWhichLoopsAreInForce) {
+  SlamRun run;
+  EXPECT_FALSE(ToJson(run).at("optimizations").contains("loops_off_map"));
+  run.switched_loops.in_force.before = {40, 1};
+  run.switched_loops.in_force.after = {40, 1};
+  EXPECT_EQ(ToJson(run).at("optimizations").at("loops_off_map").at("before"),
+            1);
+  EXPECT_THAT(ToText(run), Not(HasSubstr("In force")));  // as usual
+  run.switched_loops.in_force.tried = true;
+  run.switched_loops.in_force.before.off = 9;
+  run.switched_loops.in_force.after.off = 9;
+  EXPECT_THAT(ToText(run), HasSubstr("all but 9 of 40 loops, which no single"));
+  run.switched_loops.in_force.relaxed = true;
+  run.switched_loops.in_force.after.off = 2;
+  EXPECT_THAT(ToText(run),
+              HasSubstr("all but 2 of 40 loops, all but 9 before"));
+  EXPECT_EQ(
+      ToJson(run).at("optimizations").at("loops_off_map").at("steps_gave_way"),
+      true);
+}
+
 }  // namespace
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -4,16 +4,16 @@
 // Puts accepted loops in force at the end of a run.
 //
 // Cartographer's problem may end with many of its loops far from the map
-// although they agree with each other: a step that local SLAM took wrongly holds
-// the map apart (optimization/graph/relaxation.h). Then the relaxed problem is solved. It is
-// kept only if nearly all loops are in force in its result: where they
-// contradict each other it cannot be, and the stiff problem is the safer one,
-// since it follows wrong loops less. For the same reason nothing is done where
-// many matches of the run were wrong (uncertainty/loop_ambiguity.h).
+// although they agree with each other: a step that local SLAM took wrongly
+// holds the map apart. Then the relaxed problem
+// (optimization/graph/relaxation.h) is solved. Its result is kept only if
+// nearly all loops are in force in it: where they contradict each other that
+// cannot be, and the stiff problem is the safer one, since it follows wrong
+// loops less. For the same reason nothing is done where many matches of the run
+// were wrong (uncertainty/loop_ambiguity.h).
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_LOOPS_IN_FORCE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_LOOPS_IN_FORCE_H_
 
-#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -22,19 +22,13 @@
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/proto/pose_graph/optimization_problem_options.pb.h"
 #include "cartographer_ext/optimization/graph/relaxation.h"
+#include "cartographer_ext/optimization/selection/switched_loops.h"
 
 namespace cartographer_ext {
 namespace optimization {
 
-// How many loop constraints the poses contradict.
-struct LoopsOffMap {
-  int64_t loops = 0;
-  // By more than the given distance or by more than 0.1 rad.
-  int64_t off = 0;
-};
-
-// `distance` in metres. Constraints whose submap or node is not there are not
-// counted.
+// `distance`: metres from which a loop is off. Constraints whose submap or node
+// is not there are not counted.
 LoopsOffMap CountLoopsOffMap(
     const std::vector<cartographer::mapping::PoseGraphInterface::Constraint>&
         constraints,
@@ -46,14 +40,6 @@ LoopsOffMap CountLoopsOffMap(
         cartographer::mapping::optimization::SubmapSpec2D>& submaps,
     double distance);
 
-// The result of the last step of a run.
-struct LoopsPutInForce {
-  LoopsOffMap before;
-  LoopsOffMap after;  // of what was kept
-  bool tried = false;
-  bool relaxed = false;  // tried and kept
-};
-
 // The relaxed problem of these options: loops pull thirty times as hard, and
 // steps have a loss of 300, 3 mm with the stock weights.
 Relaxation RelaxationOf(const cartographer::mapping::optimization::proto::
@@ -61,9 +47,9 @@ Relaxation RelaxationOf(const cartographer::mapping::optimization::proto::
 
 // `solve` optimises, relaxed or (null) not, from the current poses; `count`
 // counts the loops that are off. The problem has just been solved not relaxed.
-// If five loops and a fiftieth of all are off, it is relaxed. The result is kept
-// if at most a tenth of all and a quarter of these are off then; otherwise the
-// problem is solved again as it was.
+// If five loops and a fiftieth of all are off, it is relaxed. The result is
+// kept if at most a tenth of all and a quarter of these are off then; otherwise
+// the problem is solved again as it was.
 LoopsPutInForce PutLoopsInForce(
     const std::function<void(const Relaxation*)>& solve,
     const std::function<LoopsOffMap()>& count, const Relaxation& relaxation);

@@ -190,6 +190,7 @@ void RobustOptimizationProblem2D::PutInForce(
       << " loops were off the map, "
       << (result.relaxed ? "relaxed" : "relaxed in vain") << ": "
       << result.after.off;
+  context->Get<SwitchedLoopRecorder>()->Record(result);
 }
 
 bool RobustOptimizationProblem2D::SolveRecentPart(

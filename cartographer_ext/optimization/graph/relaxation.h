@@ -5,8 +5,8 @@
 //
 // In Cartographer's problem the motion by local SLAM between consecutive nodes
 // (a step) is quadratic and stiff, while Huber's loss limits the pull of a loop
-// to what a millimetre asks for. Where local SLAM took a single step wrongly, as
-// where wheels slip in a corridor without features, the error is spread over
+// to what a millimetre asks for. Where local SLAM took a single step wrongly,
+// as where wheels slip in a corridor without features, the error is spread over
 // the path, and any number of correct loops leaves much of it there. In the
 // relaxed problem loops pull harder, and steps have Huber's loss: the few wrong
 // steps give way, the others keep their motion.
@@ -17,12 +17,12 @@
 //
 //   h(r, a) = r^2 / 2 where r <= a, otherwise a r - a^2 / 2
 //
-// (Huber, "Robust estimation of a location parameter", 1964), a being Cartographer's
-// huber_scale and r its weighted residuals. The stock code builds the problem
-// with the loss of scale a for loops and none for the others; here all residuals
-// are divided by k, which divides the sum by k^2, and those of steps bring their
-// loss of scale b / k along. Landmarks have residuals of their own, which would
-// not be divided.
+// (Huber, "Robust estimation of a location parameter", 1964), a being
+// Cartographer's huber_scale and r its weighted residuals. The stock code
+// builds the problem with the loss of scale a for loops and none for the
+// others; here all residuals are divided by k, which divides the sum by k^2,
+// and those of steps bring their loss of scale b / k along. Landmarks have
+// residuals of their own, which would not be divided.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_RELAXATION_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_RELAXATION_H_
 

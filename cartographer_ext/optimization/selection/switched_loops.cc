@@ -32,6 +32,11 @@ void SwitchedLoopRecorder::Record(const int64_t loops,
   loops_.solution_cpu_seconds += solution_cpu_seconds;
 }
 
+void SwitchedLoopRecorder::Record(const LoopsPutInForce& in_force) {
+  const absl::MutexLock lock(&mutex_);
+  loops_.in_force = in_force;
+}
+
 SwitchedLoops SwitchedLoopRecorder::Get() const {
   const absl::MutexLock lock(&mutex_);
   return loops_;

@@ -26,6 +26,22 @@ struct SwitchedLoop : LoopId {
   bool by_odometry_check = false;
 };
 
+// How many loops the poses contradict: by more than three standard deviations of
+// a loop (`loop_sigma`) or by more than 0.1 rad.
+struct LoopsOffMap {
+  int64_t loops = 0;
+  int64_t off = 0;
+};
+
+// What putting loops in force at the end of a run has come to
+// (dropin/loops_in_force.h).
+struct LoopsPutInForce {
+  LoopsOffMap before;
+  LoopsOffMap after;  // of what was kept
+  bool tried = false;
+  bool relaxed = false;  // tried and kept
+};
+
 // Statistics of the selection.
 struct SwitchedLoops {
   int64_t optimizations = 0;      // of the pose graph so far
@@ -33,6 +49,7 @@ struct SwitchedLoops {
   std::vector<SwitchedLoop> off;  // in the last one, in order of constraints
   double selection_cpu_seconds = 0.;  // of all
   double solution_cpu_seconds = 0.;   // of all, in the stock problem
+  LoopsPutInForce in_force;           // the last time
 };
 
 // A part of PoseGraphContext: counts over all optimizations, the loops of the
@@ -42,6 +59,7 @@ class SwitchedLoopRecorder {
   void Record(int64_t loops, std::vector<SwitchedLoop> off,
               double selection_cpu_seconds, double solution_cpu_seconds)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  void Record(const LoopsPutInForce& in_force) ABSL_LOCKS_EXCLUDED(mutex_);
   SwitchedLoops Get() const ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:

@@ -32,6 +32,16 @@ TEST(SwitchedLoopsTest, KeepsTheLastAndCountsAll) {
   EXPECT_EQ(recorder.Get().optimizations, 2);
 }
 
+TEST(SwitchedLoopsTest, KeepsWhatWasPutInForceLast) {
+  SwitchedLoopRecorder recorder;
+  EXPECT_FALSE(recorder.Get().in_force.tried);
+  recorder.Record(LoopsPutInForce{{40, 9}, {40, 1}, true, true});
+  recorder.Record(7, {}, 0., 0.);
+  EXPECT_EQ(recorder.Get().in_force.before.off, 9);
+  EXPECT_EQ(recorder.Get().in_force.after.off, 1);
+  EXPECT_TRUE(recorder.Get().in_force.relaxed);
+}
+
 TEST(SwitchedLoopsTest, ReadsItsOwnTable) {
   SwitchedLoop first, second;
   first.submap_index = 7;

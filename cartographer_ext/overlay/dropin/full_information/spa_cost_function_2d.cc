@@ -62,9 +62,9 @@ class WeightedCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
   double sqrt_information_[9];
 };
 
-// A residual r of three with Huber's loss (optimization/graph/relaxation.h), for a problem
-// that adds it without a loss. With rho(s) = 2 h(sqrt(s), a), s = r^T r, and rho'
-// its derivative, the four residuals
+// A residual r of three with Huber's loss (optimization/graph/relaxation.h),
+// for a problem that adds it without a loss. With rho(s) = 2 h(sqrt(s), a), s =
+// r^T r, and rho' its derivative, the four residuals
 //
 //   sqrt(rho') r,  sqrt(rho - rho' s)
 //
