@@ -75,12 +75,15 @@ proto::ScanMatcherOptions MatcherExtension(
 }
 
 // Whether the scan is evidence enough (scan_evidence.h) for `found` against the
-// pose by odometry. Other predictions are guesses.
-bool MayOverrule(const MotionPrediction& prediction, const double log_places,
-                 const Pose2& found, const Pose2& predicted,
-                 const PointCloud& cloud, const Grid2D& grid) {
+// pose by odometry. Other predictions are guesses. A fault of the odometry is
+// unlikely, unless it was overruled before: wheels that slip do so for a while.
+bool MayOverrule(const MotionPrediction& prediction, const bool was_overruled,
+                 const double log_places, const Pose2& found,
+                 const Pose2& predicted, const PointCloud& cloud,
+                 const Grid2D& grid) {
   if (prediction.source != PredictionSource::kOdometry) return true;
-  const double fault = prediction.is_uncertain ? 0. : kLogOddsOfOdometryFault;
+  const double fault =
+      prediction.is_uncertain || was_overruled ? 0. : kLogOddsOfOdometryFault;
   return scan_matching::ScanEvidence(found, predicted, cloud, grid) >=
          fault + log_places;
 }
@@ -238,12 +241,19 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
     match =
         MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
     if (!match.relocated && match.report.mahalanobis > options_.gate &&
-        !MayOverrule(prediction, 0., match.pose, predicted.pose, cloud, grid)) {
+        !MayOverrule(prediction, is_overruled_, 0., match.pose, predicted.pose,
+                     cloud, grid)) {
       // In that case odometry is right more often than the match.
       match.pose = predicted.pose;
       match.report.covariance = predicted.covariance;
       match.score = scan_matching::MeanScore(match.pose, cloud, grid);
     }
+  }
+  if (prediction.source == PredictionSource::kOdometry) {
+    is_overruled_ =
+        match.relocated
+            ? Inconsistency(predicted.pose, match.pose) >= 1.
+            : is_overruled_ && match.score < mean_score_ - options_.score_drop;
   }
   mean_score_ +=
       (has_mean_score_ ? kScoreRate : 1.) * (match.score - mean_score_);
@@ -283,8 +293,8 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
                              : options_.contradiction_gain *
                                    Inconsistency(predicted.pose, match.pose));
     if (match.score <= std::max(to_beat, matched.score + gain)) continue;
-    if (!MayOverrule(prediction, kLogPlaces, match.pose, predicted.pose, cloud,
-                     grid)) {
+    if (!MayOverrule(prediction, is_overruled_, kLogPlaces, match.pose,
+                     predicted.pose, cloud, grid)) {
       continue;
     }
     to_beat = match.score;

@@ -90,6 +90,8 @@ class LocalMatcher {
   const scan_matching::DegeneracyAwareScanMatcher2D matcher_;
   double mean_score_ = 0.;
   bool has_mean_score_ = false;
+  // A search contradicted the odometry, and no match has agreed with it since.
+  bool is_overruled_ = false;
   // The longest range so far, metres; of the scans since, one every
   // kRangeStep, how many there are and how many reach as far.
   double range_ = 0.;

@@ -45,6 +45,9 @@ TEST(ContradictionTest, GrowsBetweenItsBounds) {
       1e-9);
 }
 
+// A field of view that is no evidence enough against odometry that is trusted.
+constexpr double kFewDegrees = 40.;
+
 // A map of the room, a robot at its origin, and a prediction
 // that is held for certain.
 class LocalMatcherTest : public testing::Test {
@@ -155,6 +158,27 @@ TEST_F(LocalMatcherTest, AFewPointsDoNotOverruleOdometry) {
   EXPECT_FALSE(match.relocated);
   EXPECT_LT(std::hypot(match.pose.x - off.x, match.pose.y - off.y), 0.02);
   EXPECT_NEAR(match.pose.theta, off.theta, 0.02);
+}
+
+// Wheels that slip do so for a while: the next scan needs less evidence, until
+// one agrees with the odometry.
+TEST_F(LocalMatcherTest, OdometryThatWasOverruledIsDoubted) {
+  LocalMatcher matcher(options_, matcher_options_);
+  const Pose2 slip(0.15, 0.1, DegToRad(6.));
+  const auto match = [&](const Pose2& motion, const double field_of_view) {
+    prediction_.motion = motion;
+    field_of_view_ = field_of_view;
+    return matcher.Match(Pose2(), prediction_, Cloud(),
+                         *submaps_->submaps().front());
+  };
+  const double all = 2. * kPi, few = DegToRad(kFewDegrees);
+  match(Pose2(), all);
+  EXPECT_FALSE(match(slip, few).relocated);
+  EXPECT_FALSE(match(Pose2(), all).relocated);
+  EXPECT_TRUE(match(slip, all).relocated);
+  EXPECT_TRUE(match(slip, few).relocated);
+  EXPECT_FALSE(match(Pose2(), all).relocated);
+  EXPECT_FALSE(match(slip, few).relocated);
 }
 
 TEST_F(LocalMatcherTest, WithoutSearchItStaysWithThePrediction) {
