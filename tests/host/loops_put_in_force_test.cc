@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Loops that are put in force at the end of a run, inside the host.
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,19 @@ constexpr char kNotPutInForce[] =
     "  robust_loops = false, odometry_check = false,\n"
     "  loops_in_force = false }";
 
-class LoopsPutInForceTest : public SquareWalkTest {};
+class LoopsPutInForceTest : public SquareWalkTest {
+ protected:
+  // A whole run with its final optimisation.
+  void RunToTheEnd(
+      const std::vector<Constraint>& loops,
+      OptimizationProblem2D* const problem,
+      const std::map<std::string, PoseGraphInterface::LandmarkNode>& landmarks =
+          {}) const {
+    Fill(problem);
+    problem->SetMaxNumIterations(200);
+    problem->Solve(With(loops), active_, landmarks);
+  }
+};
 
 TEST_F(LoopsPutInForceTest, LoopsArePutInForceAtTheEnd) {
   SetShareWrong(0.1);
@@ -61,9 +74,7 @@ TEST_F(LoopsPutInForceTest, LoopsThatContradictAreNotPutInForce) {
   OptimizationProblem2D stock = MakeProblem(kNotPutInForce),
                         robust = MakeProblem(kPutInForce);
   for (OptimizationProblem2D* const problem : {&stock, &robust}) {
-    Fill(problem);
-    problem->SetMaxNumIterations(200);
-    problem->Solve(With(loops), active_, {});
+    RunToTheEnd(loops, problem);
   }
   // Solved again as it was.
   EXPECT_LT(LargestDifference(stock, robust), 0.01);
@@ -76,9 +87,7 @@ TEST_F(LoopsPutInForceTest, AmbiguousLoopsAreNotPutInForce) {
                         ambiguous = MakeProblem(kPutInForce);
   for (OptimizationProblem2D* const problem : {&stock, &unknown, &ambiguous}) {
     if (problem == &ambiguous) SetShareWrong(0.5);
-    Fill(problem);
-    problem->SetMaxNumIterations(200);
-    problem->Solve(With(AllRightLoops()), active_, {});
+    RunToTheEnd(AllRightLoops(), problem);
   }
   EXPECT_EQ(LargestDifference(stock, unknown), 0.);
   EXPECT_EQ(LargestDifference(stock, ambiguous), 0.);
@@ -90,10 +99,8 @@ TEST_F(LoopsPutInForceTest, LandmarksKeepTheProblem) {
   OptimizationProblem2D stock = MakeProblem(kNotPutInForce),
                         robust = MakeProblem(kPutInForce);
   for (OptimizationProblem2D* const problem : {&stock, &robust}) {
-    Fill(problem);
-    problem->SetMaxNumIterations(200);
-    problem->Solve(With(AllRightLoops()), active_,
-                   {{"unseen", PoseGraphInterface::LandmarkNode()}});
+    RunToTheEnd(AllRightLoops(), problem,
+                {{"unseen", PoseGraphInterface::LandmarkNode()}});
   }
   EXPECT_EQ(LargestDifference(stock, robust), 0.);
 }

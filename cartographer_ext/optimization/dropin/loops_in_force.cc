@@ -28,6 +28,16 @@ constexpr double kStillOffOfThese = 0.25;
 
 }  // namespace
 
+bool IsOff(const Constraint& constraint, const transform::Rigid2d& submap_pose,
+           const transform::Rigid2d& node_pose, const double metres,
+           const double radians) {
+  const transform::Rigid2d error =
+      transform::Project2D(constraint.pose.zbar_ij).inverse() *
+      submap_pose.inverse() * node_pose;
+  return error.translation().norm() > metres ||
+         std::abs(error.normalized_angle()) > radians;
+}
+
 LoopsOffMap CountLoopsOffMap(
     const std::vector<Constraint>& constraints,
     const mapping::MapById<mapping::NodeId, mapping::optimization::NodeSpec2D>&
@@ -42,13 +52,10 @@ LoopsOffMap CountLoopsOffMap(
         !submaps.Contains(constraint.submap_id)) {
       continue;
     }
-    const transform::Rigid2d error =
-        transform::Project2D(constraint.pose.zbar_ij).inverse() *
-        submaps.at(constraint.submap_id).global_pose.inverse() *
-        nodes.at(constraint.node_id).global_pose_2d;
     ++result.loops;
-    result.off += error.translation().norm() > distance ||
-                  std::abs(error.normalized_angle()) > kOffRadians;
+    result.off += IsOff(
+        constraint, submaps.at(constraint.submap_id).global_pose,
+        nodes.at(constraint.node_id).global_pose_2d, distance, kOffRadians);
   }
   return result;
 }

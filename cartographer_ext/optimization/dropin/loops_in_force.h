@@ -21,11 +21,20 @@
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/proto/pose_graph/optimization_problem_options.pb.h"
+#include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/optimization/graph/relaxation.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
 
 namespace cartographer_ext {
 namespace optimization {
+
+// Whether poses (global <- submap) and (global <- node) contradict a constraint
+// by more than `metres` or by more than `radians`.
+bool IsOff(
+    const cartographer::mapping::PoseGraphInterface::Constraint& constraint,
+    const cartographer::transform::Rigid2d& submap_pose,
+    const cartographer::transform::Rigid2d& node_pose, double metres,
+    double radians);
 
 // `distance`: metres from which a loop is off. Constraints whose submap or node
 // is not there are not counted.

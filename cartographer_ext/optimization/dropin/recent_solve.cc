@@ -14,6 +14,7 @@
 #include "cartographer/common/internal/ceres_solver_options.h"
 #include "cartographer/mapping/internal/optimization/cost_functions/spa_cost_function_2d.h"
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/optimization/dropin/loops_in_force.h"
 #include "cartographer_ext/optimization/dropin/recent_solve.h"
 #include "ceres/ceres.h"
 
@@ -186,13 +187,10 @@ class RecentSolver {
     for (const Constraint* const term : terms_) {
       if (term->tag != Constraint::INTER_SUBMAP) continue;
       ++result->num_loops;
-      const transform::Rigid2d error =
-          transform::Project2D(term->pose.zbar_ij).inverse() *
-          ToPose(submaps_.at(term->submap_id)).inverse() *
-          ToPose(nodes_.at(term->node_id));
       result->num_contradicted +=
-          error.translation().norm() > kContradictedMetres ||
-          std::abs(error.normalized_angle()) > kContradictedRadians;
+          IsOff(*term, ToPose(submaps_.at(term->submap_id)),
+                ToPose(nodes_.at(term->node_id)), kContradictedMetres,
+                kContradictedRadians);
     }
   }
 
