@@ -9,4 +9,6 @@ include "cartographer_ext_2d.lua"
 return {
   map_builder = MAP_BUILDER,
   trajectory_builder = TRAJECTORY_BUILDER,
+  -- The IMU of a recording that has one, once its turns are those of the scans.
+  sensors = { use_recorded_imu = true },
 }

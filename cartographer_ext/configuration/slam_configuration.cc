@@ -82,6 +82,9 @@ void ReadSensorSettings(LuaParameterDictionary* const dictionary,
   if (dictionary->HasKey("use_odometry")) {
     settings->use_odometry = dictionary->GetBool("use_odometry");
   }
+  if (dictionary->HasKey("use_recorded_imu")) {
+    settings->use_recorded_imu = dictionary->GetBool("use_recorded_imu");
+  }
   if (dictionary->HasKey("odometry_source")) {
     settings->odometry_source = dictionary->GetString("odometry_source");
     const std::set<std::string> known = {"auto", "scan", "odom", "both"};

@@ -5,9 +5,12 @@
 //   { map_builder = MAP_BUILDER, trajectory_builder = TRAJECTORY_BUILDER }
 // and optionally two more kinds of keys:
 //   sensors = { use_odometry = true, odometry_source = "auto",
-//               min_range = 0., max_range = 80., tracking_frame = "base_link" }
+//               use_recorded_imu = true, min_range = 0., max_range = 80.,
+//               tracking_frame = "base_link" }
 //     all optional: which data of a recording is used. Ranges outside the limits
-//     (metres) are dropped before local SLAM.
+//     (metres) are dropped before local SLAM. With use_recorded_imu the IMU of a
+//     recording that has one is used (levelled, see io/imu_levelling.h) even if
+//     TRAJECTORY_BUILDER_2D.use_imu_data is false.
 //   the keys of a ROS node's file (map_frame, num_laser_scans, ...): such files
 //     can be used unchanged. Of these only use_odometry and tracking_frame have
 //     an effect here.
@@ -27,6 +30,7 @@ namespace evaluation {
 
 struct SensorSettings {
   bool use_odometry = true;
+  bool use_recorded_imu = false;
   // For CARMEN logs, see io::SensorSourceOptions.
   std::string odometry_source = "auto";
   double min_range = 0.;                                       // metres

@@ -199,6 +199,11 @@ void MotionPredictor::PredictFromInsertion(
 
 bool MotionPredictor::IntegrateImu(const double from, const double to,
                                    ImuMotion* const motion) const {
+  const GyroscopeState state = imu_.gyroscope().state();
+  if (state == GyroscopeState::kRefuted ||
+      (state == GyroscopeState::kUnproven && monitor_.IsTrusted())) {
+    return false;
+  }
   return imu_.Predict(from, to, Eigen::Vector2d(velocity().x, velocity().y),
                       motion);
 }
@@ -277,7 +282,9 @@ OdometryState MotionPredictor::AddMatch(const double time,
   const double speed_change =
       IntegrateImu(last_time_, time, &imu) ? SpeedChange(interval, imu) : 0.;
   imu_.AddMatch(last_time_, time,
-                IsStationary(time, matched.motion) ? Pose2() : matched.motion);
+                IsStationary(time, matched.motion) ? Pose2() : matched.motion,
+                matched.rotation_observable,
+                std::sqrt(std::max(0., matched.covariance(2, 2))));
   UpdateVelocity(time, matched, speed_change);
   last_time_ = time;
   UpdateInsertion(time, matched.motion, state);

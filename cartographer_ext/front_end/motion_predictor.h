@@ -6,7 +6,7 @@
 // and trusted:
 //
 //   odometry and IMU   translation of odometry; rotation of both, weighted by
-//                      their variances
+//                      their variances, once the gyroscope is proven
 //   odometry alone     its motion over the interval
 //   IMU alone          rotation of the IMU; translation from the velocity of
 //                      the last scans and the acceleration since then; over a

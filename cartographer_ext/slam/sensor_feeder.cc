@@ -129,10 +129,12 @@ void SensorFeeder::operator()(const io::ImuReading& reading) {
     return;
   }
   ++fed_->imu_readings;
+  const io::ImuReading used =
+      settings_.use_recorded_imu ? levelling_.Level(reading) : reading;
   builder_->AddSensorData(
-      kImuId, cartographer::sensor::ImuData{ToHostTime(reading.time),
-                                            reading.linear_acceleration,
-                                            reading.angular_velocity});
+      kImuId, cartographer::sensor::ImuData{ToHostTime(used.time),
+                                            used.linear_acceleration,
+                                            used.angular_velocity});
 }
 
 }  // namespace evaluation

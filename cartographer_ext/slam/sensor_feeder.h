@@ -14,6 +14,7 @@
 #include "cartographer/common/time.h"
 #include "cartographer/mapping/trajectory_builder_interface.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
+#include "cartographer_ext/io/imu_levelling.h"
 #include "cartographer_ext/io/odometry_jumps.h"
 #include "cartographer_ext/io/sensor_source.h"
 
@@ -62,6 +63,7 @@ class SensorFeeder {
   const bool use_imu_;
   TrajectoryBuilder* const builder_;
   FedReadings* const fed_;
+  io::ImuLevelling levelling_;  // with use_recorded_imu
   io::TimeNs first_scan_ = 0;
   // By sensor.
   std::map<std::string, cartographer::common::Time> last_scans_;

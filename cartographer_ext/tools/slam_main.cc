@@ -216,6 +216,7 @@ tools::SlamWork WorkOf(const io::SensorSourceInfo& info,
   work.total_scans = info.num_scans;
   work.judges_map = !FLAGS_report_filename.empty();
   const bool use_imu =
+      configuration.sensors.use_recorded_imu ||
       configuration.trajectory_builder_options.trajectory_builder_2d_options()
           .use_imu_data();
   const int64_t readings =

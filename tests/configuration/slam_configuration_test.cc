@@ -76,10 +76,12 @@ TEST(SlamConfigurationTest, ChangesArriveInTheOptions) {
 TEST(SlamConfigurationTest, SensorSettings) {
   const auto configuration =
       Parse("",
-            "sensors = { use_odometry = false, odometry_source = \"scan\", "
+            "sensors = { use_odometry = false, use_recorded_imu = true, "
+            "odometry_source = \"scan\", "
             "min_range = 0.2, max_range = 25., tracking_frame = \"base\" }");
   ASSERT_TRUE(configuration.ok()) << configuration.status();
   EXPECT_FALSE(configuration->sensors.use_odometry);
+  EXPECT_TRUE(configuration->sensors.use_recorded_imu);
   EXPECT_EQ(configuration->sensors.odometry_source, "scan");
   EXPECT_EQ(configuration->sensors.min_range, 0.2);
   EXPECT_EQ(configuration->sensors.max_range, 25.);

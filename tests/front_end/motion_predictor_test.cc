@@ -145,25 +145,30 @@ TEST(MotionPredictorTest, AJumpWidensThePredictionAndOffersTheVelocity) {
   EXPECT_GT(prediction.covariance(0, 0), 0.5);
 }
 
-TEST(MotionPredictorTest, TheTurnIsWeighedBetweenOdometryAndImu) {
-  MotionPredictorOptions options;
-  options.imu.yaw_rate_bias_noise = 0.;
-  options.imu.noise.yaw_rate_density = 1e-4;
-  MotionPredictor predictor(options);
-  for (int i = 0; i <= 110; ++i) {
-    PlanarImuReading reading;
-    reading.time = 0.01 * i;
-    reading.yaw_rate = 0.3;
-    predictor.AddImu(reading);
-    predictor.AddOdometry(0.01 * i, Pose2(0., 0., 0.002 * i));
+// Stands for two seconds and turns at 0.3 rad/s; the last half second the wheels
+// turn by two thirds of it.
+TEST(MotionPredictorTest, TheTurnIsWeighedBetweenOdometryAndImuOnceItIsProven) {
+  for (const double end : {2.5, 7.}) {
+    MotionPredictor predictor((MotionPredictorOptions()));
+    double wheels = 0.;
+    for (int i = 0; i <= 100 * end; ++i) {
+      const double time = 0.01 * i;
+      const double rate = i < 200 ? 0. : 0.3;
+      predictor.AddImu({time, Eigen::Vector2d::Zero(), rate});
+      predictor.AddOdometry(time, Pose2(0., 0., wheels));
+      wheels += 0.01 * (time < end - 0.5 ? rate : rate / 1.5);
+      if (i % 10 == 0 && time < end - 0.45) {
+        predictor.AddMatch(time,
+                           Matched(Pose2(0., 0., i <= 200 ? 0. : 0.1 * rate)));
+      }
+    }
+    const MotionPrediction prediction = predictor.Predict(end);
+    EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
+    const bool is_proven = end > 5.;  // after more than a radian
+    EXPECT_NEAR(prediction.motion.theta, is_proven ? 0.15 : 0.1, 0.01);
+    // The gyroscope is far surer than the wheels.
+    EXPECT_EQ(prediction.covariance(2, 2) < 3e-5, is_proven);
   }
-  predictor.AddMatch(0.5, Matched(Pose2()));
-  predictor.AddMatch(0.6, Matched(Pose2(0., 0., 0.03)));
-  const MotionPrediction prediction = predictor.Predict(1.1);
-  EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
-  // The gyroscope is far surer than the wheels.
-  EXPECT_NEAR(prediction.motion.theta, 0.15, 1e-3);
-  EXPECT_LT(prediction.covariance(2, 2), 1e-6);
 }
 
 // Where the rotation is hardly observable in the scan, the matches of a

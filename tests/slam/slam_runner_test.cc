@@ -218,6 +218,38 @@ TEST(SlamRunnerTest, UsesTheImuWhenAskedTo) {
               testing::HasSubstr("use_imu_data"));
 }
 
+TEST(SlamRunnerTest, UsesTheImuOfARecordingThatHasOne) {
+  std::vector<io::SensorEvent> events;
+  for (int i = 0; i < 30; ++i) {
+    io::ImuReading reading;  // upside down
+    reading.time = test::RoomSource::kStart + i * test::RoomSource::kStep;
+    reading.linear_acceleration = Eigen::Vector3d(0., 0., -9.81);
+    reading.angular_velocity = Eigen::Vector3d(0., 0., -2. * kPi / 40.);
+    events.push_back(reading);
+    events.push_back(RoomScan(i));
+  }
+  SlamConfiguration configuration = Stock();
+  configuration.trajectory_builder_options
+      .mutable_trajectory_builder_2d_options()
+      ->set_use_imu_data(false);
+  ListSource unused(events);
+  const auto plain = RunSlam(configuration, &unused, SlamRunOptions());
+  ASSERT_TRUE(plain.ok()) << plain.status();
+  EXPECT_EQ(plain->imu_readings, 0);
+
+  configuration.sensors.use_recorded_imu = true;
+  ListSource source(events);
+  const auto run = RunSlam(configuration, &source, SlamRunOptions());
+  ASSERT_TRUE(run.ok()) << run.status();
+  EXPECT_EQ(run->imu_readings, 30);
+  EXPECT_GT(run->nodes, 5);
+
+  test::RoomSource without(10);
+  const auto run_without = RunSlam(configuration, &without, SlamRunOptions());
+  ASSERT_TRUE(run_without.ok()) << run_without.status();
+  EXPECT_EQ(run_without->imu_readings, 0);
+}
+
 TEST(SlamRunnerTest, PassesErrorsOfTheSourceOn) {
   ListSource torn({RoomScan(0), RoomScan(1)});
   torn.FailAt(1);

@@ -30,12 +30,15 @@ bool IsEarlier(const PlanarImuReading& reading, const double time) {
 }  // namespace
 
 ImuPredictor::ImuPredictor(const ImuPredictorOptions& options)
-    : options_(options) {}
+    : options_(options),
+      gyroscope_(
+          {options.noise.yaw_rate_density, options.yaw_rate_bias_noise}) {}
 
 void ImuPredictor::Add(const PlanarImuReading& reading) {
   if (!options_.enabled || !IsFinite(reading)) return;
   if (!readings_.empty() && reading.time <= readings_.back().time) return;
   last_.is_valid = false;
+  gyroscope_.Add(reading.time, reading.yaw_rate);
   readings_.push_back(reading);
   while (readings_.size() > kMaxReadings ||
          readings_.front().time < reading.time - kBufferSeconds) {
@@ -85,8 +88,13 @@ absl::optional<PreintegratedImu> ImuPredictor::Preintegrate(
 bool ImuPredictor::Predict(const double from, const double to,
                            const Eigen::Vector2d& velocity,
                            ImuMotion* const motion) const {
-  const absl::optional<PreintegratedImu> imu = Preintegrate(from, to);
-  if (!imu.has_value()) return false;
+  const double offset = gyroscope_.clock_offset();
+  const absl::optional<PreintegratedImu> imu =
+      Preintegrate(from - offset, to - offset);
+  GyroscopeRotation rotation;
+  if (!imu.has_value() || !gyroscope_.Rotation(from, to, &rotation)) {
+    return false;
+  }
   PlanarState state;
   state.velocity = velocity;
   motion->motion = front_end::Predict(state, *imu).pose;
@@ -94,20 +102,22 @@ bool ImuPredictor::Predict(const double from, const double to,
   const double t = imu->duration;
   const double translation_sigma =
       0.5 * options_.acceleration_bias_noise * t * t;
-  const double rotation_sigma = options_.yaw_rate_bias_noise * t;
   motion->covariance.setZero();
   motion->covariance.topLeftCorner<2, 2>() =
       imu->covariance.topLeftCorner<2, 2>() +
       translation_sigma * translation_sigma * Eigen::Matrix2d::Identity();
-  motion->covariance(2, 2) =
-      imu->covariance(4, 4) + rotation_sigma * rotation_sigma;
+  motion->motion.theta = rotation.angle;
+  motion->covariance(2, 2) = rotation.variance;
   return true;
 }
 
 void ImuPredictor::AddMatch(const double from, const double to,
-                            const Pose2& match) {
+                            const Pose2& match, const bool rotation_observable,
+                            const double sigma) {
   const double interval = to - from;
   if (readings_.empty() || !(interval > 0.)) return;
+  gyroscope_.AddMatch({from, to, match.theta, sigma, rotation_observable});
+  last_.is_valid = false;
   const bool is_stationary =
       std::hypot(match.x, match.y) <= kStationarySpeed * interval &&
       std::abs(match.theta) <= kStationaryTurnRate * interval;
@@ -141,6 +151,7 @@ void ImuPredictor::AddMatch(const double from, const double to,
   last_.is_valid = false;
   bias_.acceleration = mean.head<2>();
   bias_.yaw_rate = mean.z();
+  gyroscope_.SetBias(mean.z());
   bias_is_known_ = true;
 }
 

@@ -4,7 +4,8 @@
 // Prediction from an IMU: preintegration between two scans (paper G, improved
 // graph optimisation 2024, section 3.2) with biases estimated while the robot
 // is stationary. Readings must be gravity aligned, so that tilt does not turn
-// gravity into acceleration; the remainder is part of the bias.
+// gravity into acceleration; the remainder is part of the bias. The rotation is
+// that of the calibrated gyroscope (gyroscope.h).
 //
 // A scan asks for the same interval before and after its match, so the last
 // integration is kept.
@@ -16,6 +17,7 @@
 #include "Eigen/Core"
 #include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/imu/gyroscope.h"
 #include "cartographer_ext/front_end/imu/imu_preintegration.h"
 
 namespace cartographer_ext {
@@ -56,8 +58,11 @@ class ImuPredictor {
                ImuMotion* motion) const;
 
   // The matched motion between two scans; estimates the biases when it is zero.
-  void AddMatch(double from, double to, const Pose2& match);
+  // `sigma` is that of the rotation, radians, if the scan determines it.
+  void AddMatch(double from, double to, const Pose2& match,
+                bool rotation_observable = false, double sigma = 0.);
 
+  const Gyroscope& gyroscope() const { return gyroscope_; }
   const ImuBias& bias() const { return bias_; }
   bool bias_is_known() const { return bias_is_known_; }
 
@@ -66,6 +71,7 @@ class ImuPredictor {
 
   const ImuPredictorOptions options_;
   std::deque<PlanarImuReading> readings_;
+  Gyroscope gyroscope_;
   ImuBias bias_;
   bool bias_is_known_ = false;
   // Of the last successful Preintegrate(), invalid after any change of the

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/common/squared.h"
 
 namespace cartographer_ext {
@@ -59,64 +58,6 @@ double SignedDistance(const Pose2& motion) {
 }
 
 }  // namespace
-
-CalibrationFilter::CalibrationFilter(const Eigen::Vector2d& values,
-                                     const Eigen::Vector2d& sigmas,
-                                     const Eigen::Vector2d& floors,
-                                     const Noise& noise)
-    : initial_variances_(sigmas.cwiseAbs2()),
-      floors_(floors),
-      noise_(noise),
-      state_(values.x(), values.y(), 0.),
-      covariance_(Eigen::Matrix3d::Zero()) {
-  covariance_.diagonal().head<2>() = initial_variances_;
-  Restart();
-}
-
-void CalibrationFilter::Restart() {
-  state_.z() = 0.;
-  covariance_.row(2).setZero();
-  covariance_.col(2).setZero();
-  covariance_(2, 2) = Squared(noise_.match);
-}
-
-double CalibrationFilter::sigma(const int i) const {
-  return std::sqrt(
-      std::min(initial_variances_(i), covariance_(i, i) + Squared(floors_(i))));
-}
-
-bool CalibrationFilter::Add(const Eigen::Vector2d& regressors,
-                            const double length, const double measured,
-                            const double extra) {
-  Eigen::Matrix3d transition = Eigen::Matrix3d::Identity();
-  transition.row(2).head<2>() = regressors.transpose();
-  state_ = transition * state_;
-  covariance_ = transition * covariance_ * transition.transpose();
-  covariance_(2, 2) += Squared(noise_.walk) * length;
-  for (int i = 0; i < 2; ++i) {
-    // The variance never exceeds the initial one.
-    covariance_(i, i) +=
-        std::min(Squared(noise_.wander) * length,
-                 std::max(0., initial_variances_(i) - covariance_(i, i)));
-  }
-
-  const double measurement = Squared(noise_.match) + Squared(extra);
-  const double variance = covariance_(2, 2) + measurement;
-  const double residual = measured - state_.z();
-  if (!(Squared(residual) <= Squared(noise_.max_residual) * variance)) {
-    Restart();
-    return false;
-  }
-  const Eigen::Vector3d gain = covariance_.col(2) / variance;
-  state_ += gain * residual;
-  // The Joseph form keeps the covariance positive semi-definite.
-  Eigen::Matrix3d rest = Eigen::Matrix3d::Identity();
-  rest.col(2) -= gain;
-  covariance_ = Symmetric(rest * covariance_ * rest.transpose() +
-                          measurement * gain * gain.transpose());
-  state_.z() -= measured;
-  return true;
-}
 
 OdometryCalibration::OdometryCalibration(
     const OdometryCalibrationOptions& options)

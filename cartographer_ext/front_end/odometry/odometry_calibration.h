@@ -19,26 +19,16 @@
 //   odometry rotation = (rotation - rotation_per_metre * odometry translation)
 //                       / rotation_scale.
 //
-// The parameters p of each line are the state of a small Kalman filter,
-// together with y, the translation of the robot as odometry has it:
-// an augmented filter, as in A. Martinelli, N. Tomatis, R. Siegwart,
-// "Simultaneous localization and odometry self calibration for mobile robot",
-// Autonomous Robots 22 (2007), in one dimension. Over an odometry increment h
+// Each line is estimated by a CalibrationFilter. `walk` of a filter covers errors
+// that grow with distance: wheel noise, and the errors of submaps matched with
+// each other.
 //
-//   y <- y + p . h,   variance of y + walk^2 |h|,   p random walk,
-//
-// and the scan matcher measures y with its standard deviation. Two matches with
-// a correlated error (against the same submap) are thus compared over the whole
-// distance between them: over 10 m, errors of 1 cm are one of 0.14 % in the
-// scale, not ten of 1.4 %. `walk` covers errors that grow with distance: wheel
-// noise, and the errors of submaps matched with each other.
-//
-// The filter is updated only
+// A filter is updated only
 //  * between scans that measure the translation (the rotation) themselves:
 //    otherwise the match is odometry and would confirm any scale;
 //  * while the check of odometry finds no fault, and not until some seconds
 //    after a fault: slip is detected with a delay;
-//  * from matches that agree with the filter: after relocalisation y restarts.
+//  * from matches that agree with it: after relocalisation it restarts.
 //
 // The reported sigma includes a floor for systematic errors of maps and lasers.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_CALIBRATION_H_
@@ -49,6 +39,7 @@
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/squared.h"
+#include "cartographer_ext/front_end/calibration_filter.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -69,42 +60,6 @@ struct OdometryCalibrationOptions {
   // radians per metre.
   // Five sigmas: more is a fault and no scale.
   double max_deviation = 0.1;
-};
-
-// The filter of one of the two lines, with p and y as above.
-class CalibrationFilter {
- public:
-  struct Noise {
-    double match;         // of a matched translation or rotation
-    double walk;          // of y, per root of the length of the increment
-    double wander;        // of p, per root of the same
-    double max_residual;  // in standard deviations
-  };
-
-  // Initial p and its sigmas; a sigma of 0 keeps a parameter constant. sigma()
-  // includes `floors`.
-  CalibrationFilter(const Eigen::Vector2d& values,
-                    const Eigen::Vector2d& sigmas,
-                    const Eigen::Vector2d& floors, const Noise& noise);
-
-  // An increment `regressors` (`length` for the noise) and the measured
-  // increment; `extra` is a standard deviation beyond that of a match. Returns
-  // false and restarts when the two are inconsistent.
-  bool Add(const Eigen::Vector2d& regressors, double length, double measured,
-           double extra);
-
-  // The next increment does not continue the last one.
-  void Restart();
-
-  double value(const int i) const { return state_(i); }
-  double sigma(int i) const;
-
- private:
-  const Eigen::Vector2d initial_variances_;
-  const Eigen::Vector2d floors_;
-  const Noise noise_;
-  Eigen::Vector3d state_;  // p, then y minus the measured one
-  Eigen::Matrix3d covariance_;
 };
 
 // One interval between two scans. Motions are (earlier robot <- later robot).

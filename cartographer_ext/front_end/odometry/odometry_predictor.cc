@@ -3,7 +3,6 @@
 #include "cartographer_ext/front_end/odometry/odometry_predictor.h"
 
 #include <cmath>
-#include <vector>
 
 #include "cartographer_ext/common/squared.h"
 
@@ -15,10 +14,6 @@ namespace {
 // range crosses a hall or a square without a single echo.
 constexpr double kBufferSeconds = 3600.;
 constexpr size_t kMaxReadings = 20000;
-// Longer intervals are not used to estimate the clock offset, seconds.
-constexpr double kMaxOffsetInterval = 1.;
-// Matches waiting for later odometry.
-constexpr size_t kMaxPending = 20;
 // A scan may arrive this many median intervals of odometry after the last
 // reading, ...
 constexpr double kMaxLateness = 1.25;
@@ -81,36 +76,7 @@ bool OdometryPredictor::Predict(const double from, const double to,
 
 void OdometryPredictor::AddMatch(const double from, const double to,
                                  const Pose2& match) {
-  if (offset_.candidates().empty() || !(to > from) ||
-      to - from > kMaxOffsetInterval) {
-    return;
-  }
-  pending_.push_back({from, to, match.theta});
-  while (!pending_.empty()) {
-    const MatchedTurn& oldest = pending_.front();
-    const bool is_covered =
-        !buffer_.empty() &&
-        buffer_.last_time() >= oldest.to - offset_.candidates().front() &&
-        buffer_.first_time() <= oldest.from - offset_.candidates().back();
-    if (is_covered) {
-      LearnOffset(oldest);
-    } else if (pending_.size() <= kMaxPending) {
-      return;
-    }
-    pending_.pop_front();
-  }
-}
-
-void OdometryPredictor::LearnOffset(const MatchedTurn& matched) {
-  std::vector<double> turns;
-  turns.reserve(offset_.candidates().size());
-  for (const double offset : offset_.candidates()) {
-    OdometrySample begin, end;
-    buffer_.Lookup(matched.from - offset, &begin);
-    buffer_.Lookup(matched.to - offset, &end);
-    turns.push_back(NormalizeAngle(end.pose.theta - begin.pose.theta));
-  }
-  offset_.Add(matched.turn, turns);
+  offset_.AddMatch(from, to, match.theta, buffer_);
 }
 
 }  // namespace front_end

@@ -18,13 +18,11 @@
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_
 
-#include <deque>
-
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/odometry/clock_offset.h"
 #include "cartographer_ext/front_end/odometry/odometry_buffer.h"
 #include "cartographer_ext/front_end/odometry/odometry_calibration.h"
-#include "cartographer_ext/front_end/odometry/time_offset.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -88,18 +86,10 @@ class OdometryPredictor {
   double time_offset() const { return offset_.offset(); }
 
  private:
-  struct MatchedTurn {
-    double from;
-    double to;
-    double turn;
-  };
-  void LearnOffset(const MatchedTurn& matched);
-
   const OdometryNoiseOptions noise_;
   OdometryBuffer buffer_;
-  TimeOffsetEstimator offset_;
+  ClockOffset offset_;
   OdometryCalibration calibration_;
-  std::deque<MatchedTurn> pending_;
 };
 
 }  // namespace front_end
