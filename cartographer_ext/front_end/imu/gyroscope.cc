@@ -3,7 +3,6 @@
 #include "cartographer_ext/front_end/imu/gyroscope.h"
 
 #include <cmath>
-#include <cstddef>
 
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/squared.h"
@@ -11,11 +10,6 @@
 namespace cartographer_ext {
 namespace front_end {
 namespace {
-
-constexpr double kBufferSeconds = 10.;
-constexpr size_t kMaxReadings = 20000;
-// The newest reading may be this much older than the scan, seconds.
-constexpr double kMaxExtrapolation = 0.1;
 
 // Before the first turn nothing is known of the factor. A MEMS gyroscope that
 // was not calibrated at rest has a bias of some degrees a second.
@@ -33,6 +27,8 @@ constexpr double kStampNoise = 0.02;
 // A segment ends after this rotation, radians, or time, seconds.
 constexpr double kSegmentRotation = 0.3;
 constexpr double kSegmentSeconds = 1.;
+// Scans further apart are a gap, seconds.
+constexpr double kMaxInterval = 1.;
 // A scan measures the rotation if its match has at most this standard
 // deviation, radians.
 constexpr double kMaxSigma = 0.01;
@@ -53,7 +49,7 @@ constexpr double kMaxContradicted = 0.3;
 
 Gyroscope::Gyroscope(const GyroscopeOptions& options)
     : options_(options),
-      headings_(kBufferSeconds, kMaxReadings, kMaxExtrapolation),
+      headings_(kImuBufferSeconds, kMaxImuReadings, kMaxImuExtrapolation),
       offset_(TimeOffsetOptions()),
       filter_(Eigen::Vector2d(1., 0.),
               Eigen::Vector2d(kFactorSigma, kBiasSigma),
@@ -76,7 +72,7 @@ bool Gyroscope::Raw(const double from, const double to,
   const double offset = offset_.offset();
   if (headings_.empty() || !(to > from) ||
       headings_.first_time() > from - offset ||
-      headings_.last_time() < to - offset - kMaxExtrapolation ||
+      headings_.last_time() < to - offset - kMaxImuExtrapolation ||
       !headings_.Lookup(from - offset, &begin) ||
       !headings_.Lookup(to - offset, &end)) {
     return false;
@@ -107,7 +103,7 @@ bool Gyroscope::Rotation(const double from, const double to,
 void Gyroscope::AddMatch(const MatchedRotation& matched) {
   double raw;
   if (!Raw(matched.from, matched.to, &raw) || !matched.is_observable ||
-      matched.sigma > kMaxSigma || matched.to - matched.from > 1.) {
+      matched.sigma > kMaxSigma || matched.to - matched.from > kMaxInterval) {
     segment_ = Segment();
     filter_.Restart();
     return;

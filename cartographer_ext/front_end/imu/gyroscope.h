@@ -18,12 +18,20 @@
 #ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_GYROSCOPE_H_
 #define CARTOGRAPHER_EXT_FRONT_END_IMU_GYROSCOPE_H_
 
+#include <cstddef>
+
 #include "cartographer_ext/front_end/calibration_filter.h"
 #include "cartographer_ext/front_end/odometry/clock_offset.h"
 #include "cartographer_ext/front_end/odometry/odometry_buffer.h"
 
 namespace cartographer_ext {
 namespace front_end {
+
+// How long readings of an IMU are kept, seconds, and how many at most.
+constexpr double kImuBufferSeconds = 10.;
+constexpr size_t kMaxImuReadings = 20000;
+// The newest reading may be this much older than the scan, seconds.
+constexpr double kMaxImuExtrapolation = 0.1;
 
 enum class GyroscopeState { kUnproven, kProven, kRefuted };
 

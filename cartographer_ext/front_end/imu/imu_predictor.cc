@@ -4,16 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-constexpr double kBufferSeconds = 10.;
-constexpr size_t kMaxReadings = 20000;
-// The newest reading may be this much older than the scan, seconds.
-constexpr double kMaxExtrapolation = 0.1;
 // A robot with a matched motion below these rates is stationary, m/s and rad/s.
 constexpr double kStationarySpeed = 0.03;
 constexpr double kStationaryTurnRate = 0.02;
@@ -40,8 +35,8 @@ void ImuPredictor::Add(const PlanarImuReading& reading) {
   last_.is_valid = false;
   gyroscope_.Add(reading.time, reading.yaw_rate);
   readings_.push_back(reading);
-  while (readings_.size() > kMaxReadings ||
-         readings_.front().time < reading.time - kBufferSeconds) {
+  while (readings_.size() > kMaxImuReadings ||
+         readings_.front().time < reading.time - kImuBufferSeconds) {
     readings_.pop_front();
   }
 }
@@ -50,7 +45,7 @@ absl::optional<PreintegratedImu> ImuPredictor::Preintegrate(
     const double from, const double to) const {
   if (last_.is_valid && last_.from == from && last_.to == to) return last_.imu;
   if (readings_.size() < 2 || readings_.front().time > from ||
-      readings_.back().time < to - kMaxExtrapolation || !(to > from)) {
+      readings_.back().time < to - kMaxImuExtrapolation || !(to > from)) {
     return absl::nullopt;
   }
   const auto after =
@@ -117,7 +112,6 @@ void ImuPredictor::AddMatch(const double from, const double to,
   const double interval = to - from;
   if (readings_.empty() || !(interval > 0.)) return;
   gyroscope_.AddMatch({from, to, match.theta, sigma, rotation_observable});
-  last_.is_valid = false;
   const bool is_stationary =
       std::hypot(match.x, match.y) <= kStationarySpeed * interval &&
       std::abs(match.theta) <= kStationaryTurnRate * interval;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/front_end/imu/gyroscope.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cartographer_ext/common/pose2.h"
