@@ -10,7 +10,8 @@
 
 #include "absl/memory/memory.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
-#include "cartographer_ext/optimization/offline/noise_metric.h"
+#include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
+#include "cartographer_ext/optimization/offline/noise/noise_metric.h"
 #include "cartographer_ext/optimization/offline/polish_near.h"
 
 namespace cartographer_ext {
@@ -72,31 +73,17 @@ double Slack(const Portfolio& portfolio) {
   return portfolio.Size() > kMaxGrowthWork ? 0.5 * to_solvers : 0.;
 }
 
-// Steps 3 and 4 of the header.
-void Decide(const AutoOptions& options, Portfolio* const portfolio,
-            AutoResult* const result) {
-  const std::vector<WhitenedEdge>& edges = portfolio->edges();
-  const Portfolio::Member& best = portfolio->best();
-  RobustSolver& solver = *portfolio->solver();
-  const auto count = [&](const SolverSummary& summary) {
-    result->iterations += summary.iterations;
-    result->converged = summary.converged;
-  };
-  result->member_cost = best.cost;
-  const double narrow =
-      options.adaptive_gate ? AdaptiveGate(edges, best.poses) : kChi2Gate;
-  const bool adaptive =
-      narrow < kChi2Gate &&
-      ClaimTooMuchNoise(LeaveOneOutInnovations(
-          best.poses, DecideLoops(edges, best.poses, kChi2Gate),
-          kMaxInnovations, &solver));
-  const double gate = adaptive ? narrow : kChi2Gate;
-  const double limit = best.cost + kUnfolded * kChi2Gate;
-  const double slack = Slack(*portfolio);
-  const double most = best.cost * (1. + kSameOptimum) + slack;
-  const Portfolio::Member& likeliest = LikeliestMember(
-      *portfolio,
-      portfolio->ran_all_solvers() ? most : best.cost * (1. + kSameOptimum));
+// Counts a solution.
+void Count(const SolverSummary& summary, AutoResult* const result) {
+  result->iterations += summary.iterations;
+  result->converged = summary.converged;
+}
+
+// The members that cost at most `limit` polished with the gate, the lowest cost
+// truncated there; with the whole gate only the likeliest.
+void PolishMembers(const double gate, const double limit,
+                   const Portfolio::Member& likeliest,
+                   Portfolio* const portfolio, AutoResult* const result) {
   double lowest = std::numeric_limits<double>::infinity();
   std::vector<double> polished;
   for (const Portfolio::Member& member : portfolio->members()) {
@@ -111,17 +98,60 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
     polished.push_back(member.cost);
     std::vector<Pose2> poses = member.poses;
     std::vector<double> weights;
-    count(PolishTruncated(gate, kFullPolishRounds, &solver, &poses, &weights));
-    const double cost = TruncatedCost(edges, poses, gate);
+    Count(PolishTruncated(gate, kFullPolishRounds, portfolio->solver(), &poses,
+                          &weights),
+          result);
+    const double cost = TruncatedCost(portfolio->edges(), poses, gate);
     if (cost >= lowest) continue;
     lowest = cost;
     result->poses = std::move(poses);
     result->weights = std::move(weights);
     result->member = member.name;
   }
-  if (!adaptive) return;
-  count(PolishAdapted(kFullPolishRounds, &solver, &result->poses,
-                      &result->weights));
+}
+
+// Whether a narrower gate rejects right loops of the best map. Where most loops
+// agree far better than they claim, so need not all.
+bool RejectsRightLoops(const AutoResult& narrower, Portfolio* const portfolio) {
+  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+  const DecidedMap best = {
+      portfolio->best().poses,
+      DecideLoops(edges, portfolio->best().poses, kChi2Gate)};
+  return !RejectsFew(edges, best.decisions, narrower.weights) &&
+         RejectsMoreThanByChance(best, {narrower.poses, narrower.weights},
+                                 portfolio->support(), portfolio->solver());
+}
+
+// Steps 3 and 4 of the header.
+void Decide(const AutoOptions& options, Portfolio* const portfolio,
+            AutoResult* const result) {
+  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+  const Portfolio::Member& best = portfolio->best();
+  RobustSolver& solver = *portfolio->solver();
+  result->member_cost = best.cost;
+  const double narrow =
+      options.adaptive_gate ? AdaptiveGate(edges, best.poses) : kChi2Gate;
+  const bool adaptive =
+      narrow < kChi2Gate &&
+      ClaimTooMuchNoise(LeaveOneOutInnovations(
+          best.poses, DecideLoops(edges, best.poses, kChi2Gate),
+          kMaxInnovations, &solver));
+  const double limit = best.cost + kUnfolded * kChi2Gate;
+  const double slack = Slack(*portfolio);
+  const double most = best.cost * (1. + kSameOptimum) + slack;
+  const Portfolio::Member& likeliest = LikeliestMember(
+      *portfolio,
+      portfolio->ran_all_solvers() ? most : best.cost * (1. + kSameOptimum));
+  if (adaptive) {
+    PolishMembers(narrow, limit, likeliest, portfolio, result);
+    Count(PolishAdapted(kFullPolishRounds, &solver, &result->poses,
+                        &result->weights),
+          result);
+  }
+  if (!adaptive || RejectsRightLoops(*result, portfolio)) {
+    PolishMembers(kChi2Gate, limit, likeliest, portfolio, result);
+    return;
+  }
   if (!options.lowest_cost || TruncatedCost(edges, result->poses) <= most) {
     return;
   }
@@ -129,7 +159,8 @@ void Decide(const AutoOptions& options, Portfolio* const portfolio,
   result->poses = likeliest.poses;
   result->member = likeliest.name;
   result->weights = DecideLoops(edges, likeliest.poses, kChi2Gate);
-  count(PolishNear(edges, adapted, most, &result->poses, &result->weights));
+  Count(PolishNear(edges, adapted, most, &result->poses, &result->weights),
+        result);
 }
 
 // Share of chi2 with three degrees of freedom beyond a value.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/loop_support.h"
@@ -21,6 +22,8 @@ namespace {
 // least size: a loop agrees by chance with another one, but hardly with two.
 constexpr int kMaxForcedGroups = 10;
 constexpr int kMinForcedGroup = 3;
+// Share of the loops that others agree with.
+constexpr double kHardlyAny = 0.1;
 
 // Whether a group of rejected loops contradicts the map, or more than a few lie
 // within its uncertainty.
@@ -42,16 +45,34 @@ bool MayHaveLostLoops(const LoopSupport& support,
       solver));
 }
 
+// Whether hardly any of the loops that others agree with is in force.
+bool HasLostNearlyAll(const LoopSupport& support,
+                      const std::vector<bool>& accepted) {
+  double loops = 0., in_force = 0.;
+  for (const std::vector<int>& group : support.groups) {
+    if (static_cast<int>(group.size()) < kMinForcedGroup) continue;
+    loops += group.size();
+    for (const int i : group) in_force += accepted[i];
+  }
+  return in_force < kHardlyAny * loops;
+}
+
 }  // namespace
 
 bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
   std::vector<WhitenedEdge> edges = Whiten(graph.edges);
-  double loops = 0.;
-  for (const WhitenedEdge& edge : edges) loops += edge.is_loop;
-  if (graph.poses.size() * loops > kMaxGrowthWork) return false;
+  double loops = 0., in_force = 0.;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    loops += edges[i].is_loop;
+    in_force += edges[i].is_loop && replay->accepted[i];
+  }
+  const bool large = graph.poses.size() * loops > kMaxGrowthWork;
+  if (large && in_force >= kHardlyAny * loops) return false;
   RobustSolver solver(edges);
   const LoopSupport support = FindLoopSupport(graph, LoopSupportOptions());
-  if (!MayHaveLostLoops(support, replay->accepted, replay->poses, &solver)) {
+  if (large ? !HasLostNearlyAll(support, replay->accepted)
+            : !MayHaveLostLoops(support, replay->accepted, replay->poses,
+                                &solver)) {
     return false;
   }
   const double limit = TruncatedCost(edges, replay->poses) - 2. * kChi2Gate;
@@ -65,7 +86,11 @@ bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
     best = poses;
   };
   std::vector<double> weights;
-  if (GrowLoops(support, GrowthOptions(), &solver, &poses, &weights)) offer();
+  if (large ? GrowCertainLoops(graph, CertainGrowthOptions(), &solver, &poses,
+                               &weights) > 0
+            : GrowLoops(support, GrowthOptions(), &solver, &poses, &weights)) {
+    offer();
+  }
   for (const KernelType type : {KernelType::kDcs, KernelType::kGemanMcClure}) {
     SolverOptions soft;
     soft.kernel = DefaultKernel(type);
@@ -77,6 +102,7 @@ bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
   ForceOptions force;
   force.max_trials = kMaxForcedGroups;
   force.min_members = kMinForcedGroup;
+  force.relax = !large;  // two more factorisations a trial
   poses = best;
   if (ForceGroups(support, force, &edges, &solver, &poses, nullptr) > 0) {
     offer();

@@ -7,6 +7,10 @@
 // (loop_growth.h), solved by kernels as wide as the gate, which see what has
 // ended up just behind it, and then lost groups are forced in
 // (decision_moves.h).
+//
+// On a graph that is too large for growth by groups all that only happens where
+// the replay has lost nearly all loops that agree with others, and the map is
+// grown by the loops that are certain (certain_growth.h).
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_READMISSION_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_READMISSION_H_
 
@@ -17,8 +21,7 @@ namespace cartographer_ext {
 namespace optimization {
 
 // Replaces poses and decisions of `replay` and returns true if there is such a
-// map. Does nothing if no loop can have been lost, or if the graph is too
-// large.
+// map. Does nothing if no loop can have been lost, or too few of a large graph.
 bool ReadmitGroups(const PoseGraph& graph, ReplayResult* replay);
 
 }  // namespace optimization

@@ -34,10 +34,11 @@ double LogEvidence(const WhitenedEdge& edge, const Innovation& innovation,
 }
 
 double ChanceToFit(const WhitenedEdge& edge, const double log_area,
-                   const double gate) {
+                   const double gate, const double log_determinant) {
   const double log_ball =
       std::log(4. / 3. * kPi) + 1.5 * std::log(gate / (2. * kPi));
-  return std::exp(std::min(0., log_ball - LogVolume(edge, log_area)));
+  return std::exp(std::min(
+      0., log_ball + 0.5 * log_determinant - LogVolume(edge, log_area)));
 }
 
 }  // namespace optimization

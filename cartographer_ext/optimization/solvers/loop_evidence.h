@@ -32,8 +32,9 @@ double LogEvidence(const WhitenedEdge& edge, const Innovation& innovation,
                    double log_area);
 
 // Probability that a loop which leads anywhere in the area has a chi2 below the
-// gate.
-double ChanceToFit(const WhitenedEdge& edge, double log_area, double gate);
+// gate, or a squared innovation if its covariance has this determinant.
+double ChanceToFit(const WhitenedEdge& edge, double log_area, double gate,
+                   double log_determinant = 0.);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

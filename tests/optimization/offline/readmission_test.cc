@@ -39,6 +39,32 @@ TEST(ReadmissionTest, BringsBackWhatAReplayHasLost) {
   }
 }
 
+// The same of a graph that is too large for growth by groups.
+TEST(ReadmissionTest, BringsBackWhatALargeGraphHasLost) {
+  test::GridWorld world = test::MakeGridWorld(1600, 12, 1);
+  const size_t first_outlier = world.graph.edges.size();
+  test::AddOutliers(test::Outliers(1000), &world.graph);
+  ReplayResult replay;
+  replay.poses = world.graph.poses;
+  replay.accepted.assign(world.graph.edges.size(), false);
+  size_t loops = 0, right = 0;
+  for (size_t i = 0; i != world.graph.edges.size(); ++i) {
+    const bool is_loop = world.graph.edges[i].is_loop;
+    replay.accepted[i] = !is_loop;
+    loops += is_loop;
+    right += is_loop && i < first_outlier;
+  }
+  ASSERT_GT(world.graph.poses.size() * loops, 4e6);
+  ASSERT_TRUE(ReadmitGroups(world.graph, &replay));
+  size_t right_in_force = 0, wrong_in_force = 0;
+  for (size_t i = 0; i != world.graph.edges.size(); ++i) {
+    if (!world.graph.edges[i].is_loop || !replay.accepted[i]) continue;
+    (i < first_outlier ? right_in_force : wrong_in_force) += 1;
+  }
+  EXPECT_GE(right_in_force, 0.98 * right);
+  EXPECT_LE(wrong_in_force, 2);
+}
+
 TEST(ReadmissionTest, LeavesAMapAloneThatHasLostNothing) {
   const test::GridWorld world = test::MakeGridWorld(150, 5, 1);
   ReplayResult replay;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/optimization/offline/noise_metric.h"
+#include "cartographer_ext/optimization/offline/noise/noise_metric.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,20 +11,21 @@
 #include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 
 namespace cartographer_ext {
 namespace optimization {
 namespace {
 
-// Fewer loops say nothing about the noise.
-constexpr int kMinLoops = 10;
 constexpr size_t kMaxInnovations = 300;
 // Variance factors from which the noise is estimated.
 constexpr double kFirstVariances[] = {4., 25.};
 constexpr int kMaxNoiseRounds = 8;
 // Factors below this are not worth another metric.
 constexpr double kMinScale = 1.15;
+// Lower bound of a factor from which the matrices are doubted.
+constexpr double kDoubtful = 1.1;
 // Share of the loops.
 constexpr double kNearlyAll = 0.98;
 // By what odometry and loops have to differ for a metric that has both as they
@@ -36,20 +37,8 @@ constexpr double kMostly = 0.75;
 // which a map has to cost less with it to be another one.
 constexpr double kSmaller = 0.9;
 constexpr double kWellBelow = 0.5;
-// So many innovations take next to no time.
-constexpr int kFewAccepted = 100;
 constexpr double kAnother = 3.;
 constexpr int kMaxMaps = 3;  // in turn
-
-// Factors of the odometry that are tried where there are few loops or few are in
-// force, the last ones not with less than ten, and the logarithm of the odds that
-// one needs.
-constexpr double kFewLoopsScales[] = {1.5, 2., 3., 5., 8.};
-constexpr double kLargestOfFew = 3.;
-// What a loop may say against itself: nothing is known of where uncertain odometry
-// leads before the first one.
-constexpr double kFirstOfMany = -10.;
-const double kFewLoopsOdds = std::log(1000.);
 
 enum class Floor {
   kEach,    // no factor is below one
@@ -63,20 +52,6 @@ int CountLoops(const std::vector<WhitenedEdge>& edges,
     result += edges[i].is_loop && weights[i] > 0.5;
   }
   return result;
-}
-
-// The least number of rare events that happens in less than one case in a
-// thousand (Poisson).
-double MoreThanExpected(const double expected) {
-  constexpr double kMany = 10.;  // nearly normally distributed
-  if (expected > kMany) return expected + 3. * std::sqrt(expected) + 2.;
-  double beyond = 1., probability = std::exp(-expected);
-  int number = 0;
-  while (beyond >= 0.001) {
-    beyond -= probability;
-    probability *= expected / ++number;
-  }
-  return number;
 }
 
 // Whether right loops seem to lie behind the gate: more loops just beyond it
@@ -106,7 +81,8 @@ bool LieBehindGate(const std::vector<double>& weights, const int accepted,
 bool IsSuspicious(const NoiseOfMap& map, Portfolio* const portfolio) {
   if (map.loops < kMinLoops) return false;
   if (map.accepted < kMinLoops) return true;
-  return map.scale.odometry.low > 1.1 || map.scale.loops.low > 1.1 ||
+  return map.scale.odometry.low > kDoubtful ||
+         map.scale.loops.low > kDoubtful ||
          LieBehindGate(map.decisions, map.accepted, portfolio) ||
          IsCutByGate(
              LeaveOneOutInnovations(portfolio->best().poses, map.decisions,
@@ -205,8 +181,9 @@ NoiseHypothesis EstimateMetric(const std::vector<WhitenedEdge>& given,
             std::min(1., std::max(noise.odometry.factor, noise.loops.factor));
         for (double& value : innovations) value /= factor * factor;
       }
-      result.valid = change < 0.3 && (result.accepted >= kNearlyAll * loops ||
-                                      IsLikeChi2(innovations));
+      result.steady = change < 0.3;
+      result.valid = result.steady && (result.accepted >= kNearlyAll * loops ||
+                                       IsLikeChi2(innovations));
       break;
     }
     result.metric = next;
@@ -218,49 +195,6 @@ NoiseHypothesis EstimateMetric(const std::vector<WhitenedEdge>& given,
 double Rounded(const double scale) {
   if (scale < kMinScale && scale > 1. / kMinScale) return 1.;
   return std::exp2(std::round(4. * std::log2(scale)) / 4.);
-}
-
-// What few loops say if put in force one by one, the likeliest first, as long as
-// that says more than `least`: the logarithm of their density over that of wrong
-// ones, which lead anywhere. `map`: the poses and how many were put in force.
-double EvidenceOfLoops(const std::vector<WhitenedEdge>& edges,
-                       const std::vector<Pose2>& chained, const double least,
-                       NoiseHypothesis* const map) {
-  RobustSolver solver(edges);
-  std::vector<double> weights(edges.size(), 1.);
-  std::vector<int> rejected;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    if (!edges[i].is_loop) continue;
-    weights[i] = 0.;
-    rejected.push_back(i);
-  }
-  map->poses = chained;
-  map->accepted = 0;
-  double result = 0.;
-  while (!rejected.empty()) {
-    const std::vector<Innovation> innovations =
-        PredictLoops(rejected, weights, map->poses, &solver);
-    const double log_area = LogArea(map->poses);
-    double highest = least;
-    size_t best = rejected.size();
-    for (size_t k = 0; k != innovations.size(); ++k) {
-      if (innovations[k].chi2 >= kChi2Gate) continue;
-      const double evidence =
-          LogEvidence(edges[rejected[k]], innovations[k], log_area);
-      if (evidence <= highest) continue;
-      highest = evidence;
-      best = k;
-    }
-    if (best == rejected.size()) break;
-    result += highest;
-    weights[rejected[best]] = 1.;
-    rejected.erase(rejected.begin() + best);
-    ++map->accepted;
-    SolverOptions options;
-    options.edge_weights = weights;
-    solver.Solve(options, &map->poses);
-  }
-  return result;
 }
 
 // Whether a few loops in force have nearly all chi2, as wrong ones among right
@@ -279,11 +213,47 @@ bool AreMixed(const NoiseOfMap& map, Portfolio* const portfolio) {
          Squared(kWellBelow) * sum / (3. * of_loops.size());
 }
 
-// Rounds the metric and returns whether it differs from that applied.
-bool IsAnother(const NoiseMetric& applied, NoiseMetric* const metric) {
-  metric->odometry = Rounded(metric->odometry);
-  metric->loops = Rounded(metric->loops);
-  return metric->odometry != applied.odometry || metric->loops != applied.loops;
+// The map of a metric, given with regard to that of the portfolio.
+DecidedMap DecideWith(const Portfolio& portfolio, const NoiseMetric& metric,
+                      const std::vector<Pose2>& poses) {
+  return {poses, DecideLoops(WithNoiseScale(portfolio.edges(), metric.odometry,
+                                            metric.loops),
+                             poses, kChi2Gate)};
+}
+
+// Whether what comes in with a metric speaks for it, where the map itself says that
+// odometry claims too much and most loops are in force already: to a map without
+// them groups of wrong ones fit as well.
+bool BringsInRightLoops(const NoiseOfMap& map,
+                        const NoiseHypothesis& hypothesis,
+                        Portfolio* const portfolio) {
+  if (!hypothesis.steady || map.accepted < kMinLoops ||
+      map.scale.odometry.low <= kDoubtful ||
+      map.accepted < kMostly * hypothesis.accepted) {
+    return false;
+  }
+  const std::vector<WhitenedEdge> edges = WithNoiseScale(
+      portfolio->edges(), hypothesis.metric.odometry, hypothesis.metric.loops);
+  RobustSolver solver(edges);
+  return TakesInMoreThanByChance(
+      {portfolio->best().poses, map.decisions},
+      DecideWith(*portfolio, hypothesis.metric, hypothesis.poses),
+      portfolio->support(), &solver);
+}
+
+// Whether what is lost with a metric speaks against it.
+bool LosesRightLoops(const NoiseMetric& applied, const NoiseOfMap& map,
+                     const NoiseHypothesis& hypothesis,
+                     Portfolio* const portfolio) {
+  const DecidedMap narrower =
+      DecideWith(*portfolio,
+                 {hypothesis.metric.odometry / applied.odometry,
+                  hypothesis.metric.loops / applied.loops},
+                 hypothesis.poses);
+  return !RejectsFew(portfolio->edges(), map.decisions, narrower.decisions) &&
+         RejectsMoreThanByChance({portfolio->best().poses, map.decisions},
+                                 narrower, portfolio->support(),
+                                 portfolio->solver());
 }
 
 }  // namespace
@@ -299,47 +269,14 @@ bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
   for (const double variance : kFirstVariances) {
     const NoiseHypothesis hypothesis = EstimateMetric(
         portfolio->edges(), {std::sqrt(variance), std::sqrt(variance)}, trial);
-    if (!hypothesis.valid || hypothesis.accepted < found->accepted) continue;
+    if (hypothesis.accepted < found->accepted ||
+        !(hypothesis.valid || BringsInRightLoops(map, hypothesis, portfolio))) {
+      continue;
+    }
     *found = hypothesis;
     any = true;
   }
   return any && IsAnother(applied, &found->metric);
-}
-
-bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
-                         Portfolio* const portfolio,
-                         NoiseHypothesis* const found) {
-  if (map.loops < 2 || map.loops > kFewAccepted || map.accepted >= kMinLoops ||
-      map.accepted == map.loops) {
-    return false;
-  }
-  const bool few = map.loops < kMinLoops;
-  // Of many loops wrong ones that confirm each other may be some.
-  const double least = few ? 2. : kMostly * map.loops;
-  const double least_said = few ? 0. : kFirstOfMany;
-  const std::vector<Pose2> chained = ChainOdometry(portfolio->graph());
-  NoiseHypothesis given;
-  double highest =
-      EvidenceOfLoops(portfolio->edges(), chained, least_said, &given) +
-      kFewLoopsOdds;
-  found->valid = false;
-  for (const double scale : kFewLoopsScales) {
-    if (few && scale > kLargestOfFew) break;
-    NoiseHypothesis hypothesis;
-    const double evidence =
-        EvidenceOfLoops(WithNoiseScale(portfolio->edges(), scale, 1.), chained,
-                        least_said, &hypothesis) -
-        0.5 * std::log2(scale) * std::log2(scale);
-    if (evidence <= highest || hypothesis.accepted < least ||
-        hypothesis.accepted <= map.accepted) {
-      continue;
-    }
-    highest = evidence;
-    *found = hypothesis;
-    found->metric = {applied.odometry * scale, applied.loops};
-    found->valid = true;
-  }
-  return found->valid && IsAnother(applied, &found->metric);
 }
 
 bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
@@ -429,7 +366,14 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
   }
   found->metric = {applied.odometry * std::min(1., metric.odometry),
                    applied.loops * std::min(1., metric.loops)};
-  return found->valid && IsAnother(applied, &found->metric);
+  return found->valid && IsAnother(applied, &found->metric) &&
+         !LosesRightLoops(applied, map, *found, portfolio);
+}
+
+bool IsAnother(const NoiseMetric& applied, NoiseMetric* const metric) {
+  metric->odometry = Rounded(metric->odometry);
+  metric->loops = Rounded(metric->loops);
+  return metric->odometry != applied.odometry || metric->loops != applied.loops;
 }
 
 NoiseOfMap MeasureNoise(Portfolio* const portfolio) {

@@ -6,8 +6,8 @@
 // overconfident, or that one of odometry and loops is overconfident relative to
 // the other, solving in a metric and estimating the metric (noise_scale.h)
 // alternate until both agree.
-#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_METRIC_H_
-#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_METRIC_H_
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_NOISE_METRIC_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_NOISE_METRIC_H_
 
 #include <vector>
 
@@ -16,6 +16,11 @@
 
 namespace cartographer_ext {
 namespace optimization {
+
+// Fewer loops say nothing about the noise by their residuals.
+constexpr int kMinLoops = 10;
+// So many innovations take next to no time.
+constexpr int kFewAccepted = 100;
 
 // Factors on the standard deviations.
 struct NoiseMetric {
@@ -28,6 +33,8 @@ struct NoiseHypothesis {
   NoiseMetric metric;
   std::vector<Pose2> poses;  // that the metric was estimated from
   bool valid = false;
+  // Whether solving and estimating have led to one and the same metric.
+  bool steady = false;
   int accepted = 0;  // loops
 };
 
@@ -39,6 +46,10 @@ struct NoiseOfMap {
   NoiseScale scale;  // where ten loops are accepted
 };
 
+// Rounds a metric, so that two searches of the same graph measure alike, and
+// returns whether it differs from that applied.
+bool IsAnother(const NoiseMetric& applied, NoiseMetric* metric);
+
 // Measures the noise of the best map of a portfolio.
 NoiseOfMap MeasureNoise(Portfolio* portfolio);
 
@@ -47,7 +58,10 @@ NoiseOfMap MeasureNoise(Portfolio* portfolio);
 // In the order in which `auto` asks:
 
 // Larger than the matrices of the graph claim: a noise that explains the loops
-// better. Only where these are applied as they are.
+// better. Only where these are applied as they are. Innovations have to look like
+// chi2, unless more loops come into a map of most of them than fit by chance
+// (loops_by_chance.h): loops that were measured several times over agree better
+// than one factor can say.
 bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
                      Portfolio* portfolio, NoiseHypothesis* found);
 // The same for the odometry of a graph with fewer than ten loops, whose residuals
@@ -69,11 +83,13 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
 // Smaller, where another map of the portfolio costs less with it than its best
 // and decides loops differently that are not near the gate. A gate that is too
 // wide lets groups of wrong loops bend odometry that is better than it claims.
-// Where the same map is the best in both metrics, the given one is as good.
+// Where the same map is the best in both metrics, the given one is as good. The
+// less noise loops have, the more of them are rejected, and those that are left
+// agree ever better: more may not be lost than can have been in force by chance.
 bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
                       Portfolio* portfolio, NoiseHypothesis* found);
 
 }  // namespace optimization
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_METRIC_H_
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_NOISE_METRIC_H_

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "cartographer_ext/common/thinned.h"
+#include "cartographer_ext/optimization/offline/loop_growth.h"
+
+namespace cartographer_ext {
+namespace optimization {
+namespace {
+
+constexpr size_t kMaxPredictions = 300;
+// Of the right loops.
+constexpr double kBeyondGate = 0.01;
+// What fits nearly everywhere says nothing.
+constexpr double kMostByChance = 0.999;
+
+// Groups that follow a revisit over more poses than this are several.
+constexpr int kStretch = 15;
+
+// The part of its group that a loop belongs to.
+using Part = std::pair<int, int>;
+
+Part PartOf(const WhitenedEdge& loop, const int group) {
+  return {group, std::max(loop.from, loop.to) / kStretch};
+}
+
+// Loops in force in a map, and the parts of groups with loops of which the other
+// map rejects some.
+struct Difference {
+  int in_force = 0;
+  int parts = 0;
+};
+
+Difference Compare(const std::vector<WhitenedEdge>& edges,
+                   const std::vector<double>& in,
+                   const std::vector<double>& out, const LoopSupport& support) {
+  std::set<Part> parts;
+  Difference result;
+  for (size_t i = 0; i != in.size(); ++i) {
+    if (!edges[i].is_loop || in[i] <= 0.5) continue;
+    ++result.in_force;
+    if (out[i] <= 0.5) parts.insert(PartOf(edges[i], support.group[i]));
+  }
+  result.parts = parts.size();
+  return result;
+}
+
+// Length of the path up to each pose, infinite from where odometry has a gap.
+std::vector<double> LengthsOfPath(const std::vector<WhitenedEdge>& edges,
+                                  const size_t num_poses) {
+  std::vector<double> steps(num_poses, std::numeric_limits<double>::infinity());
+  for (const WhitenedEdge& edge : edges) {
+    if (edge.is_loop || std::abs(edge.from - edge.to) != 1) continue;
+    steps[std::max(edge.from, edge.to)] = edge.measurement.head<2>().norm();
+  }
+  std::vector<double> result(num_poses, 0.);
+  for (size_t i = 1; i < num_poses; ++i) result[i] = result[i - 1] + steps[i];
+  return result;
+}
+
+// What fits of the groups with loops that `map` rejects if they are wrong: for
+// one loop of each, evenly thinned, the probability to lie within the gate;
+// `share` is that of the parts.
+std::vector<double> Chances(const DecidedMap& map, const LoopSupport& support,
+                            RobustSolver* const solver, double* const share) {
+  std::vector<int> loops;
+  std::set<Part> parts;
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  for (size_t i = 0; i != map.decisions.size(); ++i) {
+    if (map.decisions[i] > 0.5) continue;
+    if (parts.insert(PartOf(edges[i], support.group[i])).second) {
+      loops.push_back(i);
+    }
+  }
+  const std::vector<int> looked_at = Thinned(loops, kMaxPredictions);
+  *share = loops.empty() ? 1. : 1. * looked_at.size() / loops.size();
+  const double log_area = LogArea(map.poses);
+  const std::vector<double> lengths = LengthsOfPath(edges, map.poses.size());
+  const std::vector<Innovation> innovations =
+      PredictLoops(looked_at, map.decisions, map.poses, solver);
+  std::vector<double> result;
+  for (size_t k = 0; k != innovations.size(); ++k) {
+    const WhitenedEdge& edge = edges[looked_at[k]];
+    // Nothing is farther apart than the path between both ends.
+    const double length = std::abs(lengths[edge.from] - lengths[edge.to]);
+    const double within =
+        std::isfinite(length) ? std::log(kPi * length * length) : log_area;
+    result.push_back(ChanceToFit(edge, std::min(log_area, within), kChi2Gate,
+                                 innovations[k].log_determinant));
+  }
+  return result;
+}
+
+}  // namespace
+
+bool TakesInMoreThanByChance(const DecidedMap& map, const DecidedMap& wider,
+                             const LoopSupport& support,
+                             RobustSolver* const solver) {
+  const Difference difference =
+      Compare(solver->edges(), wider.decisions, map.decisions, support);
+  double share = 1., expected = kBeyondGate * difference.in_force;
+  for (const double chance : Chances(map, support, solver, &share)) {
+    expected += chance / share;
+  }
+  return difference.parts >= MoreThanExpected(expected);
+}
+
+bool RejectsMoreThanByChance(const DecidedMap& map, const DecidedMap& narrower,
+                             const LoopSupport& support,
+                             RobustSolver* const solver) {
+  const Difference difference =
+      Compare(solver->edges(), map.decisions, narrower.decisions, support);
+  double share = 1., expected = kBeyondGate * difference.in_force;
+  for (const double chance : Chances(narrower, support, solver, &share)) {
+    // Those that fit to each one that does not.
+    const double p = std::min(kMostByChance, chance);
+    expected += p / (1. - p) / share;
+  }
+  return difference.parts >= MoreThanExpected(expected);
+}
+
+bool RejectsFew(const std::vector<WhitenedEdge>& edges,
+                const std::vector<double>& decisions,
+                const std::vector<double>& others) {
+  int in_force = 0, rejected = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop || decisions[i] <= 0.5) continue;
+    ++in_force;
+    rejected += others[i] <= 0.5;
+  }
+  return rejected < MoreThanExpected(kBeyondGate * in_force);
+}
+
+double MoreThanExpected(const double expected) {
+  constexpr double kMany = 10.;  // nearly normally distributed
+  if (expected > kMany) return expected + 3. * std::sqrt(expected) + 2.;
+  double beyond = 1., probability = std::exp(-expected);
+  int number = 0;
+  while (beyond >= 0.001) {
+    beyond -= probability;
+    probability *= expected / ++number;
+  }
+  return number;
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Tells right loops from wrong ones that fit by chance where two metrics
+// (noise_metric.h) decide them differently. A wrong loop may lead anywhere in the
+// map, so the share of wrong ones that lie within the gate g of a prediction with
+// covariance S is the volume of that ellipsoid over that of all relative poses,
+//
+//   p = 4/3 pi g^(3/2) sqrt(det S) / (2 pi A det W).
+//
+// A group of loops that agree (loop_support.h) fits or does not fit as one.
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_LOOPS_BY_CHANCE_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_LOOPS_BY_CHANCE_H_
+
+#include <vector>
+
+#include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/loop_support.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+// A map and its decisions, 1 for the edges in force and 0 for rejected loops.
+struct DecidedMap {
+  std::vector<Pose2> poses;
+  std::vector<double> decisions;
+};
+
+// Whether `wider`, with the larger noise of `solver`, takes in more groups of
+// those that `map` rejects than would fit by chance if all of these were wrong,
+// beside the right ones that a gate of 99 % rejects.
+bool TakesInMoreThanByChance(const DecidedMap& map, const DecidedMap& wider,
+                             const LoopSupport& support, RobustSolver* solver);
+
+// Whether `narrower` rejects more groups of those in force in `map` than can have
+// come in by chance with the noise of `solver`, that of `map`, if all that
+// `narrower` rejects are wrong.
+bool RejectsMoreThanByChance(const DecidedMap& map, const DecidedMap& narrower,
+                             const LoopSupport& support, RobustSolver* solver);
+
+// Whether of the loops that are in force by `decisions` no more are rejected by
+// `others` than right ones by a gate of 99 %: then there is nothing to ask.
+bool RejectsFew(const std::vector<WhitenedEdge>& edges,
+                const std::vector<double>& decisions,
+                const std::vector<double>& others);
+
+// The least number of rare events that happens in less than one case in a
+// thousand (Poisson).
+double MoreThanExpected(double expected);
+
+}  // namespace optimization
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_LOOPS_BY_CHANCE_H_
