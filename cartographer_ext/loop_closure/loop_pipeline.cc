@@ -133,9 +133,26 @@ std::vector<LoopCandidate> LoopPipeline::TakeSettled() {
   return candidates;
 }
 
+void LoopPipeline::VetoAgain() {
+  if (!options_.innovation_veto.enabled) return;
+  const auto is_vetoed = [&](const LoopCandidate& candidate) {
+    LoopCandidate tested = candidate;
+    VetoByInnovation(options_, paths_, &tested);
+    return tested.is_rejected();
+  };
+  Settle(consensus_.WithdrawIf(is_vetoed));
+  std::vector<LoopCandidate> removed = consensus_.Remove(is_vetoed);
+  std::move(removed.begin(), removed.end(), std::back_inserter(vetoed_));
+  std::sort(vetoed_.begin(), vetoed_.end(),
+            [](const LoopCandidate& a, const LoopCandidate& b) {
+              return a.number < b.number;
+            });
+}
+
 void LoopPipeline::UpdateDrift() {
-  if (!drift_.Update()) return;
+  if (!drift_.Update(share_wrong_)) return;
   consensus_.DriftChanged();
+  VetoAgain();
   std::deque<LoopCandidate> vetoed;
   vetoed.swap(vetoed_);
   for (LoopCandidate& candidate : vetoed) Veto(std::move(candidate));

@@ -130,6 +130,8 @@ class LoopPipeline {
   bool LooksAlike(const LoopCandidate& candidate) const;
   // Counts what of the verified matches is wrong.
   void UpdateShareWrong();
+  // Takes back what the drift estimate does not allow any more.
+  void VetoAgain();
   // Updates the drift estimate and everything that depends on it.
   void UpdateDrift();
   std::vector<LoopCandidate> TakeSettled();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "Eigen/Cholesky"
 #include "Eigen/LU"
@@ -47,6 +48,30 @@ double LogNormalDensity(const Eigen::Vector3d& error,
   const Eigen::Matrix3d lower = factor.matrixL();
   return -0.5 * error.dot(factor.solve(error)) -
          std::log(lower.diagonal().prod()) - 1.5 * kLogTwoPi;
+}
+
+double NormalDensity(const double error, const double variance) {
+  return std::exp(-0.5 * (Squared(error) / variance + kLogTwoPi)) /
+         std::sqrt(variance);
+}
+
+// Of loops whose heading is wrong, too.
+double UnalignedShare(const DriftFit& fit) {
+  return fit.wrong_share * (1. - fit.aligned_share);
+}
+
+// The probability that the heading of a loop is a wrong one.
+double Unaligned(const HeadingCycle& heading, const double variance,
+                 const Eigen::Vector3d& common, const double share) {
+  const double error = heading.error + heading.common.dot(common);
+  const double wrong = share / kHeadings;
+  return wrong / (wrong + (1. - share) * NormalDensity(error, variance));
+}
+
+double HeadingVariance(const HeadingCycle& heading,
+                       const DriftFactors& factors) {
+  return Squared(factors.rotation) * heading.rotation +
+         Squared(factors.turning) * heading.turning + heading.other;
 }
 
 Eigen::Vector3d ErrorOf(const Pose2& cycle) {
@@ -95,6 +120,18 @@ DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path) {
   return cycle;
 }
 
+HeadingCycle HeadingOfLoop(const UncertainPose& loop,
+                           const DriftStretch& path) {
+  const DriftCycle cycle = CycleOfLoop(loop, path);
+  HeadingCycle heading;
+  heading.error = cycle.error.z();
+  heading.rotation = cycle.parts.rotation(2, 2);
+  heading.turning = cycle.parts.turning(2, 2);
+  heading.other = cycle.parts.other(2, 2);
+  heading.common = cycle.parts.common.row(2);
+  return heading;
+}
+
 DriftEstimator::DriftEstimator(const DriftEstimatorOptions& options)
     : options_(options) {
   CHECK_GT(options.prior_sigma, 0.);
@@ -107,6 +144,14 @@ void DriftEstimator::Add(const DriftCycle& cycle) {
   ++num_cycles_;
   cycles_.push_back(cycle);
   if (cycles_.size() > options_.max_cycles) cycles_.pop_front();
+}
+
+void DriftEstimator::SetHeadings(std::vector<HeadingCycle> headings,
+                                 const double driven) {
+  headings_ = std::move(headings);
+  double sum = 0.;
+  for (const HeadingCycle& heading : headings_) sum += heading.length;
+  heading_weight_ = sum > 0. ? std::min(1., driven / sum) : 1.;
 }
 
 DriftEstimator::WrongDensity DriftEstimator::DensityOfWrong(
@@ -152,6 +197,15 @@ CommonDrift DriftEstimator::FitCommon(const DriftFit& fit) const {
           cycle.parts.common * prior_sigma.asDiagonal();
       information += weight * effects.transpose() * factor.solve(effects);
       gradient -= weight * effects.transpose() * factor.solve(cycle.error);
+    }
+    for (const HeadingCycle& heading : headings_) {
+      const double variance = HeadingVariance(heading, fit.mean);
+      const double weight =
+          heading_weight_ *
+          (1. - Unaligned(heading, variance, common.mean, UnalignedShare(fit)));
+      const Eigen::Vector3d effects = heading.common.cwiseProduct(prior_sigma);
+      information += weight / variance * effects * effects.transpose();
+      gradient -= weight / variance * heading.error * effects;
     }
     const Eigen::Matrix3d inverse = Symmetric(information.inverse());
     common.mean = prior_sigma.asDiagonal() * (inverse * gradient);
@@ -200,6 +254,7 @@ double DriftEstimator::FitFactors(const DriftFit& fit,
     cycle.error += cycle.parts.common * common.mean;
     wrong.push_back(DensityOfWrong(cycle, fit.aligned_share).Sum());
   }
+  const double unaligned = UnalignedShare(fit);
   const Eigen::Vector3d prior_mean(options_.prior_translation, 0., 0.);
   // Of one point of the grid: for each share, the logarithm.
   const auto log_posterior = [&](const Eigen::Vector3d& logarithms) {
@@ -217,6 +272,18 @@ double DriftEstimator::FitFactors(const DriftFit& fit,
         sums[k] += std::log((1. - share) * density + share * wrong[i]);
       }
     }
+    double of_headings = 0.;
+    for (const HeadingCycle& heading : headings_) {
+      const double variance =
+          HeadingVariance(heading, factors) +
+          heading.common.dot(common.covariance * heading.common);
+      const double error = heading.error + heading.common.dot(common.mean);
+      of_headings +=
+          heading_weight_ *
+          std::log((1. - unaligned) * NormalDensity(error, variance) +
+                   unaligned / kHeadings);
+    }
+    for (double& sum : sums) sum += of_headings;
     return sums;
   };
   std::array<Marginal, 3>& axes = *grid;

@@ -37,6 +37,18 @@
 // probability of the wrong cycles to be aligned. The steps alternate a fixed
 // number of times, while the grid of the factors is narrowed to the posterior.
 //
+// A loop over a long path closes a cycle, too, but whether its place is the right
+// one is the question that the drift is to answer. Equal places are parallel, so
+// its heading alone is used, with the share k = w (1 - h) of wrong
+// headings:
+//
+//   p(E_theta | c, f, k) = ((1 - k) N(E_theta; -a c, f_r^2 v_r + f_u^2 v_u + v)
+//                           + k / 1 rad)^b,
+//
+// with a the last row of A and v the elements of the covariances. The paths
+// overlap, so what they say is raised to the power of b, the length of the path
+// that they cover together over the sum of their lengths, at most one.
+//
 // The prior noise of the translation is an upper bound on that of a local SLAM
 // that works, so the 90 percent point of the prior of its factor is one. A prior
 // centred at one would quadruple the bound with the first cycle, however well it
@@ -68,6 +80,19 @@ struct DriftCycle {
   double window = 5.;
 };
 
+// The heading of a cycle of one loop over a long path. Places that look alike are
+// mostly parallel, so the heading of a loop tells the drift of the heading even
+// where the place is wrong.
+struct HeadingCycle {
+  double error = 0.;     // radians
+  double rotation = 0.;  // prior variances from rotation, square radians
+  double turning = 0.;
+  double other = 0.;
+  // Effects of the errors of CommonDrift.
+  Eigen::Vector3d common = Eigen::Vector3d::Zero();
+  double length = 0.;  // of the path, metres
+};
+
 // A piece of the path of local SLAM, not corrected.
 struct DriftStretch {
   Pose2 pose;
@@ -81,6 +106,9 @@ DriftCycle CycleOfLoops(const UncertainPose& loop_u, const DriftStretch& path_b,
                         const DriftStretch& path_a);
 // The cycle of one loop (a <- b) with the path (b <- a).
 DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path);
+
+// The same of a long path.
+HeadingCycle HeadingOfLoop(const UncertainPose& loop, const DriftStretch& path);
 
 // Priors of the estimation.
 struct DriftEstimatorOptions {
@@ -119,6 +147,9 @@ class DriftEstimator {
   explicit DriftEstimator(const DriftEstimatorOptions& options);
 
   void Add(const DriftCycle& cycle);
+  // `driven`: length of the path that the headings cover together, metres.
+  // Paths that overlap repeat each other.
+  void SetHeadings(std::vector<HeadingCycle> headings, double driven);
   DriftFit Fit() const;
   // Number of cycles ever added.
   int num_cycles() const { return num_cycles_; }
@@ -153,6 +184,8 @@ class DriftEstimator {
 
   const DriftEstimatorOptions options_;
   std::deque<DriftCycle> cycles_;
+  std::vector<HeadingCycle> headings_;
+  double heading_weight_ = 1.;
   int num_cycles_ = 0;
 };
 

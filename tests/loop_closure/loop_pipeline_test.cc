@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/loop_pipeline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -163,6 +164,39 @@ TEST_F(LoopPipelineTest, ImpossibleInnovationIsVetoed) {
   EXPECT_EQ(Record(outcomes[0]).reason(), LoopDecision::INNOVATION_TOO_LARGE);
   EXPECT_GT(Record(outcomes[0]).innovation().chi_square(), 21.108);
   EXPECT_NEAR(std::abs(Record(outcomes[0]).innovation().pose().x()), 15., 1e-6);
+}
+
+// Two loops to the side of the corridor agree, and a heading may have drifted so
+// far. Matches that are certainly wrong are many and have the right heading: it
+// has not, and the one that asks for more is taken back.
+TEST_F(LoopPipelineTest, WhatTheDriftDoesNotAllowAnyMoreIsWithdrawn) {
+  options_.temporal.enabled = false;
+  MakePipeline();
+  const auto process = [&](const int s, const int i, const Pose2& offset) {
+    LoopCandidate candidate = Candidate(s, i, 0., &world_);
+    candidate.anchor = uncertainty::NodeId{0, std::max(0, 10 * s - 2)};
+    candidate.match.refined = offset * candidate.match.refined;
+    pipeline_->Process(candidate);
+  };
+  process(0, 150, Pose2(0., 2.5, 0.));
+  process(2, 130, Pose2(0., 2.5, 0.));
+  std::vector<LoopCandidate> outcomes = pipeline_->Decide();
+  ASSERT_EQ(outcomes.size(), 2u);
+  EXPECT_TRUE(outcomes[0].is_accepted());
+  for (int i = 110; i <= 150; ++i) {
+    process(i % 7, i, Pose2(15., 0., 0.));
+  }
+  // The drift needs the share of wrong matches, which is counted after it.
+  pipeline_->Decide();
+  EXPECT_GT(pipeline_->share_wrong(), 0.5);
+  outcomes = pipeline_->Decide();
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_EQ(outcomes[0].node.node_index, 130);
+  EXPECT_EQ(outcomes[0].verdict, LoopDecision::UNDECIDED);
+  EXPECT_EQ(outcomes[0].reason, LoopDecision::OVERTURNED);
+  EXPECT_EQ(pipeline_->Undecided().size(), 42u);
+  EXPECT_EQ(Record(pipeline_->Undecided()[0]).reason(),
+            LoopDecision::INNOVATION_TOO_LARGE);
 }
 
 TEST_F(LoopPipelineTest, WithoutHistoryTheOthersDecide) {

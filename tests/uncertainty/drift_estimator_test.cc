@@ -190,6 +190,87 @@ TEST(DriftEstimatorTest, ParallelPlacesAreToldByTheirHeading) {
   }
 }
 
+// The heading of a cycle and nothing else: one over 0.3 rad, with the effects of
+// 50 m and a full circle.
+TEST(DriftEstimatorTest, HeadingByHand) {
+  UncertainPose loop;
+  loop.pose = Pose2(3., 1., 0.5);
+  loop.covariance = Diagonal(1e-3, 1e-3, 1e-4);
+  DriftStretch path;
+  path.pose = Pose2(7., -2., -0.2);
+  path.parts.rotation = Diagonal(0.1, 0.1, 2e-3);
+  path.parts.turning = Diagonal(0.1, 0.1, 3e-3);
+  path.parts.common.row(2) << 50., 2. * kPi, 0.;
+  const HeadingCycle heading = HeadingOfLoop(loop, path);
+  EXPECT_NEAR(heading.error, 0.3, 1e-12);
+  EXPECT_NEAR(heading.rotation, 2e-3, 1e-12);
+  EXPECT_NEAR(heading.turning, 3e-3, 1e-12);
+  EXPECT_NEAR(heading.other, 1e-4, 1e-12);
+  EXPECT_NEAR(heading.common.x(), 50., 1e-12);
+  EXPECT_NEAR(heading.common.y(), 2. * kPi, 1e-12);
+  EXPECT_EQ(heading.common.z(), 0.);
+}
+
+// Headings over 100 m that are a fifth of what is expected of them.
+std::vector<HeadingCycle> Headings(const double factor, const int count) {
+  std::vector<HeadingCycle> headings;
+  Random random(4);
+  for (int i = 0; i < count; ++i) {
+    HeadingCycle heading;
+    heading.rotation = 2.5e-3;
+    heading.turning = 1e-3;
+    heading.other = 1e-5;
+    heading.common << 100., random.Uniform(-6., 6.), 0.;
+    heading.length = 100.;
+    heading.error = random.Normal(0., factor * std::sqrt(3.5e-3));
+    headings.push_back(heading);
+  }
+  return headings;
+}
+
+TEST(DriftEstimatorTest, LongPathsTellTheRotation) {
+  DriftEstimator estimator{DriftEstimatorOptions()};
+  const DriftFit before = estimator.Fit();
+  estimator.SetHeadings(Headings(0.2, 40), 4000.);
+  const DriftFit fit = estimator.Fit();
+  EXPECT_LT(fit.upper.rotation, 0.6);
+  EXPECT_LT(fit.common.covariance(0, 0), 0.01 * before.common.covariance(0, 0));
+  EXPECT_NEAR(fit.mean.translation, before.mean.translation, 0.05);
+  // A tenth of the path: they repeat each other, and tell less.
+  estimator.SetHeadings(Headings(0.2, 40), 400.);
+  EXPECT_GT(estimator.Fit().upper.rotation, 1.2 * fit.upper.rotation);
+  EXPECT_GT(estimator.Fit().common.covariance(0, 0),
+            5. * fit.common.covariance(0, 0));
+  // One in ten is a place of another heading.
+  std::vector<HeadingCycle> headings = Headings(0.2, 40);
+  for (size_t i = 0; i < headings.size(); i += 10) headings[i].error = 0.5;
+  estimator.SetHeadings(headings, 4000.);
+  EXPECT_LT(estimator.Fit().upper.rotation, 0.8);
+  // Where nearly all loops are right, a heading that drifts is not explained by
+  // wrong ones.
+  Random random(9);
+  for (int i = 0; i < 40; ++i) estimator.Add(Draw(DriftFactors(), &random));
+  estimator.SetHeadings(Headings(3., 40), 4000.);
+  const DriftFactors wide = estimator.Fit().mean;
+  EXPECT_GT(std::max(wide.rotation, wide.turning), 1.5);
+}
+
+TEST(DriftEstimatorTest, HeadingsTellWhatIsTheSameAllAlong) {
+  DriftEstimator estimator{DriftEstimatorOptions()};
+  std::vector<HeadingCycle> headings = Headings(0.2, 40);
+  const Eigen::Vector3d truth(0.001, -0.02, 0.);
+  for (HeadingCycle& heading : headings) {
+    heading.error -= heading.common.dot(truth);
+  }
+  estimator.SetHeadings(headings, 4000.);
+  const CommonDrift found = estimator.Fit().common;
+  for (int k = 0; k < 2; ++k) {
+    const double sigma = std::sqrt(found.covariance(k, k));
+    EXPECT_NEAR(found.mean(k), truth(k), 3. * sigma) << k;
+    EXPECT_LT(sigma, 0.3 * std::abs(truth(k))) << k;
+  }
+}
+
 // The density of wrong loops follows the window between its limits.
 TEST(DriftEstimatorTest, WindowsHaveLimits) {
   const auto wrong_share = [](const double window) {

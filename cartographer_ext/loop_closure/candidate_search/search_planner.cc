@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "cartographer_ext/common/squared.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -40,6 +41,7 @@ Pose2 HostPrediction(const uncertainty::PathUncertainty& paths,
 
 void SetWindow(const SearchPlannerOptions& options,
                const Eigen::Matrix3d& covariance, SearchPlan* const plan) {
+  plan->covariance = covariance;
   plan->translation_sigma = uncertainty::WorstTranslationSigma(covariance);
   plan->rotation_sigma = std::sqrt(std::max(0., covariance(2, 2)));
   plan->linear_window =
@@ -47,6 +49,28 @@ void SetWindow(const SearchPlannerOptions& options,
                options.min_linear_window);
   plan->angular_window = std::max(options.min_angular_window,
                                   options.window_sigmas * plan->rotation_sigma);
+}
+
+Eigen::Matrix3d ExpectedCovariance(const SearchPlannerOptions& options,
+                                   const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix3d expected = covariance;
+  expected.diagonal().head<2>().array() +=
+      Squared(options.min_linear_window / options.window_sigmas);
+  expected(2, 2) += Squared(options.min_angular_window / options.window_sigmas);
+  return expected;
+}
+
+Eigen::Matrix3d ExpectedCovariance(const SearchPlannerOptions& options,
+                                   const SearchPlan& plan) {
+  if (!plan.covariance.isZero(0.)) {
+    return ExpectedCovariance(options, plan.covariance);
+  }
+  const double translation = plan.linear_window / options.window_sigmas;
+  const double rotation = plan.angular_window / options.window_sigmas;
+  return ExpectedCovariance(
+      options, Eigen::Vector3d(Squared(translation), Squared(translation),
+                               Squared(rotation))
+                   .asDiagonal());
 }
 
 SearchPlanner::SearchPlanner(const SearchPlannerOptions& options,
@@ -105,6 +129,10 @@ bool SearchPlanner::PlanWindow(const LoopCandidate& candidate,
       paths_->drift_version() > 0
           ? Between(path->pose, HostPrediction(*paths_, candidate))
           : Pose2();
+  plan->covariance.diagonal() +=
+      Eigen::Vector3d(offset.x, offset.y, NormalizeAngle(offset.theta))
+          .cwiseAbs2() /
+      Squared(options_.window_sigmas);
   plan->linear_window =
       std::min(plan->linear_window + offset.translation().norm(),
                options_.max_linear_window);

@@ -102,6 +102,15 @@ struct SearchPlannerOptions {
 void SetWindow(const SearchPlannerOptions& options,
                const Eigen::Matrix3d& covariance, SearchPlan* plan);
 
+// The covariance of where a search expects its match, in the node's tracking
+// frame: that of the prediction, or of the window where it is unknown, and what
+// the smallest window allows for.
+Eigen::Matrix3d ExpectedCovariance(const SearchPlannerOptions& options,
+                                   const SearchPlan& plan);
+// The same for a prediction with this covariance.
+Eigen::Matrix3d ExpectedCovariance(const SearchPlannerOptions& options,
+                                   const Eigen::Matrix3d& covariance);
+
 // Plans the searches of candidates, see above.
 class SearchPlanner {
  public:

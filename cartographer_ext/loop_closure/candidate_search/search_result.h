@@ -29,6 +29,8 @@ struct SearchPlan {
   // Standard deviations of the prediction; 0: unknown.
   double translation_sigma = 0.;  // metres, in the worst direction
   double rotation_sigma = 0.;     // radians
+  // Its covariance, frame of the node's tracking frame; zero: unknown.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   // Candidates with equal numbers >= 0 are matched together, to relocalise
   // their node in a whole map. Skipped ones are included because hypotheses are
   // tracked into their submaps.

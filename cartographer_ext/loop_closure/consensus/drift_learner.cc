@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+#include <vector>
 
+#include "cartographer_ext/common/squared.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -30,6 +33,13 @@ constexpr double kFarthestLoop = 15.;
 constexpr double kLongestPath = 30.;
 // Loops remembered of a trajectory, oldest forgotten first.
 constexpr size_t kMaxLoops = 500;
+// Over long paths, the oldest forgotten first.
+constexpr size_t kMaxLongLoops = 100;
+// Least factors of the rotation where many matches are wrong, and the shares of
+// wrong ones that are few and many.
+constexpr double kLeastFactor = 0.2;
+constexpr double kFewWrong = 0.2;
+constexpr double kManyWrong = 0.5;
 // Change of the logarithm of a factor that matters.
 constexpr double kNoticeableChange = 0.1;
 // Cycles are worth another fit when there are this many times those before.
@@ -55,6 +65,12 @@ bool Differ(const CommonDrift& a, const CommonDrift& b) {
     }
   }
   return false;
+}
+
+// See the head of drift_learner.h.
+double LeastFactor(const double share_wrong) {
+  const double many = (share_wrong - kFewWrong) / (kManyWrong - kFewWrong);
+  return std::pow(kLeastFactor, std::min(1., std::max(0., many)));
 }
 
 // Of one stretch of the path and another one that may overlap.
@@ -96,9 +112,46 @@ absl::optional<DriftCycle> DriftLearner::CycleWithLoop(
   return CycleOfLoops(u.pose, path_b, v.pose, path_a);
 }
 
+void DriftLearner::AddLongLoop(const LoopEdge& loop,
+                               Trajectory* const trajectory) {
+  const absl::optional<double> travelled = paths_->Travelled(loop.a, loop.b);
+  if (!travelled.has_value() || *travelled <= kLongestPath) return;
+  for (const LongLoop& other : trajectory->long_loops) {
+    const absl::optional<double> a = paths_->Travelled(other.edge.a, loop.a);
+    const absl::optional<double> b = paths_->Travelled(other.edge.b, loop.b);
+    if (a.has_value() && b.has_value() && std::max(*a, *b) < kFarthestLoop) {
+      return;
+    }
+  }
+  DriftStretch path;
+  path.pose = Between(*paths_->LocalPose(loop.b), *paths_->LocalPose(loop.a));
+  path.parts = *paths_->Parts(loop.b, loop.a);
+  LongLoop found;
+  found.edge = loop;
+  found.heading = HeadingOfLoop(loop.pose, path);
+  found.heading.length = *travelled;
+  trajectory->long_loops.push_back(found);
+  if (trajectory->long_loops.size() > kMaxLongLoops) {
+    trajectory->long_loops.pop_front();
+  }
+}
+
+double DriftLearner::Driven(const Trajectory& trajectory) const {
+  const VertexId* first = nullptr;
+  const VertexId* last = nullptr;
+  for (const LongLoop& loop : trajectory.long_loops) {
+    for (const VertexId* const end : {&loop.edge.a, &loop.edge.b}) {
+      if (first == nullptr || end->index() < first->index()) first = end;
+      if (last == nullptr || end->index() > last->index()) last = end;
+    }
+  }
+  return first == nullptr ? 0. : paths_->Travelled(*first, *last).value_or(0.);
+}
+
 void DriftLearner::Add(const LoopEdge& loop, const double window) {
   if (!loop.a.InSequenceWith(loop.b)) return;
   Trajectory& trajectory = trajectories_[loop.b.trajectory_id()];
+  AddLongLoop(loop, &trajectory);
   // The nearest loop of the same revisit.
   const FoundLoop* nearest = nullptr;
   double nearest_distance = kFarthestLoop;
@@ -124,21 +177,38 @@ void DriftLearner::Add(const LoopEdge& loop, const double window) {
   if (trajectory.loops.size() > kMaxLoops) trajectory.loops.pop_front();
 }
 
-bool DriftLearner::Update() {
+void DriftLearner::Fit(Trajectory* const trajectory) {
+  // Headings alone tell nothing of the translation.
+  const int num_short = trajectory->estimator.num_cycles();
+  if (num_short == 0) return;
+  const int num_cycles =
+      num_short + static_cast<int>(trajectory->long_loops.size());
+  if (num_cycles < kLeastGrowth * trajectory->num_fitted + 1) return;
+  trajectory->num_fitted = num_cycles;
+  std::vector<uncertainty::HeadingCycle> headings;
+  for (const LongLoop& loop : trajectory->long_loops) {
+    headings.push_back(loop.heading);
+  }
+  trajectory->estimator.SetHeadings(std::move(headings), Driven(*trajectory));
+  trajectory->fit = trajectory->estimator.Fit();
+}
+
+bool DriftLearner::Update(const double share_wrong) {
   bool any = false;
   for (auto& entry : trajectories_) {
     Trajectory& trajectory = entry.second;
-    const int num_cycles = trajectory.estimator.num_cycles();
-    if (num_cycles < kLeastGrowth * trajectory.num_fitted + 1) continue;
-    trajectory.num_fitted = num_cycles;
-    trajectory.fit = trajectory.estimator.Fit();
+    Fit(&trajectory);
+    if (trajectory.num_fitted == 0) continue;
+    const double least = LeastFactor(share_wrong);
     DriftFactors factors = trajectory.fit.upper;
     factors.translation = std::max(1., factors.translation);
-    factors.rotation = std::max(1., factors.rotation);
-    factors.turning = std::max(1., factors.turning);
+    factors.rotation = std::max(least, factors.rotation);
+    factors.turning = std::max(least, factors.turning);
     // Nothing is as constant as the model says.
     CommonDrift common = trajectory.fit.common;
-    common.covariance += PriorCommonDrift(prior_).covariance;
+    Eigen::Matrix3d changes = PriorCommonDrift(prior_).covariance;
+    changes(0, 0) *= Squared(std::min(1., factors.rotation));
+    common.covariance += changes;
     if (!Differ(factors, paths_->Drift(entry.first)) &&
         !Differ(common, paths_->Common(entry.first))) {
       continue;
@@ -157,7 +227,8 @@ DriftEstimate DriftLearner::Estimate(const int trajectory_id) const {
   const auto found = trajectories_.find(trajectory_id);
   if (found == trajectories_.end()) return estimate;
   estimate.mean = Scaled(prior_, found->second.fit.mean);
-  estimate.num_cycles = found->second.num_fitted;
+  estimate.num_cycles =
+      found->second.num_fitted == 0 ? 0 : found->second.estimator.num_cycles();
   return estimate;
 }
 

@@ -12,10 +12,20 @@
 // need not be accepted before they are used, so an overconfident model cannot
 // perpetuate itself by rejecting what contradicts it.
 //
-// Consensus and search use the upper bound, which is never below the prior: an
-// estimate over metres does not cover errors that accumulate along a whole run.
-// The errors that are constant along the run are removed from the paths. Both
-// are passed on only after a significant change.
+// A candidate over a long path does not tell whether it is a place that looks
+// alike, but the headings of such places are those of the right one, so that its
+// heading tells the drift of the heading along the whole path.
+//
+// Consensus and search use the upper bound. It is never below the prior for the
+// translation: an estimate over metres does not cover errors that accumulate along
+// a whole run. Nor is it for the rotation, as long as few matches are wrong: wider
+// windows find loops after wheel slip, which no estimate foresees, and cost
+// little. Where many places look alike wide windows find wrong ones. So the
+// bound of the rotation yields to the estimate as the share of wrong matches
+// grows.
+//
+// The errors that are constant along the run are removed from the paths. All this
+// is passed on only after a significant change.
 //
 // Not thread-safe; loops are added in the order of the candidates.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_DRIFT_LEARNER_H_
@@ -45,7 +55,8 @@ class DriftLearner {
   // ignored. `window`: half width of the search that found it, metres.
   void Add(const uncertainty::LoopEdge& loop, double window);
   // Passes the estimates to the paths; returns whether that changed them.
-  bool Update();
+  // `share_wrong`: of the verified matches of the run, in [0, 1].
+  bool Update(double share_wrong);
   uncertainty::DriftEstimate Estimate(int trajectory_id) const;
   // The estimates of all trajectories that have one.
   std::map<int, uncertainty::DriftEstimate> Estimates() const;
@@ -56,15 +67,24 @@ class DriftLearner {
     uncertainty::LoopEdge edge;
     double window;
   };
+  struct LongLoop {
+    uncertainty::LoopEdge edge;
+    uncertainty::HeadingCycle heading;
+  };
   struct Trajectory {
     Trajectory();
 
     uncertainty::DriftEstimator estimator;
-    std::deque<FoundLoop> loops;  // that closed or begin cycles
+    std::deque<FoundLoop> loops;      // that closed or begin cycles
+    std::deque<LongLoop> long_loops;  // over long paths
     uncertainty::DriftFit fit;
     int num_fitted = 0;  // cycles
   };
 
+  void AddLongLoop(const uncertainty::LoopEdge& loop, Trajectory* trajectory);
+  // Metres of path that the long loops cover together.
+  double Driven(const Trajectory& trajectory) const;
+  void Fit(Trajectory* trajectory);
   // The cycle of a loop with the path itself, if that is short.
   absl::optional<uncertainty::DriftCycle> CycleWithPath(
       const uncertainty::LoopEdge& loop) const;

@@ -27,6 +27,7 @@ InnovationResult TestInnovation(const double chi_square_bound,
   result.chi_square = test.chi_square;
   result.bound = chi_square_bound;
   result.vetoed = !test.compatible;
+  result.covariance = test.covariance;
   result.translation_sigma =
       uncertainty::WorstTranslationSigma(test.covariance);
   result.rotation_sigma = std::sqrt(std::max(0., test.covariance(2, 2)));

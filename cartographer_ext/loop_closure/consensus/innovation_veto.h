@@ -15,6 +15,7 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 
+#include "Eigen/Core"
 #include "cartographer_ext/uncertainty/cycle_consistency.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
@@ -40,6 +41,7 @@ struct InnovationResult {
   // in radians.
   double translation_sigma = 0.;
   double rotation_sigma = 0.;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of `innovation`
 };
 
 // Tests a loop (a <- b) against the prior (a <- b) from the path, which together

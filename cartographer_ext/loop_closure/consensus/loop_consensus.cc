@@ -243,6 +243,16 @@ std::vector<LoopCandidate> LoopConsensus::Refute(
                          : Settle(subset_.Refute(refuted));
 }
 
+std::vector<LoopCandidate> LoopConsensus::WithdrawIf(
+    const Condition& condition) {
+  std::vector<int64_t> numbers;
+  for (const auto& entry : accepted_) {
+    if (condition(entry.second.candidate)) numbers.push_back(entry.first);
+  }
+  return numbers.empty() ? std::vector<LoopCandidate>()
+                         : Settle(subset_.Refute(numbers));
+}
+
 int LoopConsensus::PredictAgain(const Predict& predict) {
   int num_predicted = 0;
   for (auto& entry : waiting_) {

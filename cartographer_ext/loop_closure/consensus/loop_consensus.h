@@ -56,6 +56,9 @@ class LoopConsensus {
   // over the other loops contradict; they are not accepted again.
   std::vector<LoopCandidate> Refute(const PathsWithout& paths_without);
 
+  // Withdraws the accepted candidates for which the condition holds.
+  std::vector<LoopCandidate> WithdrawIf(const Condition& condition);
+
   // Predicts all undecided candidates again; returns how many are known better.
   int PredictAgain(const Predict& predict);
 

@@ -6,17 +6,29 @@
 #include <cstddef>
 #include <utility>
 
+#include "Eigen/Cholesky"
 #include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/loop_closure/dropin/constraint_metrics.h"
 #include "cartographer_ext/loop_closure/dropin/match_information.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/dropin/slide_test.h"
+#include "cartographer_ext/loop_closure/verification/search_prior.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 
 using cartographer::mapping::Submap2D;
 using proto::LoopDecision;
+
+namespace {
+
+// Chi-square of a match, 3 degrees of freedom, from which on another one nearer to
+// the prediction is looked for: one right match in ten is as far off.
+constexpr double kUnlikely = 6.25;
+// Nearer matches are the same one, metres.
+constexpr double kLeastWindow = 0.3;
+
+}  // namespace
 
 PairSearcher::PairSearcher(
     const cartographer::mapping::constraints::proto::ConstraintBuilderOptions&
@@ -25,6 +37,7 @@ PairSearcher::PairSearcher(
     : options_(options),
       slide_test_(extension.slide_test),
       search_places_(extension.search.enabled),
+      search_options_(extension.search),
       ceres_scan_matcher_(options.ceres_scan_matcher_options()),
       cache_(cache) {}
 
@@ -74,8 +87,44 @@ SubmapMatch PairSearcher::SearchExactly(SearchJob* const job) const {
           : matcher->Match(
                 job->entry->local_pose * job->candidate.SearchCenter(),
                 plan.linear_window, plan.angular_window, cloud, MinScore(*job));
+  const SubmapMatch likeliest =
+      found.found && !plan.full_submap && search_places_
+          ? Likeliest(*job, *matcher, found)
+          : found;
   job->candidate.times.search = meter.seconds();
-  return found;
+  return likeliest;
+}
+
+SubmapMatch PairSearcher::Likeliest(const SearchJob& job,
+                                    const SubmapMatcher& matcher,
+                                    const SubmapMatch& found) const {
+  const LoopCandidate& candidate = job.candidate;
+  const SearchPlan& plan = candidate.plan;
+  const Pose2 center = job.entry->local_pose * candidate.SearchCenter();
+  const Pose2 predicted = candidate.InTrackingFrame(center);
+  const Eigen::Matrix3d covariance = ExpectedCovariance(search_options_, plan);
+  const auto displacement = [&](const SubmapMatch& match) {
+    return Between(predicted, candidate.InTrackingFrame(match.pose));
+  };
+  const Pose2 far = displacement(found);
+  const Eigen::Vector3d error(far.x, far.y, far.theta);
+  if (error.dot(covariance.llt().solve(error)) < kUnlikely) return found;
+  // Without the match that was found: it is a square.
+  const double window =
+      std::min(plan.linear_window / 2., 0.7 * far.translation().norm());
+  if (window < kLeastWindow) return found;
+  const SubmapMatch near = matcher.Match(
+      center, window, plan.angular_window,
+      job.node->filtered_gravity_aligned_point_cloud, MinScore(job));
+  if (!near.found) return found;
+  const double search_density =
+      1. / SearchVolume(plan.linear_window, plan.angular_window);
+  const auto likelihood = [&](const SubmapMatch& match) {
+    return LogLikelihoodOfMatch(
+        match.score, PredictedDensity(displacement(match), covariance),
+        search_density);
+  };
+  return likelihood(near) > likelihood(found) ? near : found;
 }
 
 SubmapMatch PairSearcher::SearchPlaces(SearchJob* const job) const {

@@ -62,6 +62,9 @@ class PairSearcher {
   // The best match in the window or in the whole submap; (frame of the grid <-
   // node).
   SubmapMatch SearchExactly(SearchJob* job) const;
+  // `found` in a window, or a match nearer to the prediction that is likelier.
+  SubmapMatch Likeliest(const SearchJob& job, const SubmapMatcher& matcher,
+                        const SubmapMatch& found) const;
   // The same in the whole submap by way of its best place.
   SubmapMatch SearchPlaces(SearchJob* job) const;
   // (grid <- node) `refined` is that of the match.
@@ -70,7 +73,9 @@ class PairSearcher {
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
       options_;
   const bool slide_test_;
-  const bool search_places_;  // otherwise whole submaps are searched exactly
+  const bool
+      search_places_;  // and look for likelier matches; otherwise whole submaps are searched exactly
+  const SearchPlannerOptions search_options_;
   const cartographer::mapping::scan_matching::CeresScanMatcher2D
       ceres_scan_matcher_;
   SubmapCache* const cache_;

@@ -38,31 +38,13 @@ double VolumeOf(const SearchPlannerOptions& options, const SearchPlan& plan) {
                    std::max(plan.angular_window, options.min_angular_window));
 }
 
-// Of a match at `displacement` from a prediction with these deviations. The search
-// does not trust small ones either.
-double Density(const SearchPlannerOptions& options, const Pose2& displacement,
-               const double translation_sigma, const double rotation_sigma) {
-  PredictedMatch match;
-  match.displacement = displacement;
-  match.translation_sigma = std::max(
-      translation_sigma, options.min_linear_window / options.window_sigmas);
-  match.rotation_sigma = std::max(
-      rotation_sigma, options.min_angular_window / options.window_sigmas);
-  return PredictedDensity(match);
-}
-
-// The window says how far off the prediction of the host may be.
+// Of the match, where its search expected it.
 double DensityInWindow(const SearchPlannerOptions& options,
                        const LoopCandidate& candidate) {
-  const Pose2& match = candidate.match.refined;
-  const Pose2& predicted = *candidate.predicted;
-  return Density(options,
-                 Pose2(match.x - predicted.x, match.y - predicted.y,
-                       match.theta - predicted.theta),
-                 std::max(candidate.plan.linear_window / options.window_sigmas,
-                          candidate.plan.translation_sigma),
-                 std::max(candidate.plan.angular_window / options.window_sigmas,
-                          candidate.plan.rotation_sigma));
+  return PredictedDensity(
+      Between(candidate.InTrackingFrame(*candidate.predicted),
+              candidate.RefinedInTrackingFrame()),
+      ExpectedCovariance(options, candidate.plan));
 }
 
 MixtureDescription Describe(const MixtureComponent& component) {
@@ -229,9 +211,9 @@ void EstimateProbability(const SearchPlannerOptions& options,
   ScoreFusionResult& fusion = *candidate->fusion;
   double by_path = fusion.predicted_density;
   if (candidate->innovation.has_value()) {
-    by_path = Density(options, candidate->innovation->innovation,
-                      candidate->innovation->translation_sigma,
-                      candidate->innovation->rotation_sigma);
+    by_path = PredictedDensity(
+        candidate->innovation->innovation,
+        ExpectedCovariance(options, candidate->innovation->covariance));
   }
   const double density =
       TrueDensity(fusion.predicted_density, by_path, fusion.search_density);

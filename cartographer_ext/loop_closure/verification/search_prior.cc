@@ -4,28 +4,43 @@
 
 #include <cmath>
 
+#include "Eigen/Cholesky"
+
 namespace cartographer_ext {
 namespace loop_closure {
+namespace {
+
+// Scores of one place differ by about this much from scan to scan.
+constexpr double kScoreNoise = 0.02;
+
+}  // namespace
 
 double SearchVolume(const double linear_window, const double angular_window) {
   const double width = 2. * linear_window;
   return width * width * 2. * angular_window;
 }
 
-double PredictedDensity(const PredictedMatch& match) {
-  const double distance =
-      match.displacement.translation().norm() / match.translation_sigma;
-  const double angle =
-      NormalizeAngle(match.displacement.theta) / match.rotation_sigma;
-  return std::exp(-0.5 * (distance * distance + angle * angle)) /
-         (std::pow(2. * kPi, 1.5) * match.translation_sigma *
-          match.translation_sigma * match.rotation_sigma);
+double PredictedDensity(const Pose2& displacement,
+                        const Eigen::Matrix3d& covariance) {
+  const Eigen::Vector3d error(displacement.x, displacement.y,
+                              NormalizeAngle(displacement.theta));
+  const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
+  const Eigen::Matrix3d lower = factor.matrixL();
+  return std::exp(-0.5 * error.dot(factor.solve(error))) /
+         (std::pow(2. * kPi, 1.5) * lower.diagonal().prod());
 }
 
 double TrueDensity(const double predicted, const double otherwise_predicted,
                    const double search_density) {
   return 0.5 * (1. - kUnexpectedShare) * (predicted + otherwise_predicted) +
          kUnexpectedShare * search_density;
+}
+
+double LogLikelihoodOfMatch(const double score, const double predicted_density,
+                            const double search_density) {
+  return score / kScoreNoise +
+         std::log((1. - kUnexpectedShare) * predicted_density +
+                  kUnexpectedShare * search_density);
 }
 
 }  // namespace loop_closure

@@ -9,6 +9,7 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SEARCH_PRIOR_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_VERIFICATION_SEARCH_PRIOR_H_
 
+#include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
@@ -17,15 +18,11 @@ namespace loop_closure {
 // Volume of a search window by its half widths in metres and radians, m^2 rad.
 double SearchVolume(double linear_window, double angular_window);
 
-// A prediction and how far the match lies from it.
-struct PredictedMatch {
-  Pose2 displacement;
-  double translation_sigma = 1.;  // metres, of the prediction, > 0
-  double rotation_sigma = 1.;     // radians, > 0
-};
-
-// Gaussian density of a true match where this one lies, per m^2 rad.
-double PredictedDensity(const PredictedMatch& match);
+// Gaussian density of a true match at this displacement from its prediction, per
+// m^2 rad. `covariance` of (x, y, theta), positive definite, in the frame of the
+// displacement.
+double PredictedDensity(const Pose2& displacement,
+                        const Eigen::Matrix3d& covariance);
 
 // Density of a true match where this one lies, given those by two predictions,
 // either of which may hold, and by a search in which it may be anywhere. The last
@@ -35,6 +32,13 @@ double TrueDensity(double predicted, double otherwise_predicted,
                    double search_density);
 
 constexpr double kUnexpectedShare = 0.1;
+
+// Logarithm of the likelihood that a match with this score is the true one, up to
+// a constant: of two matches of one search, the larger one is likelier. Places
+// that look alike have nearly the same score, so that it decides only as far as
+// it differs by more than its noise. `predicted_density` as above.
+double LogLikelihoodOfMatch(double score, double predicted_density,
+                            double search_density);
 
 }  // namespace loop_closure
 }  // namespace cartographer_ext

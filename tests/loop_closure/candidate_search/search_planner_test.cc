@@ -324,6 +324,25 @@ TEST_F(SearchPlannerTest, OfPlacesWithEnoughPassesTheNearestIsSearched) {
   EXPECT_EQ(PlanOne(Pair(0, 0, 65, 7.)).skipped, LoopDecision::NONE);
 }
 
+// A third of the smallest window, 1 m and 0.2 rad, is added to what is known.
+TEST_F(SearchPlannerTest, ExpectedCovarianceByHand) {
+  SearchPlan plan;
+  plan.linear_window = 3.;
+  plan.angular_window = 0.6;
+  Eigen::Matrix3d expected = ExpectedCovariance(options_, plan);
+  EXPECT_NEAR(expected(0, 0), 1. + 1. / 9., 1e-12);
+  EXPECT_NEAR(expected(1, 1), 1. + 1. / 9., 1e-12);
+  EXPECT_NEAR(expected(2, 2), 0.04 + 0.04 / 9., 1e-12);
+  Eigen::Matrix3d covariance = Eigen::Vector3d(4., 0.25, 0.01).asDiagonal();
+  covariance(0, 1) = covariance(1, 0) = 0.3;
+  SetWindow(options_, covariance, &plan);
+  expected = ExpectedCovariance(options_, plan);
+  EXPECT_NEAR(expected(0, 0), 4. + 1. / 9., 1e-12);
+  EXPECT_NEAR(expected(0, 1), 0.3, 1e-12);
+  EXPECT_NEAR(expected(1, 1), 0.25 + 1. / 9., 1e-12);
+  EXPECT_NEAR(expected(2, 2), 0.01 + 0.04 / 9., 1e-12);
+}
+
 // A submap that has just been finished meets the nodes of all earlier laps.
 TEST_F(SearchPlannerTest, OfOlderNodesAFewPassesAreSearchedAtEachPlace) {
   options_.max_passes_per_place = 3;

@@ -159,6 +159,24 @@ TEST_F(LoopConsensusTest, WithdrawnCandidatesAreReturnedAgain) {
   }
 }
 
+TEST_F(LoopConsensusTest, WithdrawsWhereAConditionHolds) {
+  const auto never = [](const LoopCandidate&) { return false; };
+  EXPECT_THAT(consensus_->WithdrawIf([](const LoopCandidate&) { return true; }),
+              testing::IsEmpty());
+  for (const int i : {10, 20, 30}) consensus_->Add(Candidate(i));
+  EXPECT_EQ(consensus_->Decide().size(), 3u);
+  EXPECT_THAT(consensus_->WithdrawIf(never), testing::IsEmpty());
+  const auto withdrawn =
+      consensus_->WithdrawIf([](const LoopCandidate& candidate) {
+        return candidate.submap.submap_index == 20;
+      });
+  ASSERT_EQ(withdrawn.size(), 1u);
+  EXPECT_EQ(withdrawn[0].verdict, LoopDecision::UNDECIDED);
+  EXPECT_EQ(withdrawn[0].reason, LoopDecision::OVERTURNED);
+  EXPECT_EQ(consensus_->num_right(), 2);
+  EXPECT_EQ(consensus_->num_undecided(), 1);
+}
+
 // Four candidates, accepted; two of them were expected elsewhere, one of these by
 // the others as well.
 TEST_F(LoopConsensusTest,

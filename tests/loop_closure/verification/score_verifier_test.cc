@@ -96,11 +96,12 @@ TEST(ScoreVerifierTest, ProbabilityByHand) {
   candidate.innovation->innovation = Pose2(5., 0., 0.);
   EstimateProbability(options, &candidate);
   EXPECT_NEAR(candidate.fusion->probability, 1. / (1. + 0.05 / 0.001), 1e-9);
-  // Less, where the path is less certain.
-  candidate.innovation->translation_sigma = 5.;
-  candidate.innovation->rotation_sigma = 0.17;
+  // Less, where the path is less certain: to one side only, here.
+  candidate.innovation->covariance =
+      Eigen::Vector3d(25. - 1. / 9., 1. - 1. / 9., 0.17 * 0.17 * 8. / 9.)
+          .asDiagonal();
   EstimateProbability(options, &candidate);
-  const double wide = std::exp(-0.5) / (std::pow(2. * kPi, 1.5) * 25. * 0.17);
+  const double wide = std::exp(-0.5) / (std::pow(2. * kPi, 1.5) * 5. * 0.17);
   EXPECT_NEAR(candidate.fusion->probability,
               1. / (1. + 0.05 / (0.45 * wide + 0.001)), 1e-12);
 }

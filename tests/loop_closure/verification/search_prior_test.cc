@@ -15,24 +15,34 @@ TEST(SearchPriorTest, VolumeByHand) {
 }
 
 TEST(SearchPriorTest, DensityByHand) {
-  PredictedMatch match;
-  // Two sigma ahead and one of the heading: exp(-2.5).
-  match.displacement =
-      Pose2(2. * std::cos(1.), 2. * std::sin(1.), 2. * kPi - 0.1);
-  match.translation_sigma = 1.;
-  match.rotation_sigma = 0.1;
-  const double gaussian = std::exp(-2.5) / (std::pow(2. * kPi, 1.5) * 0.1);
-  EXPECT_NEAR(PredictedDensity(match), gaussian, 1e-12);
+  // Two sigma ahead, one to the side and one of the heading: exp(-3).
+  const Eigen::Matrix3d covariance =
+      Eigen::Vector3d(4., 0.25, 0.01).asDiagonal();
+  const double gaussian = std::exp(-3.) / (std::pow(2. * kPi, 1.5) * 0.1);
+  EXPECT_NEAR(PredictedDensity(Pose2(4., -0.5, 2. * kPi - 0.1), covariance),
+              gaussian, 1e-12);
   EXPECT_NEAR(TrueDensity(2., 4., 0.5), 0.9 * 3. + 0.1 * 0.5, 1e-12);
+}
+
+// Of equal scores the density decides: ln 3. A score that is better by 0.1
+// outweighs five nats, and nothing is less likely than anywhere in the search.
+TEST(SearchPriorTest, LikelihoodByHand) {
+  EXPECT_NEAR(
+      LogLikelihoodOfMatch(0.6, 3.2, 1.1) - LogLikelihoodOfMatch(0.6, 1., 0.9),
+      std::log((0.9 * 3.2 + 0.11) / (0.9 + 0.09)), 1e-12);
+  EXPECT_NEAR(
+      LogLikelihoodOfMatch(0.7, 1., 1.) - LogLikelihoodOfMatch(0.6, 1., 1.), 5.,
+      1e-12);
+  EXPECT_NEAR(LogLikelihoodOfMatch(0.5, 0., 0.02), 25. + std::log(0.002),
+              1e-12);
 }
 
 TEST(SearchPriorTest, TheDensityIsOneInAll) {
   constexpr int kSteps = 60;
   constexpr double kLinear = 3., kAngular = 0.3;
   const double volume = SearchVolume(kLinear, kAngular);
-  PredictedMatch match;
-  match.translation_sigma = 0.5;
-  match.rotation_sigma = 0.05;
+  Eigen::Matrix3d covariance = Eigen::Vector3d(0.3, 0.2, 0.0025).asDiagonal();
+  covariance(0, 1) = covariance(1, 0) = 0.1;
   const auto at = [](const int n, const double half) {
     return half * ((n + 0.5) / kSteps * 2. - 1.);
   };
@@ -40,9 +50,8 @@ TEST(SearchPriorTest, TheDensityIsOneInAll) {
   for (int i = 0; i < kSteps; ++i) {
     for (int j = 0; j < kSteps; ++j) {
       for (int k = 0; k < kSteps; ++k) {
-        match.displacement =
-            Pose2(at(i, kLinear), at(j, kLinear), at(k, kAngular));
-        sum += PredictedDensity(match);
+        sum += PredictedDensity(
+            Pose2(at(i, kLinear), at(j, kLinear), at(k, kAngular)), covariance);
       }
     }
   }
