@@ -30,6 +30,9 @@ void MatchCounts::Add(const MatchRecord& record) {
   odometry_scale_sigma = record.odometry_scale_sigma();
   rotation_scale = record.rotation_scale();
   rotation_per_metre = record.rotation_per_metre();
+  gyroscope = record.gyroscope();
+  gyroscope_factor = record.gyroscope_factor();
+  gyroscope_factor_sigma = record.gyroscope_factor_sigma();
 }
 
 std::string ToText(const MatchCounts& counts) {
@@ -41,6 +44,15 @@ std::string ToText(const MatchCounts& counts) {
           static_cast<double>(std::max<int64_t>(1, counts.scans)),
       counts.searched, counts.odometry_faults, counts.odometry_scale,
       counts.odometry_scale_sigma, counts.time_offset);
+}
+
+std::string WarningOfGyroscope(const MatchCounts& counts) {
+  if (counts.gyroscope != MatchRecord::REFUTED) return "";
+  return absl::StrFormat(
+      "the gyroscope of the IMU contradicts the scans, which turn by %.2f +- "
+      "%.2f of what it measures: it is not used; check its mount, sign, unit "
+      "and stamps",
+      counts.gyroscope_factor, counts.gyroscope_factor_sigma);
 }
 
 }  // namespace front_end

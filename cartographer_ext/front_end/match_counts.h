@@ -28,6 +28,10 @@ struct MatchCounts {
   double odometry_scale_sigma = 0.;
   double rotation_scale = 0.;
   double rotation_per_metre = 0.;  // radians
+  // Of the last scan, too.
+  proto::MatchRecord::Gyroscope gyroscope = proto::MatchRecord::NO_GYROSCOPE;
+  double gyroscope_factor = 0.;
+  double gyroscope_factor_sigma = 0.;
 
   void Add(const proto::MatchRecord& record);
 };
@@ -35,6 +39,9 @@ struct MatchCounts {
 // "7374 scans, 12.3 % of them degenerate, 5 searches, 3 odometry faults;
 // odometry scale 1.003 +- 0.002, scans stamped 0.030 s later than odometry".
 std::string ToText(const MatchCounts& counts);
+
+// Why the gyroscope was not used, if it contradicts the scans; otherwise empty.
+std::string WarningOfGyroscope(const MatchCounts& counts);
 
 }  // namespace front_end
 }  // namespace cartographer_ext

@@ -26,7 +26,7 @@ constexpr char kHead[] =
     "disagreement_theta_degrees,chi_square,odometry,source,searched,score,"
     "time_offset,interval,odometry_scale,odometry_scale_sigma,rotation_scale,"
     "rotation_scale_sigma,rotation_per_metre_degrees,rotation_per_metre_sigma_"
-    "degrees\n";
+    "degrees,gyroscope,gyroscope_factor,gyroscope_factor_sigma\n";
 
 MatchRecord::Degeneracy ToProto(const DegeneracyState state) {
   switch (state) {
@@ -78,6 +78,18 @@ MatchRecord::Source ToProto(const PredictionSource source) {
       return MatchRecord::INERTIAL;
   }
   return MatchRecord::NOTHING;
+}
+
+MatchRecord::Gyroscope ToProto(const GyroscopeState state) {
+  switch (state) {
+    case GyroscopeState::kUnproven:
+      return MatchRecord::UNPROVEN;
+    case GyroscopeState::kProven:
+      return MatchRecord::PROVEN;
+    case GyroscopeState::kRefuted:
+      return MatchRecord::REFUTED;
+  }
+  return MatchRecord::NO_GYROSCOPE;
 }
 
 // The ellipse of one standard deviation.
@@ -140,6 +152,13 @@ void SetCalibration(const OdometryCalibration& calibration,
   record->set_rotation_per_metre_sigma(calibration.rotation_per_metre_sigma());
 }
 
+void SetGyroscope(const Gyroscope& gyroscope, MatchRecord* const record) {
+  if (!gyroscope.has_readings()) return;
+  record->set_gyroscope(ToProto(gyroscope.state()));
+  record->set_gyroscope_factor(gyroscope.factor());
+  record->set_gyroscope_factor_sigma(gyroscope.factor_sigma());
+}
+
 Eigen::Matrix3d Covariance(const MatchRecord& record) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   if (record.covariance_size() != 6) return covariance;
@@ -189,10 +208,14 @@ std::string RecordCsvRows(const std::vector<MatchRecord>& records) {
         record.searched() ? 1 : 0, record.score(), record.time_offset(),
         record.interval());
     absl::StrAppendFormat(
-        &rows, "%.6f,%.6f,%.6f,%.6f,%.5f,%.5f\n", record.odometry_scale(),
+        &rows, "%.6f,%.6f,%.6f,%.6f,%.5f,%.5f,", record.odometry_scale(),
         record.odometry_scale_sigma(), record.rotation_scale(),
         record.rotation_scale_sigma(), RadToDeg(record.rotation_per_metre()),
         RadToDeg(record.rotation_per_metre_sigma()));
+    absl::StrAppendFormat(
+        &rows, "%s,%.6f,%.6f\n",
+        absl::AsciiStrToLower(MatchRecord::Gyroscope_Name(record.gyroscope())),
+        record.gyroscope_factor(), record.gyroscope_factor_sigma());
   }
   return rows;
 }

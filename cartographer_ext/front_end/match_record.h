@@ -14,6 +14,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/imu/gyroscope.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
 #include "cartographer_ext/front_end/odometry/odometry_calibration.h"
 #include "cartographer_ext/match_record.pb.h"
@@ -34,6 +35,9 @@ void SetPrediction(PredictionSource source, OdometryState state,
 // Sets the calibration of the odometry.
 void SetCalibration(const OdometryCalibration& calibration,
                     proto::MatchRecord* record);
+
+// Sets the state of the gyroscope, if there is one.
+void SetGyroscope(const Gyroscope& gyroscope, proto::MatchRecord* record);
 
 // Of (x, y, theta); zero if the record has none.
 Eigen::Matrix3d Covariance(const proto::MatchRecord& record);

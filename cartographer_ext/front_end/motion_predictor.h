@@ -31,6 +31,7 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/imu/gyroscope.h"
 #include "cartographer_ext/front_end/imu/imu_predictor.h"
 #include "cartographer_ext/front_end/odometry/odometry_calibration.h"
 #include "cartographer_ext/front_end/odometry/odometry_monitor.h"
@@ -135,6 +136,7 @@ class MotionPredictor {
   const OdometryCalibration& calibration() const {
     return odometry_.calibration();
   }
+  const Gyroscope& gyroscope() const { return imu_.gyroscope(); }
   OdometryState odometry_state() const { return monitor_.state(); }
   // In the robot's frame, per second; zero before the second match.
   const Pose2& velocity() const { return velocity_.velocity(); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/pose2.h"
@@ -62,6 +63,27 @@ std::string LocalizedToText(const SlamRun& run) {
       SecondsUntilLocalized(run), pose.x, pose.y, RadToDeg(pose.theta));
 }
 
+nlohmann::json ToJson(const MatchCounts& counts) {
+  nlohmann::json json = {{"degenerate_scans", counts.degenerate},
+                         {"searches", counts.searched},
+                         {"relocated", counts.relocated},
+                         {"odometry_faults", counts.odometry_faults},
+                         {"slip_suspected", counts.slip_suspected},
+                         {"time_offset", counts.time_offset},
+                         {"odometry_scale", counts.odometry_scale},
+                         {"odometry_scale_sigma", counts.odometry_scale_sigma},
+                         {"rotation_scale", counts.rotation_scale},
+                         {"rotation_per_metre", counts.rotation_per_metre}};
+  if (counts.gyroscope != proto::MatchRecord::NO_GYROSCOPE) {
+    json["gyroscope"] = {
+        {"state", absl::AsciiStrToLower(
+                      proto::MatchRecord::Gyroscope_Name(counts.gyroscope))},
+        {"factor", counts.gyroscope_factor},
+        {"factor_sigma", counts.gyroscope_factor_sigma}};
+  }
+  return json;
+}
+
 }  // namespace
 
 nlohmann::ordered_json ToJson(const SlamRun& run) {
@@ -98,17 +120,7 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
         {"build", run.loop_cpu.build},
         {"verification", run.loop_cpu.verification}}}};
   if (!run.matches.empty()) {
-    const MatchCounts counts = CountMatches(run.matches);
-    json["local_slam"] = {{"degenerate_scans", counts.degenerate},
-                          {"searches", counts.searched},
-                          {"relocated", counts.relocated},
-                          {"odometry_faults", counts.odometry_faults},
-                          {"slip_suspected", counts.slip_suspected},
-                          {"time_offset", counts.time_offset},
-                          {"odometry_scale", counts.odometry_scale},
-                          {"odometry_scale_sigma", counts.odometry_scale_sigma},
-                          {"rotation_scale", counts.rotation_scale},
-                          {"rotation_per_metre", counts.rotation_per_metre}};
+    json["local_slam"] = ToJson(CountMatches(run.matches));
   }
   if (!run.decisions.empty()) {
     const DecisionCounts counts = CountDecisions(run.decisions);

@@ -327,6 +327,8 @@ class Runner {
       run_.warnings.push_back(absl::StrCat(match_recorder_->num_dropped(),
                                            " records of scans dropped"));
     }
+    std::string gyroscope = WarningOfGyroscope(CountMatches(run_.matches));
+    if (!gyroscope.empty()) run_.warnings.push_back(std::move(gyroscope));
     run_.decisions = decision_recorder_->All();
     decision_recorder_->Stop();
     if (decision_recorder_->num_dropped() > 0) {

@@ -55,6 +55,26 @@ TEST(MatchCountsTest, CountsScansAndKeepsTheLastCalibration) {
             "later than odometry");
 }
 
+TEST(MatchCountsTest, OnlyARefutedGyroscopeIsWarnedOf) {
+  MatchRecord record;
+  for (const auto state : {MatchRecord::NO_GYROSCOPE, MatchRecord::UNPROVEN,
+                           MatchRecord::PROVEN}) {
+    MatchCounts counts;
+    record.set_gyroscope(state);
+    counts.Add(record);
+    EXPECT_EQ(WarningOfGyroscope(counts), "") << state;
+  }
+  record.set_gyroscope(MatchRecord::REFUTED);
+  record.set_gyroscope_factor(-1.004);
+  record.set_gyroscope_factor_sigma(0.01);
+  MatchCounts counts;
+  counts.Add(record);
+  EXPECT_EQ(WarningOfGyroscope(counts),
+            "the gyroscope of the IMU contradicts the scans, which turn by "
+            "-1.00 +- 0.01 of what it measures: it is not used; check its "
+            "mount, sign, unit and stamps");
+}
+
 TEST(MatchCountsTest, NoScansAreNoShare) {
   EXPECT_EQ(ToText(MatchCounts()).substr(0, 32),
             "0 scans, 0.0 % of them degenerat");

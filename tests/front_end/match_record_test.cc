@@ -131,6 +131,21 @@ TEST(MatchRecordTest, Csv) {
   EXPECT_EQ(cell("rotation_per_metre_degrees"), "1.00000");
 }
 
+TEST(MatchRecordTest, GyroscopeOnlyWhereThereIsOne) {
+  Gyroscope gyroscope{GyroscopeOptions()};
+  MatchRecord record;
+  SetGyroscope(gyroscope, &record);
+  EXPECT_EQ(record.gyroscope(), MatchRecord::NO_GYROSCOPE);
+  EXPECT_EQ(record.gyroscope_factor(), 0.);
+  gyroscope.Add(0., 0.1);
+  SetGyroscope(gyroscope, &record);
+  EXPECT_EQ(record.gyroscope(), MatchRecord::UNPROVEN);
+  EXPECT_EQ(record.gyroscope_factor(), 1.);
+  EXPECT_GT(record.gyroscope_factor_sigma(), 0.);
+  const std::string csv = RecordCsv({record});
+  EXPECT_NE(csv.find(",unproven,1.000000,"), std::string::npos) << csv;
+}
+
 TEST(MatchRecordTest, EveryStateHasItsName) {
   MatchRecord record;
   SetPrediction(PredictionSource::kImu, OdometryState::kSlipSuspected, &record);

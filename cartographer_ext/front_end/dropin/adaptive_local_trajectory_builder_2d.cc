@@ -385,6 +385,7 @@ void AdaptiveLocalTrajectoryBuilder2D::Record(
   record.set_score(match.score);
   record.set_time_offset(predictor_.time_offset());
   SetCalibration(predictor_.calibration(), &record);
+  SetGyroscope(predictor_.gyroscope(), &record);
   record.set_is_node(is_node);
   if (recorder_ != nullptr) recorder_->Record(record);
   CountMatch(record);

@@ -74,6 +74,7 @@ class Gyroscope {
   // The bias is known from a standstill, rad/s.
   void SetBias(double bias);
 
+  bool has_readings() const { return has_reading_; }
   GyroscopeState state() const;
   double factor() const { return filter_.value(0); }
   double factor_sigma() const { return filter_.sigma(0); }
