@@ -23,6 +23,10 @@ constexpr size_t kMaxVetoed = 2000;
 // Right matches that are assumed before any were seen.
 constexpr double kPriorRight = 20.;
 
+bool IsEarlier(const LoopCandidate& a, const LoopCandidate& b) {
+  return a.number < b.number;
+}
+
 }  // namespace
 
 LoopPipeline::LoopPipeline(const LoopOptions& options,
@@ -126,27 +130,21 @@ void LoopPipeline::Settle(std::vector<LoopCandidate> candidates) {
 std::vector<LoopCandidate> LoopPipeline::TakeSettled() {
   std::vector<LoopCandidate> candidates = std::move(settled_);
   settled_.clear();
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const LoopCandidate& a, const LoopCandidate& b) {
-                     return a.number < b.number;
-                   });
+  std::stable_sort(candidates.begin(), candidates.end(), IsEarlier);
   return candidates;
 }
 
 void LoopPipeline::VetoAgain() {
   if (!options_.innovation_veto.enabled) return;
   const auto is_vetoed = [&](const LoopCandidate& candidate) {
-    LoopCandidate tested = candidate;
-    VetoByInnovation(options_, paths_, &tested);
-    return tested.is_rejected();
+    const absl::optional<InnovationResult> innovation =
+        InnovationByPath(options_, paths_, candidate);
+    return innovation.has_value() && innovation->vetoed;
   };
   Settle(consensus_.WithdrawIf(is_vetoed));
   std::vector<LoopCandidate> removed = consensus_.Remove(is_vetoed);
   std::move(removed.begin(), removed.end(), std::back_inserter(vetoed_));
-  std::sort(vetoed_.begin(), vetoed_.end(),
-            [](const LoopCandidate& a, const LoopCandidate& b) {
-              return a.number < b.number;
-            });
+  std::sort(vetoed_.begin(), vetoed_.end(), IsEarlier);
 }
 
 void LoopPipeline::UpdateDrift() {
@@ -251,10 +249,7 @@ void LoopPipeline::SetFollowed(const int64_t number,
 std::vector<LoopCandidate> LoopPipeline::Undecided() const {
   std::vector<LoopCandidate> candidates = consensus_.Undecided();
   candidates.insert(candidates.end(), vetoed_.begin(), vetoed_.end());
-  std::sort(candidates.begin(), candidates.end(),
-            [](const LoopCandidate& a, const LoopCandidate& b) {
-              return a.number < b.number;
-            });
+  std::sort(candidates.begin(), candidates.end(), IsEarlier);
   return candidates;
 }
 

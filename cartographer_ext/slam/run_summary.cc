@@ -63,17 +63,18 @@ std::string LocalizedToText(const SlamRun& run) {
       SecondsUntilLocalized(run), pose.x, pose.y, RadToDeg(pose.theta));
 }
 
-nlohmann::json ToJson(const MatchCounts& counts) {
-  nlohmann::json json = {{"degenerate_scans", counts.degenerate},
-                         {"searches", counts.searched},
-                         {"relocated", counts.relocated},
-                         {"odometry_faults", counts.odometry_faults},
-                         {"slip_suspected", counts.slip_suspected},
-                         {"time_offset", counts.time_offset},
-                         {"odometry_scale", counts.odometry_scale},
-                         {"odometry_scale_sigma", counts.odometry_scale_sigma},
-                         {"rotation_scale", counts.rotation_scale},
-                         {"rotation_per_metre", counts.rotation_per_metre}};
+nlohmann::ordered_json ToJson(const MatchCounts& counts) {
+  nlohmann::ordered_json json = {
+      {"degenerate_scans", counts.degenerate},
+      {"searches", counts.searched},
+      {"relocated", counts.relocated},
+      {"odometry_faults", counts.odometry_faults},
+      {"slip_suspected", counts.slip_suspected},
+      {"time_offset", counts.time_offset},
+      {"odometry_scale", counts.odometry_scale},
+      {"odometry_scale_sigma", counts.odometry_scale_sigma},
+      {"rotation_scale", counts.rotation_scale},
+      {"rotation_per_metre", counts.rotation_per_metre}};
   if (counts.gyroscope != proto::MatchRecord::NO_GYROSCOPE) {
     json["gyroscope"] = {
         {"state", absl::AsciiStrToLower(

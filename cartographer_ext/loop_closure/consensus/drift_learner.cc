@@ -88,28 +88,29 @@ DriftLearner::DriftLearner(const uncertainty::PathNoiseOptions& prior,
                            uncertainty::PathUncertainty* const paths)
     : prior_(prior), paths_(CHECK_NOTNULL(paths)) {}
 
+absl::optional<DriftStretch> DriftLearner::Stretch(const VertexId& from,
+                                                   const VertexId& to) const {
+  const absl::optional<CovarianceParts> parts = paths_->Parts(from, to);
+  if (!parts.has_value()) return absl::nullopt;
+  DriftStretch stretch;
+  stretch.pose = Between(*paths_->LocalPose(from), *paths_->LocalPose(to));
+  stretch.parts = *parts;
+  return stretch;
+}
+
 absl::optional<DriftCycle> DriftLearner::CycleWithPath(
     const LoopEdge& loop) const {
   const absl::optional<double> travelled = paths_->Travelled(loop.a, loop.b);
   if (!travelled.has_value() || *travelled > kLongestPath) return absl::nullopt;
-  const absl::optional<CovarianceParts> parts = paths_->Parts(loop.b, loop.a);
-  DriftStretch path;
-  path.pose = Between(*paths_->LocalPose(loop.b), *paths_->LocalPose(loop.a));
-  path.parts = *parts;
-  return CycleOfLoop(loop.pose, path);
+  return CycleOfLoop(loop.pose, *Stretch(loop.b, loop.a));
 }
 
 absl::optional<DriftCycle> DriftLearner::CycleWithLoop(
     const LoopEdge& u, const LoopEdge& v) const {
-  const absl::optional<CovarianceParts> parts_b = paths_->Parts(u.b, v.b);
-  const absl::optional<CovarianceParts> parts_a = paths_->Parts(v.a, u.a);
-  if (!parts_a.has_value() || !parts_b.has_value()) return absl::nullopt;
-  DriftStretch path_b, path_a;
-  path_b.pose = Between(*paths_->LocalPose(u.b), *paths_->LocalPose(v.b));
-  path_b.parts = *parts_b;
-  path_a.pose = Between(*paths_->LocalPose(v.a), *paths_->LocalPose(u.a));
-  path_a.parts = *parts_a;
-  return CycleOfLoops(u.pose, path_b, v.pose, path_a);
+  const absl::optional<DriftStretch> path_b = Stretch(u.b, v.b);
+  const absl::optional<DriftStretch> path_a = Stretch(v.a, u.a);
+  if (!path_a.has_value() || !path_b.has_value()) return absl::nullopt;
+  return CycleOfLoops(u.pose, *path_b, v.pose, *path_a);
 }
 
 void DriftLearner::AddLongLoop(const LoopEdge& loop,
@@ -123,12 +124,9 @@ void DriftLearner::AddLongLoop(const LoopEdge& loop,
       return;
     }
   }
-  DriftStretch path;
-  path.pose = Between(*paths_->LocalPose(loop.b), *paths_->LocalPose(loop.a));
-  path.parts = *paths_->Parts(loop.b, loop.a);
   LongLoop found;
   found.edge = loop;
-  found.heading = HeadingOfLoop(loop.pose, path);
+  found.heading = HeadingOfLoop(loop.pose, *Stretch(loop.b, loop.a));
   found.heading.length = *travelled;
   trajectory->long_loops.push_back(found);
   if (trajectory->long_loops.size() > kMaxLongLoops) {

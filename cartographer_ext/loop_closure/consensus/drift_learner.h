@@ -85,6 +85,9 @@ class DriftLearner {
   // Metres of path that the long loops cover together.
   double Driven(const Trajectory& trajectory) const;
   void Fit(Trajectory* trajectory);
+  // The path as local SLAM has it; empty where it is not known.
+  absl::optional<uncertainty::DriftStretch> Stretch(
+      const uncertainty::VertexId& from, const uncertainty::VertexId& to) const;
   // The cycle of a loop with the path itself, if that is short.
   absl::optional<uncertainty::DriftCycle> CycleWithPath(
       const uncertainty::LoopEdge& loop) const;

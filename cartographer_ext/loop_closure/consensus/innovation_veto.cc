@@ -34,27 +34,35 @@ InnovationResult TestInnovation(const double chi_square_bound,
   return result;
 }
 
-void VetoByInnovation(const LoopOptions& options,
-                      const uncertainty::PathUncertainty& paths,
-                      LoopCandidate* const candidate) {
-  if (!options.innovation_veto.enabled || candidate->is_inter_trajectory()) {
-    return;
-  }
-  uncertainty::LoopEdge loop = CandidateEdge(options, paths, *candidate);
+absl::optional<InnovationResult> InnovationByPath(
+    const LoopOptions& options, const uncertainty::PathUncertainty& paths,
+    const LoopCandidate& candidate) {
+  if (candidate.is_inter_trajectory()) return absl::nullopt;
+  uncertainty::LoopEdge loop = CandidateEdge(options, paths, candidate);
   if (!loop.a.is_node()) {
     const absl::optional<uncertainty::NodeId> nearest =
-        paths.Nearest(candidate->submap.trajectory_id,
-                      candidate->submap_local_pose.translation());
-    if (!nearest.has_value()) return;
+        paths.Nearest(candidate.submap.trajectory_id,
+                      candidate.submap_local_pose.translation());
+    if (!nearest.has_value()) return absl::nullopt;
     loop.a = *nearest;
-    loop.pose.pose = candidate->RefinedFromAnchor(*paths.LocalPose(*nearest));
+    loop.pose.pose = candidate.RefinedFromAnchor(*paths.LocalPose(*nearest));
   }
   const absl::optional<uncertainty::UncertainPose> prior =
       paths.Between(loop.a, loop.b);
-  if (!prior.has_value()) return;
-  candidate->innovation = TestInnovation(
-      options.innovation_veto.chi_square_bound, *prior, loop.pose);
-  if (candidate->innovation->vetoed) {
+  if (!prior.has_value()) return absl::nullopt;
+  return TestInnovation(options.innovation_veto.chi_square_bound, *prior,
+                        loop.pose);
+}
+
+void VetoByInnovation(const LoopOptions& options,
+                      const uncertainty::PathUncertainty& paths,
+                      LoopCandidate* const candidate) {
+  if (!options.innovation_veto.enabled) return;
+  const absl::optional<InnovationResult> innovation =
+      InnovationByPath(options, paths, *candidate);
+  if (!innovation.has_value()) return;
+  candidate->innovation = innovation;
+  if (innovation->vetoed) {
     candidate->Reject(proto::LoopDecision::INNOVATION_TOO_LARGE);
   }
 }

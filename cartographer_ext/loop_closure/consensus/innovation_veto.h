@@ -16,6 +16,7 @@
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_INNOVATION_VETO_H_
 
 #include "Eigen/Core"
+#include "absl/types/optional.h"
 #include "cartographer_ext/uncertainty/cycle_consistency.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
@@ -51,9 +52,15 @@ InnovationResult TestInnovation(double chi_square_bound,
                                 const uncertainty::UncertainPose& loop);
 
 // Tests a candidate within one trajectory against the path from its anchor to
-// its node (without an anchor: from the node next to the submap's origin), into
-// `innovation`, and rejects it where that is vetoed. Only the path is used: a
-// loop that contradicts accepted ones may still prevail in the consensus.
+// its node (without an anchor: from the node next to the submap's origin). Only
+// the path is used: a loop that contradicts accepted ones may still prevail in
+// the consensus. Empty where the path is not known.
+absl::optional<InnovationResult> InnovationByPath(
+    const LoopOptions& options, const uncertainty::PathUncertainty& paths,
+    const LoopCandidate& candidate);
+
+// The same into `innovation`, if enabled; rejects the candidate where it is
+// vetoed.
 void VetoByInnovation(const LoopOptions& options,
                       const uncertainty::PathUncertainty& paths,
                       LoopCandidate* candidate);

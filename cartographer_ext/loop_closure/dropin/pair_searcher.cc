@@ -36,7 +36,6 @@ PairSearcher::PairSearcher(
     const LoopOptions& extension, SubmapCache* const cache)
     : options_(options),
       slide_test_(extension.slide_test),
-      search_places_(extension.search.enabled),
       search_options_(extension.search),
       ceres_scan_matcher_(options.ceres_scan_matcher_options()),
       cache_(cache) {}
@@ -48,7 +47,7 @@ void PairSearcher::Search(SearchJob* const job) const {
   const auto& cloud = job->node->filtered_gravity_aligned_point_cloud;
   (plan.full_submap ? metrics.searched_global : metrics.searched_local)
       ->Increment();
-  const SubmapMatch found = plan.full_submap && search_places_
+  const SubmapMatch found = plan.full_submap && search_options_.enabled
                                 ? SearchPlaces(job)
                                 : SearchExactly(job);
   SearchMatch& match = job->candidate.match;
@@ -88,7 +87,7 @@ SubmapMatch PairSearcher::SearchExactly(SearchJob* const job) const {
                 job->entry->local_pose * job->candidate.SearchCenter(),
                 plan.linear_window, plan.angular_window, cloud, MinScore(*job));
   const SubmapMatch likeliest =
-      found.found && !plan.full_submap && search_places_
+      found.found && !plan.full_submap && search_options_.enabled
           ? Likeliest(*job, *matcher, found)
           : found;
   job->candidate.times.search = meter.seconds();

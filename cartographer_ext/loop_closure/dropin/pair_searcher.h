@@ -73,8 +73,8 @@ class PairSearcher {
   const cartographer::mapping::constraints::proto::ConstraintBuilderOptions
       options_;
   const bool slide_test_;
-  const bool
-      search_places_;  // and look for likelier matches; otherwise whole submaps are searched exactly
+  // Enabled: whole submaps are searched by places, and windows for likelier
+  // matches; otherwise the best score is searched exactly.
   const SearchPlannerOptions search_options_;
   const cartographer::mapping::scan_matching::CeresScanMatcher2D
       ceres_scan_matcher_;
