@@ -39,11 +39,11 @@ std::vector<Start> Starts(const PoseGraph& graph) {
 }
 
 // Lowers the comparison's best rival, whose poses are `best`, by those that
-// solve `graph`; costs are those of `edges`.
+// solve `graph`; costs are those of `edges` truncated at the gate.
 absl::Status RaceRivals(const PoseGraph& graph, const std::string& noise,
                         const optimization::OptimizeOptions& options,
                         const std::vector<WhitenedEdge>& edges,
-                        CostComparison* const comparison,
+                        const double gate, CostComparison* const comparison,
                         std::vector<Pose2>* const best) {
   const auto race = [&](const std::string& start, const std::string& kernel,
                         const std::vector<Pose2>& poses) -> absl::Status {
@@ -52,7 +52,7 @@ absl::Status RaceRivals(const PoseGraph& graph, const std::string& noise,
     rival.start = poses;
     const auto result = optimization::Optimize(graph, rival);
     if (!result.ok()) return result.status();
-    const double cost = optimization::TruncatedCost(edges, result->poses);
+    const double cost = optimization::TruncatedCost(edges, result->poses, gate);
     if (cost < comparison->rival_cost) {
       comparison->rival_cost = cost;
       comparison->rival = absl::StrCat(start, kernel, noise);
@@ -88,15 +88,16 @@ absl::Status Compare(const PoseGraph& graph, const SweepOptions& options,
   const PoseGraph scaled = optimization::WithNoiseScale(
       graph, result->applied_odometry_scale, result->applied_loop_scale);
   const std::vector<WhitenedEdge> edges = optimization::Whiten(scaled.edges);
-  comparison->cost = optimization::TruncatedCost(edges, result->poses);
+  const double gate = result->applied_gate;
+  comparison->cost = optimization::TruncatedCost(edges, result->poses, gate);
   comparison->rival_cost = std::numeric_limits<double>::infinity();
   std::vector<Pose2> rival;
   absl::Status status =
-      RaceRivals(graph, "", options.optimize, edges, comparison, &rival);
+      RaceRivals(graph, "", options.optimize, edges, gate, comparison, &rival);
   if (!status.ok()) return status;
   if (result->applied_odometry_scale != 1. ||
       result->applied_loop_scale != 1.) {
-    status = RaceRivals(scaled, ", scaled noise", options.optimize, edges,
+    status = RaceRivals(scaled, ", scaled noise", options.optimize, edges, gate,
                         comparison, &rival);
     if (!status.ok()) return status;
   }

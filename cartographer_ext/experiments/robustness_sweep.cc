@@ -109,10 +109,11 @@ absl::Status RunOne(const SweepOptions& options, const SweepGraph& dataset,
   std::vector<Pose2> right = dataset.optimum;
   const auto fixed = optimization::Whiten(optimization::FixedPoseEdges(graph));
   edges.insert(edges.end(), fixed.begin(), fixed.end());
-  optimization::PolishTruncated(edges, optimization::kChi2Gate, 30, &right,
+  optimization::PolishTruncated(edges, result->applied_gate, 30, &right,
                                 nullptr);
   edges.resize(graph.edges.size());
-  run->right_truncated = optimization::TruncatedCost(edges, right);
+  run->right_truncated =
+      optimization::TruncatedCost(edges, right, result->applied_gate);
   run->undecidable =
       !run->success && run->truncated < run->right_truncated * (1. - 1e-9);
   return absl::OkStatus();

@@ -259,6 +259,7 @@ nlohmann::ordered_json Report(const optimization::PoseGraph& graph,
       {"total", loops}, {"accepted", accepted}, {"rejected", loops - accepted}};
   json["chi2"] = {{"odometry", result.odometry_chi2},
                   {"accepted_loops", result.accepted_loops_chi2},
+                  {"gate", result.applied_gate},
                   {"truncated", result.truncated_chi2},
                   {"truncated_as_given", result.truncated_chi2_as_given}};
   if (!result.member.empty()) {

@@ -180,6 +180,36 @@ double WideGate(const size_t loops) {
   return high;
 }
 
+// Takes the map of the wide gate: with the `near` loops in force, or what a
+// member leads to if that costs less.
+void WidenGate(const double gate, const std::vector<int>& near,
+               Portfolio* const portfolio, AutoResult* const result) {
+  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+  SolverOptions options;
+  options.edge_weights = result->weights;
+  for (const int i : near) options.edge_weights[i] = 1.;
+  Count(portfolio->solver()->Solve(options, &result->poses), result);
+  Count(PolishTruncated(gate, kFullPolishRounds, portfolio->solver(),
+                        &result->poses, &result->weights),
+        result);
+  double lowest = TruncatedCost(edges, result->poses, gate);
+  for (const Portfolio::Member& member : portfolio->members()) {
+    if (TruncatedCost(edges, member.poses, gate) >= lowest) continue;
+    std::vector<Pose2> poses = member.poses;
+    std::vector<double> weights;
+    Count(PolishTruncated(gate, kFullPolishRounds, portfolio->solver(), &poses,
+                          &weights),
+          result);
+    const double cost = TruncatedCost(edges, poses, gate);
+    if (cost >= lowest) continue;
+    lowest = cost;
+    result->poses = std::move(poses);
+    result->weights = std::move(weights);
+    result->member = member.name;
+  }
+  result->gate = gate;
+}
+
 // Step 5. A gate of 99 % rejects one right loop in a hundred.
 void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   const std::vector<WhitenedEdge>& edges = portfolio->edges();
@@ -188,7 +218,7 @@ void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   size_t loops = 0;
   for (size_t i = 0; i != edges.size(); ++i) {
     loops += edges[i].is_loop;
-    if (result->accepted[i]) continue;
+    if (result->weights[i] > 0.5) continue;
     in_force[i] = 0.;
     rejected.push_back(i);
   }
@@ -205,8 +235,8 @@ void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   }
   // Where most rejected loops lie farther out, those are outliers, and some of
   // them will be near, too.
-  if (2 * near.size() < rejected.size()) return;
-  for (const int i : near) result->accepted[i] = true;
+  if (near.empty() || 2 * near.size() < rejected.size()) return;
+  WidenGate(gate, near, portfolio, result);
 }
 
 // An estimate in a search with the factor `applied`, for the given matrices.
@@ -276,6 +306,7 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
   result.iterations = portfolio->iterations();
   result.converged = portfolio->converged();
   Decide(options, portfolio.get(), &result);
+  AcceptNearLoops(portfolio.get(), &result);
   result.accepted.assign(graph.edges.size(), true);
   for (size_t i = 0; i != result.accepted.size(); ++i) {
     result.accepted[i] = result.weights[i] > 0.5;
@@ -284,13 +315,14 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
       EstimateNoiseScale(result.poses, result.weights, portfolio->solver());
   ReferToGivenMatrices(applied.odometry, &result.noise.odometry);
   ReferToGivenMatrices(applied.loops, &result.noise.loops);
-  AcceptNearLoops(portfolio.get(), &result);
   std::vector<Alternative> alternatives = portfolio->alternatives();
   for (const Portfolio::Member& member : portfolio->members()) {
     alternatives.push_back({member.cost, member.poses});
   }
-  result.rivals = FindRivalSets(result.poses, alternatives, RivalOptions(),
-                                portfolio->solver());
+  RivalOptions rivals;
+  rivals.gate = result.gate;
+  result.rivals =
+      FindRivalSets(result.poses, alternatives, rivals, portfolio->solver());
   return result;
 }
 

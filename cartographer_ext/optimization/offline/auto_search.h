@@ -27,8 +27,9 @@
 //      brought near to (3) as far as it costs no more (polish_near.h). Where not
 //      every solver has taken part, the limit is the lowest truncated cost, and
 //      for large graphs half way from that to the solvers that have;
-//   5. rejected loops just beyond the gate are accepted where there are no more
-//      of them than the gate rejects right ones.
+//   5. where hardly any loop is rejected and most of these lie just beyond the
+//      gate, the gate is one that all right loops pass: the lowest cost truncated
+//      there is taken, with these loops in force.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_AUTO_SEARCH_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_AUTO_SEARCH_H_
 
@@ -58,6 +59,7 @@ struct AutoResult {
   std::vector<bool> accepted;   // per edge
   std::string member;
   double member_cost = 0.;
+  double gate = kChi2Gate;  // of the truncated cost that is the lowest
   int iterations = 0;
   bool converged = false;
   // Factors of the standard deviations that the search has used; 1 unless the

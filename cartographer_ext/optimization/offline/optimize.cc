@@ -100,6 +100,7 @@ void RunAuto(const PoseGraph& graph, const OptimizeOptions& options,
   result->rivals = std::move(found.rivals);
   result->applied_odometry_scale = found.applied_odometry_scale;
   result->applied_loop_scale = found.applied_loop_scale;
+  result->applied_gate = found.gate;
 }
 
 void Summarize(const std::vector<WhitenedEdge>& edges,
@@ -118,7 +119,8 @@ void Summarize(const std::vector<WhitenedEdge>& edges,
       result->accepted_loops_chi2 += result->chi2[i];
     }
   }
-  result->truncated_chi2 = TruncatedCost(edges, result->poses);
+  result->truncated_chi2 =
+      TruncatedCost(edges, result->poses, result->applied_gate);
 }
 
 // The noise that `auto` uses.
@@ -129,6 +131,7 @@ void TakeEstimatedNoise(const PoseGraph& graph, const OptimizeOptions& options,
   result->noise = automatic.noise;
   result->applied_odometry_scale = automatic.applied_odometry_scale;
   result->applied_loop_scale = automatic.applied_loop_scale;
+  result->applied_gate = automatic.applied_gate;
 }
 
 // Moves the whole so that the fixed poses are where they were.

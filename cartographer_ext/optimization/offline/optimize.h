@@ -59,7 +59,7 @@ struct OptimizeResult {
   // Per edge: the weight with which it counts at the end, in [0, 1].
   std::vector<double> weights;
   // Per edge: chi2 at the end, and whether it is in force: chi2 < kChi2Gate,
-  // for `auto` and `r_isam` the set of the last polish. Always true for
+  // for `auto` and `r_isam` the set that was solved with last. Always true for
   // odometry.
   std::vector<double> chi2;
   std::vector<bool> accepted;
@@ -68,8 +68,8 @@ struct OptimizeResult {
   double cpu_seconds = 0.;
   double odometry_chi2 = 0.;
   double accepted_loops_chi2 = 0.;
-  double truncated_chi2 = 0.;  // TruncatedCost at the poses
-  // The same with the information matrices as they were given.
+  double truncated_chi2 = 0.;  // TruncatedCost at the poses with the gate below
+  // That of kChi2Gate with the information matrices as they were given.
   double truncated_chi2_as_given = 0.;
   // auto: the member chosen, and the lowest truncated cost of all before the
   // last polish.
@@ -81,6 +81,9 @@ struct OptimizeResult {
   NoiseScale noise;
   double applied_odometry_scale = 1.;
   double applied_loop_scale = 1.;
+  // kChi2Gate, or for `auto` one that all right loops pass, where hardly any is
+  // beyond it.
+  double applied_gate = kChi2Gate;
   // auto: sets of loops that explain the graph about as well; where one of them
   // moves the map, the graph is undecidable.
   std::vector<RivalSets> rivals;

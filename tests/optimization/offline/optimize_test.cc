@@ -121,7 +121,9 @@ TEST(OptimizeTest, MeasuresWithBothNoises) {
     const PoseGraph scaled = WithNoiseScale(
         graph, result->applied_odometry_scale, result->applied_loop_scale);
     EXPECT_NEAR(result->truncated_chi2,
-                TruncatedCost(Whiten(scaled.edges), result->poses), 1e-6);
+                TruncatedCost(Whiten(scaled.edges), result->poses,
+                              result->applied_gate),
+                1e-6);
     EXPECT_NEAR(result->truncated_chi2_as_given,
                 TruncatedCost(Whiten(graph.edges), result->poses), 1e-6);
   }
