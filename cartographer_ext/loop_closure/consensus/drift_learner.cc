@@ -134,6 +134,16 @@ void DriftLearner::AddLongLoop(const LoopEdge& loop,
   }
 }
 
+void DriftLearner::DropForgotten(std::deque<LongLoop>* const loops) const {
+  loops->erase(
+      std::remove_if(loops->begin(), loops->end(),
+                     [this](const LongLoop& loop) {
+                       return !paths_->LocalPose(loop.edge.a).has_value() ||
+                              !paths_->LocalPose(loop.edge.b).has_value();
+                     }),
+      loops->end());
+}
+
 double DriftLearner::Driven(const Trajectory& trajectory) const {
   const VertexId* first = nullptr;
   const VertexId* last = nullptr;
@@ -179,6 +189,7 @@ void DriftLearner::Fit(Trajectory* const trajectory) {
   // Headings alone tell nothing of the translation.
   const int num_short = trajectory->estimator.num_cycles();
   if (num_short == 0) return;
+  DropForgotten(&trajectory->long_loops);
   const int num_cycles =
       num_short + static_cast<int>(trajectory->long_loops.size());
   if (num_cycles < kLeastGrowth * trajectory->num_fitted + 1) return;

@@ -82,6 +82,8 @@ class DriftLearner {
   };
 
   void AddLongLoop(const uncertainty::LoopEdge& loop, Trajectory* trajectory);
+  // Loops with an end that `paths_` does not keep any more.
+  void DropForgotten(std::deque<LongLoop>* loops) const;
   // Metres of path that the long loops cover together.
   double Driven(const Trajectory& trajectory) const;
   void Fit(Trajectory* trajectory);

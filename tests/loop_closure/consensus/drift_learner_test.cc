@@ -29,8 +29,9 @@ constexpr double kWindow = 8.;
 // whose noise is some factors times what it is taken for.
 class DriftLearnerTest : public testing::Test {
  protected:
-  void Drive(const DriftFactors& factors, const int seed = 7) {
-    paths_.reset(new PathUncertainty(Noise(), 10000));
+  void Drive(const DriftFactors& factors, const int seed = 7,
+             const int max_nodes = 10000) {
+    paths_.reset(new PathUncertainty(Noise(), max_nodes));
     const PathNoiseOptions noise = Scaled(Noise(), factors);
     Random random(seed);
     Pose2 local;
@@ -192,6 +193,20 @@ TEST_F(DriftLearnerTest, HeadingsOfWrongPlacesTellTheRotation) {
   AddLaps(0.7);
   learner_->Update(0.7);
   EXPECT_GT(std::max(paths_->Drift(0).rotation, paths_->Drift(0).turning), 1.5);
+}
+
+TEST_F(DriftLearnerTest, HeadingsCountAfterTheFirstNodesAreForgotten) {
+  DriftFactors factors;
+  factors.rotation = factors.turning = 0.2;
+  Drive(factors, 7, kNumNodes);
+  AddLaps(0.7);
+  for (int i = kNumNodes; i < kNumNodes + 100; ++i) {
+    paths_->Add(NodeId{0, i},
+                *paths_->LocalPose(NodeId{0, i - 1}) * Pose2(0.5, 0., 0.));
+  }
+  ASSERT_FALSE(paths_->LocalPose(NodeId{0, 0}).has_value());
+  learner_->Update(0.7);
+  EXPECT_LT(paths_->Drift(0).rotation, 0.8);
 }
 
 // The first cycle used to quadruple the noise, and with it the windows in which
