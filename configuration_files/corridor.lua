@@ -16,4 +16,6 @@ POSE_GRAPH.constraint_builder.cartographer_ext.compatible_subset.weak_prior_revi
 return {
   map_builder = MAP_BUILDER,
   trajectory_builder = TRAJECTORY_BUILDER,
+  -- The IMU of a recording that has one, once its turns are those of the scans.
+  sensors = { use_recorded_imu = true },
 }

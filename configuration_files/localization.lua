@@ -23,4 +23,6 @@ POSE_GRAPH.constraint_builder.cartographer_ext.search.max_cache_mb = 512
 return {
   map_builder = MAP_BUILDER,
   trajectory_builder = TRAJECTORY_BUILDER,
+  -- The IMU of a recording that has one, once its turns are those of the scans.
+  sensors = { use_recorded_imu = true },
 }

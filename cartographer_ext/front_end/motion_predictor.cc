@@ -172,7 +172,7 @@ void MotionPredictor::PredictByOdometry(
     prediction->alternatives.push_back(since_anchor_.Inverse() *
                                        since_anchor.motion);
   }
-  prediction->alternatives.push_back(without);
+  if (has_expectation) prediction->alternatives.push_back(without);
   if (is_suspect) {
     prediction->covariance += covariance_without;
     prediction->covariance += Spread(

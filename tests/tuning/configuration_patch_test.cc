@@ -190,6 +190,15 @@ TEST_F(BaseConfigurationTest, BadFilesAreErrors) {
 TEST_F(BaseConfigurationTest, FingerprintFollowsTheOptions) {
   EXPECT_EQ(Stock().Fingerprint(), Stock().Fingerprint());
   EXPECT_NE(Stock().Fingerprint(), WithBlock().Fingerprint());
+  folder_.Write("imu.lua",
+                "include \"stock.lua\"\n"
+                "return { map_builder = MAP_BUILDER,\n"
+                "         trajectory_builder = TRAJECTORY_BUILDER,\n"
+                "         sensors = { use_recorded_imu = true } }");
+  const auto imu = BaseConfiguration::Load(
+      {folder_.path(), "configuration_files"}, "imu.lua");
+  ASSERT_TRUE(imu.ok()) << imu.status();
+  EXPECT_NE(Stock().Fingerprint(), imu->Fingerprint());
   EXPECT_EQ(HashText(""), "cbf29ce484222325");
   EXPECT_EQ(HashText("a"), "af63dc4c8601ec8c");
 }

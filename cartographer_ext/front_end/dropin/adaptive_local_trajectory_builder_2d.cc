@@ -125,7 +125,7 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
       context_(PoseGraphContext::Current()),
       recorder_(context_ == nullptr ? nullptr : context_->Get<MatchRecorder>()),
       builder_number_(recorder_ == nullptr ? 0 : recorder_->AddBuilder()),
-      active_submaps_(options.submaps_options()),
+      submaps_(options.submaps_options()),
       motion_filter_(options.motion_filter_options()),
       range_data_collator_(expected_range_sensor_ids),
       assembler_(options,
@@ -272,18 +272,17 @@ bool AdaptiveLocalTrajectoryBuilder2D::MustWaitForOdometry(
 
 LocalMatch AdaptiveLocalTrajectoryBuilder2D::MatchScan(
     const MotionPrediction& prediction, const PointCloud& cloud) {
-  const auto submaps = active_submaps_.submaps();
-  if (submaps.empty()) {
+  const auto submap = submaps_.Reference();
+  if (submap == nullptr) {
     LocalMatch match;
     match.pose = pose_ * prediction.motion;
     return match;
   }
-  // The older submap contains more scans.
   return matcher_.Match(pose_, prediction,
                         extension_.match_features_only
                             ? FeaturePoints(extension_.features, cloud)
                             : cloud,
-                        *submaps.front());
+                        *submap);
 }
 
 OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
@@ -300,11 +299,11 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
       (prediction.source == PredictionSource::kConstantVelocity ||
        prediction.source == PredictionSource::kImu) &&
       !match.relocated;
-  const auto submaps = active_submaps_.submaps();
-  if (!submaps.empty()) {
+  const auto submap = submaps_.Reference();
+  if (submap != nullptr) {
     matched.evidence = [&](const Pose2& error) {
       return scan_matching::ScanEvidence(match.pose, match.pose * error, cloud,
-                                         *submaps.front()->grid());
+                                         *submap->grid());
     };
   }
   MatchInnovation innovation;
@@ -328,9 +327,9 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
     const cartographer::common::Time time, const AssembledScan& scan_in_local,
     const PointCloud& cloud, const Eigen::Quaterniond& alignment) {
   const Rigid3d local_pose = LocalPose(alignment);
-  const auto submaps = active_submaps_.submaps();
+  const auto reference = submaps_.Reference();
   const bool is_first_scan =
-      submaps.empty() || submaps.front()->num_range_data() < kNumFirstScans;
+      reference == nullptr || reference->num_range_data() < kNumFirstScans;
   if (motion_filter_.IsSimilar(time, local_pose) && !is_first_scan) {
     return nullptr;
   }
@@ -352,21 +351,18 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
   return result;
 }
 
-std::vector<std::shared_ptr<const mapping::Submap2D>>
-AdaptiveLocalTrajectoryBuilder2D::Insert(const RangeData& in_local) {
+LocalSubmaps::Submaps AdaptiveLocalTrajectoryBuilder2D::Insert(
+    const RangeData& in_local) {
   const Pose2 since_insertion = Between(insertion_pose_, pose_);
   insertion_pose_ = pose_;
-  auto submaps = active_submaps_.InsertRangeData(in_local);
-  // Not beyond a full submap: the scan belongs to those it was inserted into
-  // first, and the host looks there for what is finished.
-  const int most = options_.submaps_options().num_range_data();
-  for (int count = InsertionCount(
-           since_insertion,
-           options_.motion_filter_options().max_distance_meters());
-       count > 1 && submaps.back()->num_range_data() < most; --count) {
-    submaps = active_submaps_.InsertRangeData(in_local);
+  const double spacing = options_.motion_filter_options().max_distance_meters();
+  const double longest_gap =
+      0.5 * options_.submaps_options().num_range_data() * spacing;
+  if (longest_gap > 0. && since_insertion.translation().norm() > longest_gap &&
+      !submaps_.Overlaps(in_local)) {
+    return submaps_.InsertElsewhere(in_local);
   }
-  return submaps;
+  return submaps_.Insert(in_local, InsertionCount(since_insertion, spacing));
 }
 
 void AdaptiveLocalTrajectoryBuilder2D::Record(

@@ -12,7 +12,9 @@
 //  2. Match (local_matcher.h): scan and prediction are weighted by their
 //     information, direction by direction; a correlative search only where the
 //     prediction is doubtful.
-//  3. Evidence: one record per scan (match_recorder.h), and metrics.
+//  3. Submaps (local_submaps.h): as in stock, but a scan far from them begins
+//     new ones.
+//  4. Evidence: one record per scan (match_recorder.h), and metrics.
 //
 // A gap in the scans is bridged by the motion over the gap. While odometry for
 // the gap is pending, scans are dropped, for a limited time; without odometry
@@ -41,6 +43,7 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/common/record_log.h"
 #include "cartographer_ext/front_end/dropin/local_matcher.h"
+#include "cartographer_ext/front_end/dropin/local_submaps.h"
 #include "cartographer_ext/front_end/dropin/scan_assembler.h"
 #include "cartographer_ext/front_end/front_end_options.h"
 #include "cartographer_ext/front_end/match_counts.h"
@@ -94,7 +97,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   // Whether to drop a scan after a gap, because odometry for the gap is
   // pending.
   bool MustWaitForOdometry(double seconds, const MotionPrediction& prediction);
-  // Against the older active submap; the prediction itself without one.
+  // Against the submap to match against; the prediction itself without one.
   LocalMatch MatchScan(const MotionPrediction& prediction,
                        const cartographer::sensor::PointCloud& cloud);
   // Moves the pose to that of the match and updates the predictor.
@@ -110,9 +113,9 @@ class AdaptiveLocalTrajectoryBuilder2D {
       cartographer::common::Time time, const AssembledScan& scan_in_local,
       const cartographer::sensor::PointCloud& cloud,
       const Eigen::Quaterniond& alignment);
-  // As often as it stands for (insertion_count.h).
-  std::vector<std::shared_ptr<const cartographer::mapping::Submap2D>> Insert(
-      const cartographer::sensor::RangeData& in_local);
+  // As often as it stands for (insertion_count.h). After a gap of half a submap
+  // and more without overlap it lies elsewhere (local_submaps.h).
+  LocalSubmaps::Submaps Insert(const cartographer::sensor::RangeData& in_local);
   void Record(cartographer::common::Time time, double interval,
               const MotionPrediction& prediction, const LocalMatch& match,
               OdometryState odometry, bool is_node);
@@ -126,7 +129,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   const std::shared_ptr<PoseGraphContext> context_;
   MatchRecorder* const recorder_;
   const int builder_number_;
-  cartographer::mapping::ActiveSubmaps2D active_submaps_;
+  LocalSubmaps submaps_;
   cartographer::mapping::MotionFilter motion_filter_;
   cartographer::mapping::RangeDataCollator range_data_collator_;
   ScanAssembler assembler_;
