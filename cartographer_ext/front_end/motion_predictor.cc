@@ -36,6 +36,8 @@ constexpr double kStationaryMatchRotation = 0.01;
 // Error of the matched speed, relative to the largest change of speed, over a
 // gap that the IMU bridges.
 constexpr double kRelativeSpeedError = 0.2;
+// Longer intervals are bridged by dead reckoning, seconds.
+constexpr double kReckonedInterval = 1.;
 
 // The second moment of an error of `difference`.
 Eigen::Matrix3d Spread(const Pose2& difference) {
@@ -60,17 +62,21 @@ MotionPredictor::MotionPredictor(const MotionPredictorOptions& options)
     : options_(options),
       odometry_(options.odometry, options.time_offset, options.calibration),
       imu_(options.imu),
+      reckoning_(options.odometry),
       monitor_(options.check),
       noise_scale_(options.noise_scale),
       velocity_(options.constant_velocity, options.odometry.translation,
                 options.odometry.rotation) {}
 
 void MotionPredictor::AddOdometry(const double time, const Pose2& pose) {
-  if (options_.use_odometry) odometry_.Add(time, pose);
+  if (!options_.use_odometry || !odometry_.Add(time, pose)) return;
+  reckoning_.Add(time, pose);
+  reckoning_.Advance(odometry_, imu_.mutable_gyroscope());
 }
 
 void MotionPredictor::AddImu(const PlanarImuReading& reading) {
   imu_.Add(reading);
+  reckoning_.Advance(odometry_, imu_.mutable_gyroscope());
 }
 
 MotionPrediction MotionPredictor::Predict(const double time) const {
@@ -83,12 +89,13 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   if (has_imu) PredictByImu(interval, imu, &prediction);
 
   OdometryMotion odometry;
-  if (IntegrateOdometry(time, &odometry)) {
+  if (IntegrateOdometry(last_time_, time, &odometry)) {
     PredictByOdometry(time, odometry, has_imu, &prediction);
   } else {
     prediction.odometry_pending =
         prediction.source == PredictionSource::kNothing &&
-        monitor_.IsTrusted() && IntegrateOdometry(last_time_, &odometry);
+        monitor_.IsTrusted() &&
+        IntegrateOdometry(last_time_, last_time_, &odometry);
   }
   return prediction;
 }
@@ -186,9 +193,11 @@ void MotionPredictor::PredictByOdometry(
 void MotionPredictor::PredictFromInsertion(
     const double time, MotionPrediction* const prediction) const {
   OdometryMotion odometry;
-  if (!odometry_.Predict(insertion_time_, time, &odometry)) return;
+  if (!IntegrateOdometry(insertion_time_, time, &odometry)) return;
   ImuMotion imu;
-  if (IntegrateImu(insertion_time_, time, &imu)) FuseRotations(imu, &odometry);
+  if (!odometry.by_gyroscope && IntegrateImu(insertion_time_, time, &imu)) {
+    FuseRotations(imu, &odometry);
+  }
   prediction->motion = since_insertion_.Inverse() * odometry.motion;
   // Rotates it into the frame of the last scan.
   const Eigen::Matrix3d rotation = PlanarRotation(since_insertion_.theta);
@@ -208,9 +217,15 @@ bool MotionPredictor::IntegrateImu(const double from, const double to,
                       motion);
 }
 
-bool MotionPredictor::IntegrateOdometry(const double to,
+bool MotionPredictor::IntegrateOdometry(const double from, const double to,
                                         OdometryMotion* const motion) const {
-  return options_.use_odometry && odometry_.Predict(last_time_, to, motion);
+  if (!options_.use_odometry || !odometry_.Predict(from, to, motion)) {
+    return false;
+  }
+  motion->by_gyroscope =
+      to - from > kReckonedInterval &&
+      reckoning_.Predict(from, to, odometry_, imu_.gyroscope(), motion);
+  return true;
 }
 
 Eigen::Matrix3d MotionPredictor::WideCovariance(const double interval) const {
@@ -246,8 +261,8 @@ double MotionPredictor::SpeedChange(const double interval,
 bool MotionPredictor::IsStationary(const double time,
                                    const Pose2& match) const {
   OdometryMotion odometry;
-  return monitor_.IsTrusted() && IntegrateOdometry(time, &odometry) &&
-         !odometry.is_late &&
+  return monitor_.IsTrusted() &&
+         IntegrateOdometry(last_time_, time, &odometry) && !odometry.is_late &&
          std::hypot(odometry.motion.x, odometry.motion.y) <
              kStationaryWheelMotion &&
          std::abs(odometry.motion.theta) < kStationaryWheelMotion &&
@@ -295,7 +310,7 @@ OdometryState MotionPredictor::CheckOdometry(const double time,
                                              const MatchedMotion& matched) {
   since_anchor_ = since_anchor_ * matched.motion;
   OdometryMotion odometry;
-  const bool has_odometry = IntegrateOdometry(time, &odometry);
+  const bool has_odometry = IntegrateOdometry(last_time_, time, &odometry);
   if (has_odometry && odometry.is_late) {
     // The readings are complete up to the scan before.
     const OdometryState state =

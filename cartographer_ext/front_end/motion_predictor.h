@@ -6,7 +6,8 @@
 // and trusted:
 //
 //   odometry and IMU   translation of odometry; rotation of both, weighted by
-//                      their variances, once the gyroscope is proven
+//                      their variances, once the gyroscope is proven; over a
+//                      gap dead reckoning by both (dead_reckoning.h)
 //   odometry alone     its motion over the interval
 //   IMU alone          rotation of the IMU; translation from the velocity of
 //                      the last scans and the acceleration since then; over a
@@ -31,6 +32,7 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/dead_reckoning.h"
 #include "cartographer_ext/front_end/imu/gyroscope.h"
 #include "cartographer_ext/front_end/imu/imu_predictor.h"
 #include "cartographer_ext/front_end/odometry/odometry_calibration.h"
@@ -154,7 +156,8 @@ class MotionPredictor {
 
   // Integrates the IMU between two times.
   bool IntegrateImu(double from, double to, ImuMotion* motion) const;
-  bool IntegrateOdometry(double to, OdometryMotion* motion) const;
+  // Odometry between two times, over a gap by dead reckoning where possible.
+  bool IntegrateOdometry(double from, double to, OdometryMotion* motion) const;
   // Where the velocity is hardly known.
   Eigen::Matrix3d WideCovariance(double interval) const;
   Eigen::Matrix3d OdometryMotionCovariance(const OdometryMotion& odometry,
@@ -176,6 +179,7 @@ class MotionPredictor {
   const MotionPredictorOptions options_;
   OdometryPredictor odometry_;
   ImuPredictor imu_;
+  DeadReckoning reckoning_;
   OdometryMonitor monitor_;
   OdometryNoiseScale noise_scale_;
   double field_of_view_scale_ = 1.;

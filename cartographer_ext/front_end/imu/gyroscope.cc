@@ -11,16 +11,13 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// Before the first turn nothing is known of the factor. A MEMS gyroscope that
-// was not calibrated at rest has a bias of some degrees a second.
-constexpr double kFactorSigma = 1.;
-constexpr double kBiasSigma = 0.05;  // rad/s
-// Of what the calibration cannot know: temperature, cross axes.
-constexpr double kFactorFloor = 0.002;
-constexpr double kBiasFloor = 2e-4;  // rad/s
 // Matches have errors of 0.1 degrees from one to the next, and the bends of
 // walls from submap to submap. `length` of the filter is a time, seconds.
 constexpr CalibrationFilter::Noise kNoise = {0.002, 0.002, 2e-4, 4.};
+// Wheels drift by a degree a second and more.
+constexpr CalibrationFilter::Noise kWheelNoise = {0.01, 0.03, 2e-4, 4.};
+// Wheels that turn by less in a stretch are at rest, radians.
+constexpr double kRestAngle = 1e-4;
 // Jitter of the stamps of scans against those of the IMU, seconds.
 constexpr double kStampNoise = 0.02;
 
@@ -35,15 +32,6 @@ constexpr double kMaxSigma = 0.01;
 
 // Of the factors of sound gyroscopes.
 constexpr double kSoundSigma = 0.01;
-// A known factor has at most this standard deviation, and a sound one is at most
-// this far from one: sensors are calibrated to a few per cent.
-constexpr double kKnownFactorSigma = 0.1;
-constexpr double kMaxFactorError = 0.25;
-// Of the last segments, of which there are at least this many, at most this
-// share contradicts a sound gyroscope.
-constexpr double kForgetting = 0.98;
-constexpr double kMinCompared = 5.;
-constexpr double kMaxContradicted = 0.3;
 
 }  // namespace
 
@@ -51,9 +39,8 @@ Gyroscope::Gyroscope(const GyroscopeOptions& options)
     : options_(options),
       headings_(kImuBufferSeconds, kMaxImuReadings, kMaxImuExtrapolation),
       offset_(TimeOffsetOptions()),
-      filter_(Eigen::Vector2d(1., 0.),
-              Eigen::Vector2d(kFactorSigma, kBiasSigma),
-              Eigen::Vector2d(kFactorFloor, kBiasFloor), kNoise) {}
+      scans_(kNoise, false),
+      wheels_(kWheelNoise, true) {}
 
 void Gyroscope::Add(const double time, const double yaw_rate) {
   if (has_reading_) {
@@ -81,23 +68,61 @@ bool Gyroscope::Raw(const double from, const double to,
   return true;
 }
 
+const RotationCheck* Gyroscope::Proof() const {
+  if (scans_.state() == GyroscopeState::kProven) return &scans_;
+  return scans_.state() == GyroscopeState::kUnproven &&
+                 wheels_.state() == GyroscopeState::kProven
+             ? &wheels_
+             : nullptr;
+}
+
+GyroscopeState Gyroscope::state() const {
+  return Proof() != nullptr ? GyroscopeState::kProven : scans_.state();
+}
+
 bool Gyroscope::Rotation(const double from, const double to,
                          GyroscopeRotation* const rotation) const {
   double raw;
   if (!Raw(from, to, &raw)) return false;
-  const double time = to - from;
-  const bool is_proven = state() == GyroscopeState::kProven;
-  // Of a proven gyroscope: what the matches tell of the factor, and what the
-  // makers of gyroscopes do, weighted by their variances.
-  const double learnt = is_proven ? Squared(filter_.sigma(0)) : 1.;
-  const double weight = Squared(kSoundSigma) / (Squared(kSoundSigma) + learnt);
-  const double factor = 1. + weight * (filter_.value(0) - 1.);
-  const double factor_sigma = std::sqrt(weight * learnt);
-  rotation->angle = (is_proven ? factor : 1.) * raw + filter_.value(1) * time;
-  const double bias_sigma = is_proven ? filter_.sigma(1) : options_.bias_noise;
-  rotation->variance = Squared(options_.density) * time +
-                       Squared(bias_sigma * time) + Squared(factor_sigma * raw);
+  rotation->angle = Corrected(raw, to - from);
+  rotation->variance = Variance(to - from, raw);
   return true;
+}
+
+double Gyroscope::Corrected(const double raw, const double seconds) const {
+  const RotationCheck* const proof = Proof();
+  // What the matches tell of the factor, and what the makers of gyroscopes do,
+  // weighted by their variances.
+  const double factor =
+      proof == &scans_ ? 1. + FactorWeight(true) * (scans_.factor() - 1.) : 1.;
+  return factor * raw + (proof == nullptr ? scans_ : *proof).drift() * seconds;
+}
+
+double Gyroscope::FactorWeight(const bool by_scans) const {
+  const double learnt = by_scans ? Squared(scans_.factor_sigma()) : 1.;
+  return Squared(kSoundSigma) / (Squared(kSoundSigma) + learnt);
+}
+
+double Gyroscope::Variance(const double seconds, const double angle) const {
+  const RotationCheck* const proof = Proof();
+  const bool by_scans = proof == &scans_;
+  const double learnt = by_scans ? Squared(scans_.factor_sigma()) : 1.;
+  const double factor_variance = FactorWeight(by_scans) * learnt;
+  const double drift_sigma =
+      proof == nullptr ? options_.bias_noise : proof->drift_sigma();
+  return Squared(options_.density) * seconds + Squared(drift_sigma * seconds) +
+         factor_variance * Squared(angle);
+}
+
+bool Gyroscope::Extend(const double from, const double to, const double angle,
+                       const double raw, Segment* const segment) {
+  if (!(segment->end > segment->start)) segment->start = from;
+  segment->end = to;
+  segment->angle += angle;
+  segment->turned += std::abs(angle);
+  segment->measured += raw;
+  return segment->turned >= kSegmentRotation ||
+         segment->end - segment->start >= kSegmentSeconds;
 }
 
 void Gyroscope::AddMatch(const MatchedRotation& matched) {
@@ -105,47 +130,39 @@ void Gyroscope::AddMatch(const MatchedRotation& matched) {
   if (!Raw(matched.from, matched.to, &raw) || !matched.is_observable ||
       matched.sigma > kMaxSigma || matched.to - matched.from > kMaxInterval) {
     segment_ = Segment();
-    filter_.Restart();
+    scans_.Restart();
     return;
   }
   offset_.AddMatch(matched.from, matched.to, matched.angle, headings_);
-  if (!(segment_.end > segment_.start)) segment_.start = matched.from;
-  segment_.end = matched.to;
-  segment_.angle += matched.angle;
-  segment_.turned += std::abs(matched.angle);
-  segment_.measured += raw;
-  segment_.sigma =
+  const bool is_long =
+      Extend(matched.from, matched.to, matched.angle, raw, &segment_);
+  if (!is_long) return;
+  const double sigma =
       std::hypot(matched.sigma, kStampNoise / (matched.to - matched.from) *
                                     std::abs(matched.angle));
-  if (segment_.turned < kSegmentRotation &&
-      segment_.end - segment_.start < kSegmentSeconds) {
-    return;
-  }
-  Learn(segment_);
+  scans_.Add(segment_.end - segment_.start, segment_.measured, segment_.angle,
+             sigma, false);
   segment_ = Segment();
 }
 
-void Gyroscope::Learn(const Segment& segment) {
-  const double time = segment.end - segment.start;
-  const bool agrees = filter_.Add(Eigen::Vector2d(segment.measured, time), time,
-                                  segment.angle, segment.sigma);
-  compared_ = kForgetting * compared_ + 1.;
-  contradicted_ = kForgetting * contradicted_ + (agrees ? 0. : 1.);
+void Gyroscope::AddWheels(const double from, const double to,
+                          const double angle) {
+  double raw;
+  if (!Raw(from, to, &raw) || to - from > kMaxInterval) {
+    wheel_segment_ = Segment();
+    wheels_.Restart();
+    return;
+  }
+  if (!Extend(from, to, angle, raw, &wheel_segment_)) return;
+  const double rate = std::abs(angle) / (to - from);
+  wheels_.Add(wheel_segment_.end - wheel_segment_.start,
+              wheel_segment_.measured, wheel_segment_.angle, kStampNoise * rate,
+              wheel_segment_.turned < kRestAngle);
+  wheel_segment_ = Segment();
 }
 
 void Gyroscope::SetBias(const double bias) {
-  filter_.Set(1, -bias * filter_.value(0), options_.bias_noise);
-}
-
-GyroscopeState Gyroscope::state() const {
-  if (compared_ >= kMinCompared &&
-      contradicted_ > kMaxContradicted * compared_) {
-    return GyroscopeState::kRefuted;
-  }
-  if (filter_.sigma(0) > kKnownFactorSigma) return GyroscopeState::kUnproven;
-  return std::abs(filter_.value(0) - 1.) <= kMaxFactorError
-             ? GyroscopeState::kProven
-             : GyroscopeState::kRefuted;
+  scans_.SetBias(bias, options_.bias_noise);
 }
 
 }  // namespace front_end

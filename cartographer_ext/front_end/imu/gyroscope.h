@@ -9,18 +9,18 @@
 // straight on, and breaks the map in the first turn. So a gyroscope is believed
 // when it has measured turns that scans have measured, too.
 //
-//   rotation = factor * rotation by the gyroscope - factor * bias * time
+// Factor and bias are estimated and judged by rotation_check.h, the offset of the
+// clocks by ClockOffset.
 //
-// is estimated by a CalibrationFilter (the gyroscope is the less noisy of both),
-// the offset of the clocks by ClockOffset.
-// The gyroscope is proven once the factor is known and near one, and refuted once
-// it is known and far from one, or contradicts the matches time and again.
+// Where scans are few, wheels prove it likewise: two sensors agree only if both
+// are right. They do not refute it, since wheels slip; and as their scale is not
+// better known than that of a gyroscope, its factor stays one.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_GYROSCOPE_H_
 #define CARTOGRAPHER_EXT_FRONT_END_IMU_GYROSCOPE_H_
 
 #include <cstddef>
 
-#include "cartographer_ext/front_end/calibration_filter.h"
+#include "cartographer_ext/front_end/imu/rotation_check.h"
 #include "cartographer_ext/front_end/odometry/clock_offset.h"
 #include "cartographer_ext/front_end/odometry/odometry_buffer.h"
 
@@ -32,8 +32,6 @@ constexpr double kImuBufferSeconds = 10.;
 constexpr size_t kMaxImuReadings = 20000;
 // The newest reading may be this much older than the scan, seconds.
 constexpr double kMaxImuExtrapolation = 0.1;
-
-enum class GyroscopeState { kUnproven, kProven, kRefuted };
 
 // Noise of the yaw rate, standard deviations.
 struct GyroscopeOptions {
@@ -68,33 +66,44 @@ class Gyroscope {
   // The rotation between the stamps of two scans, from < to. False when the
   // readings do not cover them.
   bool Rotation(double from, double to, GyroscopeRotation* rotation) const;
+  // Of the rotation `angle` over so many seconds, square radians.
+  double Variance(double seconds, double angle) const;
+  // The rotation as received; false when the readings do not cover it.
+  bool Raw(double from, double to, double* angle) const;
+  // The same corrected, radians.
+  double Corrected(double raw, double seconds) const;
 
   void AddMatch(const MatchedRotation& matched);
+  // The rotation by the wheels between two stamps of scans.
+  void AddWheels(double from, double to, double angle);
 
   // The bias is known from a standstill, rad/s.
   void SetBias(double bias);
 
   bool has_readings() const { return has_reading_; }
   GyroscopeState state() const;
-  double factor() const { return filter_.value(0); }
-  double factor_sigma() const { return filter_.sigma(0); }
+  double factor() const { return scans_.factor(); }
+  double factor_sigma() const { return scans_.factor_sigma(); }
   // Scan minus IMU stamp of the same moment, seconds.
   double clock_offset() const { return offset_.offset(); }
 
  private:
-  // A stretch between two scans that the filter compares.
+  // A stretch that is compared.
   struct Segment {
     double start = 0.;
     double end = 0.;
-    double angle = 0.;     // of the matches
+    double angle = 0.;     // by the other sensor
     double turned = 0.;    // sum of absolute angles
     double measured = 0.;  // by the gyroscope, as received
-    double sigma = 0.;     // at the end
   };
 
-  // As received; false when the readings do not cover the interval.
-  bool Raw(double from, double to, double* angle) const;
-  void Learn(const Segment& segment);
+  // Adds to the segment; true once that is long enough.
+  static bool Extend(double from, double to, double angle, double raw,
+                     Segment* segment);
+  // By scans or wheels; null where neither prove it.
+  const RotationCheck* Proof() const;
+  // Of the factor by scans against that of a sound gyroscope.
+  double FactorWeight(bool by_scans) const;
 
   const GyroscopeOptions options_;
   OdometryBuffer headings_;  // integrated readings
@@ -103,12 +112,10 @@ class Gyroscope {
   double last_rate_ = 0.;
   double heading_ = 0.;
   ClockOffset offset_;
-  CalibrationFilter filter_;
-  Segment segment_;
-  // Of the last segments, forgotten slowly: how many there were, and how many
-  // contradicted the filter.
-  double compared_ = 0.;
-  double contradicted_ = 0.;
+  RotationCheck scans_;
+  Segment segment_;  // by scans
+  RotationCheck wheels_;
+  Segment wheel_segment_;
 };
 
 }  // namespace front_end

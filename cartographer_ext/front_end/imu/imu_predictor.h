@@ -63,6 +63,7 @@ class ImuPredictor {
                 bool rotation_observable = false, double sigma = 0.);
 
   const Gyroscope& gyroscope() const { return gyroscope_; }
+  Gyroscope* mutable_gyroscope() { return &gyroscope_; }
   const ImuBias& bias() const { return bias_; }
   bool bias_is_known() const { return bias_is_known_; }
 

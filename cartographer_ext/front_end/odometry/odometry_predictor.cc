@@ -10,10 +10,6 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-// Gaps between scans up to this long are bridged, seconds. A laser of short
-// range crosses a hall or a square without a single echo.
-constexpr double kBufferSeconds = 3600.;
-constexpr size_t kMaxReadings = 20000;
 // A scan may arrive this many median intervals of odometry after the last
 // reading, ...
 constexpr double kMaxLateness = 1.25;
@@ -22,30 +18,37 @@ constexpr double kMaxMedianInterval = 0.8;
 
 }  // namespace
 
-Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
-                                   const Pose2& motion) {
+Eigen::Matrix3d TravelCovariance(const OdometryNoiseOptions& options,
+                                 const Pose2& motion,
+                                 const double rotation_variance) {
   const double distance = std::hypot(motion.x, motion.y);
   const double along =
       options.translation + options.translation_per_metre * distance;
-  const double rotation = options.rotation +
-                          options.rotation_per_radian * std::abs(motion.theta) +
-                          options.rotation_per_metre * distance;
   const Eigen::Vector2d across =
       distance > 0. ? Eigen::Vector2d(-motion.y / distance, motion.x / distance)
                     : Eigen::Vector2d(0., 1.);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   covariance.topLeftCorner<2, 2>() =
       Squared(along) * Eigen::Matrix2d::Identity() +
-      Squared(0.5 * distance * rotation) * across * across.transpose();
-  covariance(2, 2) = Squared(rotation);
+      Squared(0.5 * distance) * rotation_variance * across * across.transpose();
+  covariance(2, 2) = rotation_variance;
   return covariance;
+}
+
+Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
+                                   const Pose2& motion) {
+  const double rotation =
+      options.rotation + options.rotation_per_radian * std::abs(motion.theta) +
+      options.rotation_per_metre * std::hypot(motion.x, motion.y);
+  return TravelCovariance(options, motion, Squared(rotation));
 }
 
 OdometryPredictor::OdometryPredictor(
     const OdometryNoiseOptions& noise, const TimeOffsetOptions& offset,
     const OdometryCalibrationOptions& calibration)
     : noise_(noise),
-      buffer_(kBufferSeconds, kMaxReadings, noise.max_extrapolation),
+      buffer_(kOdometryBufferSeconds, kMaxOdometryReadings,
+              noise.max_extrapolation),
       offset_(offset),
       calibration_(calibration) {}
 

@@ -18,6 +18,8 @@
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_PREDICTOR_H_
 
+#include <cstddef>
+
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/front_end/odometry/clock_offset.h"
@@ -26,6 +28,11 @@
 
 namespace cartographer_ext {
 namespace front_end {
+
+// Gaps between scans up to this long are bridged, seconds. A laser of short range
+// crosses a hall or a square without a single echo.
+constexpr double kOdometryBufferSeconds = 3600.;
+constexpr size_t kMaxOdometryReadings = 20000;
 
 // Standard deviations above. The defaults suit any wheeled robot: they are wide
 // enough that a scan which determines a direction decides it, and finite so
@@ -52,11 +59,17 @@ struct OdometryMotion {
   // not by more than the usual interval between readings: the motion is hardly
   // more certain than by constant velocity.
   bool is_late = false;
+  // The heading is that of the gyroscope (dead_reckoning.h).
+  bool by_gyroscope = false;
 };
 
 // The covariance above for a motion.
 Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
                                    const Pose2& motion);
+
+// The same with another variance of the rotation, square radians.
+Eigen::Matrix3d TravelCovariance(const OdometryNoiseOptions& options,
+                                 const Pose2& motion, double rotation_variance);
 
 // Predicts from odometry, see above. Not thread-safe.
 class OdometryPredictor {

@@ -107,6 +107,47 @@ TEST(GyroscopeTest, AStandstillTellsTheBias) {
   EXPECT_NEAR(rotation.angle, 0., 1e-12);
 }
 
+// Wheels that drift by 0.5 degrees a second and, now and then, slip.
+void Roll(const double seconds, const bool slips, Gyroscope* const gyroscope,
+          const double factor = 1.) {
+  for (int i = 1; 0.05 * i <= seconds; ++i) {
+    const double time = 0.05 * i;
+    for (int k = 4; k >= 0; --k) {
+      gyroscope->Add(time - 0.01 * k, factor * Rate(time - 0.01 * k) + 0.005);
+    }
+    if (i < 20) continue;
+    const bool is_slipping = slips && std::fmod(time, 30.) > 28.;
+    const double wheels = Heading(time) - Heading(time - 0.05) + 0.0005 +
+                          (is_slipping ? 0.03 : 0.);
+    gyroscope->AddWheels(time - 0.05, time, wheels);
+  }
+}
+
+TEST(GyroscopeTest, WheelsProveItWhereThereAreNoScans) {
+  Gyroscope gyroscope((GyroscopeOptions()));
+  Roll(4., false, &gyroscope);
+  EXPECT_EQ(gyroscope.state(), GyroscopeState::kUnproven);
+  Gyroscope other((GyroscopeOptions()));
+  Roll(100., true, &other);
+  ASSERT_EQ(other.state(), GyroscopeState::kProven);
+  GyroscopeRotation rotation;
+  ASSERT_TRUE(other.Rotation(94.9, 98.9, &rotation));
+  // The bias is not known without standstill.
+  EXPECT_NEAR(rotation.angle, Heading(98.9) - Heading(94.9) + 0.02, 0.006);
+  double raw;
+  ASSERT_TRUE(other.Raw(94.9, 98.9, &raw));
+  EXPECT_NEAR(rotation.angle, other.Corrected(raw, 4.), 1e-12);
+  EXPECT_NEAR(rotation.variance, other.Variance(4., raw), 1e-12);
+  EXPECT_LT(other.Variance(4., 0.), other.Variance(4., 1.));
+  EXPECT_LT(other.Variance(4., 1.), other.Variance(8., 1.));
+}
+
+TEST(GyroscopeTest, WheelsDoNotRefuteIt) {
+  Gyroscope gyroscope((GyroscopeOptions()));
+  Roll(100., false, &gyroscope, -1.);
+  EXPECT_EQ(gyroscope.state(), GyroscopeState::kUnproven);
+}
+
 }  // namespace
 }  // namespace front_end
 }  // namespace cartographer_ext

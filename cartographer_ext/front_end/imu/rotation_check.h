@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Compares a gyroscope with another sensor of rotation.
+//
+//   rotation = factor * rotation by the gyroscope + drift * time
+//
+// (drift = - factor * bias) is estimated by a CalibrationFilter; the gyroscope is
+// the less noisy of both. Of a sensor that drifts itself, as wheels of unequal
+// size, only standstill tells the bias. The gyroscope is proven once the factor is known and near one, and
+// refuted once the factor is known and far from one, or where the two contradict
+// each other time and again.
+#ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_ROTATION_CHECK_H_
+#define CARTOGRAPHER_EXT_FRONT_END_IMU_ROTATION_CHECK_H_
+
+#include "cartographer_ext/front_end/calibration_filter.h"
+
+namespace cartographer_ext {
+namespace front_end {
+
+enum class GyroscopeState { kUnproven, kProven, kRefuted };
+
+// See above. Not thread-safe.
+class RotationCheck {
+ public:
+  // `length` of the noise is a time, seconds. `drifts`: the other sensor does.
+  RotationCheck(const CalibrationFilter::Noise& noise, bool drifts);
+
+  // A stretch of so many seconds: the rotation as received from the gyroscope,
+  // that by the other sensor, and the standard deviation of the latter beyond the
+  // noise, radians. At rest a sensor does not drift.
+  void Add(double seconds, double measured, double angle, double sigma,
+           bool is_at_rest);
+  // The next stretch does not continue the last one.
+  void Restart() { filter_.Restart(); }
+  // The bias of the gyroscope is known, rad/s.
+  void SetBias(double bias, double sigma);
+
+  GyroscopeState state() const;
+  double factor() const { return filter_.value(0); }
+  double factor_sigma() const { return filter_.sigma(0); }
+  double drift() const { return filter_.value(1); }  // rad/s
+  double drift_sigma() const { return filter_.sigma(1); }
+
+ private:
+  const bool drifts_;
+  CalibrationFilter filter_;
+  // Of the last stretches, forgotten slowly: how many there were, and how many
+  // contradicted the filter.
+  double compared_ = 0.;
+  double contradicted_ = 0.;
+};
+
+}  // namespace front_end
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_FRONT_END_IMU_ROTATION_CHECK_H_
