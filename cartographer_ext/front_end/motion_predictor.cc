@@ -38,6 +38,9 @@ constexpr double kStationaryMatchRotation = 0.01;
 constexpr double kRelativeSpeedError = 0.2;
 // Longer intervals are bridged by dead reckoning, seconds.
 constexpr double kReckonedInterval = 1.;
+// A submap of fewer scans is hardly more than the last scan, whose errors a match
+// repeats: no evidence of a bias of the gyroscope.
+constexpr int kMinScansInMap = 10;
 
 // The second moment of an error of `difference`.
 Eigen::Matrix3d Spread(const Pose2& difference) {
@@ -296,10 +299,11 @@ OdometryState MotionPredictor::AddMatch(const double time,
   ImuMotion imu;
   const double speed_change =
       IntegrateImu(last_time_, time, &imu) ? SpeedChange(interval, imu) : 0.;
-  imu_.AddMatch(last_time_, time,
-                IsStationary(time, matched.motion) ? Pose2() : matched.motion,
-                matched.rotation_observable,
-                std::sqrt(std::max(0., matched.covariance(2, 2))));
+  imu_.AddMatch(
+      last_time_, time,
+      IsStationary(time, matched.motion) ? Pose2() : matched.motion,
+      {matched.rotation_observable && matched.scans_in_map >= kMinScansInMap,
+       matched.scan_heading, matched.scan_heading_sigma});
   UpdateVelocity(time, matched, speed_change);
   last_time_ = time;
   UpdateInsertion(time, matched.motion, state);

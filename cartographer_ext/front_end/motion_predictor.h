@@ -86,6 +86,12 @@ struct MatchedMotion {
   // and the rotation.
   bool translation_observable = true;
   bool rotation_observable = true;
+  // The heading by the scan alone minus that of the match, and its standard
+  // deviation, radians.
+  double scan_heading = 0.;
+  double scan_heading_sigma = 0.;
+  // Scans of the submap that it was matched against.
+  int scans_in_map = 1000;
   // Of the pose, in the frame of the robot at the last scan.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   // The match started from a prediction by the velocity, with or without IMU.

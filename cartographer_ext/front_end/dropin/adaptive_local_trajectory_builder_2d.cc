@@ -89,6 +89,20 @@ bool InnovationOf(const Pose2& last_pose, const MotionPrediction& prediction,
   return true;
 }
 
+// Of the heading by the scan alone, radians; its position is unknown where it does
+// not tell that.
+double ScanHeadingSigma(const scan_matching::MatchReport& report) {
+  constexpr double kMetres = 1.;
+  constexpr double kRadians = 1.;
+  const Eigen::Matrix3d information =
+      report.scan_information +
+      Eigen::Matrix3d(Eigen::Vector3d(1. / (kMetres * kMetres),
+                                      1. / (kMetres * kMetres),
+                                      1. / (kRadians * kRadians))
+                          .asDiagonal());
+  return std::sqrt(information.inverse()(2, 2));
+}
+
 PointCloud FeaturePoints(const AdaptiveFeatureOptions& options,
                          const PointCloud& cloud) {
   std::vector<Eigen::Vector2d> points;
@@ -295,12 +309,16 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
   matched.rotation_observable =
       match.report.degeneracy.rotation_weight > kMinObservableWeight;
   matched.covariance = InFrameOf(pose_, match.report.covariance);
+  matched.scan_heading =
+      NormalizeAngle(match.report.match.theta - match.pose.theta);
+  matched.scan_heading_sigma = ScanHeadingSigma(match.report);
   matched.from_velocity =
       (prediction.source == PredictionSource::kConstantVelocity ||
        prediction.source == PredictionSource::kImu) &&
       !match.relocated;
   const auto submap = submaps_.Reference();
   if (submap != nullptr) {
+    matched.scans_in_map = submap->num_range_data();
     matched.evidence = [&](const Pose2& error) {
       return scan_matching::ScanEvidence(match.pose, match.pose * error, cloud,
                                          *submap->grid());

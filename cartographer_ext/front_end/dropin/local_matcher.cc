@@ -246,6 +246,7 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
       // In that case odometry is right more often than the match.
       match.pose = predicted.pose;
       match.report.covariance = predicted.covariance;
+      match.report.scan_information.setZero();
       match.score = scan_matching::MeanScore(match.pose, cloud, grid);
     }
   }

@@ -70,10 +70,11 @@ bool Gyroscope::Raw(const double from, const double to,
 
 const RotationCheck* Gyroscope::Proof() const {
   if (scans_.state() == GyroscopeState::kProven) return &scans_;
-  return scans_.state() == GyroscopeState::kUnproven &&
-                 wheels_.state() == GyroscopeState::kProven
-             ? &wheels_
-             : nullptr;
+  // Scans that contradict a gyroscope which agrees with the wheels are wrong.
+  const bool is_open =
+      scans_.state() == GyroscopeState::kUnproven || !scans_.factor_is_known();
+  return is_open && wheels_.state() == GyroscopeState::kProven ? &wheels_
+                                                               : nullptr;
 }
 
 GyroscopeState Gyroscope::state() const {
@@ -127,19 +128,22 @@ bool Gyroscope::Extend(const double from, const double to, const double angle,
 
 void Gyroscope::AddMatch(const MatchedRotation& matched) {
   double raw;
-  if (!Raw(matched.from, matched.to, &raw) || !matched.is_observable ||
-      matched.sigma > kMaxSigma || matched.to - matched.from > kMaxInterval) {
+  const ScanHeading& heading = matched.heading;
+  const double angle = matched.angle + heading.offset - last_heading_;
+  last_heading_ = heading.offset;
+  if (!Raw(matched.from, matched.to, &raw) || !heading.is_observable ||
+      heading.sigma > kMaxSigma || matched.to - matched.from > kMaxInterval) {
     segment_ = Segment();
+    last_heading_ = 0.;
     scans_.Restart();
     return;
   }
-  offset_.AddMatch(matched.from, matched.to, matched.angle, headings_);
-  const bool is_long =
-      Extend(matched.from, matched.to, matched.angle, raw, &segment_);
+  offset_.AddMatch(matched.from, matched.to, angle, headings_);
+  const bool is_long = Extend(matched.from, matched.to, angle, raw, &segment_);
   if (!is_long) return;
   const double sigma =
-      std::hypot(matched.sigma, kStampNoise / (matched.to - matched.from) *
-                                    std::abs(matched.angle));
+      std::hypot(heading.sigma,
+                 kStampNoise / (matched.to - matched.from) * std::abs(angle));
   scans_.Add(segment_.end - segment_.start, segment_.measured, segment_.angle,
              sigma, false);
   segment_ = Segment();

@@ -46,13 +46,20 @@ struct GyroscopeRotation {
   double variance = 0.;  // square radians
 };
 
+// What a scan alone tells of the heading, without the prediction: a gyroscope must
+// not be confirmed by its own prediction, nor by that of the wheels.
+struct ScanHeading {
+  bool is_observable = false;
+  double offset = 0.;  // from the heading of the match, radians
+  double sigma = 0.;
+};
+
 // The rotation between two scans by the scan matcher.
 struct MatchedRotation {
   double from = 0.;  // seconds
   double to = 0.;
-  double angle = 0.;  // radians
-  double sigma = 0.;  // of the pose at `to`
-  bool is_observable = true;
+  double angle = 0.;    // radians
+  ScanHeading heading;  // at `to`
 };
 
 // Calibrates and checks the yaw rate, see above. Not thread-safe.
@@ -113,7 +120,8 @@ class Gyroscope {
   double heading_ = 0.;
   ClockOffset offset_;
   RotationCheck scans_;
-  Segment segment_;  // by scans
+  Segment segment_;           // by scans
+  double last_heading_ = 0.;  // offset of the scan before
   RotationCheck wheels_;
   Segment wheel_segment_;
 };

@@ -107,11 +107,10 @@ bool ImuPredictor::Predict(const double from, const double to,
 }
 
 void ImuPredictor::AddMatch(const double from, const double to,
-                            const Pose2& match, const bool rotation_observable,
-                            const double sigma) {
+                            const Pose2& match, const ScanHeading& heading) {
   const double interval = to - from;
   if (readings_.empty() || !(interval > 0.)) return;
-  gyroscope_.AddMatch({from, to, match.theta, sigma, rotation_observable});
+  gyroscope_.AddMatch({from, to, match.theta, heading});
   const bool is_stationary =
       std::hypot(match.x, match.y) <= kStationarySpeed * interval &&
       std::abs(match.theta) <= kStationaryTurnRate * interval;

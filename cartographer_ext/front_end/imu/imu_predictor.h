@@ -58,9 +58,9 @@ class ImuPredictor {
                ImuMotion* motion) const;
 
   // The matched motion between two scans; estimates the biases when it is zero.
-  // `sigma` is that of the rotation, radians, if the scan determines it.
+  // `heading`: what the scan at `to` tells of it.
   void AddMatch(double from, double to, const Pose2& match,
-                bool rotation_observable = false, double sigma = 0.);
+                const ScanHeading& heading = ScanHeading());
 
   const Gyroscope& gyroscope() const { return gyroscope_; }
   Gyroscope* mutable_gyroscope() { return &gyroscope_; }

@@ -51,12 +51,16 @@ void RotationCheck::SetBias(const double bias, const double sigma) {
   filter_.Set(1, -bias * filter_.value(0), sigma);
 }
 
+bool RotationCheck::factor_is_known() const {
+  return filter_.sigma(0) <= kKnownFactorSigma;
+}
+
 GyroscopeState RotationCheck::state() const {
   if (compared_ >= kMinCompared &&
       contradicted_ > kMaxContradicted * compared_) {
     return GyroscopeState::kRefuted;
   }
-  if (filter_.sigma(0) > kKnownFactorSigma) return GyroscopeState::kUnproven;
+  if (!factor_is_known()) return GyroscopeState::kUnproven;
   return std::abs(filter_.value(0) - 1.) <= kMaxFactorError
              ? GyroscopeState::kProven
              : GyroscopeState::kRefuted;

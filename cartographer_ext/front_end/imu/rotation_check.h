@@ -37,6 +37,7 @@ class RotationCheck {
   void SetBias(double bias, double sigma);
 
   GyroscopeState state() const;
+  bool factor_is_known() const;
   double factor() const { return filter_.value(0); }
   double factor_sigma() const { return filter_.sigma(0); }
   double drift() const { return filter_.value(1); }  // rad/s

@@ -49,7 +49,7 @@ Gyroscope Driven(const Sensor& sensor, const double seconds) {
     matched.from = time - 0.3;
     matched.to = time - 0.2;
     matched.angle = Heading(matched.to) - Heading(matched.from) + noise;
-    matched.sigma = 0.001;
+    matched.heading = {true, 0., 0.001};
     gyroscope.AddMatch(matched);
   }
   return gyroscope;
