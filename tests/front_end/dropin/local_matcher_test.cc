@@ -158,6 +158,8 @@ TEST_F(LocalMatcherTest, AFewPointsDoNotOverruleOdometry) {
   EXPECT_FALSE(match.relocated);
   EXPECT_LT(std::hypot(match.pose.x - off.x, match.pose.y - off.y), 0.02);
   EXPECT_NEAR(match.pose.theta, off.theta, 0.02);
+  // So the scan is no evidence of anything.
+  EXPECT_EQ(match.report.scan_information.norm(), 0.);
 }
 
 // Wheels that slip do so for a while: the next scan needs less evidence, until

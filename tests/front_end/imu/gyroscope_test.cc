@@ -123,6 +123,64 @@ void Roll(const double seconds, const bool slips, Gyroscope* const gyroscope,
   }
 }
 
+// Matches follow a prediction that turns by 0.02 rad/s too much, the scans do not.
+TEST(GyroscopeTest, TheScanAloneIsItsEvidence) {
+  Gyroscope gyroscope((GyroscopeOptions()));
+  for (int i = 0; i <= 6000; ++i) {
+    const double time = 0.01 * i;
+    gyroscope.Add(time, Rate(time));
+    if (i < 50 || i % 10 != 0) continue;
+    MatchedRotation matched;
+    matched.from = time - 0.3;
+    matched.to = time - 0.2;
+    matched.angle = Heading(matched.to) - Heading(matched.from) + 0.002;
+    matched.heading = {true, -0.002 * (i / 10 - 4), 0.001};
+    gyroscope.AddMatch(matched);
+  }
+  ASSERT_EQ(gyroscope.state(), GyroscopeState::kProven);
+  EXPECT_NEAR(gyroscope.Corrected(0., 10.), 0., 0.01);
+}
+
+TEST(GyroscopeTest, AScanThatHardlyTellsTheHeadingIsNone) {
+  for (const double sigma : {0.001, 0.02}) {
+    Gyroscope gyroscope((GyroscopeOptions()));
+    for (int i = 0; i <= 3000; ++i) {
+      const double time = 0.01 * i;
+      gyroscope.Add(time, Rate(time));
+      if (i < 50 || i % 10 != 0) continue;
+      const double from = time - 0.3, to = time - 0.2;
+      gyroscope.AddMatch(
+          {from, to, Heading(to) - Heading(from), {true, 0., sigma}});
+    }
+    EXPECT_EQ(gyroscope.state(), sigma < 0.01 ? GyroscopeState::kProven
+                                              : GyroscopeState::kUnproven);
+  }
+}
+
+// Scans that turn to and fro, as in a hall that looks the same all round.
+TEST(GyroscopeTest, WheelsThatAgreeWithItOverruleContradictions) {
+  for (const bool has_wheels : {false, true}) {
+    Gyroscope gyroscope((GyroscopeOptions()));
+    for (int i = 0; i <= 6000; ++i) {
+      const double time = 0.01 * i;
+      gyroscope.Add(time, Rate(time));
+      if (i < 50) continue;
+      if (has_wheels && i % 5 == 0) {
+        gyroscope.AddWheels(time - 0.05, time,
+                            Heading(time) - Heading(time - 0.05));
+      }
+      if (i % 50 != 0) continue;
+      const bool is_straight = Rate(time - 0.2) == 0. && Rate(time - 0.5) == 0.;
+      gyroscope.AddMatch({time - 0.5,
+                          time - 0.2,
+                          i % 100 == 0 ? 0.3 : -0.3,
+                          {is_straight, 0., 0.}});
+    }
+    EXPECT_EQ(gyroscope.state(),
+              has_wheels ? GyroscopeState::kProven : GyroscopeState::kRefuted);
+  }
+}
+
 TEST(GyroscopeTest, WheelsProveItWhereThereAreNoScans) {
   Gyroscope gyroscope((GyroscopeOptions()));
   Roll(4., false, &gyroscope);
