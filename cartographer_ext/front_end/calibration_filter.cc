@@ -46,12 +46,12 @@ double CalibrationFilter::sigma(const int i) const {
 
 bool CalibrationFilter::Add(const Eigen::Vector2d& regressors,
                             const double length, const double measured,
-                            const double extra) {
+                            const double extra, const double walk) {
   Eigen::Matrix3d transition = Eigen::Matrix3d::Identity();
   transition.row(2).head<2>() = regressors.transpose();
   state_ = transition * state_;
   covariance_ = transition * covariance_ * transition.transpose();
-  covariance_(2, 2) += Squared(noise_.walk) * length;
+  covariance_(2, 2) += Squared(noise_.walk) * length + Squared(walk);
   for (int i = 0; i < 2; ++i) {
     // The variance never exceeds the initial one.
     covariance_(i, i) +=

@@ -42,10 +42,11 @@ class CalibrationFilter {
                     const Eigen::Vector2d& floors, const Noise& noise);
 
   // An increment `regressors` (`length` for the noise) and the measured
-  // increment; `extra` is a standard deviation beyond that of a match. Returns
-  // false and restarts when the two are inconsistent.
+  // increment; `extra` is a standard deviation beyond that of a match, `walk` one
+  // of y beyond its noise. Returns false and restarts when the two are
+  // inconsistent.
   bool Add(const Eigen::Vector2d& regressors, double length, double measured,
-           double extra);
+           double extra, double walk = 0.);
 
   // The next increment does not continue the last one.
   void Restart();

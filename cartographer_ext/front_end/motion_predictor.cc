@@ -38,6 +38,8 @@ constexpr double kStationaryMatchRotation = 0.01;
 constexpr double kRelativeSpeedError = 0.2;
 // Longer intervals are bridged by dead reckoning, seconds.
 constexpr double kReckonedInterval = 1.;
+// Of the age of the map that a scan sees, m/s.
+constexpr double kMinSpeed = 0.1;
 // A submap of fewer scans is hardly more than the last scan, whose errors a match
 // repeats: no evidence of a bias of the gyroscope.
 constexpr int kMinScansInMap = 10;
@@ -49,13 +51,13 @@ Eigen::Matrix3d Spread(const Pose2& difference) {
 }
 
 // The mean of two independent rotations, weighted by their variances.
-void FuseRotations(const ImuMotion& imu, OdometryMotion* const odometry) {
+void FuseRotations(const Pose2& imu_motion, const double b,
+                   OdometryMotion* const odometry) {
   const double a = odometry->covariance(2, 2);
-  const double b = imu.covariance(2, 2);
   const double ratio = a / (a + b);
   odometry->motion.theta = NormalizeAngle(
       odometry->motion.theta +
-      ratio * NormalizeAngle(imu.motion.theta - odometry->motion.theta));
+      ratio * NormalizeAngle(imu_motion.theta - odometry->motion.theta));
   odometry->covariance(2, 2) = a * b / (a + b);
 }
 
@@ -171,8 +173,12 @@ void MotionPredictor::PredictByOdometry(
       has_imu ? prediction->covariance : WideCovariance(interval);
   prediction->source = PredictionSource::kOdometry;
   prediction->search_radius = prediction->search_angle = 0.;
-  prediction->motion = odometry.motion;
-  prediction->covariance = OdometryMotionCovariance(odometry, interval);
+  OdometryMotion turned = odometry;
+  if (has_imu) {
+    FuseRotations(without, prediction->covariance(2, 2), &turned);
+  }
+  prediction->motion = turned.motion;
+  prediction->covariance = OdometryMotionCovariance(turned, interval);
   prediction->is_uncertain = is_suspect;
   OdometryMotion since_anchor;
   if (monitor_.state() == OdometryState::kAbsent && has_anchor_ &&
@@ -184,10 +190,13 @@ void MotionPredictor::PredictByOdometry(
   }
   if (has_expectation) prediction->alternatives.push_back(without);
   if (is_suspect) {
+    // Of the rotation nothing is in doubt that the gyroscope has measured.
+    const double rotation_variance = prediction->covariance(2, 2);
     prediction->covariance += covariance_without;
     prediction->covariance += Spread(
         Pose2(odometry.motion.x - without.x, odometry.motion.y - without.y,
               NormalizeAngle(odometry.motion.theta - without.theta)));
+    if (has_imu) prediction->covariance(2, 2) = rotation_variance;
   } else {
     PredictFromInsertion(time, prediction);
   }
@@ -199,7 +208,7 @@ void MotionPredictor::PredictFromInsertion(
   if (!IntegrateOdometry(insertion_time_, time, &odometry)) return;
   ImuMotion imu;
   if (!odometry.by_gyroscope && IntegrateImu(insertion_time_, time, &imu)) {
-    FuseRotations(imu, &odometry);
+    FuseRotations(imu.motion, imu.covariance(2, 2), &odometry);
   }
   prediction->motion = since_insertion_.Inverse() * odometry.motion;
   // Rotates it into the frame of the last scan.
@@ -303,7 +312,9 @@ OdometryState MotionPredictor::AddMatch(const double time,
       last_time_, time,
       IsStationary(time, matched.motion) ? Pose2() : matched.motion,
       {matched.rotation_observable && matched.scans_in_map >= kMinScansInMap,
-       matched.scan_heading, matched.scan_heading_sigma});
+       matched.scan_heading, matched.scan_heading_sigma,
+       0.5 * matched.mean_range /
+           std::max(kMinSpeed, std::hypot(velocity().x, velocity().y))});
   UpdateVelocity(time, matched, speed_change);
   last_time_ = time;
   UpdateInsertion(time, matched.motion, state);

@@ -90,6 +90,8 @@ struct MatchedMotion {
   // deviation, radians.
   double scan_heading = 0.;
   double scan_heading_sigma = 0.;
+  // Mean distance of the points of the scan, metres.
+  double mean_range = 0.;
   // Scans of the submap that it was matched against.
   int scans_in_map = 1000;
   // Of the pose, in the frame of the robot at the last scan.

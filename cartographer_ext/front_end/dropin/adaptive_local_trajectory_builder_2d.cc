@@ -103,6 +103,12 @@ double ScanHeadingSigma(const scan_matching::MatchReport& report) {
   return std::sqrt(information.inverse()(2, 2));
 }
 
+double MeanRange(const PointCloud& cloud) {
+  double sum = 0.;
+  for (const auto& point : cloud) sum += point.position.head<2>().norm();
+  return cloud.empty() ? 0. : sum / static_cast<double>(cloud.size());
+}
+
 PointCloud FeaturePoints(const AdaptiveFeatureOptions& options,
                          const PointCloud& cloud) {
   std::vector<Eigen::Vector2d> points;
@@ -312,6 +318,7 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
   matched.scan_heading =
       NormalizeAngle(match.report.match.theta - match.pose.theta);
   matched.scan_heading_sigma = ScanHeadingSigma(match.report);
+  matched.mean_range = MeanRange(cloud);
   matched.from_velocity =
       (prediction.source == PredictionSource::kConstantVelocity ||
        prediction.source == PredictionSource::kImu) &&

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/front_end/imu/gyroscope.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cartographer_ext/common/pose2.h"
@@ -24,6 +25,8 @@ constexpr double kStampNoise = 0.02;
 // A segment ends after this rotation, radians, or time, seconds.
 constexpr double kSegmentRotation = 0.3;
 constexpr double kSegmentSeconds = 1.;
+// Seconds.
+constexpr double kMinMapAge = 0.5;
 // Scans further apart are a gap, seconds.
 constexpr double kMaxInterval = 1.;
 // A scan measures the rotation if its match has at most this standard
@@ -96,7 +99,8 @@ double Gyroscope::Corrected(const double raw, const double seconds) const {
   // weighted by their variances.
   const double factor =
       proof == &scans_ ? 1. + FactorWeight(true) * (scans_.factor() - 1.) : 1.;
-  return factor * raw + (proof == nullptr ? scans_ : *proof).drift() * seconds;
+  return factor * raw +
+         (proof == nullptr ? scans_ : *proof).EstimateDrift().value * seconds;
 }
 
 double Gyroscope::FactorWeight(const bool by_scans) const {
@@ -109,10 +113,11 @@ double Gyroscope::Variance(const double seconds, const double angle) const {
   const bool by_scans = proof == &scans_;
   const double learnt = by_scans ? Squared(scans_.factor_sigma()) : 1.;
   const double factor_variance = FactorWeight(by_scans) * learnt;
-  const double drift_sigma =
-      proof == nullptr ? options_.bias_noise : proof->drift_sigma();
-  return Squared(options_.density) * seconds + Squared(drift_sigma * seconds) +
-         factor_variance * Squared(angle);
+  const double drift_variance = proof == nullptr
+                                    ? Squared(options_.bias_noise)
+                                    : proof->EstimateDrift().variance;
+  return Squared(options_.density) * seconds +
+         drift_variance * Squared(seconds) + factor_variance * Squared(angle);
 }
 
 bool Gyroscope::Extend(const double from, const double to, const double angle,
@@ -139,13 +144,18 @@ void Gyroscope::AddMatch(const MatchedRotation& matched) {
     return;
   }
   offset_.AddMatch(matched.from, matched.to, angle, headings_);
-  const bool is_long = Extend(matched.from, matched.to, angle, raw, &segment_);
-  if (!is_long) return;
-  const double sigma =
+  if (!Extend(matched.from, matched.to, angle, raw, &segment_)) return;
+  const double seconds = segment_.end - segment_.start;
+  RotationCheck::Stretch stretch;
+  stretch.seconds = seconds;
+  stretch.measured = segment_.measured;
+  stretch.angle = segment_.angle;
+  stretch.sigma =
       std::hypot(heading.sigma,
                  kStampNoise / (matched.to - matched.from) * std::abs(angle));
-  scans_.Add(segment_.end - segment_.start, segment_.measured, segment_.angle,
-             sigma, false);
+  stretch.walk = heading.sigma *
+                 std::sqrt(seconds / std::max(kMinMapAge, heading.map_age));
+  scans_.Add(stretch);
   segment_ = Segment();
 }
 
@@ -159,9 +169,13 @@ void Gyroscope::AddWheels(const double from, const double to,
   }
   if (!Extend(from, to, angle, raw, &wheel_segment_)) return;
   const double rate = std::abs(angle) / (to - from);
-  wheels_.Add(wheel_segment_.end - wheel_segment_.start,
-              wheel_segment_.measured, wheel_segment_.angle, kStampNoise * rate,
-              wheel_segment_.turned < kRestAngle);
+  RotationCheck::Stretch stretch;
+  stretch.seconds = wheel_segment_.end - wheel_segment_.start;
+  stretch.measured = wheel_segment_.measured;
+  stretch.angle = wheel_segment_.angle;
+  stretch.sigma = kStampNoise * rate;
+  stretch.is_at_rest = wheel_segment_.turned < kRestAngle;
+  wheels_.Add(stretch);
   wheel_segment_ = Segment();
 }
 

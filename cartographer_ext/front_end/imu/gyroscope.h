@@ -52,6 +52,9 @@ struct ScanHeading {
   bool is_observable = false;
   double offset = 0.;  // from the heading of the match, radians
   double sigma = 0.;
+  // Seconds after which scans see another part of the map: the errors of those
+  // that see the same part are the same.
+  double map_age = 10.;
 };
 
 // The rotation between two scans by the scan matcher.

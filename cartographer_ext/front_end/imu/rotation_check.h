@@ -26,11 +26,17 @@ class RotationCheck {
   // `length` of the noise is a time, seconds. `drifts`: the other sensor does.
   RotationCheck(const CalibrationFilter::Noise& noise, bool drifts);
 
-  // A stretch of so many seconds: the rotation as received from the gyroscope,
-  // that by the other sensor, and the standard deviation of the latter beyond the
-  // noise, radians. At rest a sensor does not drift.
-  void Add(double seconds, double measured, double angle, double sigma,
-           bool is_at_rest);
+  struct Stretch {
+    double seconds = 0.;
+    double measured = 0.;  // as received from the gyroscope, radians
+    double angle = 0.;     // by the other sensor
+    // Standard deviations of the latter beyond the noise: at the end, and of an
+    // error that stays.
+    double sigma = 0.;
+    double walk = 0.;
+    bool is_at_rest = false;  // a sensor does not drift
+  };
+  void Add(const Stretch& stretch);
   // The next stretch does not continue the last one.
   void Restart() { filter_.Restart(); }
   // The bias of the gyroscope is known, rad/s.
@@ -40,8 +46,14 @@ class RotationCheck {
   bool factor_is_known() const;
   double factor() const { return filter_.value(0); }
   double factor_sigma() const { return filter_.sigma(0); }
-  double drift() const { return filter_.value(1); }  // rad/s
-  double drift_sigma() const { return filter_.sigma(1); }
+  // Its estimate and variance, rad/s and its square: that of the filter, and what
+  // is known of gyroscopes. Most are calibrated at rest by their drivers, a few
+  // are not.
+  struct Drift {
+    double value;
+    double variance;
+  };
+  Drift EstimateDrift() const;
 
  private:
   const bool drifts_;

