@@ -283,11 +283,10 @@ std::string BaseConfiguration::CodeWith(
 
 std::string BaseConfiguration::Fingerprint() const {
   const evaluation::SensorSettings& sensors = parsed_.sensors;
-  return HashText(absl::StrCat(Bytes(parsed_), "|", sensors.use_odometry, "|",
-                               sensors.use_recorded_imu, "|",
-                               sensors.odometry_source, "|", sensors.min_range,
-                               "|", sensors.max_range, "|",
-                               sensors.tracking_frame));
+  return HashText(absl::StrCat(
+      Bytes(parsed_), "|", sensors.use_odometry, "|", sensors.use_recorded_imu,
+      "|", sensors.odometry_source, "|", sensors.min_range, "|",
+      sensors.max_range, "|", sensors.tracking_frame));
 }
 
 }  // namespace tuning
