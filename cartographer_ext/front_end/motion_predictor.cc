@@ -36,6 +36,9 @@ constexpr double kStationaryMatchRotation = 0.01;
 // Error of the matched speed, relative to the largest change of speed, over a
 // gap that the IMU bridges.
 constexpr double kRelativeSpeedError = 0.2;
+// Over a longer gap it is no explanation that odometry jumped and the robot stood
+// still: the last room would be found again in a room that looks alike. Seconds.
+constexpr double kLongestStop = 5.;
 // Longer intervals are bridged by dead reckoning, seconds.
 constexpr double kReckonedInterval = 1.;
 // Of the age of the map that a scan sees, m/s.
@@ -188,7 +191,9 @@ void MotionPredictor::PredictByOdometry(
     prediction->alternatives.push_back(since_anchor_.Inverse() *
                                        since_anchor.motion);
   }
-  if (has_expectation) prediction->alternatives.push_back(without);
+  if (has_expectation || interval < kLongestStop) {
+    prediction->alternatives.push_back(without);
+  }
   if (is_suspect) {
     // Of the rotation nothing is in doubt that the gyroscope has measured.
     const double rotation_variance = prediction->covariance(2, 2);

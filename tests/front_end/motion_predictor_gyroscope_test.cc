@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// MotionPredictor with a gyroscope whose proof is at stake.
+// MotionPredictor over gaps, and with a gyroscope whose proof is at stake.
 #include <cmath>
 #include <memory>
 
@@ -86,6 +86,19 @@ TEST_F(MotionPredictorGyroscopeTest, AGapIsBridgedByDeadReckoning) {
     EXPECT_LT((prediction.motion.translation() - expected.translation()).norm(),
               0.05 * 20.);
   }
+}
+
+// Odometry may have jumped while the robot stood for seconds, not for minutes.
+TEST(MotionPredictorGapTest, StandingStillIsAnAlternativeForAWhile) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  for (int i = 0; i <= 400; ++i) {
+    predictor.AddOdometry(0.05 * i, Pose2(0.02 * i, 0., 0.));
+  }
+  predictor.AddMatch(0.9, MatchedMotion());
+  predictor.AddMatch(1., MatchedMotion());
+  ASSERT_EQ(predictor.Predict(4.).alternatives.size(), 1u);
+  EXPECT_EQ(predictor.Predict(4.).alternatives[0].x, 0.);
+  EXPECT_TRUE(predictor.Predict(8.).alternatives.empty());
 }
 
 }  // namespace

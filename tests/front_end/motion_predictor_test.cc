@@ -62,7 +62,6 @@ TEST(MotionPredictorTest, OdometryBridgesAGapInTheScans) {
   const MotionPrediction prediction = predictor.Predict(4.);
   EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
   EXPECT_NEAR(prediction.motion.theta, -2.1, 1e-9);
-  EXPECT_TRUE(prediction.alternatives.empty());
   EXPECT_FALSE(prediction.is_uncertain);
 }
 
