@@ -39,6 +39,12 @@ bool TakesInMoreThanByChance(const DecidedMap& map, const DecidedMap& wider,
 bool RejectsMoreThanByChance(const DecidedMap& map, const DecidedMap& narrower,
                              const LoopSupport& support, RobustSolver* solver);
 
+// Whether some of the loops in force in `map` that `narrower` rejects may be
+// wrong ones, which fit by chance with the noise of `solver`. Only these are a
+// reason for a narrower gate.
+bool MayRejectWrongLoops(const DecidedMap& map, const DecidedMap& narrower,
+                         const LoopSupport& support, RobustSolver* solver);
+
 // Whether of the loops that are in force by `decisions` no more are rejected by
 // `others` than right ones by a gate of 99 %: then there is nothing to ask.
 bool RejectsFew(const std::vector<WhitenedEdge>& edges,

@@ -241,7 +241,8 @@ bool BringsInRightLoops(const NoiseOfMap& map,
       portfolio->support(), &solver);
 }
 
-// Whether what is lost with a metric speaks against it.
+// Whether what is lost with a metric that makes the gate narrower speaks against
+// it: right loops, or nothing that may be wrong.
 bool LosesRightLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                      const NoiseHypothesis& hypothesis,
                      Portfolio* const portfolio) {
@@ -250,10 +251,12 @@ bool LosesRightLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                  {hypothesis.metric.odometry / applied.odometry,
                   hypothesis.metric.loops / applied.loops},
                  hypothesis.poses);
-  return !RejectsFew(portfolio->edges(), map.decisions, narrower.decisions) &&
-         RejectsMoreThanByChance({portfolio->best().poses, map.decisions},
-                                 narrower, portfolio->support(),
-                                 portfolio->solver());
+  const DecidedMap wider = {portfolio->best().poses, map.decisions};
+  const LoopSupport& support = portfolio->support();
+  RobustSolver* const solver = portfolio->solver();
+  return !MayRejectWrongLoops(wider, narrower, support, solver) ||
+         (!RejectsFew(solver->edges(), map.decisions, narrower.decisions) &&
+          RejectsMoreThanByChance(wider, narrower, support, solver));
 }
 
 }  // namespace
@@ -284,12 +287,14 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
   const NoiseScale& scale = map.scale;
   if (map.accepted < kMinLoops) return false;
   double loops = scale.loops.factor;
-  if (scale.loops.high * kMinRatio > scale.odometry.low &&
-      scale.odometry.high * kMinRatio > scale.loops.low) {
+  const bool differ = scale.loops.high * kMinRatio <= scale.odometry.low ||
+                      scale.odometry.high * kMinRatio <= scale.loops.low;
+  const bool mixed = !differ && AreMixed(map, portfolio);
+  if (!differ) {
     // A gate that is too wide lets wrong loops in, which make the noise of the
     // loops look larger than it is.
     if (scale.loops.high >= kSmaller ||
-        (map.accepted > kFewAccepted && !AreMixed(map, portfolio))) {
+        (map.accepted > kFewAccepted && !mixed)) {
       return false;
     }
     loops = TypicalNoise(LeaveOneOutInnovations(portfolio->best().poses,
@@ -306,8 +311,13 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
       WithNoiseScale(portfolio->edges(), 1. / applied.odometry,
                      1. / applied.loops),
       {applied.odometry * scale.odometry.factor, applied.loops * loops}, trial);
-  return found->valid && found->accepted >= kMostly * map.accepted &&
-         IsAnother(applied, &found->metric);
+  if (!found->valid || found->accepted < kMostly * map.accepted ||
+      !IsAnother(applied, &found->metric)) {
+    return false;
+  }
+  // Where no wrong loop is found, none has hidden the ratio.
+  return differ || (mixed && found->accepted < map.accepted) ||
+         !LosesRightLoops(applied, map, *found, portfolio);
 }
 
 bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,

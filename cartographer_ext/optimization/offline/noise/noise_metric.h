@@ -77,7 +77,9 @@ bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
 bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                          Portfolio* portfolio, NoiseHypothesis* found);
 // The actual ratio of the noise of odometry and loops, if it differs from that of
-// their matrices. The best map has to be explained as well.
+// their matrices. The best map has to be explained as well. Either the intervals of
+// both factors are apart, or wrong loops in force hide the difference; where the
+// metric rejects none that may be wrong, none does.
 bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
                     Portfolio* portfolio, NoiseHypothesis* found);
 // Smaller, where another map of the portfolio costs less with it than its best
@@ -86,6 +88,7 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
 // Where the same map is the best in both metrics, the given one is as good. The
 // less noise loops have, the more of them are rejected, and those that are left
 // agree ever better: more may not be lost than can have been in force by chance.
+// Where no wrong loop is to be expected in force, the given noise is good enough.
 bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
                       Portfolio* portfolio, NoiseHypothesis* found);
 

@@ -83,6 +83,21 @@ TEST(LoopsByChanceTest, WrongLoopsFitAWideGateByChance) {
                                       world.support, &as_measured));
 }
 
+TEST(LoopsByChanceTest, WrongLoopsAreRejectedWhereTheyMayFit) {
+  const World all_right(0), world(400);
+  RobustSolver right(all_right.edges), solver(world.edges);
+  const std::vector<WhitenedEdge> wide = WithNoiseScale(world.edges, 1., 40.);
+  RobustSolver wide_solver(wide);
+  EXPECT_TRUE(MayRejectWrongLoops(world.map, world.Without(100), world.support,
+                                  &wide_solver));
+  // None is rejected.
+  EXPECT_FALSE(
+      MayRejectWrongLoops(world.map, world.map, world.support, &wide_solver));
+  // None fits by chance.
+  EXPECT_FALSE(MayRejectWrongLoops(all_right.map, all_right.Without(100),
+                                   all_right.support, &right));
+}
+
 TEST(LoopsByChanceTest, PoissonLimits) {
   EXPECT_EQ(MoreThanExpected(0.), 1.);
   EXPECT_EQ(MoreThanExpected(0.13), 3.);

@@ -144,6 +144,65 @@ TEST(NoiseMetricTest, LoopsThatAgreeBetterDoNotMakeTheOthersWrong) {
   EXPECT_LT(found.accepted, 0.95 * map.loops);
 }
 
+// All loops are in force, and in the map of the other noise, too: no wrong one
+// among them hides anything.
+TEST(NoiseMetricTest, ARatioThatRejectsNoLoopIsNotNeeded) {
+  for (const int seed : {2, 3}) {
+    PoseGraph graph =
+        WithNoiseScale(test::MakeGridWorld(300, 5, seed).graph, 1.2, 4.);
+    int loops = 0;
+    std::vector<PoseGraphEdge> edges;
+    for (const PoseGraphEdge& edge : graph.edges) {
+      if (!edge.is_loop || ++loops % 6 == 0) edges.push_back(edge);
+    }
+    graph.edges = std::move(edges);
+    Portfolio portfolio(graph, PortfolioOptions());
+    portfolio.Run();
+    const NoiseOfMap map = MeasureNoise(&portfolio);
+    EXPECT_EQ(map.accepted, map.loops);
+    EXPECT_LT(map.scale.loops.high, 0.5);
+    NoiseHypothesis found;
+    EXPECT_FALSE(FindNoiseRatio(NoiseMetric(), map, &portfolio, &found));
+    // It was looked into.
+    EXPECT_TRUE(found.valid);
+    EXPECT_EQ(found.accepted, map.accepted);
+  }
+}
+
+// Wheels that slip once, which three loops tell, do not make these wrong where
+// all else is less noisy than claimed: no wrong loop fits so well by chance.
+TEST(NoiseMetricTest, ASmallerNoiseThatRejectsRightLoopsIsNotNeeded) {
+  constexpr double kClaimed = 4., kSlip = 0.6;
+  constexpr int kSlippery = 280, kAfter = 3;
+  PoseGraph graph = test::MakeGridWorld(300, 5, 3).graph;
+  std::vector<PoseGraphEdge> edges;
+  std::vector<double> before;
+  int after = 0;
+  for (PoseGraphEdge edge : graph.edges) {
+    const bool tells = edge.is_loop && edge.to >= kSlippery;
+    if (tells && (edge.from >= kSlippery || ++after > kAfter)) continue;
+    if (!edge.is_loop && edge.to == kSlippery) edge.measurement.x += kSlip;
+    before.push_back(tells ? 0. : 1.);
+    edges.push_back(edge);
+  }
+  graph.edges = std::move(edges);
+  graph = WithNoiseScale(graph, kClaimed, kClaimed);
+  Portfolio portfolio(graph, PortfolioOptions());
+  portfolio.Run();
+  SolverOptions options;
+  options.edge_weights = before;
+  std::vector<Pose2> poses = portfolio.best().poses;
+  portfolio.solver()->Solve(options, &poses);
+  portfolio.Add("slipped", poses);
+  const NoiseOfMap map = MeasureNoise(&portfolio);
+  EXPECT_EQ(map.accepted, map.loops);
+  NoiseHypothesis found;
+  EXPECT_FALSE(FindSmallerNoise(NoiseMetric(), map, &portfolio, &found));
+  // It costs less there.
+  EXPECT_TRUE(found.valid);
+  EXPECT_EQ(found.accepted, map.accepted - kAfter);
+}
+
 TEST(NoiseMetricTest, AMapOfFewLoopsSaysNothing) {
   test::GridWorld world = test::MakeGridWorld(60, 5, 2);
   int loops = 0;
