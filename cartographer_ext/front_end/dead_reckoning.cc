@@ -71,6 +71,7 @@ bool DeadReckoning::Predict(const double from, const double to,
     return false;
   }
   Pose2 sum;
+  const GyroscopeCorrection correction = gyroscope.Correction();
   const auto first = std::upper_bound(
       steps_.begin(), steps_.end(), start,
       [](const double time, const Step& step) { return time < step.end; });
@@ -81,8 +82,8 @@ bool DeadReckoning::Predict(const double from, const double to,
         (std::min(end, step->end) - std::max(start, step->start)) / seconds;
     const Pose2 wheels = odometry.calibration().Correct(
         Interpolate(Pose2(), step->motion, part));
-    sum = sum * Turned(wheels, gyroscope.Corrected(part * step->turned,
-                                                   part * seconds));
+    sum = sum *
+          Turned(wheels, correction.Angle(part * step->turned, part * seconds));
   }
   OdometryMotion rest;
   if (end > steps_.back().end) {
@@ -93,7 +94,7 @@ bool DeadReckoning::Predict(const double from, const double to,
   }
   motion->motion = sum;
   motion->covariance =
-      TravelCovariance(noise_, sum, gyroscope.Variance(to - from, sum.theta));
+      TravelCovariance(noise_, sum, correction.Variance(sum.theta, to - from));
   motion->covariance.topLeftCorner<2, 2>() +=
       Squared(odometry.calibration().translation_scale_sigma()) *
       sum.translation().squaredNorm() * Eigen::Matrix2d::Identity();

@@ -41,7 +41,7 @@ constexpr double kRelativeSpeedError = 0.2;
 constexpr double kLongestStop = 5.;
 // Longer intervals are bridged by dead reckoning, seconds.
 constexpr double kReckonedInterval = 1.;
-// Of the age of the map that a scan sees, m/s.
+// Least speed by which the age of the map that a scan sees is computed, m/s.
 constexpr double kMinSpeed = 0.1;
 // A submap of fewer scans is hardly more than the last scan, whose errors a match
 // repeats: no evidence of a bias of the gyroscope.
@@ -54,14 +54,14 @@ Eigen::Matrix3d Spread(const Pose2& difference) {
 }
 
 // The mean of two independent rotations, weighted by their variances.
-void FuseRotations(const Pose2& imu_motion, const double b,
-                   OdometryMotion* const odometry) {
-  const double a = odometry->covariance(2, 2);
-  const double ratio = a / (a + b);
-  odometry->motion.theta = NormalizeAngle(
-      odometry->motion.theta +
-      ratio * NormalizeAngle(imu_motion.theta - odometry->motion.theta));
-  odometry->covariance(2, 2) = a * b / (a + b);
+void FuseRotation(const double angle, const double variance,
+                  OdometryMotion* const odometry) {
+  const double own = odometry->covariance(2, 2);
+  const double ratio = own / (own + variance);
+  odometry->motion.theta =
+      NormalizeAngle(odometry->motion.theta +
+                     ratio * NormalizeAngle(angle - odometry->motion.theta));
+  odometry->covariance(2, 2) = own * variance / (own + variance);
 }
 
 }  // namespace
@@ -178,7 +178,7 @@ void MotionPredictor::PredictByOdometry(
   prediction->search_radius = prediction->search_angle = 0.;
   OdometryMotion turned = odometry;
   if (has_imu) {
-    FuseRotations(without, prediction->covariance(2, 2), &turned);
+    FuseRotation(without.theta, prediction->covariance(2, 2), &turned);
   }
   prediction->motion = turned.motion;
   prediction->covariance = OdometryMotionCovariance(turned, interval);
@@ -213,7 +213,7 @@ void MotionPredictor::PredictFromInsertion(
   if (!IntegrateOdometry(insertion_time_, time, &odometry)) return;
   ImuMotion imu;
   if (!odometry.by_gyroscope && IntegrateImu(insertion_time_, time, &imu)) {
-    FuseRotations(imu.motion, imu.covariance(2, 2), &odometry);
+    FuseRotation(imu.motion.theta, imu.covariance(2, 2), &odometry);
   }
   prediction->motion = since_insertion_.Inverse() * odometry.motion;
   // Rotates it into the frame of the last scan.
@@ -236,9 +236,7 @@ bool MotionPredictor::IntegrateImu(const double from, const double to,
 
 bool MotionPredictor::IntegrateOdometry(const double from, const double to,
                                         OdometryMotion* const motion) const {
-  if (!options_.use_odometry || !odometry_.Predict(from, to, motion)) {
-    return false;
-  }
+  if (!odometry_.Predict(from, to, motion)) return false;
   motion->by_gyroscope =
       to - from > kReckonedInterval &&
       reckoning_.Predict(from, to, odometry_, imu_.gyroscope(), motion);
@@ -330,7 +328,7 @@ OdometryState MotionPredictor::CheckOdometry(const double time,
                                              const MatchedMotion& matched) {
   since_anchor_ = since_anchor_ * matched.motion;
   OdometryMotion odometry;
-  const bool has_odometry = IntegrateOdometry(last_time_, time, &odometry);
+  const bool has_odometry = odometry_.Predict(last_time_, time, &odometry);
   if (has_odometry && odometry.is_late) {
     // The readings are complete up to the scan before.
     const OdometryState state =

@@ -79,7 +79,8 @@ TEST_F(DeadReckoningTest, TheHeadingOfAGapIsThatOfTheGyroscope) {
   // Of a distance of some 29 m: a tenth along, and half of it times the
   // heading's error across.
   const double distance = motion.motion.translation().norm();
-  const double rotation = gyroscope_.Variance(60., motion.motion.theta);
+  const double rotation =
+      gyroscope_.Correction().Variance(motion.motion.theta, 60.);
   EXPECT_NEAR(motion.covariance(2, 2), rotation, 1e-12);
   const double along = 0.01 + 0.1 * distance;
   const double scale = odometry_.calibration().translation_scale_sigma();

@@ -89,17 +89,11 @@ bool InnovationOf(const Pose2& last_pose, const MotionPrediction& prediction,
   return true;
 }
 
-// Of the heading by the scan alone, radians; its position is unknown where it does
-// not tell that.
+// Of the heading by the scan alone, radians. Without the scan a metre and a radian
+// are unknown, so that there is always a covariance.
 double ScanHeadingSigma(const scan_matching::MatchReport& report) {
-  constexpr double kMetres = 1.;
-  constexpr double kRadians = 1.;
   const Eigen::Matrix3d information =
-      report.scan_information +
-      Eigen::Matrix3d(Eigen::Vector3d(1. / (kMetres * kMetres),
-                                      1. / (kMetres * kMetres),
-                                      1. / (kRadians * kRadians))
-                          .asDiagonal());
+      report.scan_information + Eigen::Matrix3d::Identity();
   return std::sqrt(information.inverse()(2, 2));
 }
 

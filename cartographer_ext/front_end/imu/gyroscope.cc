@@ -25,7 +25,7 @@ constexpr double kStampNoise = 0.02;
 // A segment ends after this rotation, radians, or time, seconds.
 constexpr double kSegmentRotation = 0.3;
 constexpr double kSegmentSeconds = 1.;
-// Seconds.
+// Least age of the map that a scan sees, seconds.
 constexpr double kMinMapAge = 0.5;
 // Scans further apart are a gap, seconds.
 constexpr double kMaxInterval = 1.;
@@ -88,36 +88,29 @@ bool Gyroscope::Rotation(const double from, const double to,
                          GyroscopeRotation* const rotation) const {
   double raw;
   if (!Raw(from, to, &raw)) return false;
-  rotation->angle = Corrected(raw, to - from);
-  rotation->variance = Variance(to - from, raw);
+  const GyroscopeCorrection correction = Correction();
+  rotation->angle = correction.Angle(raw, to - from);
+  rotation->variance = correction.Variance(raw, to - from);
   return true;
 }
 
-double Gyroscope::Corrected(const double raw, const double seconds) const {
-  const RotationCheck* const proof = Proof();
-  // What the matches tell of the factor, and what the makers of gyroscopes do,
-  // weighted by their variances.
-  const double factor =
-      proof == &scans_ ? 1. + FactorWeight(true) * (scans_.factor() - 1.) : 1.;
-  return factor * raw +
-         (proof == nullptr ? scans_ : *proof).EstimateDrift().value * seconds;
-}
-
-double Gyroscope::FactorWeight(const bool by_scans) const {
-  const double learnt = by_scans ? Squared(scans_.factor_sigma()) : 1.;
-  return Squared(kSoundSigma) / (Squared(kSoundSigma) + learnt);
-}
-
-double Gyroscope::Variance(const double seconds, const double angle) const {
+GyroscopeCorrection Gyroscope::Correction() const {
+  GyroscopeCorrection correction;
   const RotationCheck* const proof = Proof();
   const bool by_scans = proof == &scans_;
+  // What the matches tell of the factor, and what the makers of gyroscopes do,
+  // weighted by their variances.
   const double learnt = by_scans ? Squared(scans_.factor_sigma()) : 1.;
-  const double factor_variance = FactorWeight(by_scans) * learnt;
-  const double drift_variance = proof == nullptr
-                                    ? Squared(options_.bias_noise)
-                                    : proof->EstimateDrift().variance;
-  return Squared(options_.density) * seconds +
-         drift_variance * Squared(seconds) + factor_variance * Squared(angle);
+  const double weight = Squared(kSoundSigma) / (Squared(kSoundSigma) + learnt);
+  if (by_scans) correction.factor += weight * (scans_.factor() - 1.);
+  correction.factor_variance = weight * learnt;
+  const RotationCheck::Drift drift =
+      (proof == nullptr ? scans_ : *proof).EstimateDrift();
+  correction.drift = drift.value;
+  correction.drift_variance =
+      proof == nullptr ? Squared(options_.bias_noise) : drift.variance;
+  correction.density_squared = Squared(options_.density);
+  return correction;
 }
 
 bool Gyroscope::Extend(const double from, const double to, const double angle,

@@ -20,6 +20,7 @@
 
 #include <cstddef>
 
+#include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/front_end/imu/rotation_check.h"
 #include "cartographer_ext/front_end/odometry/clock_offset.h"
 #include "cartographer_ext/front_end/odometry/odometry_buffer.h"
@@ -44,6 +45,25 @@ struct GyroscopeOptions {
 struct GyroscopeRotation {
   double angle = 0.;     // radians
   double variance = 0.;  // square radians
+};
+
+// Corrects rotations as received.
+struct GyroscopeCorrection {
+  double factor = 1.;
+  double factor_variance = 0.;
+  double drift = 0.;            // added, rad/s
+  double drift_variance = 0.;   // rad^2/s^2
+  double density_squared = 0.;  // of the yaw rate, rad^2/s
+
+  // Of a rotation over so many seconds, radians.
+  double Angle(double raw, double seconds) const {
+    return factor * raw + drift * seconds;
+  }
+  // Square radians.
+  double Variance(double raw, double seconds) const {
+    return density_squared * seconds + drift_variance * Squared(seconds) +
+           factor_variance * Squared(raw);
+  }
 };
 
 // What a scan alone tells of the heading, without the prediction: a gyroscope must
@@ -76,12 +96,10 @@ class Gyroscope {
   // The rotation between the stamps of two scans, from < to. False when the
   // readings do not cover them.
   bool Rotation(double from, double to, GyroscopeRotation* rotation) const;
-  // Of the rotation `angle` over so many seconds, square radians.
-  double Variance(double seconds, double angle) const;
   // The rotation as received; false when the readings do not cover it.
   bool Raw(double from, double to, double* angle) const;
-  // The same corrected, radians.
-  double Corrected(double raw, double seconds) const;
+  // By today's estimates of factor and bias.
+  GyroscopeCorrection Correction() const;
 
   void AddMatch(const MatchedRotation& matched);
   // The rotation by the wheels between two stamps of scans.
@@ -112,8 +130,6 @@ class Gyroscope {
                      Segment* segment);
   // By scans or wheels; null where neither prove it.
   const RotationCheck* Proof() const;
-  // Of the factor by scans against that of a sound gyroscope.
-  double FactorWeight(bool by_scans) const;
 
   const GyroscopeOptions options_;
   OdometryBuffer headings_;  // integrated readings

@@ -15,7 +15,7 @@ namespace {
 // was not calibrated at rest has a bias of some degrees a second.
 constexpr double kFactorSigma = 1.;
 constexpr double kBiasSigma = 0.05;  // rad/s
-// One that was has one of some tenths of a degree, which are most of them.
+// One that was, as most are, has a bias of some tenths of a degree a second.
 constexpr double kSoundBiasSigma = 0.005;  // rad/s
 constexpr double kSoundShare = 0.9;
 // Of what the calibration cannot know: temperature, cross axes.
@@ -28,7 +28,7 @@ constexpr double kRestLength = 0.01;
 // this far from one: sensors are calibrated to a few per cent.
 constexpr double kKnownFactorSigma = 0.1;
 constexpr double kMaxFactorError = 0.25;
-// Of the last segments, of which there are at least this many, at most this
+// Of the last stretches, of which there are at least this many, at most this
 // share contradicts a sound gyroscope.
 constexpr double kForgetting = 0.98;
 constexpr double kMinCompared = 5.;

@@ -6,10 +6,10 @@
 //   rotation = factor * rotation by the gyroscope + drift * time
 //
 // (drift = - factor * bias) is estimated by a CalibrationFilter; the gyroscope is
-// the less noisy of both. Of a sensor that drifts itself, as wheels of unequal
-// size, only standstill tells the bias. The gyroscope is proven once the factor is known and near one, and
-// refuted once the factor is known and far from one, or where the two contradict
-// each other time and again.
+// the less noisy of both. Beside a sensor that drifts itself, as wheels of unequal
+// size, the bias is observable at standstill only. The gyroscope is proven once
+// the factor is known and near one, and refuted once the factor is known and far
+// from one, or where the two contradict each other time and again.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_IMU_ROTATION_CHECK_H_
 #define CARTOGRAPHER_EXT_FRONT_END_IMU_ROTATION_CHECK_H_
 
@@ -34,7 +34,7 @@ class RotationCheck {
     // error that stays.
     double sigma = 0.;
     double walk = 0.;
-    bool is_at_rest = false;  // a sensor does not drift
+    bool is_at_rest = false;  // where no sensor drifts
   };
   void Add(const Stretch& stretch);
   // The next stretch does not continue the last one.
@@ -46,9 +46,8 @@ class RotationCheck {
   bool factor_is_known() const;
   double factor() const { return filter_.value(0); }
   double factor_sigma() const { return filter_.sigma(0); }
-  // Its estimate and variance, rad/s and its square: that of the filter, and what
-  // is known of gyroscopes. Most are calibrated at rest by their drivers, a few
-  // are not.
+  // The drift and its variance, rad/s and its square, from the filter and a prior:
+  // most gyroscopes are calibrated at rest by their drivers, a few are not.
   struct Drift {
     double value;
     double variance;

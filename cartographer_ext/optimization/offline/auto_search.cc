@@ -79,6 +79,24 @@ void Count(const SolverSummary& summary, AutoResult* const result) {
   result->converged = summary.converged;
 }
 
+// Polishes a member with the gate and takes it if it costs less than `lowest`,
+// truncated there.
+void PolishMember(const double gate, const Portfolio::Member& member,
+                  Portfolio* const portfolio, double* const lowest,
+                  AutoResult* const result) {
+  std::vector<Pose2> poses = member.poses;
+  std::vector<double> weights;
+  Count(PolishTruncated(gate, kFullPolishRounds, portfolio->solver(), &poses,
+                        &weights),
+        result);
+  const double cost = TruncatedCost(portfolio->edges(), poses, gate);
+  if (cost >= *lowest) return;
+  *lowest = cost;
+  result->poses = std::move(poses);
+  result->weights = std::move(weights);
+  result->member = member.name;
+}
+
 // The members that cost at most `limit` polished with the gate, the lowest cost
 // truncated there; with the whole gate only the likeliest.
 void PolishMembers(const double gate, const double limit,
@@ -96,17 +114,7 @@ void PolishMembers(const double gate, const double limit,
         });
     if (again && &member != &likeliest) continue;
     polished.push_back(member.cost);
-    std::vector<Pose2> poses = member.poses;
-    std::vector<double> weights;
-    Count(PolishTruncated(gate, kFullPolishRounds, portfolio->solver(), &poses,
-                          &weights),
-          result);
-    const double cost = TruncatedCost(portfolio->edges(), poses, gate);
-    if (cost >= lowest) continue;
-    lowest = cost;
-    result->poses = std::move(poses);
-    result->weights = std::move(weights);
-    result->member = member.name;
+    PolishMember(gate, member, portfolio, &lowest, result);
   }
 }
 
@@ -118,8 +126,9 @@ bool RejectsRightLoops(const AutoResult& narrower, Portfolio* const portfolio) {
       portfolio->best().poses,
       DecideLoops(edges, portfolio->best().poses, kChi2Gate)};
   return !RejectsFew(edges, best.decisions, narrower.weights) &&
-         RejectsMoreThanByChance(best, {narrower.poses, narrower.weights},
-                                 portfolio->support(), portfolio->solver());
+         NarrowedMap(best, {narrower.poses, narrower.weights},
+                     portfolio->support(), portfolio->solver())
+             .RejectsMoreThanByChance();
 }
 
 // Steps 3 and 4 of the header.
@@ -195,17 +204,7 @@ void WidenGate(const double gate, const std::vector<int>& near,
   double lowest = TruncatedCost(edges, result->poses, gate);
   for (const Portfolio::Member& member : portfolio->members()) {
     if (TruncatedCost(edges, member.poses, gate) >= lowest) continue;
-    std::vector<Pose2> poses = member.poses;
-    std::vector<double> weights;
-    Count(PolishTruncated(gate, kFullPolishRounds, portfolio->solver(), &poses,
-                          &weights),
-          result);
-    const double cost = TruncatedCost(edges, poses, gate);
-    if (cost >= lowest) continue;
-    lowest = cost;
-    result->poses = std::move(poses);
-    result->weights = std::move(weights);
-    result->member = member.name;
+    PolishMember(gate, member, portfolio, &lowest, result);
   }
   result->gate = gate;
 }

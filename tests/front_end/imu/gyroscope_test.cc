@@ -140,7 +140,7 @@ TEST(GyroscopeTest, TheScanAloneIsItsEvidence) {
     gyroscope.AddMatch(matched);
   }
   ASSERT_EQ(gyroscope.state(), GyroscopeState::kProven);
-  EXPECT_NEAR(gyroscope.Corrected(0., 10.), 0., 0.01);
+  EXPECT_NEAR(gyroscope.Correction().Angle(0., 10.), 0., 0.01);
 }
 
 TEST(GyroscopeTest, AScanThatHardlyTellsTheHeadingIsNone) {
@@ -196,10 +196,11 @@ TEST(GyroscopeTest, WheelsProveItWhereThereAreNoScans) {
   EXPECT_NEAR(rotation.angle, Heading(98.9) - Heading(94.9) + 0.02, 0.006);
   double raw;
   ASSERT_TRUE(other.Raw(94.9, 98.9, &raw));
-  EXPECT_NEAR(rotation.angle, other.Corrected(raw, 4.), 1e-12);
-  EXPECT_NEAR(rotation.variance, other.Variance(4., raw), 1e-12);
-  EXPECT_LT(other.Variance(4., 0.), other.Variance(4., 1.));
-  EXPECT_LT(other.Variance(4., 1.), other.Variance(8., 1.));
+  EXPECT_NEAR(rotation.angle, other.Correction().Angle(raw, 4.), 1e-12);
+  const GyroscopeCorrection correction = other.Correction();
+  EXPECT_NEAR(rotation.variance, correction.Variance(raw, 4.), 1e-12);
+  EXPECT_LT(correction.Variance(0., 4.), correction.Variance(1., 4.));
+  EXPECT_LT(correction.Variance(1., 4.), correction.Variance(1., 8.));
 }
 
 TEST(GyroscopeTest, WheelsDoNotRefuteIt) {

@@ -127,23 +127,22 @@ bool TakesInMoreThanByChance(const DecidedMap& map, const DecidedMap& wider,
   return difference.parts >= MoreThanExpected(expected);
 }
 
-bool RejectsMoreThanByChance(const DecidedMap& map, const DecidedMap& narrower,
-                             const LoopSupport& support,
-                             RobustSolver* const solver) {
-  const Difference difference =
-      Compare(solver->edges(), map.decisions, narrower.decisions, support);
-  return difference.parts >=
-         MoreThanExpected(kBeyondGate * difference.in_force +
-                          WrongInForce(narrower, support, solver));
-}
-
-bool MayRejectWrongLoops(const DecidedMap& map, const DecidedMap& narrower,
+NarrowedMap::NarrowedMap(const DecidedMap& map, const DecidedMap& narrower,
                          const LoopSupport& support,
                          RobustSolver* const solver) {
   const Difference difference =
       Compare(solver->edges(), map.decisions, narrower.decisions, support);
-  return difference.parts > 0 &&
-         WrongInForce(narrower, support, solver) > kHardlyAny;
+  in_force_ = difference.in_force;
+  parts_ = difference.parts;
+  if (parts_ > 0) wrong_in_force_ = WrongInForce(narrower, support, solver);
+}
+
+bool NarrowedMap::RejectsMoreThanByChance() const {
+  return parts_ >= MoreThanExpected(kBeyondGate * in_force_ + wrong_in_force_);
+}
+
+bool NarrowedMap::MayRejectWrongLoops() const {
+  return wrong_in_force_ > kHardlyAny;
 }
 
 bool RejectsFew(const std::vector<WhitenedEdge>& edges,

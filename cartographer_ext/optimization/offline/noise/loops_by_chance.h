@@ -33,17 +33,26 @@ struct DecidedMap {
 bool TakesInMoreThanByChance(const DecidedMap& map, const DecidedMap& wider,
                              const LoopSupport& support, RobustSolver* solver);
 
-// Whether `narrower` rejects more groups of those in force in `map` than can have
-// come in by chance with the noise of `solver`, that of `map`, if all that
-// `narrower` rejects are wrong.
-bool RejectsMoreThanByChance(const DecidedMap& map, const DecidedMap& narrower,
-                             const LoopSupport& support, RobustSolver* solver);
+// What a narrower gate rejects of the loops in force in a map.
+class NarrowedMap {
+ public:
+  // `solver` has the noise of `map`.
+  NarrowedMap(const DecidedMap& map, const DecidedMap& narrower,
+              const LoopSupport& support, RobustSolver* solver);
 
-// Whether some of the loops in force in `map` that `narrower` rejects may be
-// wrong ones, which fit by chance with the noise of `solver`. Only these are a
-// reason for a narrower gate.
-bool MayRejectWrongLoops(const DecidedMap& map, const DecidedMap& narrower,
-                         const LoopSupport& support, RobustSolver* solver);
+  // Whether it rejects more groups than can have come in by chance, if all that
+  // `narrower` rejects are wrong.
+  bool RejectsMoreThanByChance() const;
+  // Whether some of those that it rejects may be wrong ones, which fit by chance.
+  // Only these are a reason for a narrower gate.
+  bool MayRejectWrongLoops() const;
+
+ private:
+  int in_force_ = 0;  // loops in the map
+  int parts_ = 0;     // of groups of them, with rejected ones
+  // Wrong loops to be expected in force; 0 where none is rejected.
+  double wrong_in_force_ = 0.;
+};
 
 // Whether of the loops that are in force by `decisions` no more are rejected by
 // `others` than right ones by a gate of 99 %: then there is nothing to ask.

@@ -251,12 +251,11 @@ bool LosesRightLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                  {hypothesis.metric.odometry / applied.odometry,
                   hypothesis.metric.loops / applied.loops},
                  hypothesis.poses);
-  const DecidedMap wider = {portfolio->best().poses, map.decisions};
-  const LoopSupport& support = portfolio->support();
-  RobustSolver* const solver = portfolio->solver();
-  return !MayRejectWrongLoops(wider, narrower, support, solver) ||
-         (!RejectsFew(solver->edges(), map.decisions, narrower.decisions) &&
-          RejectsMoreThanByChance(wider, narrower, support, solver));
+  const NarrowedMap narrowed({portfolio->best().poses, map.decisions}, narrower,
+                             portfolio->support(), portfolio->solver());
+  return !narrowed.MayRejectWrongLoops() ||
+         (!RejectsFew(portfolio->edges(), map.decisions, narrower.decisions) &&
+          narrowed.RejectsMoreThanByChance());
 }
 
 }  // namespace
@@ -289,14 +288,13 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
   double loops = scale.loops.factor;
   const bool differ = scale.loops.high * kMinRatio <= scale.odometry.low ||
                       scale.odometry.high * kMinRatio <= scale.loops.low;
-  const bool mixed = !differ && AreMixed(map, portfolio);
+  bool mixed = false;
   if (!differ) {
     // A gate that is too wide lets wrong loops in, which make the noise of the
     // loops look larger than it is.
-    if (scale.loops.high >= kSmaller ||
-        (map.accepted > kFewAccepted && !mixed)) {
-      return false;
-    }
+    if (scale.loops.high >= kSmaller) return false;
+    mixed = AreMixed(map, portfolio);
+    if (map.accepted > kFewAccepted && !mixed) return false;
     loops = TypicalNoise(LeaveOneOutInnovations(portfolio->best().poses,
                                                 map.decisions, kMaxInnovations,
                                                 portfolio->solver()));

@@ -49,8 +49,8 @@ struct World {
 TEST(LoopsByChanceTest, RightLoopsAllOverThePathAreNoChance) {
   const World world(0);
   RobustSolver solver(world.edges);
-  EXPECT_TRUE(RejectsMoreThanByChance(world.map, world.Without(8),
-                                      world.support, &solver));
+  EXPECT_TRUE(NarrowedMap(world.map, world.Without(8), world.support, &solver)
+                  .RejectsMoreThanByChance());
   EXPECT_TRUE(TakesInMoreThanByChance(world.Without(8), world.map,
                                       world.support, &solver));
   EXPECT_FALSE(
@@ -61,8 +61,9 @@ TEST(LoopsByChanceTest, RightLoopsAllOverThePathAreNoChance) {
 TEST(LoopsByChanceTest, AFewRightLoopsMayBeBeyondTheGate) {
   const World world(0);
   RobustSolver solver(world.edges);
-  EXPECT_FALSE(RejectsMoreThanByChance(world.map, world.Without(100),
-                                       world.support, &solver));
+  EXPECT_FALSE(
+      NarrowedMap(world.map, world.Without(100), world.support, &solver)
+          .RejectsMoreThanByChance());
   EXPECT_FALSE(TakesInMoreThanByChance(world.Without(100), world.map,
                                        world.support, &solver));
   EXPECT_TRUE(RejectsFew(world.edges, world.map.decisions,
@@ -75,12 +76,13 @@ TEST(LoopsByChanceTest, WrongLoopsFitAWideGateByChance) {
   const World world(400);
   const std::vector<WhitenedEdge> wide = WithNoiseScale(world.edges, 1., 40.);
   RobustSolver solver(wide), as_measured(world.edges);
-  EXPECT_FALSE(RejectsMoreThanByChance(world.map, world.Without(8),
-                                       world.support, &solver));
+  EXPECT_FALSE(NarrowedMap(world.map, world.Without(8), world.support, &solver)
+                   .RejectsMoreThanByChance());
   EXPECT_FALSE(TakesInMoreThanByChance(world.Without(8), world.map,
                                        world.support, &solver));
-  EXPECT_TRUE(RejectsMoreThanByChance(world.map, world.Without(8),
-                                      world.support, &as_measured));
+  EXPECT_TRUE(
+      NarrowedMap(world.map, world.Without(8), world.support, &as_measured)
+          .RejectsMoreThanByChance());
 }
 
 TEST(LoopsByChanceTest, WrongLoopsAreRejectedWhereTheyMayFit) {
@@ -88,14 +90,16 @@ TEST(LoopsByChanceTest, WrongLoopsAreRejectedWhereTheyMayFit) {
   RobustSolver right(all_right.edges), solver(world.edges);
   const std::vector<WhitenedEdge> wide = WithNoiseScale(world.edges, 1., 40.);
   RobustSolver wide_solver(wide);
-  EXPECT_TRUE(MayRejectWrongLoops(world.map, world.Without(100), world.support,
-                                  &wide_solver));
+  EXPECT_TRUE(
+      NarrowedMap(world.map, world.Without(100), world.support, &wide_solver)
+          .MayRejectWrongLoops());
   // None is rejected.
-  EXPECT_FALSE(
-      MayRejectWrongLoops(world.map, world.map, world.support, &wide_solver));
+  EXPECT_FALSE(NarrowedMap(world.map, world.map, world.support, &wide_solver)
+                   .MayRejectWrongLoops());
   // None fits by chance.
-  EXPECT_FALSE(MayRejectWrongLoops(all_right.map, all_right.Without(100),
-                                   all_right.support, &right));
+  EXPECT_FALSE(NarrowedMap(all_right.map, all_right.Without(100),
+                           all_right.support, &right)
+                   .MayRejectWrongLoops());
 }
 
 TEST(LoopsByChanceTest, PoissonLimits) {
