@@ -177,7 +177,7 @@ void MotionPredictor::PredictByOdometry(
   prediction->source = PredictionSource::kOdometry;
   prediction->search_radius = prediction->search_angle = 0.;
   OdometryMotion turned = odometry;
-  if (has_imu) {
+  if (has_imu && !odometry.by_gyroscope) {
     FuseRotation(without.theta, prediction->covariance(2, 2), &turned);
   }
   prediction->motion = turned.motion;

@@ -88,6 +88,22 @@ TEST_F(MotionPredictorGyroscopeTest, AGapIsBridgedByDeadReckoning) {
   }
 }
 
+// The heading is that of the gyroscope either way, and it counts once. Straight on,
+// as the accelerometer says.
+TEST_F(MotionPredictorGyroscopeTest, DoubtfulMetresMakeNoHeadingMoreCertain) {
+  double variances[2];
+  for (const bool jumps : {false, true}) {
+    Restart();
+    Drive(30., 0., true, 50);
+    if (jumps) wheels_ = wheels_ * Pose2(20., 0., 0.);
+    Drive(2.5, 0., false, 0);
+    const MotionPrediction prediction = predictor_->Predict(time_);
+    EXPECT_EQ(prediction.is_uncertain, jumps);
+    variances[jumps] = prediction.covariance(2, 2);
+  }
+  EXPECT_GT(variances[1], 0.9 * variances[0]);
+}
+
 // Odometry may have jumped while the robot stood for seconds, not for minutes.
 TEST(MotionPredictorGapTest, StandingStillIsAnAlternativeForAWhile) {
   MotionPredictor predictor((MotionPredictorOptions()));
