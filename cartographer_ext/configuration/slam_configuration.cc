@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/configuration/slam_configuration.h"
 
+#include <algorithm>
 #include <memory>
-#include <set>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -71,36 +71,6 @@ void ReadRosKeys(LuaParameterDictionary* const dictionary,
   }
   if (dictionary->HasKey("use_odometry")) {
     settings->use_odometry = dictionary->GetBool("use_odometry");
-  }
-  if (dictionary->HasKey("tracking_frame")) {
-    settings->tracking_frame = dictionary->GetString("tracking_frame");
-  }
-}
-
-void ReadSensorSettings(LuaParameterDictionary* const dictionary,
-                        SensorSettings* const settings) {
-  if (dictionary->HasKey("use_odometry")) {
-    settings->use_odometry = dictionary->GetBool("use_odometry");
-  }
-  if (dictionary->HasKey("use_recorded_imu")) {
-    settings->use_recorded_imu = dictionary->GetBool("use_recorded_imu");
-  }
-  if (dictionary->HasKey("odometry_source")) {
-    settings->odometry_source = dictionary->GetString("odometry_source");
-    const std::set<std::string> known = {"auto", "scan", "odom", "both"};
-    CHECK(known.count(settings->odometry_source) > 0)
-        << "sensors.odometry_source is \"" << settings->odometry_source
-        << "\", must be one of " << absl::StrJoin(known, ", ");
-  }
-  if (dictionary->HasKey("min_range")) {
-    settings->min_range = dictionary->GetDouble("min_range");
-    CHECK_GE(settings->min_range, 0.)
-        << "sensors.min_range must not be negative";
-  }
-  if (dictionary->HasKey("max_range")) {
-    settings->max_range = dictionary->GetDouble("max_range");
-    CHECK_GT(settings->max_range, settings->min_range)
-        << "sensors.max_range must be above sensors.min_range";
   }
   if (dictionary->HasKey("tracking_frame")) {
     settings->tracking_frame = dictionary->GetString("tracking_frame");
@@ -187,6 +157,28 @@ absl::Status CheckValues(const nlohmann::json& table,
   return absl::OkStatus();
 }
 
+// Names the key of `sensors` that does not exist, if that is what was said.
+absl::Status SuggestSensorSetting(const absl::Status& status,
+                                  const absl::string_view said,
+                                  const nlohmann::json& table) {
+  const auto found = table.find("sensors");
+  if (found == table.end() || !found->is_object()) return status;
+  std::vector<std::string> known;
+  for (const auto& setting : DescribeSensorSettings()) {
+    known.push_back(setting.key);
+  }
+  for (const auto& item : found->items()) {
+    if (std::count(known.begin(), known.end(), item.key()) > 0 ||
+        !absl::StrContains(said, absl::StrCat(item.key(), "'"))) {
+      continue;
+    }
+    return absl::InvalidArgumentError(
+        absl::StrCat("sensors.", item.key(), " is not an option",
+                     DidYouMean(SimilarWord(item.key(), known))));
+  }
+  return status;
+}
+
 // The host's message and, if an unknown name is the cause, the one that was
 // probably meant.
 absl::Status Suggest(const absl::Status& status, const nlohmann::json& table) {
@@ -207,7 +199,7 @@ absl::Status Suggest(const absl::Status& status, const nlohmann::json& table) {
                        " is not an option", DidYouMean(unknown.similar)));
     }
   }
-  return status;
+  return SuggestSensorSetting(status, said, table);
 }
 
 // The table that the code returns; not an object if the error is left to the
@@ -257,6 +249,13 @@ absl::Status WithFileName(const absl::Status& status, const std::string& name,
 }
 
 }  // namespace
+
+bool UsesImu(const SlamConfiguration& configuration) {
+  return configuration.sensors.use_recorded_imu ||
+         configuration.trajectory_builder_options
+             .trajectory_builder_2d_options()
+             .use_imu_data();
+}
 
 absl::StatusOr<SlamConfiguration> LoadSlamConfiguration(
     const std::vector<std::string>& directories, const std::string& basename) {

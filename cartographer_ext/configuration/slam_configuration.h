@@ -4,39 +4,24 @@
 // A configuration file of the commands: Lua code that returns
 //   { map_builder = MAP_BUILDER, trajectory_builder = TRAJECTORY_BUILDER }
 // and optionally two more kinds of keys:
-//   sensors = { use_odometry = true, odometry_source = "auto",
-//               use_recorded_imu = true, min_range = 0., max_range = 80.,
-//               tracking_frame = "base_link" }
-//     all optional: which data of a recording is used. Ranges outside the limits
-//     (metres) are dropped before local SLAM. With use_recorded_imu the IMU of a
-//     recording that has one is used (levelled, see io/imu_levelling.h) even if
-//     TRAJECTORY_BUILDER_2D.use_imu_data is false.
+//   sensors = { use_odometry = true, use_recorded_imu = true, ... }
+//     which data of a recording is used, see sensor_settings.h.
 //   the keys of a ROS node's file (map_frame, num_laser_scans, ...): such files
 //     can be used unchanged. Of these only use_odometry and tracking_frame have
 //     an effect here.
 #ifndef CARTOGRAPHER_EXT_CONFIGURATION_SLAM_CONFIGURATION_H_
 #define CARTOGRAPHER_EXT_CONFIGURATION_SLAM_CONFIGURATION_H_
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "cartographer/mapping/proto/map_builder_options.pb.h"
 #include "cartographer/mapping/proto/trajectory_builder_options.pb.h"
+#include "cartographer_ext/configuration/sensor_settings.h"
 
 namespace cartographer_ext {
 namespace evaluation {
-
-struct SensorSettings {
-  bool use_odometry = true;
-  bool use_recorded_imu = false;
-  // For CARMEN logs, see io::SensorSourceOptions.
-  std::string odometry_source = "auto";
-  double min_range = 0.;                                       // metres
-  double max_range = std::numeric_limits<double>::infinity();  // metres
-  std::string tracking_frame = "base_link";
-};
 
 struct SlamConfiguration {
   std::string name;  // of the file
@@ -47,6 +32,9 @@ struct SlamConfiguration {
   // Values that are unlikely to be intended.
   std::vector<std::string> warnings;
 };
+
+// Whether local SLAM gets the IMU of a recording that has one.
+bool UsesImu(const SlamConfiguration& configuration);
 
 // Reads `basename` and the files it includes from the directories, searched in
 // this order. Everything for which the host would abort becomes an error that

@@ -215,13 +215,9 @@ tools::SlamWork WorkOf(const io::SensorSourceInfo& info,
   tools::SlamWork work;
   work.total_scans = info.num_scans;
   work.judges_map = !FLAGS_report_filename.empty();
-  const bool use_imu =
-      configuration.sensors.use_recorded_imu ||
-      configuration.trajectory_builder_options.trajectory_builder_2d_options()
-          .use_imu_data();
   const int64_t readings =
       (configuration.sensors.use_odometry ? info.num_odometry : 0) +
-      (use_imu ? info.num_imu : 0);
+      (evaluation::UsesImu(configuration) ? info.num_imu : 0);
   work.readings_a_scan =
       static_cast<double>(readings) / std::max<double>(1., info.num_scans);
   return work;

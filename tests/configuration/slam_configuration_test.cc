@@ -82,10 +82,20 @@ TEST(SlamConfigurationTest, SensorSettings) {
   ASSERT_TRUE(configuration.ok()) << configuration.status();
   EXPECT_FALSE(configuration->sensors.use_odometry);
   EXPECT_TRUE(configuration->sensors.use_recorded_imu);
+  EXPECT_TRUE(UsesImu(*configuration));
   EXPECT_EQ(configuration->sensors.odometry_source, "scan");
   EXPECT_EQ(configuration->sensors.min_range, 0.2);
   EXPECT_EQ(configuration->sensors.max_range, 25.);
   EXPECT_EQ(configuration->sensors.tracking_frame, "base");
+}
+
+TEST(SlamConfigurationTest, LocalSlamMayAskForTheImuItself) {
+  const auto without = Parse("");
+  ASSERT_TRUE(without.ok()) << without.status();
+  EXPECT_FALSE(UsesImu(*without));
+  const auto with = Parse("TRAJECTORY_BUILDER_2D.use_imu_data = true");
+  ASSERT_TRUE(with.ok()) << with.status();
+  EXPECT_TRUE(UsesImu(*with));
 }
 
 TEST(SlamConfigurationTest, FilesOfARosNodeWork) {
@@ -131,6 +141,9 @@ TEST(SlamConfigurationTest, MisspeltStockKeysAreRecognised) {
   ExpectError(Parse("MAP_BUILDER.nun_background_threads = 4\n"
                     "MAP_BUILDER.num_background_threads = nil"),
               "did you mean 'num_background_threads'?");
+  ExpectError(Parse("", "sensors = { use_recorded_imus = true }"),
+              "sensors.use_recorded_imus is not an option, did you mean "
+              "'use_recorded_imu'?");
   ExpectError(Parse("POSE_GRAPH.zzz = 3"), "zzz");
 }
 
