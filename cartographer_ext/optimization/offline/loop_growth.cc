@@ -19,6 +19,9 @@ namespace {
 // A loop whose prediction is hardly less certain than its measurement changes
 // nothing and needs no round of its own: log det of 4 I.
 const double kSharplyPredicted = 3. * std::log(4.);
+// Gates beyond which a loop stays outside the gate as the map grows: loops in force
+// only make a prediction more certain, but for what linearisation changes.
+constexpr double kFarOff = 4.;
 // What a solution may cost per loop before another start is tried.
 constexpr double kPoorCost = 3. * 3.;
 
@@ -48,6 +51,7 @@ class Growth {
   // Loops that are banned stay out.
   bool Run(std::vector<bool> banned) {
     banned_ = std::move(banned);
+    covariances_.assign(edges_.size(), Eigen::Matrix3d::Zero());
     for (size_t i = 0; i != edges_.size(); ++i) {
       if (edges_[i].is_loop) open_.push_back(i);
     }
@@ -66,10 +70,26 @@ class Growth {
     for (const int i : open_) {
       if (weights_[i] == 0. && !banned_[i]) result.push_back(i);
     }
-    return Thinned(result, options_.max_candidates);
+    result = Thinned(result, options_.max_candidates);
+    result.erase(std::remove_if(result.begin(), result.end(),
+                                [this](const int i) { return IsFarOff(i); }),
+                 result.end());
+    return result;
   }
 
-  // The loops to bring in next.
+  // Whether a loop is far beyond the gate with an earlier prediction, which was
+  // less certain.
+  bool IsFarOff(const int i) const {
+    const Eigen::Matrix3d& covariance = covariances_[i];
+    if (covariance(0, 0) == 0.) return false;
+    const WhitenedEdge& edge = edges_[i];
+    const Eigen::Vector3d residual =
+        Residual(edge, poses_[edge.from], poses_[edge.to]);
+    return residual.dot(covariance.llt().solve(residual)) >=
+           kFarOff * options_.gate;
+  }
+
+  // The loops to bring in next. Those that are far off need no prediction.
   std::vector<int> Choose() {
     const std::vector<int> candidates = Candidates();
     const std::vector<Innovation> innovations =
@@ -79,6 +99,7 @@ class Growth {
     std::vector<double> scores(edges_.size(),
                                -std::numeric_limits<double>::infinity());
     for (size_t k = 0; k != candidates.size(); ++k) {
+      covariances_[candidates[k]] = innovations[k].covariance;
       if (innovations[k].chi2 >= options_.gate) continue;
       scores[candidates[k]] =
           LogEvidence(edges_[candidates[k]], innovations[k], log_area);
@@ -146,6 +167,8 @@ class Growth {
   std::vector<double>& weights_;
   std::vector<int> open_;
   std::vector<bool> banned_;
+  // Of the last prediction of each loop, zero where there is none.
+  std::vector<Eigen::Matrix3d> covariances_;
   double cost_ = 0.;
 };
 
@@ -173,6 +196,7 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
         Eigen::Matrix3d::Identity() + factor.PredictedCovariance(linear);
     const Eigen::LLT<Eigen::Matrix3d> root(covariance);
     Innovation innovation;
+    innovation.covariance = covariance;
     innovation.chi2 = residual.dot(root.solve(residual));
     innovation.log_determinant =
         2. * root.matrixLLT().diagonal().array().log().sum();

@@ -39,7 +39,23 @@ void UpdateColumn(const Eigen::Matrix3d& head, const Eigen::Matrix3d& gain,
   }
 }
 
-constexpr BlockKernels kPlain = {"plain", &SubtractProducts, &UpdateColumn};
+void PredictColumn(const Eigen::Matrix3d& head, const Eigen::Matrix3d& middle,
+                   const int* const rows, const int count,
+                   const Eigen::Matrix3d* const blocks,
+                   Eigen::Matrix3d* const sum, Eigen::Matrix3d* const work) {
+  const RightFactor of_head(head);
+  const Eigen::Matrix3d product = middle * head;
+  of_head.AddedTo(PackedBlock(*sum), PackedBlock(product.transpose()))
+      .CopyTo(sum);
+  for (int k = 0; k < count; ++k) {
+    Eigen::Matrix3d& below = work[rows[k]];
+    of_head.SubtractedFrom(PackedBlock(below), PackedBlock(blocks[k]))
+        .CopyTo(&below);
+  }
+}
+
+constexpr BlockKernels kPlain = {"plain", &SubtractProducts, &UpdateColumn,
+                                 &PredictColumn};
 
 #ifdef CARTOGRAPHER_EXT_X86_KERNELS
 
@@ -133,7 +149,46 @@ __attribute__((target("avx"))) void UpdateColumnAvx(
   }
 }
 
-constexpr BlockKernels kAvx = {"avx", &SubtractProductsAvx, &UpdateColumnAvx};
+// The fourth value of each column is of no meaning.
+__attribute__((target("avx"))) inline BlockAvx Transposed(
+    const BlockAvx& block) {
+  const __m256d *const c = block.columns, even = _mm256_unpacklo_pd(c[0], c[1]),
+                       odd = _mm256_unpackhi_pd(c[0], c[1]);
+  return {{_mm256_permute2f128_pd(even, c[2], 0x20),
+           _mm256_permute2f128_pd(odd, _mm256_permute_pd(c[2], 0x5), 0x20),
+           _mm256_permute2f128_pd(even, c[2], 0x31)}};
+}
+
+__attribute__((target("avx"))) void PredictColumnAvx(
+    const Eigen::Matrix3d& head, const Eigen::Matrix3d& middle,
+    const int* const rows, const int count, const Eigen::Matrix3d* const blocks,
+    Eigen::Matrix3d* const sum, Eigen::Matrix3d* const work) {
+  const FactorAvx of_head = Broadcast(head);
+  const BlockAvx left = LoadBlock(middle);
+  BlockAvx product;
+  for (int c = 0; c != 3; ++c) {
+    product.columns[c] = ColumnOfProduct(left, of_head, c);
+  }
+  product = Transposed(product);
+  for (int c = 0; c != 3; ++c) {
+    double* const values = sum->data() + 3 * c;
+    StoreColumn(
+        _mm256_add_pd(LoadColumn(values), ColumnOfProduct(product, of_head, c)),
+        values);
+  }
+  for (int k = 0; k < count; ++k) {
+    double* const below = work[rows[k]].data();
+    const BlockAvx block = LoadBlock(blocks[k]);
+    for (int c = 0; c != 3; ++c) {
+      StoreColumn(_mm256_sub_pd(LoadColumn(below + 3 * c),
+                                ColumnOfProduct(block, of_head, c)),
+                  below + 3 * c);
+    }
+  }
+}
+
+constexpr BlockKernels kAvx = {"avx", &SubtractProductsAvx, &UpdateColumnAvx,
+                               &PredictColumnAvx};
 
 #endif
 

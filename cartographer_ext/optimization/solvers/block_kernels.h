@@ -27,6 +27,12 @@ struct BlockKernels {
   void (*update_column)(const Eigen::Matrix3d& head,
                         const Eigen::Matrix3d& gain, const int* rows, int count,
                         Eigen::Matrix3d* blocks, Eigen::Matrix3d* work);
+  // sum += head' * middle * head with a symmetric `middle`; work[rows[k]] -=
+  // blocks[k] * head.
+  void (*predict_column)(const Eigen::Matrix3d& head,
+                         const Eigen::Matrix3d& middle, const int* rows,
+                         int count, const Eigen::Matrix3d* blocks,
+                         Eigen::Matrix3d* sum, Eigen::Matrix3d* work);
 };
 
 // The fastest that this processor has.

@@ -145,9 +145,9 @@ Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
     const Column& column = columns_[j];
     const Eigen::Matrix3d head = work_[j];
     work_[j].setZero();
-    result.noalias() += head.transpose() * column.pivot_inverse * head;
-    kernels.subtract_products(head, column.blocks.data(), column.rows.data(),
-                              column.rows.size(), nullptr, work_.data());
+    kernels.predict_column(head, column.pivot_inverse, column.rows.data(),
+                           column.rows.size(), column.blocks.data(), &result,
+                           work_.data());
     last_prediction_blocks_ += column.rows.size() + 1;
     const int parent = column.rows.empty() ? kEnd : column.rows.front();
     if (a == j) a = parent;

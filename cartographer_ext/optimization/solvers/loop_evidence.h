@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "Eigen/Core"
 #include "cartographer_ext/optimization/graph/pose_graph.h"
 
 namespace cartographer_ext {
@@ -17,6 +18,8 @@ namespace optimization {
 struct Innovation {
   double chi2 = 0.;             // d2
   double log_determinant = 0.;  // of S
+  // S, in whitened units; not set where nothing but its size is asked for.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
 // Logarithm of the area (square metres) that poses are spread over.

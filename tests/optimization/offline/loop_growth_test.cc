@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 
+#include <cmath>
+
+#include "Eigen/LU"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/loop_counts.h"
@@ -62,8 +65,53 @@ TEST(LoopGrowthTest, InnovationsAreHonest) {
     ASSERT_EQ(innovations.size(), 1u);
     sum += innovations[0].chi2;
     EXPECT_GT(innovations[0].log_determinant, 0.);
+    EXPECT_NEAR(std::log(innovations[0].covariance.determinant()),
+                innovations[0].log_determinant, 1e-9);
   }
   EXPECT_NEAR(sum / kTrials, 3., 0.45);
+}
+
+// A prediction with fewer loops in force is less certain: what is far off with it
+// is far off with more, which spares predictions while a map grows.
+TEST(LoopGrowthTest, WhatIsFarOffStaysFarOff) {
+  test::GridWorld world = test::MakeWeakRing(1);
+  const size_t clean = world.graph.edges.size();
+  test::AddOutliers(test::Outliers(40), &world.graph);
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  SolverOptions options;
+  options.edge_weights.assign(edges.size(), 1.);
+  std::vector<int> right, wrong;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop) continue;
+    options.edge_weights[i] = 0.;
+    (i < clean ? right : wrong).push_back(i);
+  }
+  std::vector<Pose2> poses = world.graph.poses;
+  const auto put_in_force = [&](const size_t begin, const size_t end) {
+    for (size_t k = begin; k != end; ++k) {
+      options.edge_weights[right[k]] = 1.;
+    }
+    poses = world.truth;
+    solver.Solve(options, &poses);
+  };
+  put_in_force(0, right.size() / 2);
+  const std::vector<Innovation> before =
+      PredictLoops(wrong, options.edge_weights, poses, &solver);
+  put_in_force(right.size() / 2, right.size());
+  const std::vector<Innovation> after =
+      PredictLoops(wrong, options.edge_weights, poses, &solver);
+  int far_off = 0;
+  for (size_t k = 0; k != wrong.size(); ++k) {
+    const WhitenedEdge& edge = edges[wrong[k]];
+    const Eigen::Vector3d residual =
+        Residual(edge, poses[edge.from], poses[edge.to]);
+    const double least =
+        residual.dot(before[k].covariance.inverse() * residual);
+    EXPECT_GT(after[k].chi2, 0.5 * least);
+    far_off += least > 4. * kChi2Gate;
+  }
+  EXPECT_GT(far_off, 10);
 }
 
 }  // namespace

@@ -73,6 +73,28 @@ TEST(BlockKernelsTest, UpdateColumn) {
   }
 }
 
+TEST(BlockKernelsTest, PredictColumn) {
+  Random random(3);
+  const Blocks factors = RandomBlocks(3, &random);
+  const Eigen::Matrix3d middle = factors[1] + factors[1].transpose();
+  const Blocks blocks = RandomBlocks(kRows.size(), &random);
+  const Blocks work_before = RandomBlocks(8, &random);
+  for (const BlockKernels* const kernels : AllBlockKernels()) {
+    for (size_t count = 0; count <= kRows.size(); ++count) {
+      Blocks expected = work_before, work = work_before, sum = {factors[2]};
+      for (size_t k = 0; k != count; ++k) {
+        expected[kRows[k]] -= blocks[k] * factors[0];
+      }
+      kernels->predict_column(factors[0], middle, kRows.data(), count,
+                              blocks.data(), &sum[0], work.data());
+      ExpectEqual(work, expected, kernels->name);
+      ExpectEqual(sum,
+                  {factors[2] + factors[0].transpose() * middle * factors[0]},
+                  kernels->name);
+    }
+  }
+}
+
 TEST(BlockKernelsTest, TheBestIsOneOfAll) {
   ASSERT_FALSE(AllBlockKernels().empty());
   EXPECT_EQ(&BestBlockKernels(), AllBlockKernels().back());
