@@ -22,8 +22,6 @@ namespace {
 constexpr int kUnfolded = 20;
 // Relative difference of the costs of members that are one and the same.
 constexpr double kSameOptimum = 1e-9;
-// Larger graphs are taken at their word.
-constexpr size_t kMaxEdgesForNoise = 100000;
 // How often one of the right loops of a graph lies beyond the wide gate.
 constexpr double kBeyondWideGate = 0.001;
 // Loops whose leave-one-out innovation is looked at.
@@ -209,8 +207,9 @@ void WidenGate(const double gate, const std::vector<int>& near,
   result->gate = gate;
 }
 
-// Step 5. A gate of 99 % rejects one right loop in a hundred.
-void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
+// Step 5 where hardly any is rejected. A gate of 99 % rejects one right loop in a
+// hundred. False where no other gate is taken.
+bool AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   const std::vector<WhitenedEdge>& edges = portfolio->edges();
   std::vector<int> rejected;
   std::vector<double> in_force(edges.size(), 1.);
@@ -221,7 +220,7 @@ void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
     in_force[i] = 0.;
     rejected.push_back(i);
   }
-  if (rejected.empty() || rejected.size() > 0.05 * loops + 2.) return;
+  if (rejected.empty() || rejected.size() > 0.05 * loops + 2.) return false;
   const std::vector<Innovation> innovations =
       PredictLoops(rejected, in_force, result->poses, portfolio->solver());
   const double gate = WideGate(loops), log_area = LogArea(result->poses);
@@ -234,8 +233,44 @@ void AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   }
   // Where most rejected loops lie farther out, those are outliers, and some of
   // them will be near, too.
-  if (near.empty() || 2 * near.size() < rejected.size()) return;
+  if (near.empty() || 2 * near.size() < rejected.size()) return false;
   WidenGate(gate, near, portfolio, result);
+  return true;
+}
+
+// Step 5 where many loops are rejected: nothing where the right ones among them
+// are not told from wrong ones, or where the map of the gate that these pass is
+// another one.
+void AcceptHeavyTail(const NoiseMetric& applied, Portfolio* const portfolio,
+                     AutoResult* const result) {
+  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+  size_t in_force = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop) continue;
+    if (result->weights[i] > 0.5) {
+      ++in_force;
+    } else if (Chi2(edges[i], result->poses[edges[i].from],
+                    result->poses[edges[i].to]) < kChi2Gate) {
+      return;  // the gate is narrower for a reason
+    }
+  }
+  // As noisy as the matrices claim, or as the largest of so many may be.
+  const double claimed =
+      std::max(1. / applied.loops, std::sqrt(WideGate(in_force) / kChi2Gate));
+  const std::vector<int> tail = FindHeavyTail(
+      {result->poses, result->weights}, claimed, portfolio->support(), edges);
+  if (tail.empty()) return;
+  double gate = kChi2Gate;
+  for (const Innovation& innovation : PredictLoops(
+           tail, result->weights, result->poses, portfolio->solver())) {
+    gate = std::max(gate, innovation.chi2);
+  }
+  AutoResult wide = *result;
+  WidenGate(gate, tail, portfolio, &wide);
+  for (size_t i = 0; i != wide.weights.size(); ++i) {
+    if (result->weights[i] > 0.5 && wide.weights[i] <= 0.5) return;
+  }
+  *result = std::move(wide);
 }
 
 // An estimate in a search with the factor `applied`, for the given matrices.
@@ -305,7 +340,9 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
   result.iterations = portfolio->iterations();
   result.converged = portfolio->converged();
   Decide(options, portfolio.get(), &result);
-  AcceptNearLoops(portfolio.get(), &result);
+  if (!AcceptNearLoops(portfolio.get(), &result)) {
+    AcceptHeavyTail(applied, portfolio.get(), &result);
+  }
   result.accepted.assign(graph.edges.size(), true);
   for (size_t i = 0; i != result.accepted.size(); ++i) {
     result.accepted[i] = result.weights[i] > 0.5;

@@ -29,7 +29,12 @@
 //      for large graphs half way from that to the solvers that have;
 //   5. where hardly any loop is rejected and most of these lie just beyond the
 //      gate, the gate is one that all right loops pass: the lowest cost truncated
-//      there is taken, with these loops in force.
+//      there is taken, with these loops in force. Where many are rejected, right
+//      ones among them are as noisy as the largest of so many, or, with a smaller
+//      noise, as their matrices claim where most agree better: where these are
+//      more than wrong ones that would fit by chance (loops_by_chance.h), the
+//      gate is one that they pass, unless the lowest cost truncated there is that
+//      of a map that loses others.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_AUTO_SEARCH_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_AUTO_SEARCH_H_
 

@@ -66,6 +66,33 @@ TEST(AutoSearchTest, LoopsThatClaimTooLittleCountAsTheyAre) {
   EXPECT_EQ(both.applied_loop_scale, 1.);
 }
 
+// Most loops agree five times better than they claim, one in twenty as it claims:
+// the smaller noise does not cost these.
+TEST(AutoSearchTest, ASmallerNoiseKeepsLoopsAsNoisyAsTheyClaim) {
+  test::GridWorld world = test::MakeGridWorld(300, 5, 3);
+  const size_t right = world.graph.edges.size();
+  test::AddOutliers(test::Outliers(100), &world.graph);
+  PoseGraph graph = WithNoiseScale(world.graph, 1., 5.);
+  std::vector<size_t> noisy;
+  int loops = 0;
+  for (size_t i = 0; i != right; ++i) {
+    if (!graph.edges[i].is_loop || ++loops % 20 != 0) continue;
+    noisy.push_back(i);
+    graph.edges[i].measurement.y += loops % 40 == 0 ? 0.2 : -0.2;
+  }
+  ASSERT_GT(noisy.size(), 10u);
+  const AutoResult result = SearchAutomatically(graph, AutoOptions());
+  EXPECT_NEAR(result.applied_loop_scale, 0.2, 0.05);
+  EXPECT_GT(result.gate, 50.);
+  for (const size_t i : noisy) EXPECT_TRUE(result.accepted[i]) << i;
+  int wrong = 0;
+  for (size_t i = right; i != graph.edges.size(); ++i) {
+    wrong += result.accepted[i];
+  }
+  EXPECT_LE(wrong, 1);
+  EXPECT_LT(AbsoluteTrajectoryError(result.poses, world.truth), 0.1);
+}
+
 // The second search knows what the first has found.
 TEST(AutoSearchTest, AnotherRatioCostsLessThanAnotherSearch) {
   test::GridWorld world = test::MakeGridWorld(250, 5, 1);

@@ -350,7 +350,8 @@ TEST(UnusualGraphsTest, TrajectoriesJoinedByFewLoops) {
     }
     for (const auto& result : RunAll(graph, "r_isam")) {
       EXPECT_LE(best->truncated_chi2,
-                (1. + 1e-9) * TruncatedCost(edges, result.second.poses))
+                (1. + 1e-9) * TruncatedCost(edges, result.second.poses,
+                                            best->applied_gate))
           << result.first << " " << seed;
     }
   }

@@ -20,6 +20,8 @@ constexpr size_t kMaxPredictions = 300;
 constexpr double kBeyondGate = 0.01;
 // What fits nearly everywhere says nothing.
 constexpr double kMostByChance = 0.999;
+// Gates at the map beyond which no loop is a matter of noise.
+constexpr double kWorthALook = 100.;
 // Expected wrong loops in force: with fewer there is none in 19 of 20 graphs.
 constexpr double kHardlyAny = 0.05;
 
@@ -67,6 +69,27 @@ std::vector<double> LengthsOfPath(const std::vector<WhitenedEdge>& edges,
   return result;
 }
 
+// Logarithm of the area (square metres) that a wrong loop may lead to.
+class AreaOfLoops {
+ public:
+  AreaOfLoops(const std::vector<WhitenedEdge>& edges,
+              const std::vector<Pose2>& poses)
+      : log_area_(LogArea(poses)),
+        lengths_(LengthsOfPath(edges, poses.size())) {}
+
+  double LogOf(const WhitenedEdge& loop) const {
+    // Nothing is farther apart than the path between both ends.
+    const double length = std::abs(lengths_[loop.from] - lengths_[loop.to]);
+    return std::isfinite(length)
+               ? std::min(log_area_, std::log(kPi * length * length))
+               : log_area_;
+  }
+
+ private:
+  const double log_area_;
+  const std::vector<double> lengths_;
+};
+
 // What fits of the groups with loops that `map` rejects if they are wrong: for
 // one loop of each, evenly thinned, the probability to lie within the gate;
 // `share` is that of the parts.
@@ -83,18 +106,13 @@ std::vector<double> Chances(const DecidedMap& map, const LoopSupport& support,
   }
   const std::vector<int> looked_at = Thinned(loops, kMaxPredictions);
   *share = loops.empty() ? 1. : 1. * looked_at.size() / loops.size();
-  const double log_area = LogArea(map.poses);
-  const std::vector<double> lengths = LengthsOfPath(edges, map.poses.size());
+  const AreaOfLoops area(edges, map.poses);
   const std::vector<Innovation> innovations =
       PredictLoops(looked_at, map.decisions, map.poses, solver);
   std::vector<double> result;
   for (size_t k = 0; k != innovations.size(); ++k) {
     const WhitenedEdge& edge = edges[looked_at[k]];
-    // Nothing is farther apart than the path between both ends.
-    const double length = std::abs(lengths[edge.from] - lengths[edge.to]);
-    const double within =
-        std::isfinite(length) ? std::log(kPi * length * length) : log_area;
-    result.push_back(ChanceToFit(edge, std::min(log_area, within), kChi2Gate,
+    result.push_back(ChanceToFit(edge, area.LogOf(edge), kChi2Gate,
                                  innovations[k].log_determinant));
   }
   return result;
@@ -143,6 +161,51 @@ bool NarrowedMap::RejectsMoreThanByChance() const {
 
 bool NarrowedMap::MayRejectWrongLoops() const {
   return wrong_in_force_ > kHardlyAny;
+}
+
+std::vector<int> FindHeavyTail(const DecidedMap& map, const double claimed,
+                               const LoopSupport& support,
+                               const std::vector<WhitenedEdge>& edges) {
+  std::vector<WhitenedEdge> as_claimed = edges;
+  std::vector<int> rejected;
+  std::set<int> groups, within;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (map.decisions[i] > 0.5) continue;
+    WhitenedEdge& edge = as_claimed[i];
+    edge.whitening /= claimed;
+    groups.insert(support.group[i]);
+    if (Chi2(edge, map.poses[edge.from], map.poses[edge.to]) <
+        kWorthALook * kChi2Gate) {
+      rejected.push_back(i);
+    }
+  }
+  if (rejected.empty()) return {};
+  RobustSolver solver(as_claimed);
+  const std::vector<Innovation> innovations =
+      PredictLoops(rejected, map.decisions, map.poses, &solver);
+  for (size_t k = 0; k != innovations.size(); ++k) {
+    if (innovations[k].chi2 < kChi2Gate) {
+      within.insert(support.group[rejected[k]]);
+    }
+  }
+  if (within.empty()) return {};
+  double share = 1., expected = 0.;
+  for (const double chance : Chances(map, support, &solver, &share)) {
+    expected += chance / share;
+  }
+  if (within.size() < MoreThanExpected(expected)) return {};
+  const double log_odds = std::log((within.size() - expected) /
+                                   (groups.size() - within.size() + expected));
+  const AreaOfLoops area(edges, map.poses);
+  std::vector<int> result;
+  for (size_t k = 0; k != innovations.size(); ++k) {
+    const WhitenedEdge& edge = as_claimed[rejected[k]];
+    if (innovations[k].chi2 < kChi2Gate &&
+        LogEvidence(edge, innovations[k], area.LogOf(edge)) + log_odds > 0.) {
+      result.push_back(rejected[k]);
+    }
+  }
+  return result;
 }
 
 bool RejectsFew(const std::vector<WhitenedEdge>& edges,

@@ -54,6 +54,21 @@ class NarrowedMap {
   double wrong_in_force_ = 0.;
 };
 
+// Right loops beyond the gate of a map: rejected loops that are within it if they
+// are up to `claimed` times as noisy (standard deviations, more than one) as
+// `edges` say, be it what their own matrices claim or what the largest of many
+// samples may be. There are more groups of them than wrong ones would be by
+// chance, and each has odds above one,
+//
+//   N(r; 0, S) / (1 / (2 pi A det W^-1)) (n - e) / (N - n + e),
+//
+// where n of N rejected groups are within the gate and e are expected there; S and
+// W are those of the larger noise. Empty where these are not more than chance
+// allows.
+std::vector<int> FindHeavyTail(const DecidedMap& map, double claimed,
+                               const LoopSupport& support,
+                               const std::vector<WhitenedEdge>& edges);
+
 // Whether of the loops that are in force by `decisions` no more are rejected by
 // `others` than right ones by a gate of 99 %: then there is nothing to ask.
 bool RejectsFew(const std::vector<WhitenedEdge>& edges,

@@ -19,6 +19,8 @@ namespace optimization {
 
 // Fewer loops say nothing about the noise by their residuals.
 constexpr int kMinLoops = 10;
+// Larger graphs are taken at their word.
+constexpr size_t kMaxEdgesForNoise = 100000;
 // So many innovations take next to no time.
 constexpr int kFewAccepted = 100;
 

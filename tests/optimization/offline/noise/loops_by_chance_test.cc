@@ -102,6 +102,21 @@ TEST(LoopsByChanceTest, WrongLoopsAreRejectedWhereTheyMayFit) {
                    .MayRejectWrongLoops());
 }
 
+// Right loops that a smaller noise rejects are a tail where wrong ones with the
+// claimed noise would be elsewhere, and not where these fit as well.
+TEST(LoopsByChanceTest, LoopsAsNoisyAsTheyClaimAreRight) {
+  const World world(400);
+  const DecidedMap map = world.Without(20);
+  std::vector<int> rejected;
+  for (size_t i = 0; i != world.right_edges; ++i) {
+    if (map.decisions[i] < 0.5) rejected.push_back(i);
+  }
+  ASSERT_GT(rejected.size(), 10u);
+  EXPECT_EQ(FindHeavyTail(map, 2., world.support, world.edges), rejected);
+  EXPECT_TRUE(FindHeavyTail(map, 40., world.support, world.edges).empty());
+  EXPECT_TRUE(FindHeavyTail(world.map, 2., world.support, world.edges).empty());
+}
+
 TEST(LoopsByChanceTest, PoissonLimits) {
   EXPECT_EQ(MoreThanExpected(0.), 1.);
   EXPECT_EQ(MoreThanExpected(0.13), 3.);
