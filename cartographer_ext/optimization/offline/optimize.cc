@@ -9,6 +9,8 @@
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/optimization/offline/auto_search.h"
+#include "cartographer_ext/optimization/offline/noise/noise_metric.h"
+#include "cartographer_ext/optimization/offline/portfolio.h"
 #include "cartographer_ext/optimization/offline/readmission.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/offline/switchable_constraints.h"
@@ -66,12 +68,48 @@ void RunGnc(const std::vector<WhitenedEdge>& edges,
   AddSummary(SolveGnc(edges, gnc, &result->poses, &result->weights), result);
 }
 
+size_t CountAccepted(const PoseGraph& graph, const ReplayResult& replay) {
+  size_t result = 0;
+  for (size_t i = 0; i != graph.edges.size(); ++i) {
+    result += graph.edges[i].is_loop && replay.accepted[i];
+  }
+  return result;
+}
+
+// Repeats a replay with the noise that its map shows, where that is larger than the
+// matrices claim and loops were lost to it.
+void RepeatWithLargerNoise(const PoseGraph& graph,
+                           const SmootherOptions& options,
+                           ReplayResult* const replay,
+                           OptimizeResult* const result) {
+  if (graph.edges.size() >= kMaxEdgesForNoise) return;
+  Portfolio portfolio(graph, PortfolioOptions());
+  portfolio.Add("r_isam", replay->poses);
+  NoiseHypothesis noise;
+  if (!FindLargerNoise(NoiseMetric(), MeasureNoise(&portfolio), &portfolio,
+                       &noise)) {
+    return;
+  }
+  const PoseGraph scaled =
+      WithNoiseScale(graph, noise.metric.odometry, noise.metric.loops);
+  ReplayResult again;
+  if (!Replay(scaled, options, &again).ok()) return;
+  ReadmitGroups(scaled, &again);
+  if (CountAccepted(graph, again) <= CountAccepted(graph, *replay)) return;
+  *replay = std::move(again);
+  result->applied_odometry_scale = noise.metric.odometry;
+  result->applied_loop_scale = noise.metric.loops;
+}
+
 absl::Status RunReplay(const PoseGraph& graph, const OptimizeOptions& options,
                        OptimizeResult* const result) {
   ReplayResult replay;
   const absl::Status status = Replay(graph, options.smoother, &replay);
   if (!status.ok()) return status;
   ReadmitGroups(graph, &replay);
+  if (options.estimate_noise) {
+    RepeatWithLargerNoise(graph, options.smoother, &replay, result);
+  }
   result->poses = replay.poses;
   result->step_seconds = replay.step_seconds;
   result->accepted = replay.accepted;

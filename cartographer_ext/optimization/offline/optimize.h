@@ -31,8 +31,8 @@ struct OptimizeOptions {
   int max_iterations = 200;
   double max_seconds = 1e9;  // sc, gnc_tls: processor time
   bool prune = true;
-  // auto: estimate the noise scale, and use it if the information matrices are
-  // overconfident.
+  // auto, r_isam: estimate the noise scale, and use it if the information
+  // matrices are overconfident; r_isam then replays the graph once more.
   bool estimate_noise = true;
   // Other methods solve with the matrices as they are; this measures their
   // result (chi2, accepted) with the noise that `auto` would use, so that the

@@ -167,6 +167,31 @@ TEST(OptimizeTest, ReplayEndsNearTheLowestCost) {
   }
 }
 
+// A replay whose map shows that the matrices claim too little noise is repeated
+// with what it shows.
+TEST(OptimizeTest, ReplayTakesTheNoiseThatItFinds) {
+  const test::GridWorld world = test::MakeGridWorld(300, 5, 3);
+  std::vector<Pose2> optimum = world.graph.poses;
+  SolveRobust(Whiten(world.graph.edges), SolverOptions(), &optimum);
+  const PoseGraph graph = WithNoiseScale(world.graph, 0.2, 0.2);
+  OptimizeOptions options;
+  options.method = "r_isam";
+  for (const bool estimate : {true, false}) {
+    options.estimate_noise = estimate;
+    const auto result = Optimize(graph, options);
+    ASSERT_TRUE(result.ok()) << result.status();
+    int loops = 0, accepted = 0;
+    for (size_t i = 0; i != graph.edges.size(); ++i) {
+      loops += graph.edges[i].is_loop;
+      accepted += graph.edges[i].is_loop && result->accepted[i];
+    }
+    EXPECT_EQ(accepted >= 0.98 * loops, estimate) << accepted << "/" << loops;
+    if (!estimate) continue;
+    EXPECT_NEAR(result->applied_loop_scale, 5., 1.5);
+    EXPECT_LT(AbsoluteTrajectoryError(result->poses, optimum), 0.01);
+  }
+}
+
 TEST(OptimizeTest, Errors) {
   const test::GridWorld world = test::MakeGridWorld(30, 4, 1);
   OptimizeOptions options;
