@@ -268,7 +268,7 @@ double MotionPredictor::SpeedChange(const double interval,
                                     const ImuMotion& imu) const {
   const double least =
       kAccelerationGate * options_.imu.acceleration_bias_noise * interval;
-  return imu_.bias_is_known() && std::abs(imu.speed_change) > least
+  return imu_.acceleration_is_known() && std::abs(imu.speed_change) > least
              ? imu.speed_change
              : 0.;
 }
@@ -368,7 +368,7 @@ OdometryState MotionPredictor::Compare(
   comparison.translation_observable = uncompared_.translation_observable;
   ImuMotion imu;
   if (IntegrateImu(compared_time_, time, &imu)) {
-    comparison.has_inertial = imu_.bias_is_known();
+    comparison.has_inertial = imu_.acceleration_is_known();
     comparison.inertial_speed_change = imu.speed_change;
   }
   const OdometryState state = monitor_.Add(comparison);

@@ -15,6 +15,7 @@
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/map/host_types.h"
+#include "cartographer_ext/repair/stored_gyroscope.h"
 
 namespace cartographer_ext {
 namespace repair {
@@ -25,6 +26,7 @@ using cartographer::mapping::Submap2D;
 using cartographer::mapping::TrajectoryNode;
 using cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D;
 using cartographer::mapping::proto::PoseGraph;
+using cartographer::sensor::ImuData;
 using cartographer::sensor::OdometryData;
 using cartographer::sensor::PointCloud;
 using cartographer::transform::Rigid3d;
@@ -67,15 +69,27 @@ struct NewSubmaps {
   }
 };
 
+// What the map has received besides scans during one trajectory, by time.
+struct Readings {
+  std::vector<OdometryData> odometry;
+  std::vector<ImuData> imu;  // see stored_gyroscope.h
+};
+
+LocalTrajectoryBuilderOptions2D WithImu(LocalTrajectoryBuilderOptions2D options,
+                                        const bool has_imu) {
+  options.set_use_imu_data(has_imu);
+  return options;
+}
+
 // Local SLAM of one trajectory, node by node.
 class NodeMapper {
  public:
-  // `odometry` is fed to the front end if the matching asks for it.
+  // The odometry is fed to the front end if the matching asks for it.
   NodeMapper(const LocalTrajectoryBuilderOptions2D& options,
-             const NodeMatching matching, std::vector<OdometryData> odometry)
+             const NodeMatching matching, Readings readings)
       : matching_(matching),
-        odometry_(std::move(odometry)),
-        builder_(options, {kSensor}),
+        readings_(std::move(readings)),
+        builder_(WithImu(options, !readings_.imu.empty()), {kSensor}),
         active_submaps_(options.submaps_options()) {}
 
   // The pose of the node (local <- planar tracking frame) and, in `inserted`,
@@ -88,7 +102,7 @@ class NodeMapper {
     if (matching_ == NodeMatching::kNone) {
       AddByChain(node, predicted);
     } else {
-      AddOdometry(node.time, chain);
+      AddReadings(node.time, chain);
       AddByFrontEnd(node, predicted);
     }
     has_pose_ = true;
@@ -102,15 +116,27 @@ class NodeMapper {
   }
 
  private:
-  void AddOdometry(const cartographer::common::Time time, const Pose2& chain) {
+  // In the order in which the robot had them.
+  void AddReadings(const cartographer::common::Time time, const Pose2& chain) {
+    const std::vector<OdometryData>& odometry = readings_.odometry;
+    while (matching_ == NodeMatching::kRecordedOdometry &&
+           next_odometry_ < odometry.size() &&
+           odometry[next_odometry_].time <= time) {
+      AddImu(odometry[next_odometry_].time);
+      builder_.AddOdometryData(odometry[next_odometry_++]);
+    }
+    AddImu(time);
     if (matching_ == NodeMatching::kFrontEnd) {
       builder_.AddOdometryData({time, evaluation::ToHostPose(chain)});
-      return;
     }
-    for (; next_odometry_ < odometry_.size() &&
-           odometry_[next_odometry_].time <= time;
-         ++next_odometry_) {
-      builder_.AddOdometryData(odometry_[next_odometry_]);
+  }
+
+  // Up to `time`.
+  void AddImu(const cartographer::common::Time time) {
+    for (; next_imu_ < readings_.imu.size() &&
+           readings_.imu[next_imu_].time <= time;
+         ++next_imu_) {
+      builder_.AddImuData(readings_.imu[next_imu_]);
     }
   }
 
@@ -148,8 +174,9 @@ class NodeMapper {
   }
 
   const NodeMatching matching_;
-  const std::vector<OdometryData> odometry_;  // by time
+  const Readings readings_;
   size_t next_odometry_ = 0;
+  size_t next_imu_ = 0;
   LocalTrajectoryBuilder2D builder_;
   cartographer::mapping::ActiveSubmaps2D active_submaps_;
   NewSubmaps submaps_;
@@ -244,12 +271,14 @@ LocalTrajectoryBuilderOptions2D OptionsForClouds(
 
 absl::StatusOr<io::Pbstream> RerunLocalSlam(
     const io::Pbstream& pbstream, const MotionChain& chain,
-    const NodeMatching matching,
+    const NodeMatching matching, const bool use_gyroscope,
     const LocalTrajectoryBuilderOptions2D& options) {
   io::Pbstream result = pbstream;
   const Weights weights = InsertionWeights(pbstream.pose_graph);
   result.pose_graph.clear_constraint();
   auto odometry = OdometryReadings(pbstream);
+  auto imu = use_gyroscope ? StoredGyroscopeReadings(pbstream)
+                           : std::map<int, std::vector<ImuData>>();
   std::map<int, NodeMapper> mappers;
   std::map<GraphId, Rigid3d> local_poses;
   for (auto& record : result.nodes) {
@@ -258,7 +287,8 @@ absl::StatusOr<io::Pbstream> RerunLocalSlam(
       mappers.emplace(
           std::piecewise_construct, std::forward_as_tuple(id.trajectory_id),
           std::forward_as_tuple(options, matching,
-                                std::move(odometry[id.trajectory_id])));
+                                Readings{std::move(odometry[id.trajectory_id]),
+                                         std::move(imu[id.trajectory_id])}));
     }
     NodeMapper& mapper = mappers.at(id.trajectory_id);
     const auto data = cartographer::mapping::FromProto(record.node_data());

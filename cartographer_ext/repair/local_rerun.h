@@ -7,8 +7,9 @@
 // between two nodes is predicted from the odometry readings of the map, with
 // which the front end calibrates itself as on the robot, or from a chain of
 // poses: the local poses of the map, its odometry, or the optimised poses of an
-// earlier repair. The match corrects the prediction, and new submaps are built
-// from the clouds.
+// earlier repair. What the map tells of its gyroscope serves as on the robot
+// (stored_gyroscope.h). The match corrects the prediction, and new submaps are
+// built from the clouds.
 //
 // The clouds of a map are gravity aligned, and in Cartographer that includes
 // the rotation about the vertical axis since the start. All poses here are of
@@ -46,10 +47,11 @@ cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D OptionsForClouds(
 
 // The map with new local poses, submaps and insertions, without loops; global
 // poses are the local ones. Node ids are kept, submaps are numbered from 0.
-// Everything else is copied. An error if a node has no cloud.
+// Everything else is copied. An error if a node has no cloud. `use_gyroscope`:
+// with StoredGyroscopeReadings, if there are any.
 absl::StatusOr<io::Pbstream> RerunLocalSlam(
     const io::Pbstream& pbstream, const MotionChain& chain,
-    NodeMatching matching,
+    NodeMatching matching, bool use_gyroscope,
     const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
         options);
 

@@ -17,6 +17,7 @@
 #include "cartographer_ext/repair/kept_frame.h"
 #include "cartographer_ext/repair/local_rerun.h"
 #include "cartographer_ext/repair/store_graph.h"
+#include "cartographer_ext/repair/stored_gyroscope.h"
 #include "cartographer_ext/rerun/rerun.h"
 #include "glog/logging.h"
 
@@ -277,10 +278,10 @@ class Repairer {
   // remembered, kept or not: stock's loop closure, which takes long, is run over
   // that one only.
   void RerunAlong(const std::string& name, const MotionChain& chain,
-                  const NodeMatching matching) {
+                  const NodeMatching matching, const bool use_gyroscope) {
     if (done() || chain.empty()) return;
     const auto rerun = RerunLocalSlam(
-        *original_, chain, matching,
+        *original_, chain, matching, use_gyroscope,
         OptionsForClouds(options_.local_slam, StoredLocalOptions(*original_)));
     if (!rerun.ok()) {
       Begin(name);
@@ -313,12 +314,20 @@ class Repairer {
     const MotionChain stored = LocalChain(*original_);
     const MotionChain mixed = MixedChain(*original_);
     const MotionChain wheels = OdometryChain(*original_);
-    const std::string name = "local SLAM re-run";
-    RerunAlong(absl::StrCat(name, " with the recorded odometry"), wheels,
-               NodeMatching::kRecordedOdometry);
+    const bool has_gyroscope = !StoredGyroscopeReadings(*original_).empty();
+    const std::string without = "local SLAM re-run";
+    const std::string name =
+        absl::StrCat(without, has_gyroscope ? " with gyroscope" : "");
+    for (const bool use_gyroscope : {true, false}) {
+      if (use_gyroscope && !has_gyroscope) continue;
+      RerunAlong(absl::StrCat(use_gyroscope ? name : without,
+                              use_gyroscope ? " and" : " with",
+                              " the recorded odometry"),
+                 wheels, NodeMatching::kRecordedOdometry, use_gyroscope);
+    }
     RerunAlong(absl::StrCat(name, ", with odometry where the two differ"),
-               mixed, NodeMatching::kFrontEnd);
-    RerunAlong(name, stored, NodeMatching::kFrontEnd);
+               mixed, NodeMatching::kFrontEnd, has_gyroscope);
+    RerunAlong(name, stored, NodeMatching::kFrontEnd, has_gyroscope);
     if (is_sound() || best_base_ == nullptr) return;
     CloseLoops(absl::StrCat(best_name_, ", "), best_base_, false);
   }
@@ -330,7 +339,7 @@ class Repairer {
       const PbstreamPointer before = best_.pbstream;
       const MotionChain best = GlobalChain(*original_, best_.graph);
       RerunAlong("submaps rebuilt along the best map so far", best,
-                 NodeMatching::kNone);
+                 NodeMatching::kNone, false);
       if (before == best_.pbstream) break;
     }
   }

@@ -12,6 +12,8 @@ namespace {
 // A robot with a matched motion below these rates is stationary, m/s and rad/s.
 constexpr double kStationarySpeed = 0.03;
 constexpr double kStationaryTurnRate = 0.02;
+// No accelerometer measures less all the time, m/s^2.
+constexpr double kLeastAcceleration = 1e-6;
 
 bool IsFinite(const PlanarImuReading& reading) {
   return std::isfinite(reading.time) && reading.acceleration.allFinite() &&
@@ -35,6 +37,8 @@ void ImuPredictor::Add(const PlanarImuReading& reading) {
   last_.is_valid = false;
   gyroscope_.Add(reading.time, reading.yaw_rate);
   readings_.push_back(reading);
+  has_acceleration_ =
+      has_acceleration_ || reading.acceleration.norm() > kLeastAcceleration;
   while (readings_.size() > kMaxImuReadings ||
          readings_.front().time < reading.time - kImuBufferSeconds) {
     readings_.pop_front();

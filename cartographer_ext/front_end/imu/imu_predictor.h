@@ -65,7 +65,12 @@ class ImuPredictor {
   const Gyroscope& gyroscope() const { return gyroscope_; }
   Gyroscope* mutable_gyroscope() { return &gyroscope_; }
   const ImuBias& bias() const { return bias_; }
-  bool bias_is_known() const { return bias_is_known_; }
+  // Whether changes of speed are those of the robot: the biases are known, and the
+  // readings have horizontal accelerations (see io/imu_levelling.h for IMUs
+  // without).
+  bool acceleration_is_known() const {
+    return bias_is_known_ && has_acceleration_;
+  }
 
  private:
   absl::optional<PreintegratedImu> Preintegrate(double from, double to) const;
@@ -75,6 +80,7 @@ class ImuPredictor {
   Gyroscope gyroscope_;
   ImuBias bias_;
   bool bias_is_known_ = false;
+  bool has_acceleration_ = false;  // other than zero
   // Of the last successful Preintegrate(), invalid after any change of the
   // readings or of the biases.
   struct Preintegrated {

@@ -56,11 +56,11 @@ TEST(ImuPredictorTest, LearnsTheBiasWhileStandingAndOnlyThen) {
   for (int i = 0; i < 5; ++i) {
     predictor.AddMatch(0.1 * i, 0.1 * (i + 1), Pose2(0.1, 0., 0.));
   }
-  EXPECT_FALSE(predictor.bias_is_known());
+  EXPECT_FALSE(predictor.acceleration_is_known());
   for (int i = 5; i < 20; ++i) {
     predictor.AddMatch(0.1 * i, 0.1 * (i + 1), Pose2(0.0005, 0., 0.));
   }
-  ASSERT_TRUE(predictor.bias_is_known());
+  ASSERT_TRUE(predictor.acceleration_is_known());
   EXPECT_NEAR(predictor.bias().yaw_rate, 0.02, 1e-9);
   EXPECT_NEAR(predictor.bias().acceleration.x(), 0.3, 1e-9);
   ImuMotion motion;
@@ -70,19 +70,34 @@ TEST(ImuPredictorTest, LearnsTheBiasWhileStandingAndOnlyThen) {
   EXPECT_NEAR(motion.motion.x, 0., 1e-9);
 }
 
+// As of an IMU whose horizontal axes are unknown.
+TEST(ImuPredictorTest, ReadingsWithoutAccelerationTellTheTurnsAlone) {
+  ImuPredictorOptions options;
+  options.stationary_time = 1.;
+  ImuPredictor predictor(options);
+  for (int i = 0; i <= 500; ++i) predictor.Add(Reading(0.01 * i, 0., 0.02));
+  for (int i = 0; i < 20; ++i) {
+    predictor.AddMatch(0.1 * i, 0.1 * (i + 1), Pose2());
+  }
+  EXPECT_FALSE(predictor.acceleration_is_known());
+  EXPECT_NEAR(predictor.bias().yaw_rate, 0.02, 1e-9);
+  predictor.Add(Reading(5.01, 0.1, 0.02));
+  EXPECT_TRUE(predictor.acceleration_is_known());
+}
+
 // The robot starts to move within an interval that still looks stationary.
 TEST(ImuPredictorTest, SettingOffIsNoBias) {
   ImuPredictorOptions options;
   options.stationary_time = 1.;
   ImuPredictor predictor(options);
   for (int i = 0; i <= 300; ++i) {
-    predictor.Add(Reading(0.01 * i, 0., i < 155 ? 0.02 : 0.3));
+    predictor.Add(Reading(0.01 * i, 0.1, i < 155 ? 0.02 : 0.3));
   }
   for (int i = 0; i < 16; ++i) {
     predictor.AddMatch(0.1 * i, 0.1 * (i + 1), Pose2());
   }
   predictor.AddMatch(1.6, 1.7, Pose2(0., 0., 0.03));
-  ASSERT_TRUE(predictor.bias_is_known());
+  ASSERT_TRUE(predictor.acceleration_is_known());
   EXPECT_NEAR(predictor.bias().yaw_rate, 0.02, 1e-9);
 }
 
