@@ -28,6 +28,8 @@ constexpr double kAccelerationGate = 2.;
 // submaps accumulate. Scaled by the square of the angle, a depth camera of 57
 // degrees leaves odometry a tenth of the variance, 3 mm and 3 %.
 constexpr double kWideFieldOfView = kPi;
+// Nothing is known of lasers that see less.
+constexpr double kNarrowFieldOfView = 1.;
 // A stationary robot's wheels move less between two scans, and its matches
 // scatter less: metres, radians.
 constexpr double kStationaryWheelMotion = 1e-3;
@@ -286,7 +288,8 @@ bool MotionPredictor::IsStationary(const double time,
 }
 
 void MotionPredictor::SetFieldOfView(const double angle) {
-  field_of_view_scale_ = std::min(1., Squared(angle / kWideFieldOfView));
+  field_of_view_scale_ = std::min(
+      1., Squared(std::max(angle, kNarrowFieldOfView) / kWideFieldOfView));
 }
 
 void MotionPredictor::AddInnovation(const MatchInnovation& innovation) {

@@ -83,6 +83,7 @@ TEST(MotionPredictorTest, TheFieldOfViewWeighsOdometry) {
   const Eigen::Matrix3d narrow = covariance(0.5 * kPi);
   EXPECT_NEAR(narrow(0, 0), 0.25 * wide(0, 0), 1e-12);
   EXPECT_NEAR(narrow(1, 1), 0.25 * wide(1, 1), 1e-12);
+  EXPECT_TRUE(covariance(0.1).isApprox(covariance(1.), 1e-12));
   EXPECT_EQ(narrow(2, 2), wide(2, 2));
 }
 

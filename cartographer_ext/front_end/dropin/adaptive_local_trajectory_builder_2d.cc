@@ -222,6 +222,7 @@ AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
 
   const double seconds = Seconds(sweep.time);
   const double interval = has_pose_ ? seconds - last_seconds_ : 0.;
+  field_of_view_.Advance(std::max(0., interval));
   for (const auto& range : sweep.ranges) {
     field_of_view_.Add(
         (range.point_time.position - sweep.origins.at(range.origin_index))

@@ -32,6 +32,31 @@ TEST(FieldOfViewTest, IsThatOfTheLaser) {
   EXPECT_NEAR(Seen(150., 210., 50).angle(), DegToRad(60.), 1e-9);
 }
 
+// A robot of short sight enters a hall with a wall on one side.
+TEST(FieldOfViewTest, IsThatOfTheLastSeconds) {
+  FieldOfView field = Seen(-120., 120., 50);
+  for (int scan = 0; scan < 200; ++scan) {
+    field.Advance(0.1);
+    for (double degrees = 30.5; degrees < 90.; degrees += 1.) {
+      const double angle = DegToRad(degrees);
+      field.Add(Eigen::Vector2f(3. * std::cos(angle), 3. * std::sin(angle)));
+    }
+    if (scan == 1) {
+      EXPECT_NEAR(field.angle(), DegToRad(240.), 1e-9);
+    }
+  }
+  EXPECT_NEAR(field.angle(), DegToRad(60.), 1e-9);
+}
+
+// After minutes without a return, too.
+TEST(FieldOfViewTest, WithoutPointsForLong) {
+  FieldOfView field = Seen(-120., 120., 50);
+  for (int i = 0; i < 1000; ++i) field.Advance(10.);
+  EXPECT_EQ(field.angle(), 0.);
+  field.Add(Eigen::Vector2f(1.f, 0.f));
+  EXPECT_NEAR(field.angle(), DegToRad(5.), 1e-9);
+}
+
 TEST(FieldOfViewTest, IsWideUntilItIsKnown) {
   EXPECT_NEAR(FieldOfView().angle(), 2. * kPi, 1e-9);
   EXPECT_NEAR(Seen(-30., 30., 3).angle(), 2. * kPi, 1e-9);
