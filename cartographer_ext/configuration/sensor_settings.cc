@@ -76,8 +76,7 @@ std::vector<OptionDescription> DescribeSensorSettings() {
           "one of: " + absl::StrJoin(OdometrySources(), ", "), "",
           "Where a CARMEN log has its odometry: in the lines of the scans, in "
           "lines of its own, or in both. auto: lines of its own where they "
-          "cover "
-          "the run in order, else those of the scans."),
+          "cover the run in order, else those of the scans."),
       Key("min_range", "number", "0", ">= 0", "m",
           "Shorter ranges are dropped before local SLAM, as those of the robot "
           "itself."),

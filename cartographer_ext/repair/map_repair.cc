@@ -315,16 +315,14 @@ class Repairer {
     const MotionChain mixed = MixedChain(*original_);
     const MotionChain wheels = OdometryChain(*original_);
     const bool has_gyroscope = !StoredGyroscopeReadings(*original_).empty();
-    const std::string without = "local SLAM re-run";
-    const std::string name =
-        absl::StrCat(without, has_gyroscope ? " with gyroscope" : "");
-    for (const bool use_gyroscope : {true, false}) {
-      if (use_gyroscope && !has_gyroscope) continue;
-      RerunAlong(absl::StrCat(use_gyroscope ? name : without,
-                              use_gyroscope ? " and" : " with",
-                              " the recorded odometry"),
-                 wheels, NodeMatching::kRecordedOdometry, use_gyroscope);
+    if (has_gyroscope) {
+      RerunAlong("local SLAM re-run with gyroscope and the recorded odometry",
+                 wheels, NodeMatching::kRecordedOdometry, true);
     }
+    RerunAlong("local SLAM re-run with the recorded odometry", wheels,
+               NodeMatching::kRecordedOdometry, false);
+    const std::string name = has_gyroscope ? "local SLAM re-run with gyroscope"
+                                           : "local SLAM re-run";
     RerunAlong(absl::StrCat(name, ", with odometry where the two differ"),
                mixed, NodeMatching::kFrontEnd, has_gyroscope);
     RerunAlong(name, stored, NodeMatching::kFrontEnd, has_gyroscope);

@@ -22,7 +22,7 @@ constexpr double kLeastRotation = 0.01;
 // Readings are so far apart at most, seconds.
 constexpr double kReadingInterval = 0.05;
 
-// (vertical axis) of the gravity alignment, radians, by time.
+// Rotation of the gravity alignment about the vertical axis, radians, by time.
 using Yaws = std::map<Time, double>;
 
 bool UsedImu(const io::Pbstream& pbstream, const int trajectory_id) {

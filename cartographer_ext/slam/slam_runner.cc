@@ -416,7 +416,7 @@ absl::StatusOr<SlamRun> RunSlam(const SlamConfiguration& configuration,
       used.trajectory_builder_options.mutable_trajectory_builder_2d_options();
   if (local_slam->use_imu_data()) {
     used.sensors.use_recorded_imu = false;  // the recording is as configured
-  } else if (UsesImu(used) && source->info().num_imu > 0) {
+  } else if (used.sensors.use_recorded_imu && source->info().num_imu > 0) {
     local_slam->set_use_imu_data(true);
   }
   return Runner(used, source, options).Run();
