@@ -207,37 +207,6 @@ void WidenGate(const double gate, const std::vector<int>& near,
   result->gate = gate;
 }
 
-// Step 5 where hardly any is rejected. A gate of 99 % rejects one right loop in a
-// hundred. False where no other gate is taken.
-bool AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
-  const std::vector<WhitenedEdge>& edges = portfolio->edges();
-  std::vector<int> rejected;
-  std::vector<double> in_force(edges.size(), 1.);
-  size_t loops = 0;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    loops += edges[i].is_loop;
-    if (result->weights[i] > 0.5) continue;
-    in_force[i] = 0.;
-    rejected.push_back(i);
-  }
-  if (rejected.empty() || rejected.size() > 0.05 * loops + 2.) return false;
-  const std::vector<Innovation> innovations =
-      PredictLoops(rejected, in_force, result->poses, portfolio->solver());
-  const double gate = WideGate(loops), log_area = LogArea(result->poses);
-  std::vector<int> near;
-  for (size_t k = 0; k != innovations.size(); ++k) {
-    if (innovations[k].chi2 < gate &&
-        LogEvidence(edges[rejected[k]], innovations[k], log_area) > 0.) {
-      near.push_back(rejected[k]);
-    }
-  }
-  // Where most rejected loops lie farther out, those are outliers, and some of
-  // them will be near, too.
-  if (near.empty() || 2 * near.size() < rejected.size()) return false;
-  WidenGate(gate, near, portfolio, result);
-  return true;
-}
-
 // Step 5 where many loops are rejected: nothing where the right ones among them
 // are not told from wrong ones, or where the map of the gate that these pass is
 // another one.
@@ -329,6 +298,35 @@ std::unique_ptr<Portfolio> Search(const PoseGraph& graph,
 }
 
 }  // namespace
+
+bool AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
+  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+  std::vector<int> rejected;
+  std::vector<double> in_force(edges.size(), 1.);
+  size_t loops = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    loops += edges[i].is_loop;
+    if (result->weights[i] > 0.5) continue;
+    in_force[i] = 0.;
+    rejected.push_back(i);
+  }
+  if (rejected.empty() || rejected.size() > 0.05 * loops + 2.) return false;
+  const std::vector<Innovation> innovations =
+      PredictLoops(rejected, in_force, result->poses, portfolio->solver());
+  const double gate = WideGate(loops), log_area = LogArea(result->poses);
+  std::vector<int> near;
+  for (size_t k = 0; k != innovations.size(); ++k) {
+    if (innovations[k].chi2 < gate &&
+        LogEvidence(edges[rejected[k]], innovations[k], log_area) > 0.) {
+      near.push_back(rejected[k]);
+    }
+  }
+  // Where most rejected loops lie farther out, those are outliers, and some of
+  // them will be near, too.
+  if (near.empty() || 2 * near.size() < rejected.size()) return false;
+  WidenGate(gate, near, portfolio, result);
+  return true;
+}
 
 AutoResult SearchAutomatically(const PoseGraph& graph,
                                const AutoOptions& options) {

@@ -76,6 +76,10 @@ struct AutoResult {
   std::vector<RivalSets> rivals;
 };
 
+// Step 5 where hardly any loop is rejected, for the map of `result`. A gate of 99 %
+// rejects one right loop in a hundred. False where no other gate is taken.
+bool AcceptNearLoops(Portfolio* portfolio, AutoResult* result);
+
 // Runs `auto` on a valid graph.
 AutoResult SearchAutomatically(const PoseGraph& graph,
                                const AutoOptions& options);

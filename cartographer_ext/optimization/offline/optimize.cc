@@ -76,6 +76,22 @@ size_t CountAccepted(const PoseGraph& graph, const ReplayResult& replay) {
   return result;
 }
 
+// Puts right loops in force that lie just beyond the gate, as `auto` does.
+void AcceptNearLoops(const PoseGraph& graph, ReplayResult* const replay,
+                     OptimizeResult* const result) {
+  Portfolio portfolio(graph, PortfolioOptions());
+  portfolio.Add("r_isam", replay->poses);
+  AutoResult wide;
+  wide.poses = replay->poses;
+  wide.weights.assign(replay->accepted.begin(), replay->accepted.end());
+  if (!AcceptNearLoops(&portfolio, &wide)) return;
+  replay->poses = std::move(wide.poses);
+  for (size_t i = 0; i != wide.weights.size(); ++i) {
+    replay->accepted[i] = wide.weights[i] > 0.5;
+  }
+  result->applied_gate = wide.gate;
+}
+
 // Repeats a replay with the noise that its map shows, where that is larger than the
 // matrices claim and loops were lost to it.
 void RepeatWithLargerNoise(const PoseGraph& graph,
@@ -96,6 +112,7 @@ void RepeatWithLargerNoise(const PoseGraph& graph,
   if (!Replay(scaled, options, &again).ok()) return;
   ReadmitGroups(scaled, &again);
   if (CountAccepted(graph, again) <= CountAccepted(graph, *replay)) return;
+  AcceptNearLoops(scaled, &again, result);
   *replay = std::move(again);
   result->applied_odometry_scale = noise.metric.odometry;
   result->applied_loop_scale = noise.metric.loops;

@@ -192,6 +192,28 @@ TEST(OptimizeTest, ReplayTakesTheNoiseThatItFinds) {
   }
 }
 
+// The gate of 99 % is one that all right loops pass then, as with `auto`.
+TEST(OptimizeTest, ARepeatedReplayKeepsTheWorstRightLoops) {
+  OptimizeOptions options;
+  options.method = "r_isam";
+  int beyond = 0;
+  for (const int seed : {3, 4, 5}) {
+    const PoseGraph graph =
+        WithNoiseScale(test::MakeGridWorld(300, 5, seed).graph, 0.2, 0.2);
+    const auto result = Optimize(graph, options);
+    ASSERT_TRUE(result.ok()) << result.status();
+    EXPECT_GT(result->applied_loop_scale, 1.);
+    beyond += result->applied_gate > kChi2Gate;
+    for (size_t i = 0; i != graph.edges.size(); ++i) {
+      EXPECT_TRUE(result->accepted[i]) << seed << " " << i;
+      if (graph.edges[i].is_loop) {
+        EXPECT_LT(result->chi2[i], result->applied_gate);
+      }
+    }
+  }
+  EXPECT_GT(beyond, 0);
+}
+
 TEST(OptimizeTest, Errors) {
   const test::GridWorld world = test::MakeGridWorld(30, 4, 1);
   OptimizeOptions options;
