@@ -7,6 +7,8 @@
 #include <fstream>
 
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/optimize.h"
+#include "cartographer_ext/optimization/offline/portfolio.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
@@ -110,6 +112,39 @@ TEST(SweepGraphsTest, DeviationCountsInTheNoiseOfTheEdges) {
               0.1 / (std::sqrt(0.5) * std::sqrt(0.005 / 3.)), 1e-6);
   dataset.right_edges.clear();
   EXPECT_FALSE(std::isfinite(DeviationFromOptimum(dataset, dataset.optimum)));
+}
+
+// Here kernels agree from the given poses on a map that rejects most loops, softer
+// ones leave it for another, and the gate is wide enough for wrong loops to be in
+// force in that.
+TEST(SweepGraphsTest, AnEmptyMapThatKernelsAgreeOnSettlesNothing) {
+  constexpr int kSeed = 13009;
+  const auto dataset = MakeFamilyGraph("underconfident", kSeed);
+  ASSERT_TRUE(dataset.ok());
+  const auto graph =
+      WithOutliers(SweepOptions(), *dataset, "R", dataset->num_loops, kSeed);
+  ASSERT_TRUE(graph.ok());
+  optimization::Portfolio portfolio(*graph, optimization::PortfolioOptions());
+  portfolio.Run();
+  EXPECT_TRUE(portfolio.searched_groups());
+}
+
+// Odometry that claims far too much noise is bent by wrong loops for less than it
+// costs to reject them. The right map is likelier, each with the noise that it shows.
+TEST(SweepGraphsTest, TheLikeliestMapGivesTheNoise) {
+  constexpr int kSeed = 3102;
+  const auto dataset = MakeFamilyGraph("underconfident", kSeed);
+  ASSERT_TRUE(dataset.ok());
+  const auto graph =
+      WithOutliers(SweepOptions(), *dataset, "R", dataset->num_loops, kSeed);
+  ASSERT_TRUE(graph.ok());
+  const auto result =
+      optimization::Optimize(*graph, optimization::OptimizeOptions());
+  ASSERT_TRUE(result.ok());
+  EXPECT_LT(
+      optimization::AbsoluteTrajectoryError(result->poses, dataset->optimum),
+      0.1);
+  EXPECT_LT(result->applied_odometry_scale, 0.5);
 }
 
 }  // namespace

@@ -284,7 +284,7 @@ std::unique_ptr<Portfolio> Search(const PoseGraph& graph,
   }
   NoiseOfMap map = MeasureNoise(portfolio.get());
   for (const auto find : {&FindLargerNoise, &FindNoiseOfFewLoops,
-                          &FindNoiseRatio, &FindSmallerNoise}) {
+                          &FindSmallerNoise, &FindNoiseRatio}) {
     NoiseHypothesis noise;
     if (!find(*applied, map, portfolio.get(), &noise)) continue;
     // Only where the matrices claim too little is another map to be expected

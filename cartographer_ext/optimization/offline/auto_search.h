@@ -9,14 +9,14 @@
 //      through the loops or has many just behind it, chi2 of the odometry
 //      above its redundancy), the same search with the estimated noise, if the
 //      loops then look as they should. That noise is the metric of all that
-//      follows, the result included. Where one of odometry and loops claims too
-//      much noise in relation to the other, the search continues from its
-//      members with the estimate; the larger of both factors stays at least one.
-//      Below one are both only where that decides between two maps: where the
-//      lowest cost needs the noise that the matrices claim, and another map costs
-//      less with the noise that the data show. Fewer than ten loops say nothing
-//      about the noise by their residuals, but they may confirm each other far
-//      from where odometry has led;
+//      follows, the result included. Both factors are below one only where that
+//      decides between two maps: where another map than that of the lowest cost is
+//      likelier, each with the noise that it shows. The search then continues from
+//      its members. So it does with the estimate where one of odometry and loops
+//      claims too much noise in relation to the other; the larger of both factors
+//      then stays at least one. That is asked last, as a wrong map shows a wrong
+//      ratio. Fewer than ten loops say nothing about the noise by their residuals,
+//      but they may confirm each other far from where odometry has led;
 //   3. the members near the lowest truncated cost polished with a gate adapted
 //      to the scale of the accepted loops, where the matrices claim too much
 //      noise, which in a sparse graph leave-one-out innovations alone show;

@@ -79,6 +79,14 @@ ScaleEstimate MakeEstimate(const double chi2, const double degrees) {
 
 }  // namespace
 
+double DeviateOfRatio(const ScaleEstimate& a, const ScaleEstimate& b) {
+  const double of_a = 2. / (9. * (a.degrees_of_freedom + kPriorDegrees));
+  const double of_b = 2. / (9. * (b.degrees_of_freedom + kPriorDegrees));
+  const double root = std::cbrt(Squared(a.factor / b.factor));
+  return ((1. - of_b) * root - (1. - of_a)) /
+         std::sqrt(of_b * root * root + of_a);
+}
+
 NoiseScale EstimateNoiseScale(const std::vector<Pose2>& poses,
                               const std::vector<double>& weights,
                               RobustSolver* const solver) {

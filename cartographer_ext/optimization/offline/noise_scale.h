@@ -42,6 +42,11 @@ struct NoiseScale {
   ScaleEstimate loops;
 };
 
+// The ratio of two factors, as a deviate of the normal distribution with regard to
+// one: that of F with the degrees of freedom of both, the prior's included (Paulson
+// 1942, from the cube roots of Wilson and Hilferty).
+double DeviateOfRatio(const ScaleEstimate& a, const ScaleEstimate& b);
+
 // At a solution of the edges with these weights, 1 for the edges in force and 0
 // for rejected loops. All edges of one kind share a factor.
 NoiseScale EstimateNoiseScale(const std::vector<Pose2>& poses,

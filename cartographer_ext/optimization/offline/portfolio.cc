@@ -14,6 +14,7 @@
 #include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/edges_in_force.h"
 
@@ -26,7 +27,8 @@ constexpr double kSame = 1e-6;
 // Loops by which solvers differ that decide only what is near the gate
 // differently.
 constexpr double kNearlySame = 3.;
-// Wrong loops that may fit into a map by chance for the search to end early.
+// Wrong loops that may fit into a map by chance, or be expected in force in one that
+// kernels do not agree on, for the search to end early.
 constexpr double kFewByChance = 1.;
 // Rejected loops whose innovation is looked at.
 constexpr size_t kMaxInnovations = 200;
@@ -206,11 +208,22 @@ bool Portfolio::IsSettled(const size_t first) {
     if (!alike && !DecideAlike(first)) return false;
     Graduate(kNear);
   }
+  const bool most_were_rejected = MostAreRejected();
   Improve();
   // What softer kernels have found may be another map than that agreed on, and
-  // where most loops are wrong, one of many.
-  return (!MostAreRejected() || alike || same_cost() || DecideAlike(first)) &&
-         RejectedContradict();
+  // where most loops are wrong, or were in that, one of many.
+  if (!alike && !same_cost() && !DecideAlike(first) &&
+      (MostAreRejected() ||
+       (most_were_rejected && WrongByChance() >= kFewByChance))) {
+    return false;
+  }
+  return RejectedContradict();
+}
+
+double Portfolio::WrongByChance() {
+  return WrongInForce(
+      {best().poses, DecideLoops(edges_, best().poses, kChi2Gate)}, support(),
+      &solver_);
 }
 
 double Portfolio::FitsByChance() const {

@@ -13,7 +13,9 @@
 //           them is right (as long as these can be tried), nor graduated
 //           non-convexity finds another map (where that costs little), the
 //           search of a large graph ends here: other starts end in the same
-//           optimum.
+//           optimum. Not where they have agreed on a map that rejects most
+//           loops, softer kernels have left it, and wrong loops are to be
+//           expected in force in what these have found.
 //   Starts  chained odometry, chordal relaxation, a spanning tree of short
 //           paths and an incremental replay (R-iSAM) as starts of the same
 //           kernels; graduated non-convexity.
@@ -111,6 +113,8 @@ class Portfolio {
   // Whether every solver has run from every initial guess, in the other search
   // of AddSolversOf(), too.
   bool ran_all_solvers() const { return ran_all_solvers_; }
+  // Whether groups of loops were searched, too: no map was settled on.
+  bool searched_groups() const { return !starts_alone_; }
   const std::vector<WhitenedEdge>& edges() const { return edges_; }
   RobustSolver* solver() { return &solver_; }
   int iterations() const { return iterations_; }
@@ -149,6 +153,8 @@ class Portfolio {
   bool IsSettled(size_t first);
   // Whether they differ from the best in loops near the gate only.
   bool DecideAlike(size_t first) const;
+  // How many wrong loops are to be expected in force in the best map.
+  double WrongByChance();
   // How many of the rejected loops would fit into the best map if they led
   // anywhere in it: where that are many, so may other maps fit them.
   double FitsByChance() const;

@@ -3,6 +3,7 @@
 #include "cartographer_ext/optimization/offline/noise_scale.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
@@ -58,6 +59,27 @@ TEST(NoiseScaleTest, SaysSoWhereTheDataAreSilent) {
   EXPECT_LT(scale.odometry.degrees_of_freedom, 1e-6);
   EXPECT_GT(scale.odometry.high, 3.);
   EXPECT_LT(scale.odometry.low, 0.6);
+}
+
+// The 99 % quantile of F with 10 and 20 degrees of freedom, three of each the
+// prior's, and that of its inverse.
+TEST(NoiseScaleTest, TheRatioOfFactorsIsDistributedAsF) {
+  ScaleEstimate a, b;
+  a.degrees_of_freedom = 7.;
+  b.degrees_of_freedom = 17.;
+  a.factor = 2. * std::sqrt(3.368);
+  b.factor = 2.;
+  EXPECT_NEAR(DeviateOfRatio(a, b), 2.326, 0.02);
+  EXPECT_NEAR(DeviateOfRatio(b, a), -2.326, 0.02);
+  a.factor = 2.;
+  EXPECT_LT(std::abs(DeviateOfRatio(a, b)), 0.1);
+  // Few data say less, many more.
+  a.factor = 4.;
+  const double with_seven = DeviateOfRatio(a, b);
+  a.degrees_of_freedom = 0.;
+  EXPECT_LT(DeviateOfRatio(a, b), with_seven);
+  a.degrees_of_freedom = b.degrees_of_freedom = 1000.;
+  EXPECT_GT(DeviateOfRatio(a, b), 10.);
 }
 
 TEST(NoiseScaleTest, InnovationsAreChi2ForHonestMatricesOnly) {

@@ -28,13 +28,6 @@ constexpr double kHardlyAny = 0.05;
 // Groups that follow a revisit over more poses than this are several.
 constexpr int kStretch = 15;
 
-// The part of its group that a loop belongs to.
-using Part = std::pair<int, int>;
-
-Part PartOf(const WhitenedEdge& loop, const int group) {
-  return {group, std::max(loop.from, loop.to) / kStretch};
-}
-
 // Loops in force in a map, and the parts of groups with loops of which the other
 // map rejects some.
 struct Difference {
@@ -118,20 +111,22 @@ std::vector<double> Chances(const DecidedMap& map, const LoopSupport& support,
   return result;
 }
 
-// How many wrong loops are to be expected in force with the noise of `solver`,
-// if all that `narrower` rejects are wrong.
-double WrongInForce(const DecidedMap& narrower, const LoopSupport& support,
+}  // namespace
+
+Part PartOf(const WhitenedEdge& loop, const int group) {
+  return {group, std::max(loop.from, loop.to) / kStretch};
+}
+
+double WrongInForce(const DecidedMap& map, const LoopSupport& support,
                     RobustSolver* const solver) {
   double result = 0., share = 1.;
-  for (const double chance : Chances(narrower, support, solver, &share)) {
+  for (const double chance : Chances(map, support, solver, &share)) {
     // Those that fit to each one that does not.
     const double p = std::min(kMostByChance, chance);
     result += p / (1. - p);
   }
   return result / share;
 }
-
-}  // namespace
 
 bool TakesInMoreThanByChance(const DecidedMap& map, const DecidedMap& wider,
                              const LoopSupport& support,

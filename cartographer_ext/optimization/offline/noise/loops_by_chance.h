@@ -12,6 +12,7 @@
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_LOOPS_BY_CHANCE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_NOISE_LOOPS_BY_CHANCE_H_
 
+#include <utility>
 #include <vector>
 
 #include "cartographer_ext/optimization/graph/pose_graph.h"
@@ -26,6 +27,16 @@ struct DecidedMap {
   std::vector<Pose2> poses;
   std::vector<double> decisions;
 };
+
+// The part of its group that a loop belongs to: a group that follows a revisit over
+// many poses is several.
+using Part = std::pair<int, int>;
+Part PartOf(const WhitenedEdge& loop, int group);
+
+// How many wrong loops are to be expected in force with the noise of `solver`, if
+// all that `map` rejects are wrong.
+double WrongInForce(const DecidedMap& map, const LoopSupport& support,
+                    RobustSolver* solver);
 
 // Whether `wider`, with the larger noise of `solver`, takes in more groups of
 // those that `map` rejects than would fit by chance if all of these were wrong,

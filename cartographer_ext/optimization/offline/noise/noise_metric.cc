@@ -29,30 +29,19 @@ constexpr double kDoubtful = 1.1;
 // Share of the loops.
 constexpr double kNearlyAll = 0.98;
 // By what odometry and loops have to differ for a metric that has both as they
-// are, and the share of its loops that it keeps.
+// are, in standard deviations, too (one in 740), and the share of its loops that it
+// keeps.
 constexpr double kMinRatio = 1.25;
+constexpr double kSignificant = 3.;
 constexpr double kMostly = 0.75;
 
-// Upper bound of a factor from which a smaller noise is looked into, and loops by
-// which a map has to cost less with it to be another one.
-constexpr double kSmaller = 0.9;
+// Much less than all noise that is claimed.
 constexpr double kWellBelow = 0.5;
-constexpr double kAnother = 3.;
-constexpr int kMaxMaps = 3;  // in turn
 
 enum class Floor {
   kEach,    // no factor is below one
   kLargest  // the larger one is not
 };
-
-int CountLoops(const std::vector<WhitenedEdge>& edges,
-               const std::vector<double>& weights) {
-  int result = 0;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    result += edges[i].is_loop && weights[i] > 0.5;
-  }
-  return result;
-}
 
 // Whether right loops seem to lie behind the gate: more loops just beyond it
 // than it rejects right ones, and fewer farther out. Wrong loops, which may lead
@@ -213,6 +202,12 @@ bool AreMixed(const NoiseOfMap& map, Portfolio* const portfolio) {
          Squared(kWellBelow) * sum / (3. * of_loops.size());
 }
 
+// Whether the ratio of two factors is not one, and by enough to matter.
+bool Differ(const ScaleEstimate& a, const ScaleEstimate& b) {
+  return std::abs(std::log(a.factor / b.factor)) >= std::log(kMinRatio) &&
+         std::abs(DeviateOfRatio(a, b)) >= kSignificant;
+}
+
 // The map of a metric, given with regard to that of the portfolio.
 DecidedMap DecideWith(const Portfolio& portfolio, const NoiseMetric& metric,
                       const std::vector<Pose2>& poses) {
@@ -239,23 +234,6 @@ bool BringsInRightLoops(const NoiseOfMap& map,
       {portfolio->best().poses, map.decisions},
       DecideWith(*portfolio, hypothesis.metric, hypothesis.poses),
       portfolio->support(), &solver);
-}
-
-// Whether what is lost with a metric that makes the gate narrower speaks against
-// it: right loops, or nothing that may be wrong.
-bool LosesRightLoops(const NoiseMetric& applied, const NoiseOfMap& map,
-                     const NoiseHypothesis& hypothesis,
-                     Portfolio* const portfolio) {
-  const DecidedMap narrower =
-      DecideWith(*portfolio,
-                 {hypothesis.metric.odometry / applied.odometry,
-                  hypothesis.metric.loops / applied.loops},
-                 hypothesis.poses);
-  const NarrowedMap narrowed({portfolio->best().poses, map.decisions}, narrower,
-                             portfolio->support(), portfolio->solver());
-  return !narrowed.MayRejectWrongLoops() ||
-         (!RejectsFew(portfolio->edges(), map.decisions, narrower.decisions) &&
-          narrowed.RejectsMoreThanByChance());
 }
 
 }  // namespace
@@ -286,8 +264,7 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
   const NoiseScale& scale = map.scale;
   if (map.accepted < kMinLoops) return false;
   double loops = scale.loops.factor;
-  const bool differ = scale.loops.high * kMinRatio <= scale.odometry.low ||
-                      scale.odometry.high * kMinRatio <= scale.loops.low;
+  const bool differ = Differ(scale.loops, scale.odometry);
   bool mixed = false;
   if (!differ) {
     // A gate that is too wide lets wrong loops in, which make the noise of the
@@ -318,64 +295,28 @@ bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
          !LosesRightLoops(applied, map, *found, portfolio);
 }
 
-bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
-                      Portfolio* const portfolio,
-                      NoiseHypothesis* const found) {
-  if (map.accepted < kMinLoops ||
-      std::min(map.scale.odometry.high, map.scale.loops.high) >= kSmaller) {
-    return false;
+bool LosesRightLoops(const NoiseMetric& applied, const NoiseOfMap& map,
+                     const NoiseHypothesis& hypothesis,
+                     Portfolio* const portfolio) {
+  const DecidedMap narrower =
+      DecideWith(*portfolio,
+                 {hypothesis.metric.odometry / applied.odometry,
+                  hypothesis.metric.loops / applied.loops},
+                 hypothesis.poses);
+  const NarrowedMap narrowed({portfolio->best().poses, map.decisions}, narrower,
+                             portfolio->support(), portfolio->solver());
+  return !narrowed.MayRejectWrongLoops() ||
+         (!RejectsFew(portfolio->edges(), map.decisions, narrower.decisions) &&
+          narrowed.RejectsMoreThanByChance());
+}
+
+int CountLoops(const std::vector<WhitenedEdge>& edges,
+               const std::vector<double>& weights) {
+  int result = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    result += edges[i].is_loop && weights[i] > 0.5;
   }
-  const auto is_another = [&](const std::vector<Pose2>& poses) {
-    return !DifferNearGateOnly(portfolio->edges(), poses,
-                               portfolio->best().poses);
-  };
-  if (std::none_of(portfolio->members().begin(), portfolio->members().end(),
-                   [&](const Portfolio::Member& member) {
-                     return is_another(member.poses);
-                   })) {
-    return false;
-  }
-  // In relation to that of the portfolio.
-  NoiseMetric metric = {map.scale.odometry.factor, map.scale.loops.factor};
-  found->poses = portfolio->best().poses;
-  found->valid = false;
-  for (int k = 0; k != kMaxMaps; ++k) {
-    const std::vector<WhitenedEdge> edges =
-        WithNoiseScale(portfolio->edges(), metric.odometry, metric.loops);
-    RobustSolver solver(edges);
-    const double ours = TruncatedCost(edges, portfolio->best().poses);
-    double lowest = TruncatedCost(edges, found->poses) * (1. - 1e-6);
-    const Portfolio::Member* other = nullptr;
-    for (const Portfolio::Member& member : portfolio->members()) {
-      const double cost = TruncatedCost(edges, member.poses);
-      if (cost >= lowest) continue;
-      lowest = cost;
-      other = &member;
-    }
-    // A metric moves a little each time a map is solved with it: what costs less
-    // in the end may be the same map.
-    if (other == nullptr ||
-        (k + 1 == kMaxMaps &&
-         DifferNearGateOnly(edges, other->poses, found->poses))) {
-      found->valid =
-          lowest < ours - kAnother * kChi2Gate && is_another(found->poses);
-      break;
-    }
-    // What it says about the noise itself.
-    found->poses = other->poses;
-    std::vector<double> weights;
-    PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &found->poses,
-                    &weights);
-    found->accepted = CountLoops(edges, weights);
-    if (found->accepted < kMinLoops) break;
-    const NoiseScale noise = EstimateNoiseScale(found->poses, weights, &solver);
-    metric.odometry *= noise.odometry.factor;
-    metric.loops *= noise.loops.factor;
-  }
-  found->metric = {applied.odometry * std::min(1., metric.odometry),
-                   applied.loops * std::min(1., metric.loops)};
-  return found->valid && IsAnother(applied, &found->metric) &&
-         !LosesRightLoops(applied, map, *found, portfolio);
+  return result;
 }
 
 bool IsAnother(const NoiseMetric& applied, NoiseMetric* const metric) {

@@ -40,6 +40,9 @@ struct NoiseHypothesis {
   int accepted = 0;  // loops
 };
 
+// Upper bound of a factor from which a smaller noise is looked into.
+constexpr double kSmaller = 0.9;
+
 // The noise of a graph according to the best map of a portfolio.
 struct NoiseOfMap {
   std::vector<double> decisions;  // per edge
@@ -48,9 +51,18 @@ struct NoiseOfMap {
   NoiseScale scale;  // where ten loops are accepted
 };
 
+// Loops with weight, one per edge.
+int CountLoops(const std::vector<WhitenedEdge>& edges,
+               const std::vector<double>& weights);
+
 // Rounds a metric, so that two searches of the same graph measure alike, and
 // returns whether it differs from that applied.
 bool IsAnother(const NoiseMetric& applied, NoiseMetric* metric);
+
+// Whether what is lost with a metric that makes the gate narrower speaks against
+// it: right loops, or nothing that may be wrong.
+bool LosesRightLoops(const NoiseMetric& applied, const NoiseOfMap& map,
+                     const NoiseHypothesis& hypothesis, Portfolio* portfolio);
 
 // Measures the noise of the best map of a portfolio.
 NoiseOfMap MeasureNoise(Portfolio* portfolio);
@@ -78,21 +90,24 @@ bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
 // quarters of them could be.
 bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                          Portfolio* portfolio, NoiseHypothesis* found);
-// The actual ratio of the noise of odometry and loops, if it differs from that of
-// their matrices. The best map has to be explained as well. Either the intervals of
-// both factors are apart, or wrong loops in force hide the difference; where the
-// metric rejects none that may be wrong, none does.
-bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
-                    Portfolio* portfolio, NoiseHypothesis* found);
-// Smaller, where another map of the portfolio costs less with it than its best
-// and decides loops differently that are not near the gate. A gate that is too
-// wide lets groups of wrong loops bend odometry that is better than it claims.
-// Where the same map is the best in both metrics, the given one is as good. The
-// less noise loops have, the more of them are rejected, and those that are left
-// agree ever better: more may not be lost than can have been in force by chance.
-// Where no wrong loop is to be expected in force, the given noise is good enough.
+// Smaller, where another map than the best is likelier by odds of 1000 with it
+// (map_evidence.h), each with the noise that it shows itself, not more than is
+// claimed. A gate that is too wide lets groups of wrong loops bend odometry that is
+// better than it claims. Other maps are those of the portfolio that decide loops
+// differently which are not near the gate, and where it has searched groups, what
+// short searches with a half to an eighth of the noise find. Where the same map is
+// the best in both metrics, the given one is as good. The less noise loops have, the
+// more of them are rejected, and those that are left agree ever better: more may not
+// be lost than can have been in force by chance. Where no wrong loop is to be
+// expected in force, the given noise is good enough.
 bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
                       Portfolio* portfolio, NoiseHypothesis* found);
+// The actual ratio of the noise of odometry and loops, if it differs from that of
+// their matrices: by a quarter and three standard deviations. The best map has to be
+// explained as well. Or wrong loops in force hide the difference; where the metric
+// rejects none that may be wrong, none does.
+bool FindNoiseRatio(const NoiseMetric& applied, const NoiseOfMap& map,
+                    Portfolio* portfolio, NoiseHypothesis* found);
 
 }  // namespace optimization
 }  // namespace cartographer_ext
