@@ -336,7 +336,12 @@ std::vector<SearchPlan> SearchPlanner::Plan(
   planned_passes_.clear();
   // One by one, since the searches of a burst space each other out.
   for (const auto& entry : of_node) PlanNode(candidates, entry.second, &plans);
-  for (const auto& entry : of_node) ApplyCap(candidates, entry.second, &plans);
+  for (const auto& entry : of_node) {
+    ApplyCap(candidates, entry.second, &plans);
+    for (const size_t i : entry.second) {
+      plans[i].num_places = static_cast<int>(entry.second.size());
+    }
+  }
   return plans;
 }
 

@@ -35,6 +35,9 @@ struct SearchPlan {
   // their node in a whole map. Skipped ones are included because hypotheses are
   // tracked into their submaps.
   int64_t query = -1;
+  // Submaps that were proposed for the node, this one included: as many places
+  // where it may be if the prediction does not hold, > 0.
+  int num_places = 1;
 
   bool is_searched() const {
     return skipped == proto::LoopDecision::NONE && !out_of_reach;

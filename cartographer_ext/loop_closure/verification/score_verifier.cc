@@ -215,9 +215,14 @@ void EstimateProbability(const SearchPlannerOptions& options,
         candidate->innovation->innovation,
         ExpectedCovariance(options, candidate->innovation->covariance));
   }
-  const double density =
+  fusion.true_density =
       TrueDensity(fusion.predicted_density, by_path, fusion.search_density);
-  fusion.true_density = density;
+  // A whole submap is one of the places where an unexpected node may be; a window
+  // is where it is sought.
+  const int num_places =
+      candidate->plan.full_submap ? candidate->plan.num_places : 1;
+  const double density = TrueDensity(fusion.predicted_density, by_path,
+                                     fusion.search_density / num_places);
   fusion.probability = density / (density + fusion.wrong_density);
 }
 

@@ -96,6 +96,15 @@ TEST_F(SearchPlannerTest, WindowFollowsTheUncertaintyOfThePath) {
   EXPECT_EQ(PlanOne(Pair(1, 0, 4, 3.)).linear_window, 1.);
 }
 
+TEST_F(SearchPlannerTest, CountsThePlacesProposedForANode) {
+  MakePlanner();
+  const std::vector<SearchPlan> plans = PlanAll(
+      {Pair(0, 0, 100, 3.), Pair(1, 10, 100, 300.), Pair(2, 0, 50, 3.)});
+  EXPECT_TRUE(plans[1].out_of_reach);
+  EXPECT_EQ(plans[0].num_places, 2);
+  EXPECT_EQ(plans[2].num_places, 1);
+}
+
 TEST_F(SearchPlannerTest, SearchesTheWholeSubmapWhereTheWindowIsTooSmall) {
   MakePlanner();
   const SearchPlan plan = PlanOne(Pair(0, 0, 200, 3.));

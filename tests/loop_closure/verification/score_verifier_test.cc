@@ -106,6 +106,22 @@ TEST(ScoreVerifierTest, ProbabilityByHand) {
               1. / (1. + 0.05 / (0.45 * wide + 0.001)), 1e-12);
 }
 
+TEST(ScoreVerifierTest, AWholeSubmapIsOneOfManyPlaces) {
+  LoopCandidate candidate = Scored(0.7, 0.9);
+  const SearchPlannerOptions options;
+  candidate.fusion = ScoreFusionResult();
+  candidate.fusion->search_density = 0.01;
+  candidate.fusion->wrong_density = 0.05;
+  candidate.plan.num_places = 20;
+  EstimateProbability(options, &candidate);  // a window
+  EXPECT_NEAR(candidate.fusion->probability, 0.001 / 0.051, 1e-12);
+  candidate.plan.full_submap = true;
+  EstimateProbability(options, &candidate);
+  EXPECT_NEAR(candidate.fusion->probability, 0.00005 / 0.05005, 1e-12);
+  // What consensus compares with the density of wrong matches in the search.
+  EXPECT_NEAR(candidate.fusion->true_density, 0.001, 1e-12);
+}
+
 TEST(ScoreVerifierTest, WideSearchesAreLessProbablyRight) {
   const auto probability = [](const bool full_submap) {
     ScoreVerifier verifier(Options(FusionMode::kLikelihoodRatio));
