@@ -21,8 +21,7 @@
 #include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/front_end/match_recorder.h"
-#include "cartographer_ext/io/pbstream/pbstream_reader.h"
-#include "cartographer_ext/io/pbstream/pbstream_writer.h"
+#include "cartographer_ext/io/pbstream/pose_graph_edit.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/slam/back_end_metrics.h"
@@ -438,11 +437,9 @@ absl::Status WritePbstream(MapBuilderInterface* const map_builder,
           .empty()) {
     return file.Commit();
   }
-  // Programs without our optimization problem would use withdrawn loops. The
-  // reader skips them.
-  const auto state = io::ReadPbstream(file.temporary_path());
-  if (!state.ok()) return state.status();
-  return io::WritePbstream(*state, filename);
+  // Programs without our optimization problem would use withdrawn loops.
+  return io::CopyWithEditedPoseGraph(file.temporary_path(), filename,
+                                     io::RemoveWithdrawnLoops);
 }
 
 }  // namespace evaluation

@@ -14,10 +14,10 @@
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/bounded_read.h"
-#include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/io/pbstream/message_size.h"
 #include "cartographer_ext/io/pbstream/pbstream_records.h"
 #include "cartographer_ext/io/pbstream/pbstream_validation.h"
+#include "cartographer_ext/io/pbstream/pose_graph_edit.h"
 #include "google/protobuf/message.h"
 
 namespace cartographer_ext {
@@ -132,32 +132,12 @@ class Parser {
             absl::StrCat(name_, ": ", problems.front(), more));
       }
     }
-    SkipWithdrawnLoops();
+    pbstream_.num_withdrawn_constraints =
+        RemoveWithdrawnLoops(&pbstream_.pose_graph);
     return std::move(pbstream_);
   }
 
  private:
-  void SkipWithdrawnLoops() {
-    auto* const constraints = pbstream_.pose_graph.mutable_constraint();
-    const std::vector<size_t> withdrawn = FindWithdrawnLoops(
-        *constraints, DescribeConstraintProto<
-                          cartographer::mapping::proto::PoseGraph::Constraint>);
-    if (withdrawn.empty()) return;
-    pbstream_.num_withdrawn_constraints =
-        static_cast<int64_t>(withdrawn.size());
-    auto next = withdrawn.begin();
-    int kept = 0;
-    for (int i = 0; i != constraints->size(); ++i) {
-      if (next != withdrawn.end() && *next == static_cast<size_t>(i)) {
-        ++next;
-        continue;
-      }
-      if (kept != i) constraints->SwapElements(kept, i);
-      ++kept;
-    }
-    constraints->DeleteSubrange(kept, constraints->size() - kept);
-  }
-
   absl::Status TakeHeader(const std::string& record) {
     // The first record of streams from before 1.0 is another message, in which
     // field 1 is not a number.

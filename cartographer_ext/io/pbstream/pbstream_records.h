@@ -52,6 +52,10 @@ class PbstreamRecords {
 
   // Of that record; -1 before the first.
   int64_t index() const { return index_; }
+  // That record in the file, with its size.
+  absl::string_view bytes() const {
+    return content_.substr(record_position_, position_ - record_position_);
+  }
 
  private:
   const absl::string_view content_;
