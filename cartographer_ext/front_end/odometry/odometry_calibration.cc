@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "cartographer_ext/common/squared.h"
 
@@ -32,8 +33,11 @@ constexpr double kStampNoise = 0.02;
 // A segment ends after this distance, metres, or rotation, radians.
 constexpr double kSegmentLength = 0.5;
 constexpr double kSegmentRotation = 0.5;
-// Scans further apart are a gap, seconds.
+// Scans further apart are a gap, seconds, unless the recording has no others: then
+// those that are twice as far apart as the median of so many.
 constexpr double kMaxInterval = 1.;
+constexpr double kUsualIntervals = 2.;
+constexpr size_t kNumIntervals = 15;
 // A scan measures the translation (rotation) if its match has at most this
 // standard deviation, metres (radians).
 constexpr double kMaxTranslationSigma = 0.012;
@@ -87,10 +91,22 @@ void OdometryCalibration::Discard(const double time) {
   fault_time_ = time;
 }
 
+bool OdometryCalibration::IsGap(const double interval) {
+  if (!(interval > 0.)) return false;
+  std::vector<double> sorted(intervals_.begin(), intervals_.end());
+  intervals_.push_back(interval);
+  if (intervals_.size() > kNumIntervals) intervals_.pop_front();
+  if (interval <= kMaxInterval) return false;
+  if (sorted.size() < kNumIntervals) return true;
+  const auto median = sorted.begin() + kNumIntervals / 2;
+  std::nth_element(sorted.begin(), median, sorted.end());
+  return interval > kUsualIntervals * *median;
+}
+
 void OdometryCalibration::Add(const CalibrationInterval& interval) {
   if (!options_.estimate_odometry_scale && !options_.estimate_rotation) return;
   if (!interval.is_sound || !(interval.interval > 0.) ||
-      interval.interval > kMaxInterval) {
+      IsGap(interval.interval)) {
     Discard(interval.time);
     return;
   }

@@ -105,6 +105,10 @@ class OdometryCalibration {
   }
 
  private:
+  // Whether nothing is known of a time between two scans that is much longer than
+  // usual. Also adds it.
+  bool IsGap(double interval);
+
   // The motion between two scans that the filters compare.
   struct Segment {
     double time = 0.;                  // of its end
@@ -128,6 +132,7 @@ class OdometryCalibration {
   CalibrationFilter translation_filter_;
   CalibrationFilter rotation_filter_;
   Segment current_;
+  std::deque<double> intervals_;  // between scans, newest last, seconds
   // Not processed yet, oldest first.
   std::deque<Segment> pending_;
   // The filters restart with the next segment.

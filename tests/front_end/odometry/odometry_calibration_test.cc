@@ -31,13 +31,13 @@ class Robot {
         rotation_per_metre_(rotation_per_metre) {}
 
   // 0.5 m/s on a winding path; odometry goes `slip` times as far.
-  CalibrationInterval Step(const double slip = 1.) {
-    time_ += kStep;
-    const double distance = 0.5 * kStep;
-    const double turn = 0.5 * kStep * std::sin(0.3 * time_);
+  CalibrationInterval Step(const double slip = 1., const double step = kStep) {
+    time_ += step;
+    const double distance = 0.5 * step;
+    const double turn = 0.5 * step * std::sin(0.3 * time_);
     CalibrationInterval interval;
     interval.time = time_;
-    interval.interval = kStep;
+    interval.interval = step;
     // The errors of the matched poses are not those of motions.
     const double translation_error = random_.Normal(0., 0.004);
     const double rotation_error = random_.Normal(0., 0.001);
@@ -185,6 +185,24 @@ TEST(OdometryCalibrationTest, GapsAndStandingTellNothing) {
   }
   EXPECT_EQ(gaps.translation_scale(), 1.);
   EXPECT_EQ(stationary.translation_scale(), 1.);
+}
+
+// A recording with a scan every metre.
+TEST(OdometryCalibrationTest, ScansThatAreAlwaysFarApartAreNoGaps) {
+  Robot robot(3, 1.03, 0.97, -0.02);
+  OdometryCalibration calibration(TranslationAndRotation());
+  for (int i = 0; i < 200; ++i) calibration.Add(robot.Step(1., 2.));
+  EXPECT_NEAR(calibration.translation_scale(), 1.03, 0.004);
+  EXPECT_NEAR(calibration.rotation_scale(), 0.97, 0.02);
+  EXPECT_NEAR(calibration.rotation_per_metre(), -0.02, 0.006);
+  // A gap, in which the wheels slipped, is one there as well.
+  const double before = calibration.translation_scale();
+  for (int i = 0; i < 10; ++i) {
+    calibration.Add(robot.Step(0.5, 5.));
+    for (int k = 0; k < 9; ++k) calibration.Add(robot.Step(1., 2.));
+  }
+  EXPECT_NEAR(calibration.translation_scale(), before, 0.002);
+  EXPECT_NEAR(calibration.translation_scale(), 1.03, 0.004);
 }
 
 TEST(OdometryCalibrationTest, NothingIsAppliedBeyondTheLimit) {
