@@ -12,14 +12,13 @@ void TypicalFit::Add(const int trajectory_id, const double fit) {
       .first->second.Add(fit);
 }
 
-double TypicalFit::Scale(const int trajectory_id, const bool is_whole) const {
+double TypicalFit::Scale(const int trajectory_id) const {
   const auto found = fits_.find(trajectory_id);
   if (!is_on() || found == fits_.end() ||
       found->second.size() < options_.min_fits) {
     return 1.;
   }
-  return std::min(1., std::max(is_whole ? options_.least_scale_of_whole
-                                        : options_.least_scale,
+  return std::min(1., std::max(options_.least_scale,
                                found->second.Mean() / options_.reference));
 }
 

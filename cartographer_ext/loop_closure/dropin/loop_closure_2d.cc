@@ -196,8 +196,7 @@ void LoopClosure2D::ScheduleSearch(SearchJob* const job,
                                    Task* const end_of_node) {
   const LoopCandidate& candidate = job->candidate;
   if (!candidate.is_inter_trajectory()) {
-    job->score_scale = typical_fit_.Scale(candidate.node.trajectory_id,
-                                          candidate.plan.full_submap);
+    job->score_scale = typical_fit_.Scale(candidate.node.trajectory_id);
   }
   auto task = absl::make_unique<Task>();
   task->SetWorkItem([this, job]() { searcher_.Search(job); });

@@ -207,8 +207,7 @@ absl::optional<SearchJob> SecondLook::MakeJob(
   }
   SearchJob job;
   job.entry = submaps_->Find(candidate->submap);
-  job.score_scale =
-      typical_fit_->Scale(node.trajectory_id, match.plan.full_submap);
+  job.score_scale = typical_fit_->Scale(node.trajectory_id);
   job.candidate = std::move(*candidate);
   job.candidate.node = node;
   job.candidate.node_time = scan->time;

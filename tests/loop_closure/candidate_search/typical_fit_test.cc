@@ -12,7 +12,6 @@ TypicalFitOptions Options() {
   TypicalFitOptions options;
   options.reference = 0.6;
   options.least_scale = 0.8;
-  options.least_scale_of_whole = 0.6;
   options.window = 4;
   options.min_fits = 2;
   return options;
@@ -20,36 +19,32 @@ TypicalFitOptions Options() {
 
 TEST(TypicalFitTest, SaysNothingBeforeThereAreEnough) {
   TypicalFit fit(Options());
-  EXPECT_EQ(fit.Scale(0, false), 1.);
+  EXPECT_EQ(fit.Scale(0), 1.);
   fit.Add(0, 0.5);
-  EXPECT_EQ(fit.Scale(0, false), 1.);
+  EXPECT_EQ(fit.Scale(0), 1.);
   fit.Add(0, 0.52);
-  EXPECT_DOUBLE_EQ(fit.Scale(0, false), 0.51 / 0.6);
+  EXPECT_DOUBLE_EQ(fit.Scale(0), 0.51 / 0.6);
 }
 
 TEST(TypicalFitTest, StaysWithinItsBounds) {
   TypicalFit fit(Options());
   for (int i = 0; i < 4; ++i) fit.Add(0, 0.3);
-  EXPECT_EQ(fit.Scale(0, false), 0.8);
-  EXPECT_EQ(fit.Scale(0, true), 0.6);
-  for (int i = 0; i < 4; ++i) fit.Add(2, 0.42);
-  EXPECT_EQ(fit.Scale(2, false), 0.8);
-  EXPECT_DOUBLE_EQ(fit.Scale(2, true), 0.7);
+  EXPECT_EQ(fit.Scale(0), 0.8);
   for (int i = 0; i < 4; ++i) fit.Add(1, 0.75);
-  EXPECT_EQ(fit.Scale(1, false), 1.);
+  EXPECT_EQ(fit.Scale(1), 1.);
 }
 
 TEST(TypicalFitTest, OldFitsAreForgotten) {
   TypicalFit fit(Options());
   for (int i = 0; i < 100; ++i) fit.Add(0, 0.2);
   for (int i = 0; i < 4; ++i) fit.Add(0, 0.57);
-  EXPECT_DOUBLE_EQ(fit.Scale(0, false), 0.57 / 0.6);
+  EXPECT_DOUBLE_EQ(fit.Scale(0), 0.57 / 0.6);
 }
 
 TEST(TypicalFitTest, RunsAreApart) {
   TypicalFit fit(Options());
   for (int i = 0; i < 4; ++i) fit.Add(0, 0.5);
-  EXPECT_EQ(fit.Scale(1, false), 1.);
+  EXPECT_EQ(fit.Scale(1), 1.);
 }
 
 TEST(TypicalFitTest, OffWithoutAReference) {
@@ -57,7 +52,7 @@ TEST(TypicalFitTest, OffWithoutAReference) {
   options.reference = 0.;
   TypicalFit fit(options);
   for (int i = 0; i < 4; ++i) fit.Add(0, 0.1);
-  EXPECT_EQ(fit.Scale(0, false), 1.);
+  EXPECT_EQ(fit.Scale(0), 1.);
 }
 
 }  // namespace
