@@ -189,7 +189,8 @@ void LoopClosure2D::MeasureFit(const Proposal& proposal,
       scan_matching::MeanScore(
           LocalPose(*proposal.node) * candidate.aligned_from_tracking.Inverse(),
           proposal.node->filtered_gravity_aligned_point_cloud,
-          *entry.submap->grid()));
+          *entry.submap->grid()),
+      SectorSeen(PlanarPoints(*proposal.node)));
 }
 
 void LoopClosure2D::ScheduleSearch(SearchJob* const job,
