@@ -27,6 +27,11 @@ constexpr double kWheelRadius = 0.2;
 constexpr double kTranslationFloor = 0.001;
 constexpr double kRotationFloor = 0.002;
 constexpr double kRotationPerMetreFloor = 0.0002;
+// The same where scans are always so far apart that they make a coarse map: root
+// mean square errors of five such logs.
+constexpr double kSparseTranslationFloor = 0.006;
+constexpr double kSparseRotationFloor = 0.004;
+constexpr double kSparseRotationPerMetreFloor = 0.0025;
 // Jitter of the stamps of scans against those of odometry, seconds.
 constexpr double kStampNoise = 0.02;
 
@@ -100,7 +105,23 @@ bool OdometryCalibration::IsGap(const double interval) {
   if (sorted.size() < kNumIntervals) return true;
   const auto median = sorted.begin() + kNumIntervals / 2;
   std::nth_element(sorted.begin(), median, sorted.end());
+  is_sparse_ = is_sparse_ || *median > kMaxInterval;
   return interval > kUsualIntervals * *median;
+}
+
+double OdometryCalibration::translation_scale_sigma() const {
+  return std::hypot(translation_filter_.sigma(0),
+                    is_sparse_ ? kSparseTranslationFloor : 0.);
+}
+
+double OdometryCalibration::rotation_scale_sigma() const {
+  return std::hypot(Squared(rotation_scale()) * rotation_filter_.sigma(0),
+                    is_sparse_ ? kSparseRotationFloor : 0.);
+}
+
+double OdometryCalibration::rotation_per_metre_sigma() const {
+  return std::hypot(rotation_scale() * rotation_filter_.sigma(1),
+                    is_sparse_ ? kSparseRotationPerMetreFloor : 0.);
 }
 
 void OdometryCalibration::Add(const CalibrationInterval& interval) {

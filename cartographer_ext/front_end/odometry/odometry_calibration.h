@@ -38,7 +38,6 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
-#include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/front_end/calibration_filter.h"
 
 namespace cartographer_ext {
@@ -92,17 +91,11 @@ class OdometryCalibration {
   Eigen::Matrix3d Covariance(const Pose2& odometry) const;
 
   double translation_scale() const;
-  double translation_scale_sigma() const {
-    return translation_filter_.sigma(0);
-  }
+  double translation_scale_sigma() const;
   double rotation_scale() const;
-  double rotation_scale_sigma() const {
-    return Squared(rotation_scale()) * rotation_filter_.sigma(0);
-  }
+  double rotation_scale_sigma() const;
   double rotation_per_metre() const;  // radians per metre
-  double rotation_per_metre_sigma() const {
-    return rotation_scale() * rotation_filter_.sigma(1);
-  }
+  double rotation_per_metre_sigma() const;
 
  private:
   // Whether nothing is known of a time between two scans that is much longer than
@@ -133,6 +126,7 @@ class OdometryCalibration {
   CalibrationFilter rotation_filter_;
   Segment current_;
   std::deque<double> intervals_;  // between scans, newest last, seconds
+  bool is_sparse_ = false;        // they are all gaps elsewhere
   // Not processed yet, oldest first.
   std::deque<Segment> pending_;
   // The filters restart with the next segment.

@@ -195,6 +195,10 @@ TEST(OdometryCalibrationTest, ScansThatAreAlwaysFarApartAreNoGaps) {
   EXPECT_NEAR(calibration.translation_scale(), 1.03, 0.004);
   EXPECT_NEAR(calibration.rotation_scale(), 0.97, 0.02);
   EXPECT_NEAR(calibration.rotation_per_metre(), -0.02, 0.006);
+  // Maps of few scans are less accurate than the filter knows.
+  EXPECT_GT(calibration.translation_scale_sigma(), 0.006);
+  EXPECT_GT(calibration.rotation_scale_sigma(), 0.004);
+  EXPECT_GT(calibration.rotation_per_metre_sigma(), 0.0025);
   // A gap, in which the wheels slipped, is one there as well.
   const double before = calibration.translation_scale();
   for (int i = 0; i < 10; ++i) {
