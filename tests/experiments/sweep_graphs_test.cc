@@ -114,6 +114,12 @@ TEST(SweepGraphsTest, DeviationCountsInTheNoiseOfTheEdges) {
   EXPECT_FALSE(std::isfinite(DeviationFromOptimum(dataset, dataset.optimum)));
 }
 
+// An underconfident graph with as many random wrong loops as right ones.
+absl::StatusOr<optimization::PoseGraph> HalfWrong(const SweepGraph& dataset,
+                                                  const int seed) {
+  return WithOutliers(SweepOptions(), dataset, "R", dataset.num_loops, seed);
+}
+
 // Here kernels agree from the given poses on a map that rejects most loops, softer
 // ones leave it for another, and the gate is wide enough for wrong loops to be in
 // force in that.
@@ -121,8 +127,7 @@ TEST(SweepGraphsTest, AnEmptyMapThatKernelsAgreeOnSettlesNothing) {
   constexpr int kSeed = 13009;
   const auto dataset = MakeFamilyGraph("underconfident", kSeed);
   ASSERT_TRUE(dataset.ok());
-  const auto graph =
-      WithOutliers(SweepOptions(), *dataset, "R", dataset->num_loops, kSeed);
+  const auto graph = HalfWrong(*dataset, kSeed);
   ASSERT_TRUE(graph.ok());
   optimization::Portfolio portfolio(*graph, optimization::PortfolioOptions());
   portfolio.Run();
@@ -135,8 +140,7 @@ TEST(SweepGraphsTest, TheLikeliestMapGivesTheNoise) {
   constexpr int kSeed = 3102;
   const auto dataset = MakeFamilyGraph("underconfident", kSeed);
   ASSERT_TRUE(dataset.ok());
-  const auto graph =
-      WithOutliers(SweepOptions(), *dataset, "R", dataset->num_loops, kSeed);
+  const auto graph = HalfWrong(*dataset, kSeed);
   ASSERT_TRUE(graph.ok());
   const auto result =
       optimization::Optimize(*graph, optimization::OptimizeOptions());

@@ -97,12 +97,9 @@ void OdometryCalibration::Discard(const double time) {
 }
 
 bool OdometryCalibration::IsGap(const double interval) {
-  if (!(interval > 0.)) return false;
-  std::vector<double> sorted(intervals_.begin(), intervals_.end());
-  intervals_.push_back(interval);
-  if (intervals_.size() > kNumIntervals) intervals_.pop_front();
   if (interval <= kMaxInterval) return false;
-  if (sorted.size() < kNumIntervals) return true;
+  if (intervals_.size() < kNumIntervals) return true;
+  std::vector<double> sorted(intervals_.begin(), intervals_.end());
   const auto median = sorted.begin() + kNumIntervals / 2;
   std::nth_element(sorted.begin(), median, sorted.end());
   is_sparse_ = is_sparse_ || *median > kMaxInterval;
@@ -126,8 +123,13 @@ double OdometryCalibration::rotation_per_metre_sigma() const {
 
 void OdometryCalibration::Add(const CalibrationInterval& interval) {
   if (!options_.estimate_odometry_scale && !options_.estimate_rotation) return;
-  if (!interval.is_sound || !(interval.interval > 0.) ||
-      IsGap(interval.interval)) {
+  bool is_usable = interval.is_sound && interval.interval > 0.;
+  if (is_usable) {
+    is_usable = !IsGap(interval.interval);
+    intervals_.push_back(interval.interval);
+    if (intervals_.size() > kNumIntervals) intervals_.pop_front();
+  }
+  if (!is_usable) {
     Discard(interval.time);
     return;
   }

@@ -30,7 +30,8 @@
 //    after a fault: slip is detected with a delay;
 //  * from matches that agree with it: after relocalisation it restarts.
 //
-// The reported sigma includes a floor for systematic errors of maps and lasers.
+// The reported sigma includes a floor for systematic errors of maps and lasers,
+// a higher one where scans are always so far apart that elsewhere it were a gap.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_CALIBRATION_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_CALIBRATION_H_
 
@@ -98,8 +99,7 @@ class OdometryCalibration {
   double rotation_per_metre_sigma() const;
 
  private:
-  // Whether nothing is known of a time between two scans that is much longer than
-  // usual. Also adds it.
+  // Whether a time between two scans is much longer than those before it.
   bool IsGap(double interval);
 
   // The motion between two scans that the filters compare.

@@ -64,12 +64,11 @@ absl::StatusOr<std::string> WithEditedPoseGraph(
     const absl::StatusOr<bool> more = records.Next(LargestRecord(), &record);
     if (!more.ok()) return more.status();
     if (!*more) break;
-    // The header is no SerializedData; the pose graph follows it.
-    proto::SerializedData data;
-    if (records.index() != 1) {
+    if (records.index() != 1) {  // the pose graph follows the header
       result.append(records.bytes().data(), records.bytes().size());
       continue;
     }
+    proto::SerializedData data;
     if (!data.ParseFromString(record) || !data.has_pose_graph()) {
       return records.Error(absl::StatusCode::kInvalidArgument,
                            "this is not a pose graph");

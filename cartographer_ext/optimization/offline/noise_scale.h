@@ -43,8 +43,8 @@ struct NoiseScale {
 };
 
 // The ratio of two factors, as a deviate of the normal distribution with regard to
-// one: that of F with the degrees of freedom of both, the prior's included (Paulson
-// 1942, from the cube roots of Wilson and Hilferty).
+// one: that of F with the degrees of freedom of both, the prior's included, by the
+// cube-root approximation (Annals of Mathematical Statistics 13(2), 1942).
 double DeviateOfRatio(const ScaleEstimate& a, const ScaleEstimate& b);
 
 // At a solution of the edges with these weights, 1 for the edges in force and 0
