@@ -11,6 +11,7 @@
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/io/keyed_journal.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
@@ -80,9 +81,7 @@ absl::Status Compare(const PoseGraph& graph, const SweepOptions& options,
   const auto result = optimization::Optimize(graph, automatic);
   if (!result.ok()) return result.status();
   comparison->poses = graph.poses.size();
-  for (const optimization::PoseGraphEdge& edge : graph.edges) {
-    comparison->loops += edge.is_loop;
-  }
+  comparison->loops = optimization::CountLoops(graph.edges);
   comparison->cpu_seconds = result->cpu_seconds;
   comparison->member = result->member;
   const PoseGraph scaled = optimization::WithNoiseScale(

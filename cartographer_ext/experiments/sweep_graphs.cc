@@ -18,6 +18,7 @@
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
@@ -135,9 +136,7 @@ absl::StatusOr<SweepGraph> LoadSweepGraph(const SweepOptions& options,
     result.optimum = OptimumOfRightLoops(result.graph);
     result.right_edges = optimization::Whiten(result.graph.edges);
   }
-  for (const PoseGraphEdge& edge : result.graph.edges) {
-    result.num_loops += edge.is_loop;
-  }
+  result.num_loops = optimization::CountLoops(result.graph.edges);
   return result;
 }
 

@@ -25,6 +25,7 @@
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/offline/optimize.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/tools/command_line.h"
 #include "gflags/gflags.h"
 
@@ -244,11 +245,9 @@ void PrintRivals(const std::vector<optimization::RivalSets>& rivals) {
 
 nlohmann::ordered_json Report(const optimization::PoseGraph& graph,
                               const optimization::OptimizeResult& result) {
-  int loops = 0, accepted = 0;
-  for (size_t i = 0; i != graph.edges.size(); ++i) {
-    loops += graph.edges[i].is_loop;
-    accepted += graph.edges[i].is_loop && result.accepted[i];
-  }
+  const int loops = optimization::CountLoops(graph.edges);
+  const int accepted =
+      optimization::CountLoopsInForce(graph.edges, result.accepted);
   nlohmann::ordered_json json;
   json["kernel"] = FLAGS_kernel;
   json["cpu_seconds"] = result.cpu_seconds;

@@ -13,6 +13,7 @@
 #include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"
 #include "cartographer_ext/optimization/offline/polish_near.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -80,14 +81,13 @@ void Count(const SolverSummary& summary, AutoResult* const result) {
 // Polishes a member with the gate and takes it if it costs less than `lowest`,
 // truncated there.
 void PolishMember(const double gate, const Portfolio::Member& member,
-                  Portfolio* const portfolio, double* const lowest,
+                  RobustSolver* const solver, double* const lowest,
                   AutoResult* const result) {
   std::vector<Pose2> poses = member.poses;
   std::vector<double> weights;
-  Count(PolishTruncated(gate, kFullPolishRounds, portfolio->solver(), &poses,
-                        &weights),
+  Count(PolishTruncated(gate, kFullPolishRounds, solver, &poses, &weights),
         result);
-  const double cost = TruncatedCost(portfolio->edges(), poses, gate);
+  const double cost = TruncatedCost(solver->edges(), poses, gate);
   if (cost >= *lowest) return;
   *lowest = cost;
   result->poses = std::move(poses);
@@ -112,7 +112,7 @@ void PolishMembers(const double gate, const double limit,
         });
     if (again && &member != &likeliest) continue;
     polished.push_back(member.cost);
-    PolishMember(gate, member, portfolio, &lowest, result);
+    PolishMember(gate, member, portfolio->solver(), &lowest, result);
   }
 }
 
@@ -190,19 +190,20 @@ double WideGate(const size_t loops) {
 // Takes the map of the wide gate: with the `near` loops in force, or what a
 // member leads to if that costs less.
 void WidenGate(const double gate, const std::vector<int>& near,
-               Portfolio* const portfolio, AutoResult* const result) {
-  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+               const std::vector<Portfolio::Member>& members,
+               RobustSolver* const solver, AutoResult* const result) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
   SolverOptions options;
   options.edge_weights = result->weights;
   for (const int i : near) options.edge_weights[i] = 1.;
-  Count(portfolio->solver()->Solve(options, &result->poses), result);
-  Count(PolishTruncated(gate, kFullPolishRounds, portfolio->solver(),
-                        &result->poses, &result->weights),
+  Count(solver->Solve(options, &result->poses), result);
+  Count(PolishTruncated(gate, kFullPolishRounds, solver, &result->poses,
+                        &result->weights),
         result);
   double lowest = TruncatedCost(edges, result->poses, gate);
-  for (const Portfolio::Member& member : portfolio->members()) {
+  for (const Portfolio::Member& member : members) {
     if (TruncatedCost(edges, member.poses, gate) >= lowest) continue;
-    PolishMember(gate, member, portfolio, &lowest, result);
+    PolishMember(gate, member, solver, &lowest, result);
   }
   result->gate = gate;
 }
@@ -235,7 +236,7 @@ void AcceptHeavyTail(const NoiseMetric& applied, Portfolio* const portfolio,
     gate = std::max(gate, innovation.chi2);
   }
   AutoResult wide = *result;
-  WidenGate(gate, tail, portfolio, &wide);
+  WidenGate(gate, tail, portfolio->members(), portfolio->solver(), &wide);
   for (size_t i = 0; i != wide.weights.size(); ++i) {
     if (result->weights[i] > 0.5 && wide.weights[i] <= 0.5) return;
   }
@@ -299,20 +300,20 @@ std::unique_ptr<Portfolio> Search(const PoseGraph& graph,
 
 }  // namespace
 
-bool AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
-  const std::vector<WhitenedEdge>& edges = portfolio->edges();
+bool AcceptNearLoops(const std::vector<Portfolio::Member>& members,
+                     RobustSolver* const solver, AutoResult* const result) {
+  const std::vector<WhitenedEdge>& edges = solver->edges();
   std::vector<int> rejected;
   std::vector<double> in_force(edges.size(), 1.);
-  size_t loops = 0;
   for (size_t i = 0; i != edges.size(); ++i) {
-    loops += edges[i].is_loop;
     if (result->weights[i] > 0.5) continue;
     in_force[i] = 0.;
     rejected.push_back(i);
   }
+  const size_t loops = CountLoops(edges);
   if (rejected.empty() || rejected.size() > 0.05 * loops + 2.) return false;
   const std::vector<Innovation> innovations =
-      PredictLoops(rejected, in_force, result->poses, portfolio->solver());
+      PredictLoops(rejected, in_force, result->poses, solver);
   const double gate = WideGate(loops), log_area = LogArea(result->poses);
   std::vector<int> near;
   for (size_t k = 0; k != innovations.size(); ++k) {
@@ -324,7 +325,7 @@ bool AcceptNearLoops(Portfolio* const portfolio, AutoResult* const result) {
   // Where most rejected loops lie farther out, those are outliers, and some of
   // them will be near, too.
   if (near.empty() || 2 * near.size() < rejected.size()) return false;
-  WidenGate(gate, near, portfolio, result);
+  WidenGate(gate, near, members, solver, result);
   return true;
 }
 
@@ -338,7 +339,7 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
   result.iterations = portfolio->iterations();
   result.converged = portfolio->converged();
   Decide(options, portfolio.get(), &result);
-  if (!AcceptNearLoops(portfolio.get(), &result)) {
+  if (!AcceptNearLoops(portfolio->members(), portfolio->solver(), &result)) {
     AcceptHeavyTail(applied, portfolio.get(), &result);
   }
   result.accepted.assign(graph.edges.size(), true);

@@ -45,6 +45,7 @@
 #include "cartographer_ext/optimization/offline/noise_scale.h"
 #include "cartographer_ext/optimization/offline/portfolio.h"
 #include "cartographer_ext/optimization/offline/rival_sets.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -77,8 +78,10 @@ struct AutoResult {
 };
 
 // Step 5 where hardly any loop is rejected, for the map of `result`. A gate of 99 %
-// rejects one right loop in a hundred. False where no other gate is taken.
-bool AcceptNearLoops(Portfolio* portfolio, AutoResult* result);
+// rejects one right loop in a hundred. One of `members` that leads to a lower cost is
+// taken instead. False where no other gate is taken.
+bool AcceptNearLoops(const std::vector<Portfolio::Member>& members,
+                     RobustSolver* solver, AutoResult* result);
 
 // Runs `auto` on a valid graph.
 AutoResult SearchAutomatically(const PoseGraph& graph,

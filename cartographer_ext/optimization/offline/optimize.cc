@@ -14,6 +14,7 @@
 #include "cartographer_ext/optimization/offline/readmission.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/offline/switchable_constraints.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
@@ -68,23 +69,15 @@ void RunGnc(const std::vector<WhitenedEdge>& edges,
   AddSummary(SolveGnc(edges, gnc, &result->poses, &result->weights), result);
 }
 
-size_t CountAccepted(const PoseGraph& graph, const ReplayResult& replay) {
-  size_t result = 0;
-  for (size_t i = 0; i != graph.edges.size(); ++i) {
-    result += graph.edges[i].is_loop && replay.accepted[i];
-  }
-  return result;
-}
-
 // Puts right loops in force that lie just beyond the gate, as `auto` does.
 void AcceptNearLoops(const PoseGraph& graph, ReplayResult* const replay,
                      OptimizeResult* const result) {
-  Portfolio portfolio(graph, PortfolioOptions());
-  portfolio.Add("r_isam", replay->poses);
+  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  RobustSolver solver(edges);
   AutoResult wide;
   wide.poses = replay->poses;
   wide.weights.assign(replay->accepted.begin(), replay->accepted.end());
-  if (!AcceptNearLoops(&portfolio, &wide)) return;
+  if (!AcceptNearLoops({{"r_isam", replay->poses, 0.}}, &solver, &wide)) return;
   replay->poses = std::move(wide.poses);
   for (size_t i = 0; i != wide.weights.size(); ++i) {
     replay->accepted[i] = wide.weights[i] > 0.5;
@@ -111,7 +104,10 @@ void RepeatWithLargerNoise(const PoseGraph& graph,
   ReplayResult again;
   if (!Replay(scaled, options, &again).ok()) return;
   ReadmitGroups(scaled, &again);
-  if (CountAccepted(graph, again) <= CountAccepted(graph, *replay)) return;
+  if (CountLoopsInForce(graph.edges, again.accepted) <=
+      CountLoopsInForce(graph.edges, replay->accepted)) {
+    return;
+  }
   AcceptNearLoops(scaled, &again, result);
   *replay = std::move(again);
   result->applied_odometry_scale = noise.metric.odometry;

@@ -12,6 +12,7 @@
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/loop_support.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
@@ -61,13 +62,12 @@ bool HasLostNearlyAll(const LoopSupport& support,
 
 bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
   std::vector<WhitenedEdge> edges = Whiten(graph.edges);
-  double loops = 0., in_force = 0.;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    loops += edges[i].is_loop;
-    in_force += edges[i].is_loop && replay->accepted[i];
-  }
+  const double loops = CountLoops(edges);
   const bool large = graph.poses.size() * loops > kMaxGrowthWork;
-  if (large && in_force >= kHardlyAny * loops) return false;
+  if (large &&
+      CountLoopsInForce(edges, replay->accepted) >= kHardlyAny * loops) {
+    return false;
+  }
   RobustSolver solver(edges);
   const LoopSupport support = FindLoopSupport(graph, LoopSupportOptions());
   if (large ? !HasLostNearlyAll(support, replay->accepted)

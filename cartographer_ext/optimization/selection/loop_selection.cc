@@ -9,6 +9,7 @@
 
 #include "cartographer_ext/optimization/graph/condensed_graph.h"
 #include "cartographer_ext/optimization/graph/stretch_bend.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/optimization/solvers/incremental_smoother.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
@@ -75,12 +76,8 @@ PoseGraph Skeleton(const PoseGraph& graph) {
 // A folded map loses many loops, a right one only those that are wrong.
 bool LeavesOut(const double share, const PoseGraph& graph,
                const std::vector<bool>& accepted) {
-  int loops = 0, left_out = 0;
-  for (size_t i = 0; i != graph.edges.size(); ++i) {
-    loops += graph.edges[i].is_loop;
-    left_out += !accepted[i];
-  }
-  return left_out > share * loops;
+  const auto left_out = std::count(accepted.begin(), accepted.end(), false);
+  return left_out > share * CountLoops(graph.edges);
 }
 
 // What the selection has found so far.

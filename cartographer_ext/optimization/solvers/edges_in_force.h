@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The sparsity of the linear systems of a pose graph in which some edges count.
-// The first pose is held: unknown k is pose k + 1.
+// How many loops of a pose graph are in force, and the sparsity of its linear systems
+// in which some edges count. There the first pose is held: unknown k is pose k + 1.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_EDGES_IN_FORCE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_EDGES_IN_FORCE_H_
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,25 @@
 
 namespace cartographer_ext {
 namespace optimization {
+
+// Loops of a graph, whitened or not.
+template <typename Edge>
+int CountLoops(const std::vector<Edge>& edges) {
+  return std::count_if(edges.begin(), edges.end(),
+                       [](const Edge& edge) { return edge.is_loop; });
+}
+
+// Those in force: with more than half of the weight. One weight, or decision, per
+// edge.
+template <typename Edge, typename Weight>
+int CountLoopsInForce(const std::vector<Edge>& edges,
+                      const std::vector<Weight>& weights) {
+  int result = 0;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    result += edges[i].is_loop && weights[i] > 0.5;
+  }
+  return result;
+}
 
 // Pairs of unknowns that share an edge of positive weight, one for each such
 // edge between free poses, in the order of the edges. One weight per edge.

@@ -9,6 +9,7 @@
 #include "Eigen/Cholesky"
 #include "absl/memory/memory.h"
 #include "absl/strings/str_cat.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/optimization/solvers/incremental_smoother.h"
 #include "cartographer_ext/optimization/solvers/loop_evidence.h"
 
@@ -181,11 +182,8 @@ std::vector<IncrementalSmoother::Candidate> IncrementalSmoother::FindCandidates(
   }
   // Without the prospect of a majority the hypotheses need not be tried, nor,
   // where a smaller one will do, for a few loops more.
-  int loops = 0, agreeing = 0;
-  for (size_t i = 0; i != edges_.size(); ++i) {
-    loops += edges_[i].is_loop;
-    agreeing += edges_[i].is_loop && accepted_[i];
-  }
+  const int loops = CountLoops(edges_);
+  const int agreeing = CountLoopsInForce(edges_, accepted_);
   const double prospect = tests == 0 ? 0.
                                      : static_cast<double>(result.size()) /
                                            tests * (loops - agreeing);
@@ -264,9 +262,7 @@ bool IncrementalSmoother::IsSupported(const std::vector<Pose2>& poses,
   const int revisits = NewRevisits(edges_, poses_, poses, options_.gate);
   if (revisits >= kMinRevisits) return true;
   // A small map has few stretches; there nearly all of its loops must agree.
-  int loops = 0;
-  for (const WhitenedEdge& edge : edges_) loops += edge.is_loop;
-  return revisits >= 2 && loops >= kManyLoops &&
+  return revisits >= 2 && CountLoops(edges_) >= kManyLoops &&
          LoopsAgree(edges_, poses, options_.gate, kNearlyAll);
 }
 

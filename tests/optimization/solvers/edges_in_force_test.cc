@@ -27,6 +27,15 @@ std::vector<WhitenedEdge> ChainWithLoop(const int poses) {
   return edges;
 }
 
+TEST(EdgesInForceTest, CountsLoopsWithMoreThanHalfOfTheWeight) {
+  std::vector<WhitenedEdge> edges = ChainWithLoop(3);
+  edges.push_back(MakeEdge(0, 2, true));
+  EXPECT_EQ(CountLoops(edges), 2);
+  EXPECT_EQ(CountLoopsInForce(edges, std::vector<double>{1., 1., 0.6, 0.5}), 1);
+  EXPECT_EQ(CountLoopsInForce(edges, std::vector<bool>{true, true, true, true}),
+            2);
+}
+
 TEST(EdgesInForceTest, LeavesOutTheHeldPoseAndWhatHasNoWeight) {
   const std::vector<WhitenedEdge> edges = ChainWithLoop(4);
   EXPECT_THAT(PairsInForce(edges, {1., 1., 0.5, 1.}),

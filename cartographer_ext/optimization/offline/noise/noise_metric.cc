@@ -13,6 +13,7 @@
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -148,7 +149,7 @@ NoiseHypothesis EstimateMetric(const std::vector<WhitenedEdge>& given,
     result.poses = SearchShortly(kernels, starts, &solver);
     const std::vector<double> weights =
         DecideLoops(edges, result.poses, kChi2Gate);
-    result.accepted = CountLoops(edges, weights);
+    result.accepted = CountLoopsInForce(edges, weights);
     const NoiseScale noise = EstimateNoiseScale(result.poses, weights, &solver);
     const NoiseMetric next =
         WithFloor({result.metric.odometry * noise.odometry.factor,
@@ -160,8 +161,7 @@ NoiseHypothesis EstimateMetric(const std::vector<WhitenedEdge>& given,
     if (change < 0.05 || round + 1 == kMaxNoiseRounds) {
       // Matrices that are wrong in shape and not only in scale do not make a
       // chi2; where nearly all loops agree there is nothing to mistake.
-      const int loops =
-          CountLoops(edges, std::vector<double>(edges.size(), 1.));
+      const int loops = CountLoops(edges);
       std::vector<double> innovations = LeaveOneOutInnovations(
           result.poses, weights, kMaxInnovations, &solver);
       if (floor == Floor::kLargest) {
@@ -310,15 +310,6 @@ bool LosesRightLoops(const NoiseMetric& applied, const NoiseOfMap& map,
           narrowed.RejectsMoreThanByChance());
 }
 
-int CountLoops(const std::vector<WhitenedEdge>& edges,
-               const std::vector<double>& weights) {
-  int result = 0;
-  for (size_t i = 0; i != edges.size(); ++i) {
-    result += edges[i].is_loop && weights[i] > 0.5;
-  }
-  return result;
-}
-
 bool IsAnother(const NoiseMetric& applied, NoiseMetric* const metric) {
   metric->odometry = Rounded(metric->odometry);
   metric->loops = Rounded(metric->loops);
@@ -330,8 +321,8 @@ NoiseOfMap MeasureNoise(Portfolio* const portfolio) {
   const std::vector<Pose2>& poses = portfolio->best().poses;
   NoiseOfMap result;
   result.decisions = DecideLoops(edges, poses, kChi2Gate);
-  result.accepted = CountLoops(edges, result.decisions);
-  result.loops = CountLoops(edges, std::vector<double>(edges.size(), 1.));
+  result.accepted = CountLoopsInForce(edges, result.decisions);
+  result.loops = CountLoops(edges);
   if (result.accepted < kMinLoops) return result;
   result.scale =
       EstimateNoiseScale(poses, result.decisions, portfolio->solver());

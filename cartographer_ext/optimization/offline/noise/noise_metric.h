@@ -51,10 +51,6 @@ struct NoiseOfMap {
   NoiseScale scale;  // where ten loops are accepted
 };
 
-// Loops with weight, one per edge.
-int CountLoops(const std::vector<WhitenedEdge>& edges,
-               const std::vector<double>& weights);
-
 // Rounds a metric, so that two searches of the same graph measure alike, and
 // returns whether it differs from that applied.
 bool IsAnother(const NoiseMetric& applied, NoiseMetric* metric);

@@ -12,6 +12,7 @@
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"
 #include "cartographer_ext/optimization/offline/readmission.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -48,7 +49,7 @@ ExplainedMap Explain(const std::vector<Pose2>& poses, const double log_area,
     std::vector<double> decisions;
     PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &last.poses,
                     &decisions);
-    last.accepted = CountLoops(edges, decisions);
+    last.accepted = CountLoopsInForce(edges, decisions);
     last.evidence =
         LogEvidenceOfMap({last.poses, decisions}, portfolio->support(),
                          portfolio->edges(), log_area, &solver);
