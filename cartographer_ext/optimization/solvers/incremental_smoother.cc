@@ -115,6 +115,8 @@ absl::Status IncrementalSmoother::AddPose(
     return absl::InvalidArgumentError(
         absl::StrCat("pose ", number, " comes without odometry"));
   }
+  StepReport result;
+  batch_iterations_ = 0;
   TakeOverEpoch();
   if (!status_.ok()) return status_;
   for (const PoseGraphEdge& edge : edges) {
@@ -135,7 +137,6 @@ absl::Status IncrementalSmoother::AddPose(
       estimate_outdated_ = true;
     }
   }
-  StepReport result;
   while (status_.ok() && !waiting_.empty() &&
          result.loops_tested < options_.max_loops_per_step) {
     result.loops_entered += TestLoop(waiting_.front());
@@ -148,6 +149,7 @@ absl::Status IncrementalSmoother::AddPose(
     if (num_poses() <= options_.two_step_map) TakeOverEpoch();
     result.epoch = true;
   }
+  result.batch_iterations = batch_iterations_;
   result.cpu_seconds = ThreadCpuSeconds() - start;
   if (report != nullptr) *report = result;
   return status_;

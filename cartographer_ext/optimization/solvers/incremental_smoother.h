@@ -43,8 +43,8 @@
 //
 // A step is bounded: at most `max_loops_per_step` loops are tested, the rest
 // are deferred to the next steps. Beyond `two_step_map` the end of an epoch takes two
-// steps: the last one of the epoch solves the graph, and the next one rebuilds
-// the factor and tries hypotheses before its pose is added.
+// steps: the last one of the epoch begins to solve the graph, and the next one ends
+// that, rebuilds the factor and tries hypotheses before its pose is added.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_INCREMENTAL_SMOOTHER_H_
 
@@ -107,6 +107,7 @@ struct StepReport {
   int loops_tested = 0;
   int loops_entered = 0;
   bool epoch = false;
+  int batch_iterations = 0;  // for the end of an epoch
 };
 
 // R-iSAM, see above. Not thread-safe.
@@ -159,8 +160,9 @@ class IncrementalSmoother {
     double innovation = 0.;  // r' (I + Q)^-1 r
   };
 
-  // The two parts of the end of an epoch; the second does nothing without the
-  // first.
+  // The two parts of the end of an epoch, the batch solution and the new factor; the
+  // second does nothing without the first. In two steps, what the solution takes
+  // beyond its first iterations is left to the second.
   void SolveEpoch();
   void TakeOverEpoch();
   void AppendPose(const PoseGraphEdge& odometry);
@@ -184,6 +186,11 @@ class IncrementalSmoother {
   // Updates the estimate of one pose.
   void RefreshPose(int pose);
   SolverOptions EpochSolverOptions() const;
+  // The same with the edges that the batch solution may take in.
+  SolverOptions BatchOptions() const;
+  void SolveOn(const SolverOptions& options, RobustSolver* batch);
+  // Solves the rest and decides the loops.
+  void FinishBatch(RobustSolver* batch);
   void SolveWithPredicted(const SolverOptions& options);
   void DecideLoops();
   void RebuildFactor(RobustSolver* batch);
@@ -223,6 +230,8 @@ class IncrementalSmoother {
   double work_of_steps_ = 0.;  // in this epoch
   double work_of_last_end_ = 0.;
   std::unique_ptr<RobustSolver> batch_;  // of an epoch whose factor is to come
+  int iterations_left_ = 0;              // of its solution
+  int batch_iterations_ = 0;             // in this step
   int num_late_rejections_ = 0;
   int num_readmissions_ = 0;
   int num_hypotheses_ = 0;

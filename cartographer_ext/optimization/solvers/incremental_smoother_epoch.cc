@@ -32,6 +32,9 @@ constexpr double kFinalMajority = 0.5;
 constexpr double kFinalProspect = 0.1;
 // For what is not solved to the end; angles make the first step rough.
 constexpr double kWideGate = 4. * kChi2Gate;
+// Of the batch solution, in the first of two steps: with the analysis of the
+// factor as much as one more and the new factor in the second.
+constexpr int kFirstIterations = 2;
 
 bool Agrees(const WhitenedEdge& edge, const std::vector<Pose2>& poses,
             const double gate) {
@@ -80,24 +83,35 @@ void IncrementalSmoother::SolveEpoch() {
   if (num_poses() < 2 || !status_.ok()) return;
   waiting_.clear();  // the batch below weighs them with all others
   if (estimate_outdated_) UpdateEstimate();
-  SolverOptions solver = EpochSolverOptions();
-  if (!options_.late_rejection || !options_.readmission) {
-    // As in the paper: what an earlier epoch decided stays.
-    solver.edge_weights.assign(edges_.size(), 1.);
-    for (size_t i = 0; i != edges_.size(); ++i) {
-      if (decided_[i] && !accepted_[i] && !options_.readmission) {
-        solver.edge_weights[i] = 0.;
-      }
-    }
-  }
+  SolverOptions solver = BatchOptions();
   batch_ =
       absl::make_unique<RobustSolver>(edges_, RobustSolver::LastPoseLast());
   SolveWithPredicted(solver);
-  batch_->Solve(solver, &poses_);
+  iterations_left_ = solver.max_iterations;
+  if (num_poses() > options_.two_step_map) {
+    solver.max_iterations = std::min(kFirstIterations, iterations_left_);
+  }
+  SolveOn(solver, batch_.get());
+}
+
+void IncrementalSmoother::SolveOn(const SolverOptions& options,
+                                  RobustSolver* const batch) {
+  const SolverSummary summary = batch->Solve(options, &poses_);
+  iterations_left_ =
+      summary.converged ? 0 : iterations_left_ - summary.iterations;
+  batch_iterations_ += summary.iterations;
+}
+
+void IncrementalSmoother::FinishBatch(RobustSolver* const batch) {
+  if (iterations_left_ > 0) {
+    SolverOptions solver = BatchOptions();
+    solver.max_iterations = iterations_left_;
+    SolveOn(solver, batch);
+  }
   log_area_ = LogArea(poses_);
   if (options_.late_rejection && options_.readmission && KernelIsNarrow()) {
-    PolishTruncated(options_.gate, options_.polish_rounds, batch_.get(),
-                    &poses_, nullptr);
+    PolishTruncated(options_.gate, options_.polish_rounds, batch, &poses_,
+                    nullptr);
   }
   DecideLoops();
 }
@@ -113,6 +127,7 @@ void IncrementalSmoother::SolveWithPredicted(const SolverOptions& options) {
 void IncrementalSmoother::TakeOverEpoch() {
   if (batch_ == nullptr) return;
   const std::unique_ptr<RobustSolver> batch = std::move(batch_);
+  FinishBatch(batch.get());
   RebuildFactor(batch.get());
   if (!status_.ok()) return;
   UpdateEstimate();
@@ -154,6 +169,19 @@ SolverOptions IncrementalSmoother::EpochSolverOptions() const {
   solver.max_iterations = options_.max_epoch_iterations;
   solver.cost_tolerance = options_.epoch_cost_tolerance;
   solver.initial_lambda = 1e-8;
+  return solver;
+}
+
+SolverOptions IncrementalSmoother::BatchOptions() const {
+  SolverOptions solver = EpochSolverOptions();
+  if (options_.late_rejection && options_.readmission) return solver;
+  // As in the paper: what an earlier epoch decided stays.
+  solver.edge_weights.assign(edges_.size(), 1.);
+  for (size_t i = 0; i != edges_.size(); ++i) {
+    if (decided_[i] && !accepted_[i] && !options_.readmission) {
+      solver.edge_weights[i] = 0.;
+    }
+  }
   return solver;
 }
 

@@ -221,6 +221,26 @@ TEST(IncrementalSmootherTest, AnEpochOfALargeMapEndsInTwoSteps) {
   }
 }
 
+// Nor does it solve the graph to the end in the first of them.
+TEST(IncrementalSmootherTest, ALargeBatchSolutionIsDividedBetweenTwoSteps) {
+  test::GridWorld world = test::MakeGridWorld(330, 8, 4);
+  SmootherOptions options;
+  options.epoch_cost_tolerance = 1e-12;  // takes more iterations
+  options.two_step_map = 100;
+  IncrementalSmoother smoother(options, world.graph.poses[0]);
+  const auto edges_of_pose = ByPose(world.graph);
+  int in_next_step = 0;
+  bool epoch = false;
+  for (size_t k = 1; k != edges_of_pose.size(); ++k) {
+    StepReport report;
+    ASSERT_TRUE(smoother.AddPose(edges_of_pose[k], &report).ok());
+    if (epoch) in_next_step += report.batch_iterations;
+    epoch = report.epoch && smoother.num_poses() > options.two_step_map;
+    if (epoch) EXPECT_LE(report.batch_iterations, 2);
+  }
+  EXPECT_GT(in_next_step, 0);
+}
+
 // A way of 60 m and back with a bent odometry: all loops that are rejected at
 // the end of the epoch lead to the same map.
 TEST(IncrementalSmootherTest, LoopsThatLeadToTheSameMapAreOneHypothesis) {
