@@ -10,10 +10,11 @@ namespace cartographer_ext {
 
 // At most `limit` of the values, evenly spaced and in their order; the first
 // among them. All if there are no more.
-inline std::vector<int> Thinned(const std::vector<int>& values,
-                                const size_t limit) {
+template <typename T>
+inline std::vector<T> Thinned(const std::vector<T>& values,
+                              const size_t limit) {
   if (values.size() <= limit) return values;
-  std::vector<int> result;
+  std::vector<T> result;
   result.reserve(limit);
   for (size_t k = 0; k != limit; ++k) {
     result.push_back(values[k * values.size() / limit]);

@@ -224,11 +224,15 @@ void AcceptHeavyTail(const NoiseMetric& applied, Portfolio* const portfolio,
       return;  // the gate is narrower for a reason
     }
   }
-  // As noisy as the matrices claim, or as the largest of so many may be.
-  const double claimed =
-      std::max(1. / applied.loops, std::sqrt(WideGate(in_force) / kChi2Gate));
-  const std::vector<int> tail = FindHeavyTail(
-      {result->poses, result->weights}, claimed, portfolio->support(), edges);
+  // As noisy as the matrices claim, or where that is too much to tell them from
+  // wrong ones, as the largest of so many may be.
+  const double largest = std::sqrt(WideGate(in_force) / kChi2Gate);
+  std::vector<int> tail;
+  for (const double claimed : {1. / applied.loops, largest}) {
+    if (claimed < largest || !tail.empty()) continue;
+    tail = FindHeavyTail({result->poses, result->weights}, claimed,
+                         portfolio->support(), edges);
+  }
   if (tail.empty()) return;
   double gate = kChi2Gate;
   for (const Innovation& innovation : PredictLoops(
@@ -284,8 +288,9 @@ std::unique_ptr<Portfolio> Search(const PoseGraph& graph,
     return portfolio;
   }
   NoiseOfMap map = MeasureNoise(portfolio.get());
-  for (const auto find : {&FindLargerNoise, &FindNoiseOfFewLoops,
-                          &FindSmallerNoise, &FindNoiseRatio}) {
+  for (const auto find :
+       {&FindLargerNoise, &FindNoiseOfFewLoops, &FindSmallerNoise,
+        &FindNoiseOfCycles, &FindNoiseRatio}) {
     NoiseHypothesis noise;
     if (!find(*applied, map, portfolio.get(), &noise)) continue;
     // Only where the matrices claim too little is another map to be expected

@@ -12,7 +12,9 @@
 //      follows, the result included. Both factors are below one only where that
 //      decides between two maps: where another map than that of the lowest cost is
 //      likelier, each with the noise that it shows. The search then continues from
-//      its members. So it does with the estimate where one of odometry and loops
+//      its members. So it does with the noise that loops show among themselves, where
+//      that is less and explains a map better (cycle_noise.h), and with the estimate
+//      where one of odometry and loops
 //      claims too much noise in relation to the other; the larger of both factors
 //      then stays at least one. That is asked last, as a wrong map shows a wrong
 //      ratio. Fewer than ten loops say nothing about the noise by their residuals,

@@ -109,6 +109,31 @@ class Supporter {
   }
 
   LoopSupport Run() {
+    VisitPairs([&](const int k, const int l) { Test(k, l); });
+    MakeGroups();
+    return std::move(result_);
+  }
+
+  std::vector<LoopCycle> Cycles() {
+    std::vector<LoopCycle> result;
+    VisitPairs([&](const int k, const int l) {
+      Link late, early;
+      if (!PathsBetween(k, l, &late, &early)) return;
+      const Link cycle = Cycle(k, l, late, early);
+      late.covariance.setZero();
+      early.covariance.setZero();
+      LoopCycle entry;
+      entry.error = Eigen::Vector3d(cycle.x, cycle.y, cycle.theta);
+      entry.of_loops = Cycle(k, l, late, early).covariance;
+      entry.of_odometry = cycle.covariance - entry.of_loops;
+      result.push_back(entry);
+    });
+    return result;
+  }
+
+ private:
+  template <typename Visit>
+  void VisitPairs(const Visit& visit) {
     result_.agreeing.resize(graph_.edges.size());
     std::stable_sort(loops_.begin(), loops_.end(),
                      [&](int i, int j) { return Early(i) < Early(j); });
@@ -124,14 +149,11 @@ class Supporter {
         if (early_[l] - early_[k] > options_.window) break;
         if (std::abs(late_[l] - late_[k]) > options_.window) continue;
         if (tested++ == options_.max_neighbours) break;
-        Test(k, l);
+        visit(k, l);
       }
     }
-    MakeGroups();
-    return std::move(result_);
   }
 
- private:
   int Early(const int i) const {
     return std::min(graph_.edges[i].from, graph_.edges[i].to);
   }
@@ -165,16 +187,23 @@ class Supporter {
     return true;
   }
 
+  // The paths between the ends of the loops number k and l of loops_.
+  bool PathsBetween(const int k, const int l, Link* const late,
+                    Link* const early) {
+    return Path(late_[k], late_[l], late) && Path(early_[l], early_[k], early);
+  }
+
+  Link Cycle(const int k, const int l, const Link& late,
+             const Link& early) const {
+    return Compose(Compose(Compose(links_[k], late), inverse_links_[l]), early);
+  }
+
   // Whether the loops number k and l of loops_ agree.
   void Test(const int k, const int l) {
     const int i = loops_[k], j = loops_[l];
     Link path_late, path_early;
-    if (!Path(late_[k], late_[l], &path_late) ||
-        !Path(early_[l], early_[k], &path_early)) {
-      return;
-    }
-    const Link cycle = Compose(
-        Compose(Compose(links_[k], path_late), inverse_links_[l]), path_early);
+    if (!PathsBetween(k, l, &path_late, &path_early)) return;
+    const Link cycle = Cycle(k, l, path_late, path_early);
     const Eigen::Vector3d error(cycle.x, cycle.y, cycle.theta);
     const double chi2 = error.dot(cycle.covariance.llt().solve(error));
     result_.cycle_chi2.push_back(chi2);
@@ -218,6 +247,11 @@ class Supporter {
 LoopSupport FindLoopSupport(const PoseGraph& graph,
                             const LoopSupportOptions& options) {
   return Supporter(graph, options).Run();
+}
+
+std::vector<LoopCycle> FindLoopCycles(const PoseGraph& graph,
+                                      const LoopSupportOptions& options) {
+  return Supporter(graph, options).Cycles();
 }
 
 }  // namespace optimization

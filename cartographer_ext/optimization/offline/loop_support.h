@@ -16,6 +16,7 @@
 
 #include <vector>
 
+#include "Eigen/Core"
 #include "cartographer_ext/optimization/graph/pose_graph.h"
 #include "cartographer_ext/optimization/solvers/kernels.h"
 
@@ -42,6 +43,18 @@ struct LoopSupport {
   // chi2 of all cycles that were tested.
   std::vector<double> cycle_chi2;
 };
+
+// The error of the cycle that two neighbouring loops make, with the parts of its
+// covariance that the claimed noise of loops and of odometry has.
+struct LoopCycle {
+  Eigen::Vector3d error;
+  Eigen::Matrix3d of_loops;
+  Eigen::Matrix3d of_odometry;
+};
+
+// The cycles of all pairs of neighbouring loops.
+std::vector<LoopCycle> FindLoopCycles(const PoseGraph& graph,
+                                      const LoopSupportOptions& options);
 
 // Tests all pairs of neighbouring loops.
 LoopSupport FindLoopSupport(const PoseGraph& graph,

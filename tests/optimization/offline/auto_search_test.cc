@@ -4,6 +4,7 @@
 
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
 
@@ -91,6 +92,27 @@ TEST(AutoSearchTest, ASmallerNoiseKeepsLoopsAsNoisyAsTheyClaim) {
   }
   EXPECT_LE(wrong, 1);
   EXPECT_LT(AbsoluteTrajectoryError(result.poses, world.truth), 0.1);
+}
+
+// Matrices that claim sixteen times the noise let one or two wrong loops into every
+// map that is offered. What loops say of each other shows the noise, and the narrower
+// gate costs no right loop.
+TEST(AutoSearchTest, LoopsAmongThemselvesShowThatTooMuchNoiseIsClaimed) {
+  for (const uint64_t seed : {1, 5, 11}) {
+    test::GridWorld world = test::MakeGridWorld(100, 6, seed);
+    const size_t right = world.graph.edges.size();
+    const int loops = CountLoops(world.graph.edges);
+    test::AddOutliers(test::Outliers(100 - loops, OutlierType::kRandom, 5),
+                      &world.graph);
+    const AutoResult result = SearchAutomatically(
+        WithNoiseScale(world.graph, 16., 16.), AutoOptions());
+    EXPECT_NEAR(result.applied_odometry_scale, 1. / 16., 0.02);
+    EXPECT_NEAR(result.applied_loop_scale, 1. / 16., 0.02);
+    for (size_t i = 0; i != result.accepted.size(); ++i) {
+      EXPECT_EQ(result.accepted[i], i < right) << i;
+    }
+    EXPECT_LT(AbsoluteTrajectoryError(result.poses, world.truth), 0.03);
+  }
 }
 
 // The second search knows what the first has found.

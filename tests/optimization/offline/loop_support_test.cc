@@ -3,6 +3,7 @@
 #include "cartographer_ext/optimization/offline/loop_support.h"
 
 #include "Eigen/LU"
+#include "cartographer_ext/optimization/offline/noise_scale.h"
 #include "cartographer_ext/uncertainty/uncertain_pose.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/test_graphs.h"
@@ -139,6 +140,19 @@ TEST(LoopSupportTest, ChiSquareIsThatOfUncertainPoses) {
   ASSERT_EQ(support.cycle_chi2.size(), 1u);
   const double expected = error.dot(cycle.covariance.inverse() * error);
   EXPECT_NEAR(support.cycle_chi2[0], expected, 1e-9 * expected);
+  // The parts of its covariance grow with the noise of either kind.
+  const auto cycles = FindLoopCycles(graph, LoopSupportOptions());
+  ASSERT_EQ(cycles.size(), 1u);
+  EXPECT_LT((cycles[0].error - error).norm(), 1e-9);
+  EXPECT_LT(
+      (cycles[0].of_loops + cycles[0].of_odometry - cycle.covariance).norm(),
+      1e-9 * cycle.covariance.norm());
+  const auto scaled =
+      FindLoopCycles(WithNoiseScale(graph, 2., 3.), LoopSupportOptions());
+  EXPECT_LT((scaled[0].of_odometry - 4. * cycles[0].of_odometry).norm(),
+            1e-9 * scaled[0].of_odometry.norm());
+  EXPECT_LT((scaled[0].of_loops - 9. * cycles[0].of_loops).norm(),
+            1e-9 * scaled[0].of_loops.norm());
 }
 
 TEST(LoopSupportTest, NoAgreementAcrossAGapOfOdometry) {

@@ -236,7 +236,9 @@ TEST(IncrementalSmootherTest, ALargeBatchSolutionIsDividedBetweenTwoSteps) {
     ASSERT_TRUE(smoother.AddPose(edges_of_pose[k], &report).ok());
     if (epoch) in_next_step += report.batch_iterations;
     epoch = report.epoch && smoother.num_poses() > options.two_step_map;
-    if (epoch) EXPECT_LE(report.batch_iterations, 2);
+    if (epoch) {
+      EXPECT_LE(report.batch_iterations, 2);
+    }
   }
   EXPECT_GT(in_next_step, 0);
 }

@@ -111,6 +111,33 @@ std::vector<double> Chances(const DecidedMap& map, const LoopSupport& support,
   return result;
 }
 
+// Of one loop of each part that is in force in the map and that `narrower` rejects:
+// the logarithm of the odds that they are as noisy as claimed, against wrong ones all
+// over the gate g. With the squared innovation c of each,
+//
+//   chi2 density(c) / (3/2 sqrt(c) / g^(3/2)) = sqrt(2 / (9 pi)) g^(3/2) exp(-c / 2).
+double LogOddsOfNoise(const DecidedMap& map, const DecidedMap& narrower,
+                      const LoopSupport& support, RobustSolver* const solver) {
+  std::vector<int> rejected;
+  std::set<Part> parts;
+  const std::vector<WhitenedEdge>& edges = solver->edges();
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (map.decisions[i] > 0.5 && narrower.decisions[i] <= 0.5 &&
+        parts.insert(PartOf(edges[i], support.group[i])).second) {
+      rejected.push_back(i);
+    }
+  }
+  const double of_none =
+      0.5 * std::log(2. / (9. * kPi)) + 1.5 * std::log(kChi2Gate);
+  double result = 0.;
+  for (const Innovation& innovation :
+       PredictLoops(Thinned(rejected, kMaxPredictions), narrower.decisions,
+                    narrower.poses, solver)) {
+    result += of_none - 0.5 * std::min(kChi2Gate, innovation.chi2);
+  }
+  return result;
+}
+
 }  // namespace
 
 Part PartOf(const WhitenedEdge& loop, const int group) {
@@ -147,11 +174,14 @@ NarrowedMap::NarrowedMap(const DecidedMap& map, const DecidedMap& narrower,
       Compare(solver->edges(), map.decisions, narrower.decisions, support);
   in_force_ = difference.in_force;
   parts_ = difference.parts;
-  if (parts_ > 0) wrong_in_force_ = WrongInForce(narrower, support, solver);
+  if (parts_ == 0) return;
+  wrong_in_force_ = WrongInForce(narrower, support, solver);
+  log_odds_ = LogOddsOfNoise(map, narrower, support, solver);
 }
 
 bool NarrowedMap::RejectsMoreThanByChance() const {
-  return parts_ >= MoreThanExpected(kBeyondGate * in_force_ + wrong_in_force_);
+  return log_odds_ > 0. &&
+         parts_ >= MoreThanExpected(kBeyondGate * in_force_ + wrong_in_force_);
 }
 
 bool NarrowedMap::MayRejectWrongLoops() const {

@@ -52,7 +52,8 @@ class NarrowedMap {
               const LoopSupport& support, RobustSolver* solver);
 
   // Whether it rejects more groups than can have come in by chance, if all that
-  // `narrower` rejects are wrong.
+  // `narrower` rejects are wrong, and these look as noisy as claimed: wrong ones are
+  // anywhere within the gate.
   bool RejectsMoreThanByChance() const;
   // Whether some of those that it rejects may be wrong ones, which fit by chance.
   // Only these are a reason for a narrower gate.
@@ -63,6 +64,8 @@ class NarrowedMap {
   int parts_ = 0;     // of groups of them, with rejected ones
   // Wrong loops to be expected in force; 0 where none is rejected.
   double wrong_in_force_ = 0.;
+  // Logarithm of the odds that the rejected ones are as noisy as claimed.
+  double log_odds_ = 0.;
 };
 
 // Right loops beyond the gate of a map: rejected loops that are within it if they

@@ -98,6 +98,13 @@ bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
 // expected in force, the given noise is good enough.
 bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
                       Portfolio* portfolio, NoiseHypothesis* found);
+// Smaller, where loops show less among themselves than is claimed (cycle_noise.h) and
+// a map is likelier by odds of 1000 with the noise that it shows than the best one
+// with the given noise: another one that a short search finds with the noise of the
+// loops, or the best itself without what its gate lets in. Not asked where all solvers
+// agree on a map of more than a few loops.
+bool FindNoiseOfCycles(const NoiseMetric& applied, const NoiseOfMap& map,
+                       Portfolio* portfolio, NoiseHypothesis* found);
 // The actual ratio of the noise of odometry and loops, if it differs from that of
 // their matrices: by a quarter and three standard deviations. The best map has to be
 // explained as well. Or wrong loops in force hide the difference; where the metric

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/offline/noise/cycle_noise.h"
 #include "cartographer_ext/optimization/offline/noise/map_evidence.h"
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"
 #include "cartographer_ext/optimization/offline/readmission.h"
@@ -26,7 +27,7 @@ constexpr double kLessNoise[] = {0.5, 0.25, 0.125};
 // a factor that ends them.
 constexpr int kMaxRounds = 4;
 constexpr double kSameNoise = 0.05;
-// Logarithm of the odds that another map needs.
+// Logarithm of the odds that another map, or another noise, needs.
 const double kMuchLikelier = std::log(1000.);
 
 // A map with the noise that explains it best, with regard to that of the portfolio.
@@ -37,15 +38,42 @@ struct ExplainedMap {
   double evidence = -std::numeric_limits<double>::infinity();
 };
 
+// The polished map, or what a kernel as wide as the gate leads to if that costs less:
+// what wrong loops have bent keeps right ones out.
+std::vector<Pose2> LowestOf(const std::vector<Pose2>& start,
+                            RobustSolver* const solver) {
+  std::vector<Pose2> result = start, other = start;
+  PolishTruncated(kChi2Gate, kFullPolishRounds, solver, &result, nullptr);
+  SolverOptions soft;
+  soft.kernel = DefaultKernel(KernelType::kGemanMcClure);
+  soft.kernel.parameter = kChi2Gate;
+  solver->Solve(soft, &other);
+  PolishTruncated(kChi2Gate, kFullPolishRounds, solver, &other, nullptr);
+  return TruncatedCost(solver->edges(), other) <
+                 TruncatedCost(solver->edges(), result)
+             ? other
+             : result;
+}
+
+// How a map is explained.
+struct Explanation {
+  NoiseMetric first;  // that is looked for on from here
+  int max_rounds = kMaxRounds;
+  bool soft = false;  // with a kernel, which may lead to another map
+};
+
 // The map with the noise that it shows itself, not more than is claimed.
-ExplainedMap Explain(const std::vector<Pose2>& poses, const double log_area,
+ExplainedMap Explain(const std::vector<Pose2>& poses,
+                     const Explanation& explanation, const double log_area,
                      Portfolio* const portfolio) {
   ExplainedMap result, last;
   last.poses = poses;
-  for (int round = 0; round != kMaxRounds; ++round) {
+  last.metric = explanation.first;
+  for (int round = 0; round != explanation.max_rounds; ++round) {
     const std::vector<WhitenedEdge> edges = WithNoiseScale(
         portfolio->edges(), last.metric.odometry, last.metric.loops);
     RobustSolver solver(edges);
+    if (explanation.soft) last.poses = LowestOf(last.poses, &solver);
     std::vector<double> decisions;
     PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &last.poses,
                     &decisions);
@@ -66,6 +94,22 @@ ExplainedMap Explain(const std::vector<Pose2>& poses, const double log_area,
     last.metric = next;
   }
   return result;
+}
+
+// Whether cycles of loops show less noise than is claimed, by odds of a thousand, and
+// how much, not more than claimed. Not asked where all solvers agree on a map, but in
+// a small graph, where it costs nothing.
+bool CyclesShowLess(const NoiseOfMap& map, const Portfolio& portfolio,
+                    NoiseMetric* const shown) {
+  if (portfolio.Size() > kMaxGrowthWork ||
+      !(portfolio.searched_groups() || map.loops <= kFewAccepted)) {
+    return false;
+  }
+  const CycleNoise noise =
+      FindCycleNoise(FindLoopCycles(portfolio.graph(), LoopSupportOptions()));
+  *shown = {std::min(1., noise.odometry), std::min(1., noise.loops)};
+  return noise.log_likelihood > noise.of_given + kMuchLikelier &&
+         std::min(shown->odometry, shown->loops) < kSmaller;
 }
 
 // Adds a map that is neither the best of the portfolio nor among `maps`.
@@ -105,32 +149,39 @@ std::vector<std::vector<Pose2>> OtherMaps(const Portfolio& portfolio,
 
 // Maps that a short search finds with less noise: a gate that is too wide hides
 // them from solvers.
-void AddMapsOfLessNoise(const Portfolio& portfolio,
+void AddMapsOfLessNoise(const Portfolio& portfolio, const NoiseMetric& metric,
                         std::vector<std::vector<Pose2>>* const maps) {
-  if (!portfolio.searched_groups()) return;
   const std::vector<Pose2> chained = ChainOdometry(portfolio.graph());
-  for (const double factor : kLessNoise) {
-    const PoseGraph graph = WithNoiseScale(portfolio.graph(), factor, factor);
-    const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
-    RobustSolver solver(edges);
-    const auto add = [&](std::vector<Pose2> poses) {
-      PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &poses, nullptr);
-      AddIfAnother(portfolio, std::move(poses), maps);
-    };
-    ReplayResult replay;
-    if (Replay(graph, SmootherOptions(), &replay).ok()) {
-      add(replay.poses);
-      if (ReadmitGroups(graph, &replay)) add(replay.poses);
-    }
-    for (const KernelType type :
-         {KernelType::kDcs, KernelType::kGemanMcClure}) {
-      SolverOptions options;
-      options.kernel = DefaultKernel(type);
-      std::vector<Pose2> poses = chained;
-      solver.Solve(options, &poses);
-      add(std::move(poses));
-    }
+  const PoseGraph graph =
+      WithNoiseScale(portfolio.graph(), metric.odometry, metric.loops);
+  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  RobustSolver solver(edges);
+  const auto add = [&](std::vector<Pose2> poses) {
+    PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &poses, nullptr);
+    AddIfAnother(portfolio, std::move(poses), maps);
+  };
+  ReplayResult replay;
+  if (Replay(graph, SmootherOptions(), &replay).ok()) {
+    add(replay.poses);
+    if (ReadmitGroups(graph, &replay)) add(replay.poses);
   }
+  for (const KernelType type : {KernelType::kDcs, KernelType::kGemanMcClure}) {
+    SolverOptions options;
+    options.kernel = DefaultKernel(type);
+    std::vector<Pose2> poses = chained;
+    solver.Solve(options, &poses);
+    add(std::move(poses));
+  }
+}
+
+// Takes over a map; whether its noise is another.
+bool TakeMap(const NoiseMetric& applied, ExplainedMap* const map,
+             NoiseHypothesis* const found) {
+  found->metric = {applied.odometry * map->metric.odometry,
+                   applied.loops * map->metric.loops};
+  found->poses = std::move(map->poses);
+  found->accepted = map->accepted;
+  return IsAnother(applied, &found->metric);
 }
 
 }  // namespace
@@ -143,32 +194,64 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
     return false;
   }
   const std::vector<WhitenedEdge>& edges = portfolio->edges();
+  const std::vector<Pose2>& best = portfolio->best().poses;
   std::vector<std::vector<Pose2>> others =
       OtherMaps(*portfolio, {std::min(1., map.scale.odometry.factor),
                              std::min(1., map.scale.loops.factor)});
   if (others.empty()) return false;
-  AddMapsOfLessNoise(*portfolio, &others);
-  const double log_area = LogArea(portfolio->best().poses);
-  ExplainedMap likeliest =
-      Explain(portfolio->best().poses, log_area, portfolio);
+  if (portfolio->searched_groups()) {
+    for (const double factor : kLessNoise) {
+      AddMapsOfLessNoise(*portfolio, {factor, factor}, &others);
+    }
+  }
+  const double log_area = LogArea(best);
+  ExplainedMap likeliest = Explain(best, {}, log_area, portfolio);
   likeliest.evidence += kMuchLikelier;
   found->valid = false;
   for (const std::vector<Pose2>& other : others) {
-    ExplainedMap explained = Explain(other, log_area, portfolio);
+    ExplainedMap explained = Explain(other, {}, log_area, portfolio);
     if (explained.evidence <= likeliest.evidence ||
         explained.accepted < kMinLoops ||
-        DifferNearGateOnly(edges, explained.poses, portfolio->best().poses)) {
+        DifferNearGateOnly(edges, explained.poses, best)) {
       continue;
     }
     likeliest = std::move(explained);
     found->valid = true;
   }
-  if (!found->valid) return false;
-  found->metric = {applied.odometry * likeliest.metric.odometry,
-                   applied.loops * likeliest.metric.loops};
-  found->poses = std::move(likeliest.poses);
-  found->accepted = likeliest.accepted;
-  return IsAnother(applied, &found->metric) &&
+  return found->valid && TakeMap(applied, &likeliest, found) &&
+         !LosesRightLoops(applied, map, *found, portfolio);
+}
+
+bool FindNoiseOfCycles(const NoiseMetric& applied, const NoiseOfMap& map,
+                       Portfolio* const portfolio,
+                       NoiseHypothesis* const found) {
+  Explanation explanation;
+  explanation.soft = true;
+  if (map.accepted < kMinLoops ||
+      !CyclesShowLess(map, *portfolio, &explanation.first)) {
+    return false;
+  }
+  const std::vector<Pose2>& best = portfolio->best().poses;
+  std::vector<std::vector<Pose2>> maps =
+      OtherMaps(*portfolio, explanation.first);
+  AddMapsOfLessNoise(*portfolio, explanation.first, &maps);
+  maps.push_back(best);
+  const double log_area = LogArea(best);
+  Explanation claimed;
+  claimed.max_rounds = 1;
+  ExplainedMap likeliest = Explain(best, claimed, log_area, portfolio);
+  likeliest.evidence += kMuchLikelier;
+  found->valid = false;
+  for (const std::vector<Pose2>& other : maps) {
+    ExplainedMap explained = Explain(other, explanation, log_area, portfolio);
+    if (explained.evidence <= likeliest.evidence ||
+        explained.accepted < kMinLoops) {
+      continue;
+    }
+    likeliest = std::move(explained);
+    found->valid = true;
+  }
+  return found->valid && TakeMap(applied, &likeliest, found) &&
          !LosesRightLoops(applied, map, *found, portfolio);
 }
 

@@ -57,6 +57,29 @@ TEST(LoopsByChanceTest, RightLoopsAllOverThePathAreNoChance) {
       RejectsFew(world.edges, world.map.decisions, world.Without(8).decisions));
 }
 
+// Wrong loops are anywhere within the gate, most of them far out; right ones that are
+// as noisy as claimed are not.
+TEST(LoopsByChanceTest, LoopsAllOverTheGateAreWrong) {
+  World world(0);
+  const DecidedMap narrower = world.Without(8);
+  for (const bool far_out : {false, true}) {
+    int rejected = 0;
+    for (size_t i = 0; i != world.edges.size(); ++i) {
+      if (narrower.decisions[i] > 0.5) continue;
+      WhitenedEdge& edge = world.edges[i];
+      const Pose2 relative =
+          Between(world.map.poses[edge.from], world.map.poses[edge.to]);
+      // Off by so many of the 0.02 m that it claims.
+      const double off = far_out ? 2.6 + 0.1 * (++rejected % 7) : 1.;
+      edge.measurement << relative.x + 0.02 * off, relative.y, relative.theta;
+    }
+    RobustSolver solver(world.edges);
+    EXPECT_EQ(NarrowedMap(world.map, narrower, world.support, &solver)
+                  .RejectsMoreThanByChance(),
+              !far_out);
+  }
+}
+
 // As many as a gate of 99 % rejects.
 TEST(LoopsByChanceTest, AFewRightLoopsMayBeBeyondTheGate) {
   const World world(0);
