@@ -10,7 +10,7 @@ namespace cartographer_ext {
 
 // At most `limit` of the values, evenly spaced and in their order; the first
 // among them. All if there are no more.
-template <typename T>
+template <typename T = int>
 inline std::vector<T> Thinned(const std::vector<T>& values,
                               const size_t limit) {
   if (values.size() <= limit) return values;
