@@ -10,6 +10,15 @@
 
 namespace cartographer_ext {
 namespace front_end {
+namespace {
+
+// A squared residual counts at most as that of three standard deviations, so that
+// those of slip do not pass for noise.
+constexpr double kMaxSquare = 9.;
+// Mean of min(x^2, kMaxSquare) of a standard normal x.
+constexpr double kMeanSquare = 0.9950;
+
+}  // namespace
 
 CalibrationFilter::CalibrationFilter(const Eigen::Vector2d& values,
                                      const Eigen::Vector2d& sigmas,
@@ -39,9 +48,32 @@ void CalibrationFilter::Set(const int i, const double value,
   covariance_(i, i) = std::min(initial_variances_(i), Squared(sigma));
 }
 
+double CalibrationFilter::noise_factor() const {
+  if (!std::isfinite(noise_.worth)) return 1.;
+  return std::max(
+      1., (noise_.worth + sum_of_squares_) / (noise_.worth + num_increments_));
+}
+
 double CalibrationFilter::sigma(const int i) const {
+  const double initial = initial_variances_(i);
+  if (covariance_(i, i) <= 0.) return std::min(std::sqrt(initial), floors_(i));
+  // Only what the increments tell is less certain with more noise.
+  const double learnt =
+      std::max(0., 1. / covariance_(i, i) - 1. / initial) / noise_factor();
   return std::sqrt(
-      std::min(initial_variances_(i), covariance_(i, i) + Squared(floors_(i))));
+      std::min(initial, 1. / (1. / initial + learnt) + Squared(floors_(i))));
+}
+
+void CalibrationFilter::CountResidual(const Eigen::Vector2d& regressors,
+                                      const double square_residual,
+                                      const double variance) {
+  const double by_parameters =
+      regressors.dot(covariance_.topLeftCorner<2, 2>() * regressors);
+  const double weight = std::max(0., 1. - by_parameters / variance);
+  const double most = kMaxSquare * noise_factor();
+  num_increments_ += weight;
+  sum_of_squares_ +=
+      weight * std::min(square_residual / variance, most) / kMeanSquare;
 }
 
 bool CalibrationFilter::Add(const Eigen::Vector2d& regressors,
@@ -62,7 +94,13 @@ bool CalibrationFilter::Add(const Eigen::Vector2d& regressors,
   const double measurement = Squared(noise_.match) + Squared(extra);
   const double variance = covariance_(2, 2) + measurement;
   const double residual = measured - state_.z();
-  if (!(Squared(residual) <= Squared(noise_.max_residual) * variance)) {
+  if (!std::isfinite(residual)) {
+    Restart();
+    return false;
+  }
+  const double bound = Squared(noise_.max_residual) * noise_factor() * variance;
+  CountResidual(regressors, Squared(residual), variance);
+  if (Squared(residual) > bound) {
     Restart();
     return false;
   }

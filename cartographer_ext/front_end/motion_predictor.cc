@@ -41,6 +41,8 @@ constexpr double kRelativeSpeedError = 0.2;
 // Over a longer gap it is no explanation that odometry jumped and the robot stood
 // still: the last room would be found again in a room that looks alike. Seconds.
 constexpr double kLongestStop = 5.;
+// Odometry that is faster than the robot ever was by this factor jumped.
+constexpr double kFasterThanTheRobot = 1.5;
 // Longer intervals are bridged by dead reckoning, seconds.
 constexpr double kReckonedInterval = 1.;
 // Least speed by which the age of the map that a scan sees is computed, m/s.
@@ -193,7 +195,7 @@ void MotionPredictor::PredictByOdometry(
     prediction->alternatives.push_back(since_anchor_.Inverse() *
                                        since_anchor.motion);
   }
-  if (has_expectation || interval < kLongestStop) {
+  if (has_expectation || (interval < kLongestStop && HasJump(time))) {
     prediction->alternatives.push_back(without);
   }
   if (is_suspect) {
@@ -275,6 +277,13 @@ double MotionPredictor::SpeedChange(const double interval,
              : 0.;
 }
 
+bool MotionPredictor::HasJump(const double time) const {
+  return odometry_.HasJump(
+      last_time_, time,
+      {options_.check.jump_distance, options_.check.jump_angle,
+       kFasterThanTheRobot * fastest_, kFasterThanTheRobot * fastest_turn_});
+}
+
 bool MotionPredictor::IsStationary(const double time,
                                    const Pose2& match) const {
   OdometryMotion odometry;
@@ -310,6 +319,11 @@ OdometryState MotionPredictor::AddMatch(const double time,
   const OdometryState state = CheckOdometry(time, matched);
   if (state == OdometryState::kOk && matched.rotation_observable) {
     odometry_.AddMatch(last_time_, time, matched.motion);
+  }
+  if (state == OdometryState::kOk && interval >= kMinVelocityInterval) {
+    const Pose2& motion = matched.motion;
+    fastest_ = std::max(fastest_, std::hypot(motion.x, motion.y) / interval);
+    fastest_turn_ = std::max(fastest_turn_, std::abs(motion.theta) / interval);
   }
   ImuMotion imu;
   const double speed_change =

@@ -173,6 +173,8 @@ class MotionPredictor {
   // Forwards, in metres per second, over an interval; zero within the
   // uncertainty of the accelerometer's bias.
   double SpeedChange(double interval, const ImuMotion& imu) const;
+  // Whether odometry jumped since the last scan.
+  bool HasJump(double time) const;
   // The wheels do not move, and the match only by its noise.
   bool IsStationary(double time, const Pose2& match) const;
 
@@ -194,6 +196,8 @@ class MotionPredictor {
   bool has_match_ = false;
   double last_time_ = 0.;
   VelocityFilter velocity_;
+  // That odometry and matches agreed on, m/s and rad/s.
+  double fastest_ = 0., fastest_turn_ = 0.;
   // The last scan covered by odometry, and the matched motion since then.
   bool has_anchor_ = false;
   double anchor_time_ = 0.;

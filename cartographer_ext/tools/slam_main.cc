@@ -237,7 +237,7 @@ absl::Status Run(const std::string& command_line) {
   absl::Status applied = ApplyFlags(&configuration->sensors);
   if (applied.ok()) applied = CheckKeepsMap(*configuration);
   if (!applied.ok()) return applied;
-  const auto source = evaluation::OpenRecording(
+  auto source = evaluation::OpenRecording(
       FLAGS_input_filename, SourceOptions(configuration->sensors), FLAGS_seed);
   if (!source.ok()) return source.status();
   // If the JSON goes to standard output, nothing else may.
@@ -261,8 +261,7 @@ absl::Status Run(const std::string& command_line) {
     progress->Update(now.scans, now.queue_length,
                      now.stage == evaluation::SlamProgress::Stage::kOptimizing);
   };
-  const auto run =
-      evaluation::RunSlam(*configuration, source->get(), run_options);
+  auto run = evaluation::RunSlam(*configuration, source->get(), run_options);
   progress.reset();
   if (!run.ok()) {
     return absl::Status(
@@ -277,6 +276,9 @@ absl::Status Run(const std::string& command_line) {
   if (!written.ok()) return written;
   out << evaluation::ToText(*run);
   nlohmann::ordered_json json = RunToJson(*run);
+  // The map is judged as it was written.
+  run->map_builder.reset();
+  source->reset();
   const absl::Status reported = WriteReport(command_line, &json, out);
   if (!reported.ok()) return reported;
   if (FLAGS_wrong_loops > 0) {

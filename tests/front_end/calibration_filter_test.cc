@@ -68,6 +68,39 @@ TEST(CalibrationFilterTest, AContradictionBeginsAnew) {
   EXPECT_NEAR(filter.value(0), value, 1e-12);
 }
 
+TEST(CalibrationFilterTest, TheFactorOfTheNoiseByHand) {
+  // Nothing to estimate: y has a variance of 1e-4, the match the same. Of a
+  // standard normal, squares limited to 9 are 0.9950 on average.
+  CalibrationFilter known = WayFilter(0., 0., {0.01, 0., 0., 4., 5.});
+  EXPECT_EQ(known.noise_factor(), 1.);
+  EXPECT_TRUE(known.Add(Eigen::Vector2d(1., 0.), 1., 1.02, 0.));
+  // 4 / 2, and five that are as assumed.
+  double factor = (5. + 2. / 0.9950) / 6.;
+  EXPECT_NEAR(known.noise_factor(), factor, 1e-12);
+  // Refused: counts like three standard deviations.
+  EXPECT_FALSE(known.Add(Eigen::Vector2d(1., 0.), 1., 2., 0.));
+  factor = (5. + 2. / 0.9950 + 9. * factor / 0.9950) / 7.;
+  EXPECT_NEAR(known.noise_factor(), factor, 1e-12);
+  EXPECT_FALSE(known.Add(Eigen::Vector2d(1., 0.), 1., std::nan(""), 0.));
+  EXPECT_NEAR(known.noise_factor(), factor, 1e-12);
+  // The bound follows.
+  EXPECT_TRUE(known.Add(Eigen::Vector2d(1., 0.), 1.,
+                        1. + 3.99 * std::sqrt(2e-4 * factor), 0.));
+  // Noise that is known stays as it is.
+  CalibrationFilter constant = WayFilter(0., 0., {0.01, 0., 0., 4.});
+  EXPECT_FALSE(constant.Add(Eigen::Vector2d(1., 0.), 1., 2., 0.));
+  EXPECT_EQ(constant.noise_factor(), 1.);
+
+  // 4 of 6 parts of the variance are the scale's: one third of an increment, with
+  // a residual of 16 / 6.
+  CalibrationFilter filter = WayFilter(0.02, 0., {0.01, 0., 0., 4., 5.});
+  EXPECT_TRUE(filter.Add(Eigen::Vector2d(1., 0.), 1., 1.04, 0.));
+  factor = (5. + 16. / 18. / 0.9950) / (5. + 1. / 3.);
+  EXPECT_NEAR(filter.noise_factor(), factor, 1e-12);
+  // The scale was worth 1 / 4e-4, the increment as much as 1 / 2e-4.
+  EXPECT_NEAR(filter.sigma(0), std::sqrt(1. / (2500. + 5000. / factor)), 1e-12);
+}
+
 TEST(CalibrationFilterTest, NeverBetterThanTheFloor) {
   CalibrationFilter filter = WayFilter(0.02, 0.001, {0.01, 0., 0., 4.});
   for (int i = 0; i < 1000; ++i) {

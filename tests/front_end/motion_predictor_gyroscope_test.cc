@@ -104,17 +104,47 @@ TEST_F(MotionPredictorGyroscopeTest, DoubtfulMetresMakeNoHeadingMoreCertain) {
   EXPECT_GT(variances[1], 0.9 * variances[0]);
 }
 
-// Odometry may have jumped while the robot stood for seconds, not for minutes.
+// Where odometry jumped, the robot may have stood for seconds, not for minutes.
 TEST(MotionPredictorGapTest, StandingStillIsAnAlternativeForAWhile) {
   MotionPredictor predictor((MotionPredictorOptions()));
   for (int i = 0; i <= 400; ++i) {
-    predictor.AddOdometry(0.05 * i, Pose2(0.02 * i, 0., 0.));
+    predictor.AddOdometry(0.05 * i, Pose2(0.02 * i + (i > 60), 0., 0.));
   }
   predictor.AddMatch(0.9, MatchedMotion());
   predictor.AddMatch(1., MatchedMotion());
   ASSERT_EQ(predictor.Predict(4.).alternatives.size(), 1u);
   EXPECT_EQ(predictor.Predict(4.).alternatives[0].x, 0.);
   EXPECT_TRUE(predictor.Predict(8.).alternatives.empty());
+}
+
+// Scans a metre apart: that the robot stood is no explanation of steady wheels,
+// however rare their readings are.
+TEST(MotionPredictorGapTest, SteadyWheelsDidNotJump) {
+  for (const int readings_per_scan : {1, 15}) {
+    MotionPredictor predictor((MotionPredictorOptions()));
+    Pose2 odometry;
+    for (int scan = 0; scan < 4; ++scan) {
+      for (int i = 0; i < readings_per_scan; ++i) {
+        const int count = scan * readings_per_scan + i + 1;
+        odometry.x = 1. * count / readings_per_scan;
+        predictor.AddOdometry(1.5 * odometry.x, odometry);
+      }
+      MatchedMotion match;
+      match.motion.x = 1.;
+      predictor.AddMatch(1.5 * (scan + 1), match);
+    }
+    ASSERT_EQ(predictor.odometry_state(), OdometryState::kOk);
+    // One of twice the distance, as far as a single reading tells, is a jump.
+    for (const double distance : {1., 2.}) {
+      MotionPredictor next = predictor;
+      for (int i = 1; i <= readings_per_scan; ++i) {
+        next.AddOdometry(6. + 1.5 * i / readings_per_scan,
+                         Pose2(4. + distance * i / readings_per_scan, 0., 0.));
+      }
+      EXPECT_EQ(next.Predict(7.5).alternatives.empty(),
+                distance == 1. || readings_per_scan > 1);
+    }
+  }
 }
 
 }  // namespace

@@ -65,12 +65,15 @@ Eigen::Matrix3d InFrameOf(const Pose2& pose,
 }
 
 // Along the direction of translation that the scan determines best; false where
-// it determines none.
+// it determines none, or where a search (of which there is one for every scan
+// where they are far apart) was left with a match beyond `gate`.
 bool InnovationOf(const Pose2& last_pose, const MotionPrediction& prediction,
-                  const LocalMatch& match, MatchInnovation* innovation) {
+                  const LocalMatch& match, const double gate,
+                  MatchInnovation* innovation) {
   const scan_matching::DegeneracyResult& degeneracy = match.report.degeneracy;
   if (prediction.source != PredictionSource::kOdometry ||
-      prediction.is_uncertain || match.searched ||
+      prediction.is_uncertain ||
+      (match.searched && match.report.mahalanobis > gate) ||
       degeneracy.translation_weights(1) < 1. ||
       !(degeneracy.eigenvalues(1) > 0.)) {
     return false;
@@ -327,7 +330,8 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
     };
   }
   MatchInnovation innovation;
-  if (has_pose_ && InnovationOf(pose_, prediction, match, &innovation)) {
+  if (has_pose_ && InnovationOf(pose_, prediction, match,
+                                extension_.search.gate, &innovation)) {
     predictor_.AddInnovation(innovation);
   }
   pose_ = match.pose;

@@ -80,6 +80,31 @@ double OdometryBuffer::MedianInterval() const {
   return intervals.empty() ? 0. : UpperMedian(std::move(intervals));
 }
 
+std::deque<OdometryBuffer::Reading>::const_iterator OdometryBuffer::FirstAfter(
+    const double time) const {
+  return std::upper_bound(
+      readings_.begin(), readings_.end(), time,
+      [](const double t, const Reading& reading) { return t < reading.time; });
+}
+
+bool OdometryBuffer::HasJump(const double from, const double to,
+                             const OdometryJump& jump) const {
+  for (auto after = FirstAfter(from); after != readings_.end(); ++after) {
+    if (after == readings_.begin()) continue;
+    const auto before = after - 1;
+    if (before->time >= to) break;
+    const double seconds = after->time - before->time;
+    const Pose2 motion = Between(before->pose, after->pose);
+    const double distance = std::hypot(motion.x, motion.y);
+    const double angle = std::abs(motion.theta);
+    if ((distance >= jump.distance && distance > jump.speed * seconds) ||
+        (angle >= jump.angle && angle > jump.turn_rate * seconds)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 bool OdometryBuffer::Lookup(const double time,
                             OdometrySample* const sample) const {
   if (readings_.empty()) return false;
@@ -97,9 +122,7 @@ bool OdometryBuffer::Lookup(const double time,
         IsSame(readings_[readings_.size() - 2].pose, readings_.back().pose);
     return true;
   }
-  const auto after = std::upper_bound(
-      readings_.begin(), readings_.end(), time,
-      [](const double t, const Reading& reading) { return t < reading.time; });
+  const auto after = FirstAfter(time);
   const auto before = after - 1;
   sample->pose =
       Interpolate(before->pose, after->pose,

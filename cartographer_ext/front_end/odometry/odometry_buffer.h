@@ -29,6 +29,15 @@ struct OdometrySample {
   bool frozen = false;
 };
 
+// The least that is no motion of the robot between two readings: the distance at
+// this speed, or the angle at this rate.
+struct OdometryJump {
+  double distance = 0.;   // metres
+  double angle = 0.;      // radians
+  double speed = 0.;      // m/s
+  double turn_rate = 0.;  // rad/s
+};
+
 // The buffer, see above. Not thread-safe.
 class OdometryBuffer {
  public:
@@ -43,6 +52,10 @@ class OdometryBuffer {
   // False without readings.
   bool Lookup(double time, OdometrySample* sample) const;
 
+  // Whether two successive readings, up to `from` at the earliest and from `to` on
+  // at the latest, are as far apart as a jump.
+  bool HasJump(double from, double to, const OdometryJump& jump) const;
+
   // Median time between the last readings, seconds; 0 with fewer than two.
   double MedianInterval() const;
 
@@ -56,6 +69,7 @@ class OdometryBuffer {
     Pose2 pose;
   };
 
+  std::deque<Reading>::const_iterator FirstAfter(double time) const;
   Pose2 Extrapolate(double seconds) const;
   void Thin();
 

@@ -15,11 +15,11 @@ namespace {
 // Matches of scans that determine the whole pose have errors of some
 // millimetres from one to the next, and of 6 to 8 mm per root metre from submap
 // to submap (simulated offices and corridors against ground truth).
-constexpr CalibrationFilter::Noise kTranslationNoise = {0.01, 0.008, 3e-5, 4.};
+constexpr CalibrationFilter::Noise kTranslationNoise = {0.01, 0.008, 3e-5, 4., 5.};
 // The same for rotation, 0.1 degrees. The noise that grows with distance is
 // that of the wheels: 4 mm per root metre of each wheel, 40 cm apart, are 0.8
 // degrees.
-constexpr CalibrationFilter::Noise kRotationNoise = {0.002, 0.015, 3e-5, 4.};
+constexpr CalibrationFilter::Noise kRotationNoise = {0.002, 0.015, 3e-5, 4., 5.};
 // Metres that the wheels roll while the robot turns on the spot by a radian.
 constexpr double kWheelRadius = 0.2;
 // Standard deviations of the scale of whole maps, and of other errors common to
@@ -27,11 +27,6 @@ constexpr double kWheelRadius = 0.2;
 constexpr double kTranslationFloor = 0.001;
 constexpr double kRotationFloor = 0.002;
 constexpr double kRotationPerMetreFloor = 0.0002;
-// The same where scans are always so far apart that they make a coarse map: root
-// mean square errors of five such logs.
-constexpr double kSparseTranslationFloor = 0.006;
-constexpr double kSparseRotationFloor = 0.004;
-constexpr double kSparseRotationPerMetreFloor = 0.0025;
 // Jitter of the stamps of scans against those of odometry, seconds.
 constexpr double kStampNoise = 0.02;
 
@@ -102,23 +97,19 @@ bool OdometryCalibration::IsGap(const double interval) {
   std::vector<double> sorted(intervals_.begin(), intervals_.end());
   const auto median = sorted.begin() + kNumIntervals / 2;
   std::nth_element(sorted.begin(), median, sorted.end());
-  is_sparse_ = is_sparse_ || *median > kMaxInterval;
   return interval > kUsualIntervals * *median;
 }
 
 double OdometryCalibration::translation_scale_sigma() const {
-  return std::hypot(translation_filter_.sigma(0),
-                    is_sparse_ ? kSparseTranslationFloor : 0.);
+  return translation_filter_.sigma(0);
 }
 
 double OdometryCalibration::rotation_scale_sigma() const {
-  return std::hypot(Squared(rotation_scale()) * rotation_filter_.sigma(0),
-                    is_sparse_ ? kSparseRotationFloor : 0.);
+  return Squared(rotation_scale()) * rotation_filter_.sigma(0);
 }
 
 double OdometryCalibration::rotation_per_metre_sigma() const {
-  return std::hypot(rotation_scale() * rotation_filter_.sigma(1),
-                    is_sparse_ ? kSparseRotationPerMetreFloor : 0.);
+  return rotation_scale() * rotation_filter_.sigma(1);
 }
 
 void OdometryCalibration::Add(const CalibrationInterval& interval) {

@@ -30,8 +30,7 @@
 //    after a fault: slip is detected with a delay;
 //  * from matches that agree with it: after relocalisation it restarts.
 //
-// The reported sigma includes a floor for systematic errors of maps and lasers,
-// a higher one where scans are always so far apart that elsewhere it were a gap.
+// The reported sigma includes a floor for systematic errors of maps and lasers.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_CALIBRATION_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_CALIBRATION_H_
 
@@ -126,7 +125,6 @@ class OdometryCalibration {
   CalibrationFilter rotation_filter_;
   Segment current_;
   std::deque<double> intervals_;  // between scans, newest last, seconds
-  bool is_sparse_ = false;        // they are all gaps elsewhere
   // Not processed yet, oldest first.
   std::deque<Segment> pending_;
   // The filters restart with the next segment.

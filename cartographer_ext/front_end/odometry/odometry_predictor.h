@@ -90,6 +90,11 @@ class OdometryPredictor {
   void AddMatch(double from, double to, const Pose2& match);
 
   // Updates the calibration.
+  // Of the readings between two scans.
+  bool HasJump(double from, double to, const OdometryJump& jump) const {
+    return buffer_.HasJump(from - time_offset(), to - time_offset(), jump);
+  }
+
   void Calibrate(const CalibrationInterval& interval) {
     calibration_.Add(interval);
   }

@@ -13,10 +13,15 @@ namespace {
 constexpr double kNarrowWindow = 10.;
 constexpr double kWidestWindow = 200.;
 constexpr double kWorkOfWholeSubmap = 0.25;
+// Nodes are usually nearer to each other than this, and no two are paid for more,
+// metres.
+constexpr double kUsualSpacing = 0.5;
+constexpr double kWidestSpacing = 5.;
 
 }  // namespace
 
 constexpr double SearchCredit::kCreditPerNode;
+constexpr double SearchCredit::kCreditPerMetre;
 constexpr double SearchCredit::kMostCredit;
 constexpr double SearchCredit::kRewardFactor;
 
@@ -27,13 +32,24 @@ double SearchWork(const SearchPlan& plan) {
   return window <= kNarrowWindow ? 0. : std::min(1., window / kWidestWindow);
 }
 
-void SearchCredit::AddNode(const uncertainty::NodeId& node) {
+absl::optional<uncertainty::NodeId> SearchCredit::NewestNode(
+    const int trajectory_id) const {
+  const auto found = newest_nodes_.find(trajectory_id);
+  if (found == newest_nodes_.end()) return absl::nullopt;
+  return uncertainty::NodeId{trajectory_id, found->second};
+}
+
+void SearchCredit::AddNode(const uncertainty::NodeId& node,
+                           const double distance) {
   const auto added = newest_nodes_.emplace(node.trajectory_id, node.node_index);
   if (!added.second) {
     if (added.first->second >= node.node_index) return;
     added.first->second = node.node_index;
   }
-  credit_ = std::min(kMostCredit, credit_ + kCreditPerNode);
+  const double beyond =
+      std::max(0., std::min(kWidestSpacing, distance) - kUsualSpacing);
+  credit_ = std::min(kMostCredit,
+                     credit_ + kCreditPerNode + kCreditPerMetre * beyond);
 }
 
 bool SearchCredit::Pay(const SearchPlan& plan) {

@@ -329,7 +329,7 @@ std::vector<SearchPlan> SearchPlanner::Plan(
     const std::vector<const LoopCandidate*>& candidates) {
   std::map<uncertainty::NodeId, std::vector<size_t>> of_node;
   for (size_t i = 0; i < candidates.size(); ++i) {
-    credit_.AddNode(candidates[i]->node);
+    EarnCredit(candidates[i]->node);
     of_node[candidates[i]->node].push_back(i);
   }
   std::vector<SearchPlan> plans(candidates.size());
@@ -343,6 +343,14 @@ std::vector<SearchPlan> SearchPlanner::Plan(
     }
   }
   return plans;
+}
+
+void SearchPlanner::EarnCredit(const uncertainty::NodeId& node) {
+  const absl::optional<uncertainty::NodeId> last =
+      credit_.NewestNode(node.trajectory_id);
+  const absl::optional<double> travelled =
+      last.has_value() ? paths_->Travelled(*last, node) : absl::nullopt;
+  credit_.AddNode(node, travelled.value_or(0.));
 }
 
 void SearchPlanner::RemoveAcceptedLoop(const uncertainty::VertexId& anchor,

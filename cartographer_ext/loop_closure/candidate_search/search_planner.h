@@ -195,6 +195,8 @@ class SearchPlanner {
   // Whether the node of a saturated candidate needs no other one: it is
   // searched, or has been near it, and the path is known roughly.
   bool IsEnoughFor(const LoopCandidate& candidate, const SearchPlan& plan);
+  // For wide searches, of a node that has candidates.
+  void EarnCredit(const uncertainty::NodeId& node);
   // Plans a candidate and notes the search.
   void PlanAndNote(const LoopCandidate& candidate, SearchPlan* plan);
   // Plans the candidates of one node, `indices`.

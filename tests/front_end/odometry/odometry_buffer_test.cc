@@ -43,6 +43,22 @@ TEST(OdometryBufferTest, GoesOnWithTheLastVelocityForABoundedTime) {
   EXPECT_NEAR(sample.extrapolated, 4.9, 1e-12);
 }
 
+TEST(OdometryBufferTest, AJumpIsFarAndFast) {
+  OdometryBuffer buffer(10., 100, 0.3);
+  buffer.Add(1., Pose2(0., 0., 0.));
+  buffer.Add(2., Pose2(1., 0., 0.));
+  buffer.Add(2.1, Pose2(1.2, 0., 0.));
+  buffer.Add(2.2, Pose2(1.2, 0., 0.5));
+  const OdometryJump jump = {0.3, 0.3, 1.1, 1.};
+  // 1 m in a second is slow enough, 0.2 m in a tenth too near.
+  EXPECT_FALSE(buffer.HasJump(0., 2.1, jump));
+  EXPECT_TRUE(buffer.HasJump(0., 2.15, jump));
+  EXPECT_TRUE(buffer.HasJump(2.15, 2.18, jump));
+  EXPECT_FALSE(buffer.HasJump(2.2, 5., jump));
+  EXPECT_TRUE(buffer.HasJump(1.5, 1.6, {0.3, 0.3, 0.9, 1.}));
+  EXPECT_FALSE(OdometryBuffer(10., 100, 0.3).HasJump(0., 1., jump));
+}
+
 TEST(OdometryBufferTest, TellsHowOftenAReadingComes) {
   OdometryBuffer buffer(100., 100, 0.3);
   EXPECT_EQ(buffer.MedianInterval(), 0.);

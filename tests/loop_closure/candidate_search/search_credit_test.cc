@@ -41,9 +41,9 @@ TEST(SearchCreditTest, CostPerNodeIsBounded) {
   int searched = 0;
   constexpr int kNodes = 10000;
   for (int i = 0; i < kNodes; ++i) {
-    credit.AddNode(uncertainty::NodeId{0, i});
+    credit.AddNode(uncertainty::NodeId{0, i}, 0.2);
     // Older nodes with new submaps earn nothing.
-    credit.AddNode(uncertainty::NodeId{0, i / 2});
+    credit.AddNode(uncertainty::NodeId{0, i / 2}, 0.2);
     while (credit.Pay(WholeSubmap())) ++searched;
   }
   EXPECT_NEAR(searched * SearchWork(WholeSubmap()),
@@ -53,7 +53,8 @@ TEST(SearchCreditTest, CostPerNodeIsBounded) {
 
 TEST(SearchCreditTest, CreditIsSavedUpToALimit) {
   SearchCredit credit;
-  for (int i = 0; i < 100000; ++i) credit.AddNode(uncertainty::NodeId{0, i});
+  for (int i = 0; i < 100000; ++i)
+    credit.AddNode(uncertainty::NodeId{0, i}, 0.2);
   EXPECT_EQ(credit.credit(), SearchCredit::kMostCredit);
 }
 
@@ -69,12 +70,29 @@ TEST(SearchCreditTest, AcceptedLoopsEarnFurtherSearches) {
                                                  SearchWork(WholeSubmap()));
 }
 
+TEST(SearchCreditTest, NodesFarApartEarnMore) {
+  SearchCredit credit;
+  EXPECT_FALSE(credit.NewestNode(0).has_value());
+  while (credit.Pay(WholeSubmap())) {
+  }
+  credit.AddNode(uncertainty::NodeId{0, 3}, 1.5);
+  ASSERT_TRUE(credit.NewestNode(0).has_value());
+  EXPECT_EQ(credit.NewestNode(0)->node_index, 3);
+  const double per_metre = SearchCredit::kCreditPerMetre;
+  double expected = SearchCredit::kCreditPerNode + per_metre;
+  EXPECT_DOUBLE_EQ(credit.credit(), expected);
+  // Behind a gap no more than for five metres.
+  credit.AddNode(uncertainty::NodeId{0, 4}, 1000.);
+  expected += SearchCredit::kCreditPerNode + 4.5 * per_metre;
+  EXPECT_DOUBLE_EQ(credit.credit(), expected);
+}
+
 TEST(SearchCreditTest, TrajectoriesEarnEachForItself) {
   SearchCredit credit;
   while (credit.Pay(WholeSubmap())) {
   }
-  credit.AddNode(uncertainty::NodeId{0, 100});
-  credit.AddNode(uncertainty::NodeId{1, 0});
+  credit.AddNode(uncertainty::NodeId{0, 100}, 0.2);
+  credit.AddNode(uncertainty::NodeId{1, 0}, 0.2);
   EXPECT_DOUBLE_EQ(credit.credit(), 2. * SearchCredit::kCreditPerNode);
 }
 
