@@ -64,6 +64,10 @@ constexpr double kRangeStep = 0.2;  // metres
 // The best of some 150 candidate poses needs this much more log-likelihood.
 constexpr double kLogPlaces = 5.;
 
+// Scans that contradict the odometry in succession see the same walls: of the
+// evidence of those before this part is new.
+constexpr double kEvidenceKept = 0.5;
+
 // The block of the scan matcher, or its defaults.
 proto::ScanMatcherOptions MatcherExtension(
     const stock_proto::CeresScanMatcherOptions2D& options) {
@@ -74,18 +78,21 @@ proto::ScanMatcherOptions MatcherExtension(
   return extension;
 }
 
+// Logarithm of the odds against a fault of the odometry: it is unlikely, unless
+// the odometry was overruled before: wheels that slip do so for a while.
+double FaultOdds(const MotionPrediction& prediction, const bool was_overruled) {
+  return prediction.is_uncertain || was_overruled ? 0.
+                                                  : kLogOddsOfOdometryFault;
+}
+
 // Whether the scan is evidence enough (scan_evidence.h) for `found` against the
-// pose by odometry. Other predictions are guesses. A fault of the odometry is
-// unlikely, unless it was overruled before: wheels that slip do so for a while.
+// pose by odometry. Other predictions are guesses.
 bool MayOverrule(const MotionPrediction& prediction, const bool was_overruled,
-                 const double log_places, const Pose2& found,
-                 const Pose2& predicted, const PointCloud& cloud,
-                 const Grid2D& grid) {
+                 const Pose2& found, const Pose2& predicted,
+                 const PointCloud& cloud, const Grid2D& grid) {
   if (prediction.source != PredictionSource::kOdometry) return true;
-  const double fault =
-      prediction.is_uncertain || was_overruled ? 0. : kLogOddsOfOdometryFault;
   return scan_matching::ScanEvidence(found, predicted, cloud, grid) >=
-         fault + log_places;
+         FaultOdds(prediction, was_overruled) + kLogPlaces;
 }
 
 // In the local frame.
@@ -226,6 +233,18 @@ Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
   return ToPose2(found);
 }
 
+bool LocalMatcher::IsOverruled(const MotionPrediction& prediction,
+                               const Pose2& found, const Pose2& predicted,
+                               const PointCloud& cloud, const Grid2D& grid) {
+  if (prediction.source != PredictionSource::kOdometry) return true;
+  const double evidence =
+      kEvidenceKept * earlier_evidence_ +
+      scan_matching::ScanEvidence(found, predicted, cloud, grid);
+  const bool is_overruled = evidence >= FaultOdds(prediction, is_overruled_);
+  earlier_evidence_ = is_overruled ? 0. : std::max(0., evidence);
+  return is_overruled;
+}
+
 LocalMatch LocalMatcher::Match(const Pose2& last_pose,
                                const MotionPrediction& prediction,
                                const PointCloud& cloud,
@@ -237,12 +256,12 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   UpdateRange(last_pose, cloud);
   predicted.limit_of_sight = LimitOfSight();
   LocalMatch match = MatchFrom(predicted, predicted.pose, cloud, grid);
+  if (match.report.mahalanobis <= options_.gate) earlier_evidence_ = 0.;
   if (options_.enabled && IsDoubtful(match, prediction, cloud, grid)) {
     match =
         MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
     if (!match.relocated && match.report.mahalanobis > options_.gate &&
-        !MayOverrule(prediction, is_overruled_, 0., match.pose, predicted.pose,
-                     cloud, grid)) {
+        !IsOverruled(prediction, match.pose, predicted.pose, cloud, grid)) {
       // In that case odometry is right more often than the match.
       match.pose = predicted.pose;
       match.report.covariance = predicted.covariance;
@@ -294,8 +313,8 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
                              : options_.contradiction_gain *
                                    Inconsistency(predicted.pose, match.pose));
     if (match.score <= std::max(to_beat, matched.score + gain)) continue;
-    if (!MayOverrule(prediction, is_overruled_, kLogPlaces, match.pose,
-                     predicted.pose, cloud, grid)) {
+    if (!MayOverrule(prediction, is_overruled_, match.pose, predicted.pose,
+                     cloud, grid)) {
       continue;
     }
     to_beat = match.score;

@@ -66,6 +66,12 @@ class LocalMatcher {
   bool IsDoubtful(const LocalMatch& match, const MotionPrediction& prediction,
                   const cartographer::sensor::PointCloud& cloud,
                   const cartographer::mapping::Grid2D& grid) const;
+  // Whether the scan, and those before it that contradicted the odometry, are
+  // evidence enough for a match that is inconsistent with it.
+  bool IsOverruled(const MotionPrediction& prediction, const Pose2& found,
+                   const Pose2& predicted,
+                   const cartographer::sensor::PointCloud& cloud,
+                   const cartographer::mapping::Grid2D& grid);
   // The best of `matched` and the matches started from searches.
   LocalMatch MatchWithSearch(const Pose2& last_pose,
                              const MotionPrediction& prediction,
@@ -92,6 +98,9 @@ class LocalMatcher {
   bool has_mean_score_ = false;
   // A search contradicted the odometry, and no match has agreed with it since.
   bool is_overruled_ = false;
+  // Against the odometry, of scans that were not enough by themselves, scan by
+  // scan until one agrees with it.
+  double earlier_evidence_ = 0.;
   // The longest range so far, metres; of the scans since, one every
   // kRangeStep, how many there are and how many reach as far.
   double range_ = 0.;

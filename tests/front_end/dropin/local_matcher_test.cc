@@ -183,6 +183,29 @@ TEST_F(LocalMatcherTest, OdometryThatWasOverruledIsDoubted) {
   EXPECT_FALSE(match(slip, few).relocated);
 }
 
+// Scans none of which is evidence enough contradict the odometry together, if no
+// scan in between agrees with it.
+TEST_F(LocalMatcherTest, ContradictionsInSuccessionOverruleOdometry) {
+  LocalMatcher matcher(options_, matcher_options_);
+  const auto is_overruled = [&](const Pose2& motion, const double degrees) {
+    prediction_.motion = motion;
+    field_of_view_ = DegToRad(degrees);
+    const LocalMatch match = matcher.Match(Pose2(), prediction_, Cloud(),
+                                           *submaps_->submaps().front());
+    return match.report.scan_information.norm() > 0.;
+  };
+  const Pose2 slip(0.08, 0.08, DegToRad(3.));
+  ASSERT_TRUE(is_overruled(Pose2(), 360.));
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_FALSE(is_overruled(slip, kFewDegrees));
+    EXPECT_TRUE(is_overruled(Pose2(), 360.));  // agrees
+  }
+  EXPECT_FALSE(is_overruled(slip, kFewDegrees));
+  bool later = false;
+  for (int i = 0; i < 3; ++i) later = later || is_overruled(slip, kFewDegrees);
+  EXPECT_TRUE(later);
+}
+
 TEST_F(LocalMatcherTest, WithoutSearchItStaysWithThePrediction) {
   options_.enabled = false;
   const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
