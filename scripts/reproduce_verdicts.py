@@ -17,6 +17,7 @@ import threading
 common = None
 
 KINDS = ("office", "hotel", "warehouse")
+WIDE_KINDS = ("hall", "street", "campus")  # with --kinds; their seeds follow those of a thousand cases
 LASERS = ("ld06", "rplidar_a1", "urg_04lx", "sick_lms", "utm_30lx", "depth_camera")
 GRADES = ("fair", "poor")
 TREATMENTS = ("ours", "stock", "credulous", "ours", "bent", "moved", "ours", "no_loops", "floors")
@@ -53,22 +54,23 @@ POSE_GRAPH.global_sampling_ratio = 0.
 LUA_END = "return { map_builder = MAP_BUILDER, trajectory_builder = TRAJECTORY_BUILDER }\n"
 
 
-def cases(count):
+def cases(count, kinds=KINDS, seed=SEED):
     """`count` cases (kind, laser, grade, seed, treatment): of 162 cases each treatment has every kind with every laser once, of 324 with
     both grades."""
     result = []
-    pairs = len(KINDS) * len(LASERS)
+    pairs = len(kinds) * len(LASERS)
     for i in range(count):
         block, place = divmod(i, len(TREATMENTS))
-        result.append((KINDS[(place + block) % len(KINDS)], LASERS[(place + block // len(KINDS)) % len(LASERS)],
-                       GRADES[(place // 3 + block + block // pairs) % len(GRADES)], SEED + i, TREATMENTS[place]))
+        result.append((kinds[(place + block) % len(kinds)], LASERS[(place + block // len(KINDS)) % len(LASERS)],
+                       GRADES[(place // 3 + block + block // pairs) % len(GRADES)], seed + i, TREATMENTS[place]))
     return result
 
 
 def chosen(options):
     """(name, case) of the cases that the user wants."""
     result = []
-    for case in cases(options.runs or 300):
+    wide = any(kind in WIDE_KINDS for kind in options.kinds.split(","))
+    for case in cases(options.runs or 300, *((WIDE_KINDS, SEED + 1000) if wide else ())):
         wanted = zip((options.kinds, options.lasers, options.odometry), case)
         if all(not words or own in words.split(",") for words, own in wanted):
             result.append(("%s.%s.%s.%d.%s" % case, case))

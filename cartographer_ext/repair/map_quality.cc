@@ -21,6 +21,7 @@ constexpr double kSameEvidence = 0.01;
 // Measures that differ by less are alike; what is alike is decided by the next
 // one.
 constexpr double kSameSevere = 0.005;
+constexpr double kSameLoose = 0.01;
 constexpr double kSameRays = 0.01;
 constexpr double kSameCycles = 0.05;
 constexpr double kSameResidual = 0.02;  // metres
@@ -51,6 +52,7 @@ MapQuality QualityOf(const evaluation::MapGraph& graph,
   MapQuality quality;
   quality.verdict = consistency.word;
   quality.severe_share = consistency.severe_share;
+  quality.loose_share = consistency.loose.share();
   quality.contradicted_rays = consistency.contradictions.ray_fraction();
   quality.open_cycles = consistency.cycles.fraction();
   quality.loop_residual =
@@ -94,6 +96,16 @@ std::string WhyNotBetter(const MapQuality& current,
         "contradict them, before %d and %d",
         candidate.num_agreeing(), candidate.num_contradicted(),
         current.num_agreeing(), current.num_contradicted());
+  }
+  const auto compared = static_cast<double>(candidate.is_contradicted.size());
+  if (compared < static_cast<double>(current.is_contradicted.size()) - same &&
+      candidate.loose_share > current.loose_share + kSameLoose) {
+    return absl::StrFormat(
+        "it rests on fewer revisits: %d nodes see a place of another time, "
+        "before %d, and %.1f %% of the path may lie elsewhere without "
+        "contradicting anything, before %.1f %%",
+        candidate.is_contradicted.size(), current.is_contradicted.size(),
+        100. * candidate.loose_share, 100. * current.loose_share);
   }
   if (candidate.verdict == "unknown" && current.verdict != "unknown") {
     return absl::StrFormat(
@@ -139,16 +151,24 @@ std::string WhyNotWritten(const MapQuality& input, const MapQuality& result) {
   if (result.verdict == "unknown") {
     return "nothing tells whether the best version is right";
   }
+  if (result.loose_share >= evaluation::SelfConsistencyOptions().loose_share) {
+    return absl::StrFormat(
+        "nothing tells whether the best version is right: %.1f %% of the path "
+        "may lie elsewhere without contradicting anything",
+        100. * result.loose_share);
+  }
   return WhyNotBetter(input, result);
 }
 
 std::string ToText(const MapQuality& quality) {
   return absl::StrFormat(
       "%s, %.1f %% severe, %.1f %% of rays contradicted, %.1f %% of cycles "
-      "open, entropy %.3f, %d nodes agree, %d contradict",
+      "open, entropy %.3f, %d nodes agree, %d contradict, %.1f %% of the path "
+      "loose",
       quality.verdict, 100. * quality.severe_share,
       100. * quality.contradicted_rays, 100. * quality.open_cycles,
-      quality.entropy, quality.num_agreeing(), quality.num_contradicted());
+      quality.entropy, quality.num_agreeing(), quality.num_contradicted(),
+      100. * quality.loose_share);
 }
 
 }  // namespace repair

@@ -16,6 +16,10 @@
 // visit is not resolved: it counts as contradicted in both versions. A map is
 // better by agreement, not by absence of evidence.
 //
+// A version of which more may lie elsewhere without contradicting anything
+// (loose_places.h) is not better either if it rests on fewer nodes that see a
+// place of another time: what it no longer compares is not known to lie apart.
+//
 // Versions of equal evidence are compared by the measures of the verdict: the
 // share of severely contradicted nodes, contradicted rays, open cycles of loops,
 // distance of the loops from the map, and map entropy.
@@ -34,6 +38,7 @@ namespace repair {
 struct MapQuality {
   std::string verdict;
   double severe_share = 0.;
+  double loose_share = 0.;        // of the path
   double contradicted_rays = 0.;  // share
   double open_cycles = 0.;        // share
   double loop_residual = 0.;  // mean distance of a loop from the map, metres
@@ -59,7 +64,8 @@ std::string WhyNotBetter(const MapQuality& current,
 
 // Empty if the result of a repair is to be written, otherwise a clause. It must
 // be better than the input, and neither broken (of two broken maps the one with
-// more evidence need not be nearer to the truth) nor unknown.
+// more evidence need not be nearer to the truth) nor unknown nor loose (what
+// agrees may be the smaller part).
 std::string WhyNotWritten(const MapQuality& input, const MapQuality& result);
 
 // "broken, 12.3 % severe, 4.5 % of rays contradicted, entropy -1.52".

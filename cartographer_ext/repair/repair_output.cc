@@ -26,6 +26,7 @@ constexpr double kMaxPixels = 1600.;
 ordered_json QualityJson(const MapQuality& quality) {
   return {{"verdict", quality.verdict},
           {"severe_share", quality.severe_share},
+          {"loose_share", quality.loose_share},
           {"contradicted_rays", quality.contradicted_rays},
           {"open_cycles", quality.open_cycles},
           {"loop_residual", quality.loop_residual},

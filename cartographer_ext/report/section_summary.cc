@@ -102,6 +102,9 @@ void AddConsistencyRows(std::vector<Row>* const rows) {
   rows->push_back({"displaced nodes", consistency([](const auto& c) {
                      return Percent(c.displacements.displaced_share());
                    })});
+  rows->push_back(
+      {"path that may lie elsewhere",
+       consistency([](const auto& c) { return Percent(c.loose.share()); })});
   rows->push_back({"rays contradicted", consistency([](const auto& c) {
                      return Percent(c.contradictions.ray_fraction());
                    })});

@@ -96,6 +96,33 @@ TEST(MapQualityTest, AMapTornApartIsNotBetter) {
   EXPECT_THAT(WhyNotBetter(Broken(), torn), HasSubstr("apart"));
 }
 
+// What agrees may be the smaller part.
+TEST(MapQualityTest, AVersionThatRestsOnFewerRevisitsIsNotBetter) {
+  MapQuality loose = Broken();
+  loose.verdict = "doubtful";
+  loose.severe_share = 0.;
+  loose.is_contradicted.clear();
+  Judge(30, 140, false, &loose);
+  EXPECT_GT(GainOfEvidence(Broken(), loose), 0.);
+  EXPECT_EQ(WhyNotBetter(Broken(), loose), "");
+  loose.loose_share = 0.45;
+  EXPECT_THAT(WhyNotBetter(Broken(), loose),
+              HasSubstr("it rests on fewer revisits: 110 nodes see a place of "
+                        "another time, before 150"));
+  EXPECT_NE(WhyNotWritten(Broken(), loose), "");
+  // It was no closer before.
+  MapQuality before = Broken();
+  before.loose_share = 0.45;
+  EXPECT_EQ(WhyNotBetter(before, loose), "");
+  // Nor is it written where it compares as many.
+  Judge(0, 150, false, &loose);
+  EXPECT_EQ(WhyNotBetter(Broken(), loose), "");
+  EXPECT_THAT(WhyNotWritten(Broken(), loose),
+              HasSubstr("45.0 % of the path may lie elsewhere"));
+  loose.loose_share = 0.01;
+  EXPECT_EQ(WhyNotWritten(Broken(), loose), "");
+}
+
 TEST(MapQualityTest, DisplacedNodesDoNotAgree) {
   evaluation::SelfConsistency consistency;
   for (int i = 0; i < 10; ++i) {

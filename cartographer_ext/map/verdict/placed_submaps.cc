@@ -35,15 +35,14 @@ Box ScanBox(const std::vector<Eigen::Vector2d>& scan, const Pose2& pose) {
 
 }  // namespace
 
-const Pose2& PlacedSubmap::LocalFromMap(const Eigen::Vector2d& place) const {
+const Anchor& PlacedSubmap::NearestAnchor(const Eigen::Vector2d& place) const {
   const auto distance = [&place](const Anchor& anchor) {
     return (anchor.place - place).squaredNorm();
   };
-  return std::min_element(anchors.begin(), anchors.end(),
-                          [&distance](const Anchor& a, const Anchor& b) {
-                            return distance(a) < distance(b);
-                          })
-      ->local_from_map;
+  return *std::min_element(anchors.begin(), anchors.end(),
+                           [&distance](const Anchor& a, const Anchor& b) {
+                             return distance(a) < distance(b);
+                           });
 }
 
 bool PlacedSubmap::IsOfAnotherTime(const GraphId& node_id,

@@ -40,8 +40,11 @@ struct PlacedSubmap {
   std::vector<Anchor> anchors;  // at least one, by node
   Box box;                      // by the pose of the submap
 
+  const Anchor& NearestAnchor(const Eigen::Vector2d& place) const;
   // As the inserted node nearest to a place saw it.
-  const Pose2& LocalFromMap(const Eigen::Vector2d& place) const;
+  const Pose2& LocalFromMap(const Eigen::Vector2d& place) const {
+    return NearestAnchor(place).local_from_map;
+  }
   // True if the node was not inserted and is no nearer in the sequence than
   // `min_node_gap` to one that was.
   bool IsOfAnotherTime(const GraphId& node_id, int min_node_gap) const;

@@ -10,6 +10,8 @@
 #include <map>
 #include <utility>
 
+#include "Eigen/Eigenvalues"
+#include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/map/verdict/placed_submaps.h"
 
 namespace cartographer_ext {
@@ -82,8 +84,34 @@ double Displacement(const Shares& shares,
   return smallest;
 }
 
+// Inverse of the second moment, about the pose in the map, of the shifts that fit
+// as well as the best, less that of all shifts: where nothing tells, all fit.
+Eigen::Matrix2d InformationOf(const Shares& shares,
+                              const std::vector<Eigen::Vector2d>& shifts,
+                              const DisplacementOptions& options) {
+  const double best = *std::max_element(shares.begin(), shares.end());
+  Eigen::Matrix2d fitting = Eigen::Matrix2d::Zero();
+  double all = 0.;
+  int num_fitting = 0;
+  for (size_t i = 0; i < shifts.size(); ++i) {
+    all += Squared(shifts[i].x()) / static_cast<double>(shifts.size());
+    if (shares[i] < best - options.equal_share) continue;
+    fitting += shifts[i] * shifts[i].transpose();
+    ++num_fitting;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(fitting /
+                                                            num_fitting);
+  const double noise = Squared(options.tolerance);
+  const Eigen::Vector2d information =
+      ((axes.eigenvalues().array() + noise).inverse() - 1. / (all + noise))
+          .max(0.);
+  return axes.eigenvectors() * information.asDiagonal() *
+         axes.eigenvectors().transpose();
+}
+
 struct Look {
   NodeDisplacement node;
+  GraphId anchor_id;
   Shares shares;
 };
 
@@ -107,6 +135,9 @@ void JudgeRun(const std::vector<Look>& run,
     node.is_judged = displacement >= 0.;
     node.displacement = std::max(0., displacement);
     result->nodes.push_back(node);
+    if (!node.is_judged || node.displacement > options.limit) continue;
+    result->ties.push_back(
+        {node.node_id, run[i].anchor_id, InformationOf(mean, shifts, options)});
   }
 }
 
@@ -219,6 +250,7 @@ RevisitDisplacements FindDisplacements(const MapGraph& graph,
     Look look;
     look.node.node_id = id;
     look.node.submap_id = submap.id;
+    look.anchor_id = submap.NearestAnchor(pose.translation()).node_id;
     look.shares =
         SharesOf(contents.scans.at(id), submap.LocalFromMap(pose.translation()),
                  pose, shifts, *submap.cells, options);

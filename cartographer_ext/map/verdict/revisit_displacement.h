@@ -17,6 +17,7 @@
 
 #include <vector>
 
+#include "Eigen/Core"
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/map/verdict/path_piece.h"
@@ -61,11 +62,22 @@ struct NodeDisplacement {
   double displacement = 0.;  // metres
 };
 
+// A node whose scan agrees with a submap of another time.
+struct RevisitTie {
+  GraphId node_id;
+  // The inserted node of the submap that places it.
+  GraphId anchor_id;
+  // What the scan tells about the position of the node, in the map frame, 1 /
+  // square metres: nothing along a blank corridor.
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+};
+
 struct RevisitDisplacements {
   std::vector<NodeDisplacement> nodes;  // that were looked at, by id
   int judged_nodes = 0;
   int displaced_nodes = 0;
   std::vector<PathPiece> pieces;  // displaced
+  std::vector<RevisitTie> ties;   // by node
   // Nodes of the largest part of the path that is tied together, of all nodes.
   double tied_share = 0.;
   double displaced_share() const {

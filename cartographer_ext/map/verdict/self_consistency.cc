@@ -52,6 +52,30 @@ bool HardlyRevisits(const SelfConsistency& result, const size_t num_nodes,
          std::max(1., options.judged_share * static_cast<double>(num_nodes));
 }
 
+// Nothing contradicts the map, nor would anything if parts of it lay elsewhere.
+bool IsLoose(const SelfConsistency& result,
+             const SelfConsistencyOptions& options) {
+  return result.loose.share() >= options.loose_share;
+}
+
+std::string DescribeLoosePlaces(const MapGraph& graph,
+                                const LoosePlaces& loose) {
+  const auto worst =
+      std::max_element(loose.places.begin(), loose.places.end(),
+                       [](const LoosePlace& a, const LoosePlace& b) {
+                         return a.sigma < b.sigma;
+                       });
+  return absl::StrFormat(
+      "%.1f %% of the path may lie elsewhere without contradicting anything: "
+      "nothing ties it closely to other parts that are within reach, so visits "
+      "to one place may be drawn as two places; worst at %s (node %s, known to "
+      "%.1f m, and %.1f m from node %s)",
+      100. * loose.share(),
+      Place(graph.nodes.at(worst->node_id).global_pose.translation()),
+      ToString(worst->node_id), worst->sigma, worst->distance,
+      ToString(worst->other_id));
+}
+
 // The verdict in a sentence.
 std::string Headline(const MapGraph& graph, const SelfConsistency& result,
                      const SelfConsistencyOptions& options) {
@@ -68,6 +92,11 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result,
         "loops and places that were mapped twice tie no more than %.0f %% of "
         "the path together; nothing tells whether its parts are in place",
         100. * result.displacements.tied_share);
+  }
+  if (result.word == "doubtful" && result.places.empty() &&
+      result.wrong_turns.empty()) {
+    return "the map does not contradict itself, but too little ties its parts "
+           "together to vouch for it";
   }
   if (result.word == "sound") {
     return "the map is self-consistent: places that were mapped twice coincide";
@@ -141,6 +170,9 @@ void Explain(const MapGraph& graph, const SelfConsistencyOptions& options,
                         100. * result->displacements.displaced_share(),
                         options.displacement.limit));
   }
+  if (!result->loose.places.empty()) {
+    result->reasons.push_back(DescribeLoosePlaces(graph, result->loose));
+  }
   for (size_t i = 0; i < std::min(result->places.size(), kMaxNamedPlaces);
        ++i) {
     const PathPiece& piece = result->places[i];
@@ -193,8 +225,8 @@ std::string WordOf(const SelfConsistency& result, const size_t num_nodes,
   if (contradicts || turned) return "doubtful";
   if (HardlyRevisits(result, num_nodes, options)) return "unknown";
   if (IsDisplaced(result, options)) return "doubtful";
-  return result.displacements.tied_share < options.tied_share ? "unknown"
-                                                              : "sound";
+  if (result.displacements.tied_share < options.tied_share) return "unknown";
+  return IsLoose(result, options) ? "doubtful" : "sound";
 }
 
 // Of steps within this time of each other, in order of time, the largest one.
@@ -224,6 +256,8 @@ SelfConsistency Assess(const MapGraph& graph, const MapContents& contents,
       FindContradictions(graph, contents, options.contradiction);
   result.displacements = FindDisplacements(
       graph, contents, result.contradictions, options.displacement);
+  result.loose =
+      FindLoosePlaces(graph, result.displacements.ties, options.loose);
   result.sharpness = ComputeSharpness(graph, contents, options.sharpness);
   result.motion = CompareMotions(graph, odometry);
   result.cycles = ComputeLoopCycles(graph, options.cycles);
@@ -305,6 +339,7 @@ ordered_json ToJson(const SelfConsistency& consistency) {
   json["contradicted_rays"] = contradictions.ray_fraction();
   json["displaced_share"] = consistency.displacements.displaced_share();
   json["tied_share"] = consistency.displacements.tied_share;
+  json["loose_share"] = consistency.loose.share();
   json["places"] = ordered_json::array();
   for (const PathPiece& piece : consistency.places) {
     ordered_json submaps = ordered_json::array();

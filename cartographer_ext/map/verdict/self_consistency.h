@@ -18,6 +18,9 @@
 //   (lasting_rotation). Either may be wrong, so this alone means doubtful.
 // * displaced nodes: at least `displaced_share` of the nodes that revisit a place
 //   fit it better some decimetres away (revisit_displacement.h). Doubtful.
+// * loose places: at least `loose_share` of the path may lie elsewhere, on or
+//   beside other parts of the map, without anything showing it (loose_places.h).
+//   Doubtful: the map may be right, but it cannot vouch for itself.
 // A map is broken if contradicted path pieces make up `broken_share` of the
 // nodes that revisit a place, or `doubtful_share` of them together with a wrong
 // turn. Without any of this it is sound if `judged_share` of the nodes revisit a
@@ -32,6 +35,7 @@
 
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/verdict/loop_cycles.h"
+#include "cartographer_ext/map/verdict/loose_places.h"
 #include "cartographer_ext/map/verdict/map_sharpness.h"
 #include "cartographer_ext/map/verdict/motion_disagreement.h"
 #include "cartographer_ext/map/verdict/revisit_displacement.h"
@@ -44,6 +48,7 @@ namespace evaluation {
 struct SelfConsistencyOptions {
   ContradictionOptions contradiction;
   DisplacementOptions displacement;
+  LoosePlaceOptions loose;
   SharpnessOptions sharpness;
   LoopCycleOptions cycles;
   double severe_fraction = 0.6;
@@ -53,6 +58,7 @@ struct SelfConsistencyOptions {
   double broken_share = 0.08;
   double doubtful_share = 0.01;
   double displaced_share = 0.07;
+  double loose_share = 0.05;
   double judged_share = 0.15;
   double tied_share = 0.5;
 };
@@ -60,6 +66,7 @@ struct SelfConsistencyOptions {
 struct SelfConsistency {
   Contradictions contradictions;
   RevisitDisplacements displacements;
+  LoosePlaces loose;
   Sharpness sharpness;
   MotionDisagreement motion;
   LoopCycles cycles;

@@ -44,6 +44,13 @@ TEST(RevisitDisplacementTest, ARightMapIsInPlace) {
   EXPECT_TRUE(result.pieces.empty());
   EXPECT_EQ(result.displaced_share(), 0.);
   EXPECT_EQ(result.tied_share, 1.);
+  ASSERT_EQ(static_cast<int>(result.ties.size()), result.judged_nodes);
+  for (const RevisitTie& tie : result.ties) {
+    // Nodes 0 to 9 and 90 to 99 were inserted.
+    EXPECT_TRUE(tie.anchor_id.index < 10 || tie.anchor_id.index >= 90);
+    EXPECT_GT(tie.information(0, 0), 10.);
+    EXPECT_GT(tie.information(1, 1), 10.);
+  }
 }
 
 // Nodes 60 to 99 lie 0.6 m from where they belong, with the second submap: they
@@ -64,6 +71,7 @@ TEST(RevisitDisplacementTest, FindsHowFarTheMapIsDisplaced) {
   }
   // Those between that agree tie less than the whole.
   EXPECT_LT(result.tied_share, 0.6);
+  EXPECT_LE(result.ties.size(), 5u);
 }
 
 TEST(RevisitDisplacementTest, ABlankCorridorDoesNotTell) {
@@ -72,6 +80,11 @@ TEST(RevisitDisplacementTest, ABlankCorridorDoesNotTell) {
   RevisitDisplacements result = Displacements(world);
   EXPECT_GT(result.judged_nodes, 40);
   EXPECT_EQ(result.displaced_nodes, 0);
+  ASSERT_FALSE(result.ties.empty());
+  for (const RevisitTie& tie : result.ties) {
+    EXPECT_LT(tie.information(0, 0), 1.);
+    EXPECT_GT(tie.information(1, 1), 10.);
+  }
   // Across the corridor it does.
   world = test::MakeBoxWorld(60, Pose2(0., 0.6, 0.));
   KeepTheWallsAlongX(&world);

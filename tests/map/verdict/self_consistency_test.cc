@@ -189,6 +189,32 @@ TEST(SelfConsistencyTest, PartsThatNothingTiesTogetherAreUnknown) {
               HasSubstr("tie no more than 80 % of the path together"));
 }
 
+TEST(SelfConsistencyTest, AMapThatMayLieElsewhereIsDoubtful) {
+  const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2());
+  SelfConsistencyOptions options;
+  SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents, {}, options);
+  EXPECT_EQ(result.loose.share(), 0.);
+  EXPECT_EQ(ToJson(result)["loose_share"], 0.);
+  // No scan fixes a place so closely.
+  options.loose.limit = 1e-3;
+  result = AssessSelfConsistency(world.graph, world.contents, {}, options);
+  EXPECT_EQ(result.loose.share(), 1.);
+  EXPECT_EQ(result.word, "doubtful");
+  EXPECT_TRUE(result.places.empty());
+  EXPECT_THAT(result.reasons.front(),
+              HasSubstr("too little ties its parts together"));
+  EXPECT_THAT(result.reasons,
+              Contains(HasSubstr("100.0 % of the path may lie elsewhere")));
+  EXPECT_EQ(ToJson(result)["loose_share"], 1.);
+  // A contradiction weighs more.
+  const test::BoxWorld folded =
+      test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
+  EXPECT_EQ(
+      AssessSelfConsistency(folded.graph, folded.contents, {}, options).word,
+      "broken");
+}
+
 TEST(SelfConsistencyTest, TruthGoesBeforeTheMapsOwnWord) {
   const test::BoxWorld world =
       test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
