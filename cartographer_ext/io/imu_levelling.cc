@@ -11,7 +11,6 @@ namespace cartographer_ext {
 namespace io {
 namespace {
 
-constexpr double kGravity = 9.80665;  // m/s^2
 // The mean of this long, of all readings as long as there are fewer, seconds.
 constexpr double kTimeConstant = 10.;
 // Sizes of the mean that are gravity, m/s^2.

@@ -20,6 +20,9 @@
 namespace cartographer_ext {
 namespace io {
 
+// Standard acceleration of gravity, m/s^2.
+constexpr double kGravity = 9.80665;
+
 // Levels the readings of one IMU, see above. Not thread-safe.
 class ImuLevelling {
  public:

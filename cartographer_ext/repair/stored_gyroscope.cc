@@ -7,6 +7,7 @@
 
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/io/imu_levelling.h"
 
 namespace cartographer_ext {
 namespace repair {
@@ -15,7 +16,6 @@ namespace {
 using cartographer::common::Time;
 using cartographer::sensor::ImuData;
 
-constexpr double kGravity = 9.80665;
 // An alignment that turns by less than this between any two nodes in a row holds
 // no rotation, radians; nodes are inserted after a degree.
 constexpr double kLeastRotation = 0.01;
@@ -51,7 +51,7 @@ std::vector<ImuData> Readings(const Yaws& yaws) {
           i == 0 ? from->first + Time::duration(1)
                  : from->first + i * (to->first - from->first) / steps;
       if (!readings.empty() && time <= readings.back().time) continue;
-      readings.push_back({time, kGravity * Eigen::Vector3d::UnitZ(), rate});
+      readings.push_back({time, io::kGravity * Eigen::Vector3d::UnitZ(), rate});
     }
   }
   if (largest < kLeastRotation) return {};
