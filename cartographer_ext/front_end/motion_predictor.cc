@@ -197,6 +197,8 @@ void MotionPredictor::PredictByOdometry(
   }
   if (has_expectation || (interval < kLongestStop && HasJump(time))) {
     prediction->alternatives.push_back(without);
+  } else if (interval < kLongestStop) {
+    prediction->hints.push_back(without);
   }
   if (is_suspect) {
     // Of the rotation nothing is in doubt that the gyroscope has measured.

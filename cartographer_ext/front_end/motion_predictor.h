@@ -75,8 +75,10 @@ struct MotionPrediction {
   // Odometry covered the last scan and its next reading will cover the gap
   // since then.
   bool odometry_pending = false;
-  // Other motions to start a search from.
+  // Other motions, and those that only start a search: what it finds must agree
+  // with the prediction.
   std::vector<Pose2> alternatives;
+  std::vector<Pose2> hints;
 };
 
 // The outcome of a match, for AddMatch.

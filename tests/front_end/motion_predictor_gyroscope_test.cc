@@ -141,8 +141,9 @@ TEST(MotionPredictorGapTest, SteadyWheelsDidNotJump) {
         next.AddOdometry(6. + 1.5 * i / readings_per_scan,
                          Pose2(4. + distance * i / readings_per_scan, 0., 0.));
       }
-      EXPECT_EQ(next.Predict(7.5).alternatives.empty(),
-                distance == 1. || readings_per_scan > 1);
+      const bool is_steady = distance == 1. || readings_per_scan > 1;
+      EXPECT_EQ(next.Predict(7.5).alternatives.empty(), is_steady);
+      EXPECT_EQ(next.Predict(7.5).hints.empty(), !is_steady);
     }
   }
 }

@@ -131,16 +131,24 @@ bool IsLikelier(const LocalMatch& a, const LocalMatch& b,
          0.5 * (a.report.mahalanobis - b.report.mahalanobis);
 }
 
-// The predicted motion and its alternatives, without near duplicates.
-std::vector<Pose2> MotionsToSearch(const MotionPrediction& prediction) {
-  std::vector<Pose2> motions = {prediction.motion};
-  for (const Pose2& motion : prediction.alternatives) {
+struct SearchedMotion {
+  Pose2 motion;
+  bool is_hint;
+};
+
+// The predicted motion, its alternatives and the hints, without near duplicates.
+std::vector<SearchedMotion> MotionsToSearch(
+    const MotionPrediction& prediction) {
+  std::vector<SearchedMotion> motions = {{prediction.motion, false}};
+  const auto add = [&](const Pose2& motion, const bool is_hint) {
     bool is_new = motions.size() < kMaxSearches;
-    for (const Pose2& other : motions) {
-      is_new = is_new && !IsNear(motion, other);
+    for (const SearchedMotion& other : motions) {
+      is_new = is_new && !IsNear(motion, other.motion);
     }
-    if (is_new) motions.push_back(motion);
-  }
+    if (is_new) motions.push_back({motion, is_hint});
+  };
+  for (const Pose2& motion : prediction.alternatives) add(motion, false);
+  for (const Pose2& motion : prediction.hints) add(motion, true);
   return motions;
 }
 
@@ -290,7 +298,8 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
   LocalMatch best = matched;
   best.searched = true;
   double to_beat = matched.score + options_.min_gain;
-  for (const Pose2& motion : MotionsToSearch(prediction)) {
+  for (const SearchedMotion& searched : MotionsToSearch(prediction)) {
+    const Pose2& motion = searched.motion;
     const Pose2 found =
         Search(last_pose * motion, motion, prediction, cloud, grid);
     const LocalMatch consistent = MatchFrom(predicted, found, cloud, grid);
@@ -302,6 +311,7 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
       to_beat = best.score + options_.min_gain;
       continue;
     }
+    if (searched.is_hint) continue;
     Prediction start = ToPrediction(
         last_pose, motion, kCovarianceScaleAfterSearch * prediction.covariance);
     start.scans_in_map = predicted.scans_in_map;

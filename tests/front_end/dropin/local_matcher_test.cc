@@ -132,6 +132,17 @@ TEST_F(LocalMatcherTest, AWidePredictionIsSearchedForTheLikeliestMinimum) {
   EXPECT_NEAR(match.pose.theta, 0., 0.02);
 }
 
+// What a hint leads to does not overrule a prediction, however well it fits.
+TEST_F(LocalMatcherTest, AHintIsNoAlternative) {
+  const Pose2 off(1.5, 0.3, 0.);
+  prediction_.alternatives = {Pose2()};
+  EXPECT_NEAR(MatchFrom(off).pose.x, 0., 0.02);
+  prediction_.motion = Pose2();
+  prediction_.alternatives.clear();
+  prediction_.hints = {Pose2()};
+  EXPECT_GT(MatchFrom(off).pose.x, 0.5);
+}
+
 TEST_F(LocalMatcherTest, ASlightlyBetterPlaceDoesNot) {
   options_.contradiction_gain = 1.;
   const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
