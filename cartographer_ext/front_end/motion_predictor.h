@@ -75,8 +75,8 @@ struct MotionPrediction {
   // Odometry covered the last scan and its next reading will cover the gap
   // since then.
   bool odometry_pending = false;
-  // Other motions, and those that only start a search: what it finds must agree
-  // with the prediction.
+  // Other motions, and those that only start a search if they are within the
+  // window around `motion`: what it finds must agree with the prediction.
   std::vector<Pose2> alternatives;
   std::vector<Pose2> hints;
 };

@@ -221,14 +221,19 @@ double LocalMatcher::LimitOfSight() const {
                   : std::numeric_limits<double>::infinity();
 }
 
+double LocalMatcher::LinearWindow(const Pose2& motion,
+                                  const MotionPrediction& prediction) const {
+  return std::min(
+      options_.max_linear_window,
+      std::max(prediction.search_radius,
+               options_.linear_window + 0.5 * std::hypot(motion.x, motion.y)));
+}
+
 Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
                            const MotionPrediction& prediction,
                            const PointCloud& cloud, const Grid2D& grid) const {
   stock_proto::RealTimeCorrelativeScanMatcherOptions options;
-  options.set_linear_search_window(std::min(
-      options_.max_linear_window,
-      std::max(prediction.search_radius,
-               options_.linear_window + 0.5 * std::hypot(motion.x, motion.y))));
+  options.set_linear_search_window(LinearWindow(motion, prediction));
   options.set_angular_search_window(
       std::max(prediction.search_angle,
                std::min(options_.max_angular_window,
@@ -300,6 +305,11 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
   double to_beat = matched.score + options_.min_gain;
   for (const SearchedMotion& searched : MotionsToSearch(prediction)) {
     const Pose2& motion = searched.motion;
+    if (searched.is_hint &&
+        (motion.translation() - prediction.motion.translation()).norm() >
+            LinearWindow(prediction.motion, prediction)) {
+      continue;
+    }
     const Pose2 found =
         Search(last_pose * motion, motion, prediction, cloud, grid);
     const LocalMatch consistent = MatchFrom(predicted, found, cloud, grid);

@@ -85,6 +85,9 @@ class LocalMatcher {
   // Metres from where on points are at the limit of sight, infinity where that
   // is not known.
   double LimitOfSight() const;
+  // Half width of the window around a motion, metres.
+  double LinearWindow(const Pose2& motion,
+                      const MotionPrediction& prediction) const;
   // Around `center`, the end of `motion`, in a window that covers the
   // uncertainty of the prediction.
   Pose2 Search(const Pose2& center, const Pose2& motion,

@@ -143,6 +143,22 @@ TEST_F(LocalMatcherTest, AHintIsNoAlternative) {
   EXPECT_GT(MatchFrom(off).pose.x, 0.5);
 }
 
+// Nor does one beyond the window around the prediction, though it would agree.
+TEST_F(LocalMatcherTest, AHintFarOffIsNotFollowed) {
+  LocalMatcher matcher(options_, matcher_options_);
+  prediction_.motion = Pose2(1.5, 0.3, 0.);
+  prediction_.covariance = Eigen::Vector3d(1., 1., 0.01).asDiagonal();
+  const auto match = [&] {
+    return matcher.Match(Pose2(), prediction_, Cloud(),
+                         *submaps_->submaps().front());
+  };
+  prediction_.hints = {Pose2()};
+  EXPECT_GT(match().pose.x, 0.5);
+  prediction_.hints.clear();
+  prediction_.alternatives = {Pose2()};
+  EXPECT_NEAR(match().pose.x, 0., 0.02);
+}
+
 TEST_F(LocalMatcherTest, ASlightlyBetterPlaceDoesNot) {
   options_.contradiction_gain = 1.;
   const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
