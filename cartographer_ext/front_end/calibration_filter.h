@@ -20,12 +20,12 @@
 //
 // How noisy the increments really are depends on the wheels, the laser, and how
 // far scans are apart. The squares of the residuals by their variances are one on
-// average if the noise is as assumed. Their mean is the factor of the variance
-// of the noise (the dispersion of a generalised linear model), estimated with
-// residuals limited to three standard deviations ("Robust Estimation
-// of a Location Parameter", proposal 2, Annals of Mathematical Statistics 35,
-// 1964). It is never below one. It widens the bound of residuals and the
-// reported sigmas. Increments that the uncertainty of p dominates count less.
+// average if the noise is as assumed. Their mean is the factor of the variance of
+// the noise (the dispersion of a generalised linear model), estimated with
+// residuals limited to three standard deviations ("Robust Estimation of a
+// Location Parameter", proposal 2, Annals of Mathematical Statistics 35, 1964).
+// It is never below one. It widens the bound of residuals and the reported sigmas.
+// Increments that the uncertainty of p dominates count less.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_CALIBRATION_FILTER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_CALIBRATION_FILTER_H_
 

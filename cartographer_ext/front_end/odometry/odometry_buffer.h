@@ -52,8 +52,8 @@ class OdometryBuffer {
   // False without readings.
   bool Lookup(double time, OdometrySample* sample) const;
 
-  // Whether two successive readings, up to `from` at the earliest and from `to` on
-  // at the latest, are as far apart as a jump.
+  // Whether two successive readings are as far apart as a jump, of those between
+  // which the interval from `from` to `to` lies, or a part of it.
   bool HasJump(double from, double to, const OdometryJump& jump) const;
 
   // Median time between the last readings, seconds; 0 with fewer than two.

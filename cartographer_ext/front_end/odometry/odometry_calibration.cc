@@ -15,11 +15,13 @@ namespace {
 // Matches of scans that determine the whole pose have errors of some
 // millimetres from one to the next, and of 6 to 8 mm per root metre from submap
 // to submap (simulated offices and corridors against ground truth).
-constexpr CalibrationFilter::Noise kTranslationNoise = {0.01, 0.008, 3e-5, 4., 5.};
+constexpr CalibrationFilter::Noise kTranslationNoise = {0.01, 0.008, 3e-5, 4.,
+                                                        5.};
 // The same for rotation, 0.1 degrees. The noise that grows with distance is
 // that of the wheels: 4 mm per root metre of each wheel, 40 cm apart, are 0.8
 // degrees.
-constexpr CalibrationFilter::Noise kRotationNoise = {0.002, 0.015, 3e-5, 4., 5.};
+constexpr CalibrationFilter::Noise kRotationNoise = {0.002, 0.015, 3e-5, 4.,
+                                                     5.};
 // Metres that the wheels roll while the robot turns on the spot by a radian.
 constexpr double kWheelRadius = 0.2;
 // Standard deviations of the scale of whole maps, and of other errors common to

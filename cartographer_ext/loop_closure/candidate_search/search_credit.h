@@ -6,10 +6,11 @@
 // The cost of a search grows with its window, and is largest if there is no
 // match. A window of 15 m takes a hundred times as long as one of a metre; a
 // whole submap, in which the place is first searched roughly, a quarter of that.
-// So wide searches consume credit. Every node earns a little, more where nodes are
-// far apart, so that the cost per metre neither grows with the length of the run
-// nor falls with the rate of the scans; credit is accumulated up to a limit, to be available where it is needed; and wide searches that lead to
-// accepted loops earn more.
+// So wide searches consume credit. Every node earns a little, more where nodes
+// are far apart, so that the cost per metre neither grows with the length of the
+// run nor falls with the rate of the scans; credit is accumulated up to a limit,
+// to be available where it is needed; and wide searches that lead to accepted
+// loops earn more.
 //
 // Depends on the sequence of calls only. Not thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CANDIDATE_SEARCH_SEARCH_CREDIT_H_
