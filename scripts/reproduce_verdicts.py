@@ -61,7 +61,7 @@ def cases(count, kinds=KINDS, seed=SEED):
     pairs = len(kinds) * len(LASERS)
     for i in range(count):
         block, place = divmod(i, len(TREATMENTS))
-        result.append((kinds[(place + block) % len(kinds)], LASERS[(place + block // len(KINDS)) % len(LASERS)],
+        result.append((kinds[(place + block) % len(kinds)], LASERS[(place + block // len(kinds)) % len(LASERS)],
                        GRADES[(place // 3 + block + block // pairs) % len(GRADES)], seed + i, TREATMENTS[place]))
     return result
 

@@ -11,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/random.h"
 #include "cartographer_ext/experiments/family_paths.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 
 namespace cartographer_ext {
 namespace experiments {
@@ -253,12 +254,6 @@ FamilyGraph MakeRobots(Random* const random) {
   return MakeIndoorGraph(std::move(path), random);
 }
 
-int CountLoops(const FamilyGraph& family) {
-  int result = 0;
-  for (const PoseGraphEdge& edge : family.graph.edges) result += edge.is_loop;
-  return result;
-}
-
 FamilyGraph MakeFew(Random* const random) {
   const int max_loops = random->UniformInt(3, 30);
   FamilyGraph result;
@@ -276,7 +271,7 @@ FamilyGraph MakeFew(Random* const random) {
       default:
         result = MakeStar(random, max_loops);
     }
-  } while (CountLoops(result) < 3);
+  } while (optimization::CountLoops(result.graph.edges) < 3);
   return result;
 }
 

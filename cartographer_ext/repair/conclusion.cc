@@ -33,8 +33,7 @@ std::string WhyBroken(const MapRepair& repair) {
   if (after.word != "broken" && !after.loose.places.empty()) {
     return absl::StrFormat(
         "no step ties its parts together: %.1f %% of the path may lie "
-        "elsewhere "
-        "without contradicting anything",
+        "elsewhere without contradicting anything",
         100. * after.loose.share());
   }
   return "no step improved it";

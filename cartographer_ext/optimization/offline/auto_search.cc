@@ -227,12 +227,13 @@ void AcceptHeavyTail(const NoiseMetric& applied, Portfolio* const portfolio,
   // As noisy as the matrices claim, or where that is too much to tell them from
   // wrong ones, as the largest of so many may be.
   const double largest = std::sqrt(WideGate(in_force) / kChi2Gate);
-  std::vector<int> tail;
-  for (const double claimed : {1. / applied.loops, largest}) {
-    if (claimed < largest || !tail.empty()) continue;
-    tail = FindHeavyTail({result->poses, result->weights}, claimed,
+  const double claimed = std::max(1. / applied.loops, largest);
+  const auto find_tail = [&](const double noise) {
+    return FindHeavyTail({result->poses, result->weights}, noise,
                          portfolio->support(), edges);
-  }
+  };
+  std::vector<int> tail = find_tail(claimed);
+  if (tail.empty() && claimed > largest) tail = find_tail(largest);
   if (tail.empty()) return;
   double gate = kChi2Gate;
   for (const Innovation& innovation : PredictLoops(

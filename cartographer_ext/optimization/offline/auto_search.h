@@ -12,13 +12,13 @@
 //      follows, the result included. Both factors are below one only where that
 //      decides between two maps: where another map than that of the lowest cost is
 //      likelier, each with the noise that it shows. The search then continues from
-//      its members. So it does with the noise that loops show among themselves, where
-//      that is less and explains a map better (cycle_noise.h), and with the estimate
-//      where one of odometry and loops
-//      claims too much noise in relation to the other; the larger of both factors
-//      then stays at least one. That is asked last, as a wrong map shows a wrong
-//      ratio. Fewer than ten loops say nothing about the noise by their residuals,
-//      but they may confirm each other far from where odometry has led;
+//      its members. So it does with the noise that loops show among themselves,
+//      where that is less and explains a map better (cycle_noise.h), and with the
+//      estimate where one of odometry and loops claims too much noise in relation to
+//      the other; the larger of both factors then stays at least one. That is asked
+//      last, as a wrong map shows a wrong ratio. Fewer than ten loops say nothing
+//      about the noise by their residuals, but they may confirm each other far from
+//      where odometry has led;
 //   3. the members near the lowest truncated cost polished with a gate adapted
 //      to the scale of the accepted loops, where the matrices claim too much
 //      noise, which in a sparse graph leave-one-out innovations alone show;

@@ -56,7 +56,7 @@ Portfolio::Portfolio(PoseGraph graph, const PortfolioOptions& options)
       edges_(Whiten(graph_.edges)),
       solver_(edges_),
       lowest_of_solvers_(std::numeric_limits<double>::infinity()) {
-  for (const WhitenedEdge& edge : edges_) num_loops_ += edge.is_loop;
+  num_loops_ = CountLoops(edges_);
 }
 
 double Portfolio::Size() const {
