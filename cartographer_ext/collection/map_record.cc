@@ -42,12 +42,12 @@ io::OccupancyMap Shrink(const io::OccupancyMap& map, const int factor) {
 
 std::string SmallPicture(const report::JudgedMap& map) {
   // Once coarsely for the size, then at the size wanted.
-  auto painted = evaluation::PaintPbstreamMap(map.pbstream, map.graph, 0.5);
+  auto painted = evaluation::PaintContents(map.graph, map.contents, 0.5);
   if (!painted.ok()) return "";
   const double side =
       painted->resolution * std::max(painted->width, painted->height);
   const double cells = std::max(kFinestCells, side / kPixels / kFinerBy);
-  painted = evaluation::PaintPbstreamMap(map.pbstream, map.graph, cells);
+  painted = evaluation::PaintContents(map.graph, map.contents, cells);
   if (!painted.ok()) return "";
   const int pixels = static_cast<int>(kPixels);
   const int longer = std::max(painted->width, painted->height);

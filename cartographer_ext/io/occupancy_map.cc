@@ -265,10 +265,12 @@ absl::Status WriteOccupancyMap(const OccupancyMap& map,
     return absl::InvalidArgumentError(
         absl::StrCat("empty or inconsistent map for ", filestem));
   }
-  std::string pgm = absl::StrFormat("P5\n# %.5f m a pixel\n%d %d\n255\n",
-                                    map.resolution, map.width, map.height);
-  pgm.reserve(pgm.size() + map.occupancy.size());
+  AtomicFile file(absl::StrCat(filestem, ".pgm"));
+  if (!file.status().ok()) return file.status();
+  file.stream() << absl::StrFormat("P5\n# %.5f m a pixel\n%d %d\n255\n",
+                                   map.resolution, map.width, map.height);
   for (int y = map.height - 1; y >= 0; --y) {
+    std::string row;
     for (int x = 0; x < map.width; ++x) {
       const double occupancy = map.at(x, y);
       int grey = kUnknownGrey;
@@ -276,11 +278,11 @@ absl::Status WriteOccupancyMap(const OccupancyMap& map,
         grey = static_cast<int>(
             std::lround(255. * (1. - std::min(1., std::max(0., occupancy)))));
       }
-      pgm.push_back(static_cast<char>(grey));
+      row.push_back(static_cast<char>(grey));
     }
+    file.stream() << row;
   }
-  const absl::Status status =
-      WriteFileAtomically(absl::StrCat(filestem, ".pgm"), pgm);
+  const absl::Status status = file.Commit();
   if (!status.ok()) return status;
   return WriteFileAtomically(
       absl::StrCat(filestem, ".yaml"),

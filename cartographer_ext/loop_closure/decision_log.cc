@@ -161,6 +161,10 @@ absl::StatusOr<std::vector<LoopDecision>> ParseDecisions(
 
 absl::string_view DecisionCsvHead() { return kHead; }
 
+std::string DecisionCsvRow(const LoopDecision& decision) {
+  return CsvLine(decision);
+}
+
 std::string DecisionCsvRows(const std::vector<LoopDecision>& decisions) {
   std::string rows;
   for (const LoopDecision& decision : decisions) {

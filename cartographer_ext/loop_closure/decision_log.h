@@ -29,6 +29,7 @@ absl::StatusOr<std::vector<proto::LoopDecision>> ParseDecisions(
 
 // The header line of the table, and the others.
 absl::string_view DecisionCsvHead();
+std::string DecisionCsvRow(const proto::LoopDecision& decision);
 std::string DecisionCsvRows(const std::vector<proto::LoopDecision>& decisions);
 std::string DecisionCsv(const std::vector<proto::LoopDecision>& decisions);
 

@@ -2,33 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 
-#include <algorithm>
-#include <iterator>
 #include <utility>
-
-#include "absl/status/statusor.h"
-#include "cartographer_ext/loop_closure/decision_log.h"
-#include "glog/logging.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
 namespace {
 
-constexpr size_t kChunkBytes = 1 << 20;
-
 // Of several records of a candidate, one that was withdrawn, only the last.
-void KeepLast(DecisionRecorder::Decisions* const decisions) {
+DecisionRecords KeepLast(const DecisionRecords& records) {
   std::map<int64_t, size_t> last;
-  for (size_t i = 0; i < decisions->size(); ++i) {
-    last[(*decisions)[i].candidate()] = i;
-  }
-  DecisionRecorder::Decisions kept;
-  for (size_t i = 0; i < decisions->size(); ++i) {
-    if (last[(*decisions)[i].candidate()] == i) {
-      kept.push_back(std::move((*decisions)[i]));
-    }
-  }
-  *decisions = std::move(kept);
+  size_t position = 0;
+  records.ForEach([&](const proto::LoopDecision& decision) {
+    last[decision.candidate()] = position++;
+  });
+  DecisionRecords kept;
+  position = 0;
+  records.ForEach([&](const proto::LoopDecision& decision) {
+    if (last[decision.candidate()] == position++) kept.Add(decision);
+  });
+  return kept;
 }
 
 }  // namespace
@@ -38,8 +30,7 @@ void DecisionRecorder::Start(const size_t capacity) {
   started_ = true;
   capacity_ = capacity;
   num_dropped_ = 0;
-  chunks_.clear();
-  num_records_ = 0;
+  records_ = DecisionRecords();
   has_withdrawn_ = false;
 }
 
@@ -57,19 +48,14 @@ void DecisionRecorder::Record(const Decisions& decisions) {
   absl::MutexLock lock(&mutex_);
   if (!started_) return;
   for (const proto::LoopDecision& decision : decisions) {
-    if (num_records_ == capacity_) {
+    if (records_.size() == capacity_) {
       ++num_dropped_;
       continue;
     }
-    if (chunks_.empty() || chunks_.back().size() >= kChunkBytes) {
-      chunks_.emplace_back();
-      chunks_.back().reserve(kChunkBytes + kChunkBytes / 64);
-    }
-    AppendDecision(decision, &chunks_.back());
+    records_.Add(decision);
     if (decision.verdict() == proto::LoopDecision::UNDECIDED) {
       has_withdrawn_ = true;
     }
-    ++num_records_;
   }
 }
 
@@ -84,7 +70,7 @@ void DecisionRecorder::RemovePending(const int64_t id) {
   pending_.erase(id);
 }
 
-DecisionRecorder::Decisions DecisionRecorder::All() const {
+DecisionRecords DecisionRecorder::Records() const {
   absl::MutexLock pending_lock(&pending_mutex_);
   Decisions undecided;
   for (const auto& entry : pending_) {
@@ -92,16 +78,9 @@ DecisionRecorder::Decisions DecisionRecorder::All() const {
     undecided.insert(undecided.end(), some.begin(), some.end());
   }
   absl::MutexLock lock(&mutex_);
-  Decisions all;
-  all.reserve(num_records_ + undecided.size());
-  for (const std::string& chunk : chunks_) {
-    absl::StatusOr<Decisions> decisions = ParseDecisions(chunk);
-    CHECK(decisions.ok()) << decisions.status();  // written above
-    std::move(decisions->begin(), decisions->end(), std::back_inserter(all));
-  }
-  std::move(undecided.begin(), undecided.end(), std::back_inserter(all));
-  if (has_withdrawn_) KeepLast(&all);
-  return all;
+  DecisionRecords records = records_;
+  for (const proto::LoopDecision& decision : undecided) records.Add(decision);
+  return has_withdrawn_ ? KeepLast(records) : records;
 }
 
 int64_t DecisionRecorder::num_dropped() const {

@@ -3,8 +3,7 @@
 //
 // Collects the records of loop decisions: a part of PoseGraphContext, through
 // which a program can access the decisions of the constraint builder inside the
-// host. Keeps nothing until it is started, and then serialized, which takes a
-// fifth of the memory. Thread-safe.
+// host. Keeps nothing until it is started. Thread-safe.
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_DECISION_RECORDER_H_
 
@@ -12,11 +11,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <string>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
+#include "cartographer_ext/loop_closure/decision_records.h"
 #include "cartographer_ext/loop_decision.pb.h"
 
 namespace cartographer_ext {
@@ -43,7 +42,9 @@ class DecisionRecorder {
 
   // The records of all candidates in the order of their verdicts, followed by
   // the currently undecided ones. Of a candidate that was withdrawn, the last.
-  Decisions All() const ABSL_LOCKS_EXCLUDED(mutex_);
+  DecisionRecords Records() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // The same, parsed.
+  Decisions All() const { return Records().Parsed(); }
   // Number of records beyond the capacity.
   int64_t num_dropped() const ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -54,10 +55,7 @@ class DecisionRecorder {
   size_t capacity_ ABSL_GUARDED_BY(mutex_) = 0;
   bool started_ ABSL_GUARDED_BY(mutex_) = false;
   int64_t num_dropped_ ABSL_GUARDED_BY(mutex_) = 0;
-  // Records one after the other (decision_log.h), all but the last about
-  // kChunkBytes long.
-  std::vector<std::string> chunks_ ABSL_GUARDED_BY(mutex_);
-  size_t num_records_ ABSL_GUARDED_BY(mutex_) = 0;
+  DecisionRecords records_ ABSL_GUARDED_BY(mutex_);
   bool has_withdrawn_ ABSL_GUARDED_BY(mutex_) = false;
   std::map<int64_t, std::function<Decisions()>> pending_
       ABSL_GUARDED_BY(pending_mutex_);

@@ -3,6 +3,7 @@
 #include "cartographer_ext/map/host_map.h"
 
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "cartographer/mapping/proto/serialization.pb.h"
@@ -57,19 +58,20 @@ MapGraph MakeMapGraph(const PoseGraphInterface& pose_graph) {
 
 absl::StatusOr<io::OccupancyMap> PaintHostMap(
     const PoseGraphInterface& pose_graph, const double resolution) {
-  std::deque<cartographer::mapping::proto::Submap> submaps;
-  std::vector<PlacedGrid> grids;
+  std::deque<SubmapGrid> grids;
+  std::vector<PlacedGrid> placed;
   for (const auto& entry : pose_graph.GetAllSubmapData()) {
     if (entry.data.submap == nullptr) continue;
-    submaps.push_back(entry.data.submap->ToProto(true /* with grid */));
-    PlacedGrid placed;
-    placed.grid = &submaps.back().submap_2d().grid();
-    placed.map_from_local =
-        ToPlanarPose(entry.data.pose) *
-        ToPlanarPose(entry.data.submap->local_pose()).Inverse();
-    grids.push_back(placed);
+    auto grid = SubmapGrid::Make(
+        entry.data.submap->ToProto(true /* with grid */).submap_2d().grid());
+    if (!grid.ok()) return grid.status();
+    grids.push_back(*std::move(grid));
+    placed.push_back(
+        {&grids.back(),
+         ToPlanarPose(entry.data.pose) *
+             ToPlanarPose(entry.data.submap->local_pose()).Inverse()});
   }
-  return PaintMap(grids, resolution);
+  return PaintMap(placed, resolution);
 }
 
 }  // namespace evaluation

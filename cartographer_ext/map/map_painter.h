@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "cartographer/mapping/proto/grid_2d.pb.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/io/occupancy_map.h"
+#include "cartographer_ext/map/submap_grid.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -20,18 +20,9 @@ namespace evaluation {
 // The grid of a submap. Its cells have coordinates in the local frame of the
 // trajectory.
 struct PlacedGrid {
-  const cartographer::mapping::proto::Grid2D* grid = nullptr;
+  const SubmapGrid* grid = nullptr;
   Pose2 map_from_local;  // (map <- submap) * (local <- submap)^-1
 };
-
-// Probability of occupancy of cell (ix, iy), NaN where unknown. In TSDF grids,
-// a cell is occupied within half a cell of a surface and free elsewhere. The
-// grid must be one that CheckGrid accepts.
-float Occupancy(const cartographer::mapping::proto::Grid2D& grid, int ix,
-                int iy);
-
-// An error if sizes or limits of the grid are invalid.
-absl::Status CheckGrid(const cartographer::mapping::proto::Grid2D& grid);
 
 // Resolution in metres per cell. An error if no cell is known, or if the map
 // would need more than 4e8 cells, or more than 1.6e7 and 64 times the number of

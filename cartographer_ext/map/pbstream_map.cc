@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/map/pbstream_map.h"
 
+#include <deque>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "cartographer/transform/transform.h"
@@ -51,6 +53,22 @@ GlobalPoses CollectGlobalPoses(const PoseGraph& pose_graph) {
 
 }  // namespace
 
+std::vector<GraphConstraint> MakeConstraints(const PoseGraph& pose_graph) {
+  std::vector<GraphConstraint> constraints;
+  for (const auto& record : pose_graph.constraint()) {
+    GraphConstraint constraint;
+    constraint.submap_id = ToSubmapId(record.submap_id());
+    constraint.node_id = ToNodeId(record.node_id());
+    // Files already contain (submap <- tracking).
+    constraint.relative_pose = ToPlanarPose(ToRigid3(record.relative_pose()));
+    constraint.translation_weight = record.translation_weight();
+    constraint.rotation_weight = record.rotation_weight();
+    constraint.is_loop = record.tag() == PoseGraph::Constraint::INTER_SUBMAP;
+    constraints.push_back(constraint);
+  }
+  return constraints;
+}
+
 MapGraph MakeMapGraph(const io::Pbstream& pbstream) {
   const GlobalPoses poses = CollectGlobalPoses(pbstream.pose_graph);
   MapGraph graph;
@@ -77,55 +95,30 @@ MapGraph MakeMapGraph(const io::Pbstream& pbstream) {
     submap.num_range_data = record.submap_2d().num_range_data();
     graph.submaps[id] = submap;
   }
-  for (const auto& record : pbstream.pose_graph.constraint()) {
-    GraphConstraint constraint;
-    constraint.submap_id = ToSubmapId(record.submap_id());
-    constraint.node_id = ToNodeId(record.node_id());
-    // Files already contain (submap <- tracking).
-    constraint.relative_pose = ToPlanarPose(ToRigid3(record.relative_pose()));
-    constraint.translation_weight = record.translation_weight();
-    constraint.rotation_weight = record.rotation_weight();
-    constraint.is_loop = record.tag() == PoseGraph::Constraint::INTER_SUBMAP;
-    graph.constraints.push_back(constraint);
-  }
+  graph.constraints = MakeConstraints(pbstream.pose_graph);
   return graph;
 }
 
 absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
                                                   const double resolution) {
   const GlobalPoses poses = CollectGlobalPoses(pbstream.pose_graph);
-  std::vector<PlacedGrid> grids;
+  std::deque<SubmapGrid> grids;
+  std::vector<PlacedGrid> placed;
   for (const auto& record : pbstream.submaps) {
     const auto global = poses.submaps.find(ToSubmapId(record.submap_id()));
     if (global == poses.submaps.end() || !record.submap_2d().has_grid()) {
       continue;
     }
-    PlacedGrid placed;
-    placed.grid = &record.submap_2d().grid();
-    placed.map_from_local =
-        ToPlanarPose(global->second) *
-        ToPlanarPose(ToRigid3(record.submap_2d().local_pose())).Inverse();
-    grids.push_back(placed);
+    auto grid = SubmapGrid::Make(record.submap_2d().grid());
+    if (!grid.ok()) return grid.status();
+    grids.push_back(*std::move(grid));
+    placed.push_back(
+        {&grids.back(),
+         ToPlanarPose(global->second) *
+             ToPlanarPose(ToRigid3(record.submap_2d().local_pose()))
+                 .Inverse()});
   }
-  return PaintMap(grids, resolution);
-}
-
-absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
-                                                  const MapGraph& graph,
-                                                  const double resolution) {
-  std::vector<PlacedGrid> grids;
-  for (const auto& record : pbstream.submaps) {
-    const auto submap = graph.submaps.find(ToSubmapId(record.submap_id()));
-    if (submap == graph.submaps.end() || !record.submap_2d().has_grid()) {
-      continue;
-    }
-    PlacedGrid placed;
-    placed.grid = &record.submap_2d().grid();
-    placed.map_from_local =
-        submap->second.global_pose * submap->second.local_pose.Inverse();
-    grids.push_back(placed);
-  }
-  return PaintMap(grids, resolution);
+  return PaintMap(placed, resolution);
 }
 
 }  // namespace evaluation

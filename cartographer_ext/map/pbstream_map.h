@@ -5,7 +5,10 @@
 #ifndef CARTOGRAPHER_EXT_MAP_PBSTREAM_MAP_H_
 #define CARTOGRAPHER_EXT_MAP_PBSTREAM_MAP_H_
 
+#include <vector>
+
 #include "absl/status/statusor.h"
+#include "cartographer/mapping/proto/pose_graph.pb.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_graph.h"
@@ -13,16 +16,14 @@
 namespace cartographer_ext {
 namespace evaluation {
 
+std::vector<GraphConstraint> MakeConstraints(
+    const cartographer::mapping::proto::PoseGraph& pose_graph);
+
 // Nodes and submaps without a global pose are skipped.
 MapGraph MakeMapGraph(const io::Pbstream& pbstream);
 
 // Paints all submaps with a global pose; resolution in metres per cell.
 absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
-                                                  double resolution);
-
-// The same with the submap poses of `graph`; submaps that it lacks are skipped.
-absl::StatusOr<io::OccupancyMap> PaintPbstreamMap(const io::Pbstream& pbstream,
-                                                  const MapGraph& graph,
                                                   double resolution);
 
 }  // namespace evaluation

@@ -124,10 +124,11 @@ void StorePoses(const MapPoseGraph& graph, const std::vector<Pose2>& poses,
   }
 }
 
-void DropConstraints(const std::vector<int>& indices,
-                     io::Pbstream* const pbstream) {
+void DropConstraints(
+    const std::vector<int>& indices,
+    cartographer::mapping::proto::PoseGraph* const pose_graph) {
   const std::set<int> dropped(indices.begin(), indices.end());
-  auto* const constraints = pbstream->pose_graph.mutable_constraint();
+  auto* const constraints = pose_graph->mutable_constraint();
   int kept = 0;
   for (int i = 0; i != constraints->size(); ++i) {
     if (dropped.count(i) != 0) continue;
@@ -135,6 +136,11 @@ void DropConstraints(const std::vector<int>& indices,
     ++kept;
   }
   constraints->DeleteSubrange(kept, constraints->size() - kept);
+}
+
+void DropConstraints(const std::vector<int>& indices,
+                     io::Pbstream* const pbstream) {
+  DropConstraints(indices, &pbstream->pose_graph);
 }
 
 absl::StatusOr<std::vector<int>> FindLoops(const MapGraph& map,

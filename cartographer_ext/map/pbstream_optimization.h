@@ -55,6 +55,8 @@ void StorePoses(const MapPoseGraph& graph, const std::vector<Pose2>& poses,
                 io::Pbstream* pbstream);
 
 // Removes the constraints with these indices.
+void DropConstraints(const std::vector<int>& indices,
+                     cartographer::mapping::proto::PoseGraph* pose_graph);
 void DropConstraints(const std::vector<int>& indices, io::Pbstream* pbstream);
 
 // Indices of the loops named by

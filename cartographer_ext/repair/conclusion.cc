@@ -31,10 +31,8 @@ std::string WhyBroken(const MapRepair& repair) {
         piece.center.y());
   }
   if (after.word != "broken" && !after.loose.places.empty()) {
-    return absl::StrFormat(
-        "no step ties its parts together: %.1f %% of the path may lie "
-        "elsewhere without contradicting anything",
-        100. * after.loose.share());
+    return absl::StrCat("no step ties its parts together: ",
+                        evaluation::DescribeLooseShare(after.loose.share()));
   }
   return "no step improved it";
 }

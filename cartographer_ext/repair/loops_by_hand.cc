@@ -25,7 +25,7 @@
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/verification/temporal_verification.h"
-#include "cartographer_ext/map/map_painter.h"
+#include "cartographer_ext/map/submap_grid.h"
 
 namespace cartographer_ext {
 namespace repair {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/map/verdict/loop_statistics.h"
 
@@ -102,10 +103,10 @@ std::string WhyNotBetter(const MapQuality& current,
       candidate.loose_share > current.loose_share + kSameLoose) {
     return absl::StrFormat(
         "it rests on fewer revisits: %d nodes see a place of another time, "
-        "before %d, and %.1f %% of the path may lie elsewhere without "
-        "contradicting anything, before %.1f %%",
+        "before %d, and %s, before %.1f %%",
         candidate.is_contradicted.size(), current.is_contradicted.size(),
-        100. * candidate.loose_share, 100. * current.loose_share);
+        evaluation::DescribeLooseShare(candidate.loose_share),
+        100. * current.loose_share);
   }
   if (candidate.verdict == "unknown" && current.verdict != "unknown") {
     return absl::StrFormat(
@@ -151,11 +152,9 @@ std::string WhyNotWritten(const MapQuality& input, const MapQuality& result) {
   if (result.verdict == "unknown") {
     return "nothing tells whether the best version is right";
   }
-  if (result.loose_share >= evaluation::SelfConsistencyOptions().loose_share) {
-    return absl::StrFormat(
-        "nothing tells whether the best version is right: %.1f %% of the path "
-        "may lie elsewhere without contradicting anything",
-        100. * result.loose_share);
+  if (evaluation::IsLoose(result.loose_share, {})) {
+    return absl::StrCat("nothing tells whether the best version is right: ",
+                        evaluation::DescribeLooseShare(result.loose_share));
   }
   return WhyNotBetter(input, result);
 }

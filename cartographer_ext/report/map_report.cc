@@ -30,13 +30,14 @@ absl::StatusOr<std::unique_ptr<const JudgedMap>> JudgeMap(
     const std::string& pbstream_filename) {
   auto judged = std::make_unique<JudgedMap>();
   judged->filename = pbstream_filename;
-  auto pbstream = io::ReadPbstream(pbstream_filename);
-  if (!pbstream.ok()) return pbstream.status();
-  judged->pbstream = *std::move(pbstream);
-  judged->graph = evaluation::MakeMapGraph(judged->pbstream);
-  judged->contents = evaluation::ReadMapContents(judged->pbstream, {});
-  const std::map<int, evaluation::Trajectory> odometry =
-      evaluation::ReadOdometry(judged->pbstream);
+  std::map<int, evaluation::Trajectory> odometry;
+  {
+    auto file = evaluation::ReadMapFile(pbstream_filename, {});
+    if (!file.ok()) return file.status();
+    judged->graph = evaluation::MakeMapGraph(file->pbstream);
+    judged->contents = std::move(file->contents);
+    odometry = evaluation::ReadOdometry(file->pbstream);
+  }
   evaluation::MapToEvaluate map;
   map.graph = &judged->graph;
   map.contents = &judged->contents;
@@ -58,7 +59,6 @@ absl::StatusOr<std::string> MakeMapPage(const JudgedMap& map,
   data.title = title;
   data.command_line = command_line;
   data.versions = Versions();
-  data.pbstream = &map.pbstream;
   data.contents = &map.contents;
   RunInputs inputs;
   inputs.graph = &map.graph;
@@ -80,16 +80,6 @@ absl::StatusOr<std::string> MakeMapPage(const JudgedMap& map,
   auto page = MakeReport(data);
   if (!page.ok()) return InFile(map.filename, page.status());
   return page;
-}
-
-absl::StatusOr<MapReport> ReportMap(const std::string& pbstream_filename,
-                                    const std::string& title,
-                                    const std::string& command_line) {
-  const auto map = JudgeMap(pbstream_filename);
-  if (!map.ok()) return map.status();
-  auto page = MakeMapPage(**map, title, command_line);
-  if (!page.ok()) return page.status();
-  return MapReport{(*map)->evaluation, *std::move(page)};
 }
 
 }  // namespace report

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/map/verdict/evaluation_report.h"
@@ -21,7 +20,6 @@ namespace report {
 // A map from a file with its evaluation.
 struct JudgedMap {
   std::string filename;
-  io::Pbstream pbstream;
   evaluation::MapGraph graph;
   evaluation::MapContents contents;
   evaluation::Evaluation evaluation;
@@ -37,16 +35,6 @@ absl::StatusOr<std::unique_ptr<const JudgedMap>> JudgeMap(
 absl::StatusOr<std::string> MakeMapPage(const JudgedMap& map,
                                         const std::string& title,
                                         const std::string& command_line);
-
-struct MapReport {
-  evaluation::Evaluation evaluation;
-  std::string page;  // HTML
-};
-
-// Both.
-absl::StatusOr<MapReport> ReportMap(const std::string& pbstream_filename,
-                                    const std::string& title,
-                                    const std::string& command_line);
 
 }  // namespace report
 }  // namespace cartographer_ext

@@ -7,7 +7,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/report/map_figure.h"
 #include "cartographer_ext/report/sections.h"
 #include "cartographer_ext/report/style.h"
@@ -47,7 +46,7 @@ Prepared Prepare(const ReportData& data, ImageStore* const store) {
     const ReportRun& run = data.runs[i];
     prepared.evidence.push_back(CollectEvidence(run, *data.contents));
     const auto map =
-        evaluation::PaintPbstreamMap(*data.pbstream, run.graph, cells);
+        evaluation::PaintContents(run.graph, *data.contents, cells);
     prepared.image_ids.emplace_back();
     if (map.ok()) {
       prepared.image_ids.back() = absl::StrCat("map", i);

@@ -11,7 +11,6 @@
 
 #include "absl/types/optional.h"
 #include "cartographer_ext/io/occupancy_map.h"
-#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/loop_decision.pb.h"
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/map_graph.h"
@@ -54,7 +53,6 @@ struct ReportData {
   std::string title;
   std::string command_line;
   std::vector<std::pair<std::string, std::string>> versions;
-  const io::Pbstream* pbstream = nullptr;
   const evaluation::MapContents* contents = nullptr;
   // The stored map first.
   std::vector<ReportRun> runs;

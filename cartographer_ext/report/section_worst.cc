@@ -1,13 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer/transform/transform.h"
-#include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/map/map_painter.h"
 #include "cartographer_ext/report/map_figure.h"
 #include "cartographer_ext/report/sections.h"
@@ -58,27 +55,23 @@ std::vector<Eigen::Vector2d> Placed(const std::vector<Eigen::Vector2d>& scan,
 // Pictures of submaps, in their own frames, each once.
 class SubmapPictures {
  public:
-  explicit SubmapPictures(const io::Pbstream& pbstream) {
-    for (const auto& record : pbstream.submaps) {
-      records_[{record.submap_id().trajectory_id(),
-                record.submap_id().submap_index()}] = &record.submap_2d();
-    }
-  }
+  SubmapPictures(const evaluation::MapGraph& graph,
+                 const evaluation::MapContents& contents)
+      : graph_(graph), contents_(contents) {}
 
   // The id of the picture; empty where there is none.
   std::string Get(const GraphId& id) {
     const std::string name =
         absl::StrCat("submap-", id.trajectory_id, "-", id.index);
-    const auto record = records_.find(id);
-    if (record == records_.end()) return "";
+    const auto submap = graph_.submaps.find(id);
+    const auto cells = contents_.submaps.find(id);
+    if (submap == graph_.submaps.end() || cells == contents_.submaps.end()) {
+      return "";
+    }
     if (!known_.insert(name).second) return name;
-    evaluation::PlacedGrid placed;
-    placed.grid = &record->second->grid();
-    placed.map_from_local =
-        evaluation::ToPlanarPose(
-            cartographer::transform::ToRigid3(record->second->local_pose()))
-            .Inverse();
-    const auto map = evaluation::PaintMap({placed}, kResolution);
+    const auto map = evaluation::PaintMap(
+        {{&cells->second.grid(), submap->second.local_pose.Inverse()}},
+        kResolution);
     if (!map.ok()) return "";
     store_.Add(name, *map);
     return name;
@@ -89,7 +82,8 @@ class SubmapPictures {
  private:
   static constexpr double kResolution = 0.05;
 
-  std::map<GraphId, const cartographer::mapping::proto::Submap2D*> records_;
+  const evaluation::MapGraph& graph_;
+  const evaluation::MapContents& contents_;
   std::set<std::string> known_;
   ImageStore store_;
 };
@@ -165,7 +159,7 @@ void AddWorstLoops(const ReportData& data, const Prepared& prepared,
                 "Each scan on the submap of its loop: blue at the pose of the "
                 "loop, orange at the pose in the optimised map. One loop is "
                 "shown per pair of submap and visit.");
-  SubmapPictures pictures(*data.pbstream);
+  SubmapPictures pictures(run.graph, *data.contents);
   Markup figures;
   std::set<std::pair<GraphId, int>> shown;
   size_t count = 0;

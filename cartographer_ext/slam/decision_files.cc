@@ -18,15 +18,18 @@ std::string DecisionCsvFilename(const std::string& pbstream_filename) {
   return SideFilename(pbstream_filename, ".loops.csv");
 }
 
-absl::Status WriteDecisionsBeside(const std::string& pbstream_filename,
-                                  const std::vector<LoopDecision>& decisions) {
-  std::string bytes;
-  for (const LoopDecision& decision : decisions) {
+absl::Status WriteDecisionsBeside(
+    const std::string& pbstream_filename,
+    const loop_closure::DecisionRecords& decisions) {
+  SideFileWriter files(DecisionRecordsFilename(pbstream_filename),
+                       DecisionCsvFilename(pbstream_filename));
+  if (!decisions.empty()) files.Add("", loop_closure::DecisionCsvHead());
+  decisions.ForEach([&files](const LoopDecision& decision) {
+    std::string bytes;
     loop_closure::AppendDecision(decision, &bytes);
-  }
-  return WriteSideFiles(DecisionRecordsFilename(pbstream_filename), bytes,
-                        DecisionCsvFilename(pbstream_filename),
-                        loop_closure::DecisionCsv(decisions));
+    files.Add(bytes, loop_closure::DecisionCsvRow(decision));
+  });
+  return files.Finish();
 }
 
 absl::StatusOr<std::vector<LoopDecision>> ReadDecisions(
@@ -37,6 +40,13 @@ absl::StatusOr<std::vector<LoopDecision>> ReadDecisions(
 DecisionCounts CountDecisions(const std::vector<LoopDecision>& decisions) {
   DecisionCounts counts;
   for (const LoopDecision& decision : decisions) counts.Add(decision);
+  return counts;
+}
+
+DecisionCounts CountDecisions(const loop_closure::DecisionRecords& decisions) {
+  DecisionCounts counts;
+  decisions.ForEach(
+      [&counts](const LoopDecision& decision) { counts.Add(decision); });
   return counts;
 }
 

@@ -13,6 +13,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer_ext/loop_closure/decision_counts.h"
+#include "cartographer_ext/loop_closure/decision_records.h"
 #include "cartographer_ext/loop_decision.pb.h"
 
 namespace cartographer_ext {
@@ -26,7 +27,7 @@ std::string DecisionCsvFilename(const std::string& pbstream_filename);
 // that an earlier run may have left.
 absl::Status WriteDecisionsBeside(
     const std::string& pbstream_filename,
-    const std::vector<proto::LoopDecision>& decisions);
+    const loop_closure::DecisionRecords& decisions);
 
 // NotFound if there is no such file.
 absl::StatusOr<std::vector<proto::LoopDecision>> ReadDecisions(
@@ -36,6 +37,7 @@ using DecisionCounts = loop_closure::DecisionCounts;
 
 DecisionCounts CountDecisions(
     const std::vector<proto::LoopDecision>& decisions);
+DecisionCounts CountDecisions(const loop_closure::DecisionRecords& decisions);
 
 }  // namespace evaluation
 }  // namespace cartographer_ext

@@ -51,9 +51,10 @@ absl::Status WriteMatchesBeside(const std::string& pbstream_filename,
   for (const MatchRecord& record : records) {
     front_end::AppendRecord(record, &bytes);
   }
-  return WriteSideFiles(MatchRecordsFilename(pbstream_filename), bytes,
-                        MatchCsvFilename(pbstream_filename),
-                        front_end::RecordCsv(records));
+  SideFileWriter files(MatchRecordsFilename(pbstream_filename),
+                       MatchCsvFilename(pbstream_filename));
+  if (!records.empty()) files.Add(bytes, front_end::RecordCsv(records));
+  return files.Finish();
 }
 
 absl::StatusOr<std::vector<MatchRecord>> ReadMatches(

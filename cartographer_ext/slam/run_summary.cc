@@ -170,10 +170,9 @@ std::string ToText(const SlamRun& run) {
   }
   absl::StrAppendFormat(&text,
                         "Time       %.1f s for %.1f s of sensor data; CPU %.1f "
-                        "s, including %.1f s of local SLAM; %.0f MB\n",
+                        "s, including %.1f s of local SLAM\n",
                         run.wall_seconds, run.sensor_seconds, run.cpu_seconds,
-                        run.front_end_cpu_seconds,
-                        1e-6 * run.peak_memory_bytes);
+                        run.front_end_cpu_seconds);
   if (run.latency.scans > 0) {
     absl::StrAppendFormat(
         &text,

@@ -4,9 +4,9 @@
 
 #include <fstream>
 #include <limits>
+#include <utility>
 
 #include "absl/strings/strip.h"
-#include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/bounded_read.h"
 
 namespace cartographer_ext {
@@ -18,18 +18,35 @@ std::string SideFilename(const absl::string_view pbstream_filename,
                       ending);
 }
 
-absl::Status WriteSideFiles(const std::string& records_filename,
-                            const std::string& bytes,
-                            const std::string& csv_filename,
-                            const std::string& csv) {
-  if (bytes.empty()) {
-    RemoveWithSet(records_filename);
-    RemoveWithSet(csv_filename);
+SideFileWriter::SideFileWriter(std::string records_filename,
+                               std::string csv_filename)
+    : records_filename_(std::move(records_filename)),
+      csv_filename_(std::move(csv_filename)) {}
+
+void SideFileWriter::Add(const absl::string_view bytes,
+                         const absl::string_view csv) {
+  if (records_ == nullptr) {
+    records_ = std::make_unique<AtomicFile>(records_filename_);
+    csv_ = std::make_unique<AtomicFile>(csv_filename_);
+  }
+  if (!records_->status().ok() || !csv_->status().ok()) return;
+  records_->stream().write(bytes.data(),
+                           static_cast<std::streamsize>(bytes.size()));
+  csv_->stream().write(csv.data(), static_cast<std::streamsize>(csv.size()));
+}
+
+absl::Status SideFileWriter::Finish() {
+  if (records_ == nullptr) {
+    RemoveWithSet(records_filename_);
+    RemoveWithSet(csv_filename_);
     return absl::OkStatus();
   }
-  const absl::Status status = WriteFileAtomically(records_filename, bytes);
-  if (!status.ok()) return status;
-  return WriteFileAtomically(csv_filename, csv);
+  for (AtomicFile* const file : {records_.get(), csv_.get()}) {
+    const absl::Status status =
+        file->status().ok() ? file->Commit() : file->status();
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
 }
 
 absl::StatusOr<std::string> ReadBytes(const std::string& filename) {

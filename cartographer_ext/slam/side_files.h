@@ -6,12 +6,14 @@
 #ifndef CARTOGRAPHER_EXT_SLAM_SIDE_FILES_H_
 #define CARTOGRAPHER_EXT_SLAM_SIDE_FILES_H_
 
+#include <memory>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "cartographer_ext/common/atomic_file.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -20,12 +22,21 @@ namespace evaluation {
 std::string SideFilename(absl::string_view pbstream_filename,
                          absl::string_view ending);
 
-// Writes both files. Without records (no bytes), files of an earlier map are
-// removed.
-absl::Status WriteSideFiles(const std::string& records_filename,
-                            const std::string& bytes,
-                            const std::string& csv_filename,
-                            const std::string& csv);
+// Writes both files, piece by piece: of some runs they have 20 MB. Without any
+// piece, files of an earlier map are removed.
+class SideFileWriter {
+ public:
+  SideFileWriter(std::string records_filename, std::string csv_filename);
+
+  // Appends to each file. Errors are kept for Finish.
+  void Add(absl::string_view bytes, absl::string_view csv);
+  // To be called once, at the end.
+  absl::Status Finish();
+
+ private:
+  const std::string records_filename_, csv_filename_;
+  std::unique_ptr<AtomicFile> records_, csv_;
+};
 
 // Reads a file; NotFound names it.
 absl::StatusOr<std::string> ReadBytes(const std::string& filename);

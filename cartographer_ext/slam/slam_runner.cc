@@ -328,7 +328,7 @@ class Runner {
     }
     std::string gyroscope = WarningOfGyroscope(CountMatches(run_.matches));
     if (!gyroscope.empty()) run_.warnings.push_back(std::move(gyroscope));
-    run_.decisions = decision_recorder_->All();
+    run_.decisions = decision_recorder_->Records();
     decision_recorder_->Stop();
     if (decision_recorder_->num_dropped() > 0) {
       run_.warnings.push_back(absl::StrCat(decision_recorder_->num_dropped(),

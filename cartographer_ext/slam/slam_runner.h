@@ -30,7 +30,7 @@
 #include "cartographer/mapping/map_builder_interface.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/io/sensor_source.h"
-#include "cartographer_ext/loop_decision.pb.h"
+#include "cartographer_ext/loop_closure/decision_records.h"
 #include "cartographer_ext/match_record.pb.h"
 #include "cartographer_ext/metrics/trajectory.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
@@ -125,7 +125,7 @@ struct SlamRun : FedReadings {
   // without it, or without loops, the prior (no cycles).
   uncertainty::DriftEstimate drift;
   // Decisions on loop candidates; empty without our loop closure.
-  std::vector<proto::LoopDecision> decisions;
+  loop_closure::DecisionRecords decisions;
   // One per matched scan; empty with stock's local SLAM.
   std::vector<proto::MatchRecord> matches;
 

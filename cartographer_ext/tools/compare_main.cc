@@ -65,18 +65,19 @@ absl::StatusOr<Input> Read(const std::string& filename) {
     input.map = *std::move(map);
     return input;
   }
-  const auto pbstream = io::ReadPbstream(filename);
-  if (!pbstream.ok()) return pbstream.status();
-  input.graph = evaluation::MakeMapGraph(*pbstream);
-  auto map = evaluation::PaintPbstreamMap(*pbstream, FLAGS_resolution);
+  const auto file = evaluation::ReadMapFile(filename, {});
+  if (!file.ok()) return file.status();
+  input.graph = evaluation::MakeMapGraph(file->pbstream);
+  auto map =
+      evaluation::PaintContents(*input.graph, file->contents, FLAGS_resolution);
   if (!map.ok()) {
     return absl::Status(map.status().code(),
                         absl::StrCat(filename, ": ", map.status().message()));
   }
   input.map = *std::move(map);
   input.consistency = evaluation::AssessSelfConsistency(
-      *input.graph, evaluation::ReadMapContents(*pbstream, {}),
-      evaluation::ReadOdometry(*pbstream), {});
+      *input.graph, file->contents, evaluation::ReadOdometry(file->pbstream),
+      {});
   return input;
 }
 

@@ -137,10 +137,15 @@ struct Inputs {
 
 absl::Status ReadInputs(Inputs* const inputs) {
   if (!FLAGS_pbstream_filename.empty()) {
-    auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
-    if (!pbstream.ok()) return pbstream.status();
-    inputs->pbstream = *std::move(pbstream);
+    evaluation::MapContentsOptions options;
+    // Only re-runs need the grids as they are stored.
+    options.keep_grids = !FLAGS_rerun_configuration_directory.empty();
+    auto map = evaluation::ReadMapFile(FLAGS_pbstream_filename, options);
+    if (!map.ok()) return map.status();
+    inputs->pbstream = std::move(map->pbstream);
+    inputs->contents = std::move(map->contents);
     inputs->graph = evaluation::MakeMapGraph(*inputs->pbstream);
+    inputs->odometry = evaluation::ReadOdometry(*inputs->pbstream);
   }
   if (!FLAGS_trajectory_filename.empty()) {
     auto poses = io::ReadTumTrajectory(FLAGS_trajectory_filename);
@@ -316,10 +321,6 @@ absl::Status RunOne(const std::string& command_line, bool* const fails) {
   const bool has_map = inputs.pbstream.has_value();
   if (has_map) {
     map.graph = &inputs.graph;
-    if (FLAGS_self_consistency || !FLAGS_report_filename.empty()) {
-      inputs.contents = evaluation::ReadMapContents(*inputs.pbstream, {});
-      inputs.odometry = evaluation::ReadOdometry(*inputs.pbstream);
-    }
     if (FLAGS_self_consistency) map.contents = &inputs.contents;
     map.odometry = &inputs.odometry;
   }
@@ -349,7 +350,6 @@ absl::Status RunOne(const std::string& command_line, bool* const fails) {
     data.title = tools::BaseName(FLAGS_pbstream_filename);
     data.command_line = command_line;
     data.versions = report::Versions();
-    data.pbstream = &*inputs.pbstream;
     data.contents = &inputs.contents;
     data.with_times = FLAGS_times;
     report::RunInputs stored;

@@ -179,7 +179,7 @@ absl::StatusOr<DecidedMap> RunOrReadMap() {
     const auto run = RunWith(FLAGS_configuration_basename);
     if (!run.ok()) return run.status();
     map.graph = evaluation::MakeMapGraph(*run->map_builder->pose_graph());
-    map.decisions = run->decisions;
+    map.decisions = run->decisions.Parsed();
     map.searches = run->loop_searches;
     map.search_cpu_seconds = run->loop_search_cpu_seconds;
   } else {

@@ -22,10 +22,13 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/configuration/slam_configuration.h"
 #include "cartographer_ext/experiments/wrong_loops.h"
+#include "cartographer_ext/map/host_map.h"
+#include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/switched_constraints.h"
 #include "cartographer_ext/map/verdict/evaluation_report.h"
 #include "cartographer_ext/report/map_report.h"
 #include "cartographer_ext/slam/open_recording.h"
+#include "cartographer_ext/slam/resource_usage.h"
 #include "cartographer_ext/slam/run_summary.h"
 #include "cartographer_ext/slam/slam_runner.h"
 #include "cartographer_ext/tools/command_line.h"
@@ -170,20 +173,54 @@ int CountSwitchedOff(const evaluation::SlamRun& run,
   return evaluation::MarkSwitchedOff(run.switched_loops.off, &graph).size();
 }
 
-// Judges the map just written: the report, and the evaluation for JSON.
-absl::Status WriteReport(const std::string& command_line,
+// The heap keeps what is freed until it is told not to.
+void GiveBackMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+// What takes memory and is written.
+void Free(evaluation::SlamRun* const run) {
+  run->map_builder.reset();
+  run->decisions = {};
+  run->matches = {};
+  GiveBackMemory();
+}
+
+// Judges and paints the map just written: the report, and the evaluation for
+// JSON.
+absl::Status WriteReport(const evaluation::MapGraph& graph,
+                         const std::string& command_line,
                          nlohmann::ordered_json* const json,
                          std::ostream& out) {
-  if (FLAGS_report_filename.empty()) return absl::OkStatus();
   auto step = tools::ShowStep("judging the map");
-  const auto report =
-      report::ReportMap(FLAGS_pbstream_filename,
-                        tools::BaseName(FLAGS_input_filename), command_line);
+  auto map = report::JudgeMap(FLAGS_pbstream_filename);
+  if (!map.ok()) return map.status();
+  const auto page = report::MakeMapPage(
+      **map, tools::BaseName(FLAGS_input_filename), command_line);
+  if (!page.ok()) return page.status();
+  const std::string text = evaluation::ToText((*map)->evaluation);
+  (*json)["evaluation"] = evaluation::ToJson((*map)->evaluation);
+  const absl::Status painted =
+      tools::WritePaintedMap(graph, [&map](const double resolution) {
+        auto painted = evaluation::PaintContents((*map)->graph,
+                                                 (*map)->contents, resolution);
+        map->reset();
+        GiveBackMemory();  // a picture of a large map takes as much again
+        return painted;
+      });
   step.reset();
-  if (!report.ok()) return report.status();
-  out << evaluation::ToText(report->evaluation);
-  (*json)["evaluation"] = evaluation::ToJson(report->evaluation);
-  return WriteFileAtomically(FLAGS_report_filename, report->page);
+  if (!painted.ok()) return painted;
+  out << text;
+  return WriteFileAtomically(FLAGS_report_filename, *page);
+}
+
+// Of the whole command, but for writing the JSON.
+void ReportMemory(nlohmann::ordered_json* const json, std::ostream& out) {
+  const int64_t peak = evaluation::PeakMemoryBytes();
+  (*json)["peak_memory_bytes"] = peak;
+  out << absl::StrFormat("Memory     at most %.0f MB\n", 1e-6 * peak);
 }
 
 nlohmann::ordered_json RunToJson(const evaluation::SlamRun& run) {
@@ -271,16 +308,26 @@ absl::Status Run(const std::string& command_line) {
   tools::PrintNotes(run->warnings);
   AtomicFileSet files;
   auto step = tools::ShowStep("writing the files");
-  const absl::Status written = tools::WriteSlamResults(*run);
+  const evaluation::MapGraph graph = tools::MarkedGraph(*run);
+  absl::Status written = tools::WriteSlamResults(*run, graph);
+  const bool judges_map = !FLAGS_report_filename.empty();
+  if (written.ok() && !judges_map) {
+    written = tools::WritePaintedMap(graph, [&run](const double resolution) {
+      return evaluation::PaintHostMap(*run->map_builder->pose_graph(),
+                                      resolution);
+    });
+  }
   step.reset();
   if (!written.ok()) return written;
   out << evaluation::ToText(*run);
   nlohmann::ordered_json json = RunToJson(*run);
-  // The map is judged as it was written.
-  run->map_builder.reset();
-  source->reset();
-  const absl::Status reported = WriteReport(command_line, &json, out);
-  if (!reported.ok()) return reported;
+  if (judges_map) {
+    Free(&*run);
+    source->reset();
+    const absl::Status reported = WriteReport(graph, command_line, &json, out);
+    if (!reported.ok()) return reported;
+  }
+  ReportMemory(&json, out);
   if (FLAGS_wrong_loops > 0) {
     json["wrong_loops"] = {
         {"injected", injector.injected().size()},

@@ -12,8 +12,7 @@
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/io/occupancy_map.h"
-#include "cartographer_ext/io/pbstream/pbstream_reader.h"
-#include "cartographer_ext/io/pbstream/pbstream_writer.h"
+#include "cartographer_ext/io/pbstream/pose_graph_edit.h"
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/loop_closure/decision_log.h"
 #include "cartographer_ext/map/host_map.h"
@@ -74,12 +73,15 @@ bool MapIsNoFile() {
 // Leaves the loops that were switched off out of a map just written.
 absl::Status RemoveSwitchedLoops(const evaluation::SlamRun& run,
                                  const std::string& filename) {
-  auto pbstream = io::ReadPbstream(filename);
-  if (!pbstream.ok()) return pbstream.status();
-  evaluation::MapGraph map = evaluation::MakeMapGraph(*pbstream);
-  evaluation::DropConstraints(
-      evaluation::MarkSwitchedOff(run.switched_loops.off, &map), &*pbstream);
-  return io::WritePbstream(*pbstream, filename);
+  return io::CopyWithEditedPoseGraph(
+      AtomicFileSet::NameToRead(filename), filename,
+      [&run](cartographer::mapping::proto::PoseGraph* const pose_graph) {
+        evaluation::MapGraph map;
+        map.constraints = evaluation::MakeConstraints(*pose_graph);
+        evaluation::DropConstraints(
+            evaluation::MarkSwitchedOff(run.switched_loops.off, &map),
+            pose_graph);
+      });
 }
 
 }  // namespace
@@ -119,12 +121,19 @@ absl::Status CheckSlamOutputs() {
   return CheckWritable(outputs, {FLAGS_load_state_filename});
 }
 
-absl::Status WriteSlamResults(const evaluation::SlamRun& run) {
-  auto* const map_builder = run.map_builder.get();
-  const auto& pose_graph = *map_builder->pose_graph();
+evaluation::MapGraph MarkedGraph(const evaluation::SlamRun& run) {
+  evaluation::MapGraph graph =
+      evaluation::MakeMapGraph(*run.map_builder->pose_graph());
+  evaluation::MarkMatches(run.matches, &graph);
+  evaluation::MarkSwitchedOff(run.switched_loops.off, &graph);
+  return graph;
+}
+
+absl::Status WriteSlamResults(const evaluation::SlamRun& run,
+                              const evaluation::MapGraph& graph) {
   if (!FLAGS_pbstream_filename.empty()) {
-    const absl::Status status =
-        evaluation::WritePbstream(map_builder, FLAGS_pbstream_filename);
+    const absl::Status status = evaluation::WritePbstream(
+        run.map_builder.get(), FLAGS_pbstream_filename);
     if (!status.ok()) return status;
   }
   if (!FLAGS_pbstream_filename.empty() && !MapIsNoFile()) {
@@ -161,21 +170,21 @@ absl::Status WriteSlamResults(const evaluation::SlamRun& run) {
         run.online_scan_poses, FLAGS_online_trajectory_filename);
     if (!status.ok()) return status;
   }
-  const bool wants_map =
-      !FLAGS_map_filestem.empty() || !FLAGS_picture_filename.empty();
-  if (FLAGS_decisions_filename.empty() && !wants_map) return absl::OkStatus();
-  evaluation::MapGraph graph = evaluation::MakeMapGraph(pose_graph);
-  evaluation::MarkMatches(run.matches, &graph);
-  evaluation::MarkSwitchedOff(run.switched_loops.off, &graph);
-  if (!FLAGS_decisions_filename.empty()) {
-    const absl::Status status = WriteFileAtomically(
-        FLAGS_decisions_filename,
-        run.decisions.empty() ? evaluation::DecisionTable(graph)
-                              : loop_closure::DecisionCsv(run.decisions));
-    if (!status.ok()) return status;
+  if (FLAGS_decisions_filename.empty()) return absl::OkStatus();
+  return WriteFileAtomically(
+      FLAGS_decisions_filename,
+      run.decisions.empty()
+          ? evaluation::DecisionTable(graph)
+          : loop_closure::DecisionCsv(run.decisions.Parsed()));
+}
+
+absl::Status WritePaintedMap(
+    const evaluation::MapGraph& graph,
+    const std::function<absl::StatusOr<io::OccupancyMap>(double)>& paint) {
+  if (FLAGS_map_filestem.empty() && FLAGS_picture_filename.empty()) {
+    return absl::OkStatus();
   }
-  if (!wants_map) return absl::OkStatus();
-  const auto map = evaluation::PaintHostMap(pose_graph, FLAGS_resolution);
+  const auto map = paint(FLAGS_resolution);
   if (!map.ok()) return map.status();
   if (!FLAGS_map_filestem.empty()) {
     const absl::Status status = io::WriteOccupancyMap(*map, FLAGS_map_filestem);

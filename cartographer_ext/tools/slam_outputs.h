@@ -5,10 +5,14 @@
 #ifndef CARTOGRAPHER_EXT_TOOLS_SLAM_OUTPUTS_H_
 #define CARTOGRAPHER_EXT_TOOLS_SLAM_OUTPUTS_H_
 
+#include <functional>
 #include <ostream>
 #include <string>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cartographer_ext/io/occupancy_map.h"
+#include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/slam/slam_runner.h"
 
 namespace cartographer_ext {
@@ -21,9 +25,19 @@ void NameSlamOutputs(const std::string& stem);
 // of slam_main.cc.
 absl::Status CheckSlamOutputs();
 
-// Writes the map and its side files, trajectories, tables and pictures, if
-// named by a flag; not the report.
-absl::Status WriteSlamResults(const evaluation::SlamRun& run);
+// The map of a run, with what the run knows of its nodes and loops.
+evaluation::MapGraph MarkedGraph(const evaluation::SlamRun& run);
+
+// Writes the state and its side files, trajectories and tables, if named by a
+// flag; `graph` is that of MarkedGraph.
+absl::Status WriteSlamResults(const evaluation::SlamRun& run,
+                              const evaluation::MapGraph& graph);
+
+// Writes occupancy map and picture, if named by a flag. `paint` is given the
+// resolution, metres per cell.
+absl::Status WritePaintedMap(
+    const evaluation::MapGraph& graph,
+    const std::function<absl::StatusOr<io::OccupancyMap>(double)>& paint);
 
 // Whether a map is written, as a state, picture or occupancy grid.
 bool WritesMap();

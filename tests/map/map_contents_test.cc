@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <cstdio>
+#include <string>
 #include <vector>
 
 #include "cartographer/mapping/trajectory_node.h"
+#include "cartographer_ext/io/pbstream/pbstream_writer.h"
 #include "cartographer_ext/map/host_types.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/io/pbstream/pbstream_example.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -36,94 +39,6 @@ Grid2D FreeGrid() {
 
 void Set(const int ix, const int iy, const int value, Grid2D* const grid) {
   grid->set_cells(6 * iy + ix, value);
-}
-
-TEST(MapContentsTest, CellsSayWhatIsSure) {
-  Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);      // x 1.8 to 1.9, y 2.7 to 2.8: occupied
-  Set(2, 5, 16384, &grid);  // x 1.4 to 1.5: as likely as not
-  Set(2, 8, 0, &grid);      // x 1.1 to 1.2: unknown
-  const SubmapCells cells(grid, 0.1);
-  EXPECT_EQ(cells.resolution(), 0.1);
-  EXPECT_EQ(cells.num_x(), 6);
-  EXPECT_EQ(cells.num_y(), 10);
-  EXPECT_NEAR(cells.min_corner().x(), 1., 1e-12);
-  EXPECT_NEAR(cells.min_corner().y(), 2.4, 1e-12);
-  EXPECT_NEAR(cells.max_corner().y(), 3., 1e-12);
-  EXPECT_EQ(cells.At({1.85, 2.75}), CellEvidence::kOccupied);
-  // Within the margin of what is not free.
-  EXPECT_EQ(cells.At({1.75, 2.75}), CellEvidence::kUnsure);
-  EXPECT_EQ(cells.At({1.75, 2.65}), CellEvidence::kUnsure);
-  EXPECT_EQ(cells.At({1.45, 2.75}), CellEvidence::kUnsure);
-  EXPECT_EQ(cells.At({1.15, 2.75}), CellEvidence::kUnsure);
-  EXPECT_EQ(cells.At({1.65, 2.45}), CellEvidence::kFree);
-  // Outside.
-  EXPECT_EQ(cells.At({2.05, 2.75}), CellEvidence::kUnsure);
-  EXPECT_EQ(cells.At({1.5, 3.05}), CellEvidence::kUnsure);
-  EXPECT_EQ(cells.At({std::nan(""), 2.5}), CellEvidence::kUnsure);
-  EXPECT_TRUE(cells.NearOccupied({1.85, 2.75}));
-  EXPECT_TRUE(cells.NearOccupied({1.95, 2.85}));
-  EXPECT_FALSE(cells.NearOccupied({1.65, 2.75}));
-  EXPECT_FALSE(cells.NearOccupied({1.15, 2.75}));
-  EXPECT_FALSE(cells.NearOccupied({5., 5.}));
-  ASSERT_EQ(cells.OccupiedCells().size(), 1u);
-  EXPECT_NEAR((cells.OccupiedCells()[0] - Eigen::Vector2d(1.85, 2.75)).norm(),
-              0., 1e-9);
-}
-
-TEST(MapContentsTest, WithoutMarginEveryCellStandsForItself) {
-  Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);
-  const SubmapCells cells(grid, 0.);
-  EXPECT_EQ(cells.At({1.75, 2.75}), CellEvidence::kFree);
-  EXPECT_FALSE(cells.NearOccupied({1.75, 2.75}));
-}
-
-// In grids with some occupied cells, a walk of clear steps from anywhere never
-// ends in one of them, and most steps are clear in the middle of an empty grid.
-TEST(MapContentsTest, ClearStepsMeetNoWall) {
-  std::mt19937 random(7);
-  const auto uniform = [&](const double from, const double to) {
-    return std::uniform_real_distribution<double>(from, to)(random);
-  };
-  int skipped = 0;
-  for (int round = 0; round < 300; ++round) {
-    Grid2D grid = FreeGrid();
-    for (int i = round % 4; i > 0; --i) {
-      Set(static_cast<int>(uniform(0., 6.)), static_cast<int>(uniform(0., 10.)),
-          1, &grid);
-    }
-    const SubmapCells cells(grid, 0.1);
-    const Eigen::Vector2d from(uniform(0., 3.), uniform(1.5, 4.));
-    const double angle = uniform(-kPi, kPi);
-    const Eigen::Vector2d step(0.1 * std::cos(angle), 0.1 * std::sin(angle));
-    const CellView view = cells.View(from);
-    EXPECT_EQ(view.evidence, cells.At(from));
-    for (int i = 1; i <= std::min(view.clear_steps, 100); ++i) {
-      EXPECT_NE(cells.At(from + i * step), CellEvidence::kOccupied);
-      ++skipped;
-    }
-  }
-  EXPECT_GT(skipped, 1000);
-  const SubmapCells cells(FreeGrid(), 0.1);
-  EXPECT_EQ(cells.View({std::nan(""), 2.5}).clear_steps, 0);
-}
-
-TEST(MapContentsTest, ScoresAreMeansOfProbabilities) {
-  Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);      // 0.9
-  Set(2, 5, 16384, &grid);  // 0.5
-  const SubmapCells cells(grid, 0.1);
-  const Pose2 at_corner(1., 2.4, 0.);
-  EXPECT_EQ(cells.Score({}, at_corner), 0.);
-  EXPECT_NEAR(cells.Score({{0.85, 0.35}}, at_corner), 0.9, 3e-3);
-  // Occupied, half, free (0.1), outside (0.1).
-  EXPECT_NEAR(cells.Score({{0.85, 0.35}, {0.45, 0.35}, {0.25, 0.05}, {9., 9.}},
-                          at_corner),
-              (0.9 + 0.5 + 0.1 + 0.1) / 4., 3e-3);
-  // Turned by a quarter: (0.35, -0.85) comes to lie at (0.85, 0.35).
-  EXPECT_NEAR(cells.Score({{0.35, -0.85}}, Pose2(1., 2.4, kPi / 2.)), 0.9,
-              3e-3);
 }
 
 // A node whose robot is turned by `yaw` in the local frame, while its cloud
@@ -178,11 +93,70 @@ TEST(MapContentsTest, ReadsScansAndGrids) {
   EXPECT_EQ(contents.scans.at({0, 2}).size(), 9u);
 }
 
+// Of a file grid by grid, as of the whole file.
+TEST(MapContentsTest, ReadsAFileInPieces) {
+  const std::string filename = testing::TempDir() + "/map_contents.pbstream";
+  io::Pbstream example = io::ExamplePbstream();
+  for (auto& submap : example.submaps) {
+    auto* const grid = submap.mutable_submap_2d()->mutable_grid();
+    grid->set_min_correspondence_cost(0.1f);
+    grid->set_max_correspondence_cost(0.9f);
+  }
+  ASSERT_TRUE(io::WritePbstream(example, filename).ok());
+  const MapContents whole = ReadMapContents(example, {});
+  for (const bool keep_grids : {false, true}) {
+    MapContentsOptions options;
+    options.keep_grids = keep_grids;
+    const auto map = ReadMapFile(filename, options);
+    ASSERT_TRUE(map.ok()) << map.status();
+    EXPECT_EQ(map->contents.scans, whole.scans);
+    ASSERT_EQ(map->contents.submaps.size(), 2u);
+    for (const auto& submap : map->contents.submaps) {
+      const SubmapGrid& grid = submap.second.grid();
+      const SubmapGrid& other = whole.submaps.at(submap.first).grid();
+      ASSERT_EQ(grid.num_x(), other.num_x());
+      ASSERT_EQ(grid.num_y(), other.num_y());
+      EXPECT_EQ(grid.num_known(), other.num_known());
+      EXPECT_EQ(grid.max_corner(), other.max_corner());
+    }
+    const auto& grid = map->pbstream.submaps[0].submap_2d().grid();
+    EXPECT_EQ(grid.cells_size() > 0, keep_grids);
+    EXPECT_GT(grid.limits().resolution(), 0.);
+  }
+  std::remove(filename.c_str());
+  EXPECT_TRUE(absl::IsNotFound(ReadMapFile(filename, {}).status()));
+}
+
+TEST(MapContentsTest, PaintsWhatGraphAndContentsShare) {
+  Grid2D grid = FreeGrid();
+  Set(2, 1, 1, &grid);
+  MapContents contents;
+  for (const int i : {0, 1}) {
+    contents.submaps.emplace(GraphId{0, i},
+                             SubmapCells(*SubmapGrid::Make(grid), 0.1));
+  }
+  MapGraph graph;
+  graph.submaps[{0, 0}].global_pose = Pose2(10., 0., 0.);
+  graph.submaps[{0, 7}];
+  const auto map = PaintContents(graph, contents, 0.1);
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_NEAR(map->width, 10, 1);
+  EXPECT_NEAR(map->height, 6, 1);
+  const auto at = [&map](const double x, const double y) {
+    return map->at(static_cast<int>((x - map->origin.x) / 0.1),
+                   static_cast<int>((y - map->origin.y) / 0.1));
+  };
+  EXPECT_NEAR(at(11.85, 2.75), 0.9, 1e-6);
+  EXPECT_NEAR(at(11.65, 2.75), 0.1, 1e-6);
+  EXPECT_FALSE(PaintContents(MapGraph(), contents, 0.1).ok());
+}
+
 TEST(MapContentsTest, LoopsAreScoredAtTheirOwnPose) {
   Grid2D grid = FreeGrid();
   Set(2, 1, 1, &grid);
   MapContents contents;
-  contents.submaps.emplace(GraphId{0, 0}, SubmapCells(grid, 0.1));
+  contents.submaps.emplace(GraphId{0, 0},
+                           SubmapCells(*SubmapGrid::Make(grid), 0.1));
   contents.scans[{0, 5}] = {{0.85, 0.35}};
   MapGraph graph;
   graph.submaps[{0, 0}].local_pose = Pose2(1., 2.4, 0.);

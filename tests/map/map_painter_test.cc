@@ -3,6 +3,9 @@
 #include "cartographer_ext/map/map_painter.h"
 
 #include <cmath>
+#include <deque>
+#include <utility>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -29,29 +32,16 @@ Grid2D SmallGrid() {
   return grid;
 }
 
-TEST(MapPainterTest, DecodesProbabilities) {
-  Grid2D grid = SmallGrid();
-  grid.set_cells(0, 1);
-  grid.set_cells(1, 32767);
-  grid.set_cells(4, 16384);
-  EXPECT_NEAR(Occupancy(grid, 0, 0), 0.9, 1e-6);
-  EXPECT_NEAR(Occupancy(grid, 1, 0), 0.1, 1e-6);
-  EXPECT_NEAR(Occupancy(grid, 1, 1), 0.5, 1e-6);
-  EXPECT_TRUE(std::isnan(Occupancy(grid, 2, 1)));
-  // Files of old do not name the bounds.
-  grid.clear_min_correspondence_cost();
-  grid.clear_max_correspondence_cost();
-  EXPECT_NEAR(Occupancy(grid, 0, 0), 0.9, 1e-6);
-}
-
-TEST(MapPainterTest, TsdfCellsAreOccupiedNearTheSurface) {
-  Grid2D grid = SmallGrid();
-  grid.mutable_tsdf_2d()->set_truncation_distance(3.f);
-  grid.set_cells(0, 16384);  // distance 0
-  grid.set_cells(1, 32767);  // distance 3
-  EXPECT_GT(Occupancy(grid, 0, 0), 0.5f);
-  EXPECT_LT(Occupancy(grid, 1, 0), 0.5f);
-  EXPECT_TRUE(std::isnan(Occupancy(grid, 2, 0)));
+absl::StatusOr<io::OccupancyMap> Paint(
+    const std::vector<std::pair<Grid2D, Pose2>>& grids,
+    const double resolution) {
+  std::deque<SubmapGrid> made;
+  std::vector<PlacedGrid> placed;
+  for (const auto& grid : grids) {
+    made.push_back(*SubmapGrid::Make(grid.first));
+    placed.push_back({&made.back(), grid.second});
+  }
+  return PaintMap(placed, resolution);
 }
 
 TEST(MapPainterTest, CellsLieWhereTheLimitsSay) {
@@ -59,7 +49,7 @@ TEST(MapPainterTest, CellsLieWhereTheLimitsSay) {
   // Cell (0, 0) has its centre at (1.5, 2.5), cell (2, 1) at (0.5, 0.5).
   grid.set_cells(0, 1);
   grid.set_cells(3 * 1 + 2, 32767);
-  const auto map = PaintMap({{&grid, Pose2()}}, 1.);
+  const auto map = Paint({{grid, Pose2()}}, 1.);
   ASSERT_TRUE(map.ok()) << map.status();
   ASSERT_EQ(map->width, 2);
   ASSERT_EQ(map->height, 3);
@@ -74,7 +64,7 @@ TEST(MapPainterTest, PlacesGridsByTheirPoses) {
   Grid2D grid = SmallGrid();
   grid.set_cells(0, 1);
   // A quarter turn: (1.5, 2.5) goes to (-2.5, 1.5), then 10 m to the right.
-  const auto map = PaintMap({{&grid, Pose2(10., 0., kPi / 2.)}}, 1.);
+  const auto map = Paint({{grid, Pose2(10., 0., kPi / 2.)}}, 1.);
   ASSERT_TRUE(map.ok());
   double x = 0., y = 0.;
   for (int j = 0; j < map->height; ++j) {
@@ -92,42 +82,30 @@ TEST(MapPainterTest, OverlappingGridsAddTheirEvidence) {
   Grid2D occupied = SmallGrid(), free = SmallGrid();
   occupied.set_cells(0, 1);
   free.set_cells(0, 32767);
-  const auto twice = PaintMap({{&occupied, Pose2()}, {&occupied, Pose2()}}, 1.);
+  const auto twice = Paint({{occupied, Pose2()}, {occupied, Pose2()}}, 1.);
   ASSERT_TRUE(twice.ok());
   // Odds of 9 squared.
   EXPECT_NEAR(twice->at(0, 0), 81. / 82., 1e-5);
-  const auto mixed = PaintMap({{&occupied, Pose2()}, {&free, Pose2()}}, 1.);
+  const auto mixed = Paint({{occupied, Pose2()}, {free, Pose2()}}, 1.);
   ASSERT_TRUE(mixed.ok());
   EXPECT_NEAR(mixed->at(0, 0), 0.5, 1e-5);
 }
 
 TEST(MapPainterTest, RefusesNonsense) {
   Grid2D grid = SmallGrid();
-  EXPECT_THAT(PaintMap({{&grid, Pose2()}}, 1.).status().message(),
+  EXPECT_THAT(Paint({{grid, Pose2()}}, 1.).status().message(),
               testing::HasSubstr("no submap"));
   grid.set_cells(0, 1);
-  EXPECT_FALSE(PaintMap({{&grid, Pose2()}}, 0.).ok());
-  EXPECT_THAT(PaintMap({{&grid, Pose2()}}, 1e-5).status().message(),
+  EXPECT_FALSE(Paint({{grid, Pose2()}}, 0.).ok());
+  EXPECT_THAT(Paint({{grid, Pose2()}}, 1e-5).status().message(),
               testing::HasSubstr("coarser"));
-  grid.add_cells(1);
-  EXPECT_THAT(PaintMap({{&grid, Pose2()}}, 1.).status().message(),
-              testing::HasSubstr("7 cells"));
-}
-
-TEST(MapPainterTest, ChecksTheBoundsOfTheCosts) {
-  Grid2D grid = SmallGrid();
-  grid.set_min_correspondence_cost(0.9f);
-  grid.set_max_correspondence_cost(0.1f);
-  EXPECT_FALSE(CheckGrid(grid).ok());
-  EXPECT_TRUE(CheckGrid(SmallGrid()).ok());
 }
 
 TEST(MapPainterTest, TheMapOfFarSubmapsIsRefused) {
   Grid2D grid = SmallGrid();
   for (int i = 0; i < 6; ++i) grid.set_cells(i, 1);
   const auto paint = [&](const double distance) {
-    return PaintMap({{&grid, Pose2()}, {&grid, Pose2(distance, distance, 0.)}},
-                    1.)
+    return Paint({{grid, Pose2()}, {grid, Pose2(distance, distance, 0.)}}, 1.)
         .status();
   };
   EXPECT_TRUE(paint(1000.).ok());

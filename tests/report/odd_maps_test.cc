@@ -71,7 +71,6 @@ class OddMapsTest : public testing::Test {
     ASSERT_TRUE(stored.ok()) << stored.status();
     data_ = ReportData();
     data_.title = "odd";
-    data_.pbstream = &pbstream_;
     data_.contents = &contents_;
     data_.runs.push_back(StoredRun(inputs, *stored));
     evaluation::RerunConfiguration configuration;

@@ -134,11 +134,9 @@ inline evaluation::SelfConsistency ExampleConsistency() {
 inline ReportData ExampleData(const bool and_ours) {
   static const evaluation::MapContents* const contents =
       new evaluation::MapContents;
-  static const io::Pbstream* const pbstream = new io::Pbstream;
   ReportData data;
   data.title = "example";
   data.command_line = "evaluate <map>";
-  data.pbstream = pbstream;
   data.contents = contents;
   data.runs.push_back(ExampleRun("as stored", "s1"));
   if (!and_ours) return data;

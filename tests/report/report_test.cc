@@ -48,7 +48,6 @@ class ReportTest : public testing::Test {
     data_->title = "room <1>";
     data_->command_line = "evaluate -x \"a&b\"";
     data_->versions = Versions();
-    data_->pbstream = pbstream_;
     data_->contents = contents_;
     data_->with_times = false;
     const RunInputs inputs = Inputs();

@@ -36,7 +36,10 @@ TEST(DecisionFilesTest, NamesStandBesideTheMap) {
 
 TEST(DecisionFilesTest, WritesReadsAndRemoves) {
   const std::string map = testing::TempDir() + "/decision_files_test.pbstream";
-  ASSERT_TRUE(WriteDecisionsBeside(map, Some()).ok());
+  loop_closure::DecisionRecords records;
+  for (const LoopDecision& decision : Some()) records.Add(decision);
+  EXPECT_EQ(CountDecisions(records).rejected, 1);
+  ASSERT_TRUE(WriteDecisionsBeside(map, records).ok());
   const auto read = ReadDecisions(DecisionRecordsFilename(map));
   ASSERT_TRUE(read.ok()) << read.status();
   ASSERT_EQ(read->size(), 5u);

@@ -4,6 +4,8 @@
 
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -19,6 +21,14 @@ absl::StatusOr<int> ParseLength(const absl::string_view bytes) {
   return static_cast<int>(bytes.size());
 }
 
+absl::Status Write(
+    const std::string& records, const std::string& csv,
+    const std::vector<std::pair<std::string, std::string>>& parts) {
+  SideFileWriter files(records, csv);
+  for (const auto& part : parts) files.Add(part.first, part.second);
+  return files.Finish();
+}
+
 TEST(SideFilesTest, StandBesideTheMap) {
   EXPECT_EQ(SideFilename("maps/a.pbstream", ".loops.pb"), "maps/a.loops.pb");
   EXPECT_EQ(SideFilename("a.pbstream.old", ".loops.pb"),
@@ -31,7 +41,11 @@ TEST(SideFilesTest, AreWrittenReadAndRemovedTogether) {
   const std::string records = stem + ".pb", csv = stem + ".csv";
   // With a zero and a line end in it.
   const std::string bytes("a\0b\nc", 5);
-  ASSERT_TRUE(WriteSideFiles(records, bytes, csv, "x,y\n1,2\n").ok());
+  ASSERT_TRUE(
+      Write(
+          records, csv,
+          {{"", "x,y\n"}, {bytes.substr(0, 2), "1,"}, {bytes.substr(2), "2\n"}})
+          .ok());
   const auto read = ReadBytes(records);
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_EQ(*read, bytes);
@@ -40,16 +54,16 @@ TEST(SideFilesTest, AreWrittenReadAndRemovedTogether) {
   ASSERT_TRUE(parsed.ok()) << parsed.status();
   EXPECT_EQ(*parsed, 5);
   // A map without records has no files, not those of the map before.
-  ASSERT_TRUE(WriteSideFiles(records, "", csv, "x,y\n").ok());
+  ASSERT_TRUE(Write(records, csv, {}).ok());
   EXPECT_TRUE(absl::IsNotFound(ReadBytes(records).status()));
   EXPECT_TRUE(absl::IsNotFound(ReadBytes(csv).status()));
   // Nothing to remove is no error.
-  EXPECT_TRUE(WriteSideFiles(records, "", csv, "").ok());
+  EXPECT_TRUE(Write(records, csv, {}).ok());
 }
 
 TEST(SideFilesTest, ErrorsNameTheFile) {
   const std::string missing = testing::TempDir() + "no_such_folder/x.pb";
-  EXPECT_FALSE(WriteSideFiles(missing, "a", missing, "b").ok());
+  EXPECT_FALSE(Write(missing, missing, {{"a", "b"}}).ok());
   const auto read = ReadBytes(missing);
   EXPECT_TRUE(absl::IsNotFound(read.status()));
   EXPECT_THAT(std::string(read.status().message()), HasSubstr("x.pb"));

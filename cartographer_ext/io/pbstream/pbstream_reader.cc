@@ -14,6 +14,7 @@
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/bounded_read.h"
+#include "cartographer_ext/io/pbstream/grid_validation.h"
 #include "cartographer_ext/io/pbstream/message_size.h"
 #include "cartographer_ext/io/pbstream/pbstream_records.h"
 #include "cartographer_ext/io/pbstream/pbstream_validation.h"
@@ -122,7 +123,8 @@ class Parser {
                                               : "the options"));
     }
     if (options_.validate) {
-      const std::vector<std::string> problems = FindPbstreamProblems(pbstream_);
+      const std::vector<std::string> problems =
+          FindProblemsBesideGrids(pbstream_);
       if (!problems.empty()) {
         std::string more;
         if (problems.size() > 1) {
@@ -234,16 +236,39 @@ class Parser {
                             "this is a 3D submap; only 2D states are "
                             "supported");
     }
-    const auto& submap = pbstream_.submaps.back();
-    const auto& cells = submap.submap_2d().grid().cells();
+    return TakeGrid(&pbstream_.submaps.back());
+  }
+
+  absl::Status TakeGrid(cartographer::mapping::proto::Submap* const submap) {
+    const std::string name =
+        absl::StrFormat("submap (%d, %d)", submap->submap_id().trajectory_id(),
+                        submap->submap_id().submap_index());
+    const auto& cells = submap->submap_2d().grid().cells();
     known_cells_ += cells.size() - std::count(cells.begin(), cells.end(), 0);
-    if (known_cells_ <= max_known_cells_) return absl::OkStatus();
-    return records_.Error(
-        absl::StatusCode::kResourceExhausted,
-        absl::StrFormat("with submap (%d, %d) the grids have more than the %d "
-                        "known cells that are allowed for the size of the file",
-                        submap.submap_id().trajectory_id(),
-                        submap.submap_id().submap_index(), max_known_cells_));
+    if (known_cells_ > max_known_cells_) {
+      return records_.Error(
+          absl::StatusCode::kResourceExhausted,
+          absl::StrFormat("with %s the grids have more than the %d known cells "
+                          "that are allowed for the size of the file",
+                          name, max_known_cells_));
+    }
+    if (!submap->submap_2d().has_grid()) return absl::OkStatus();
+    if (options_.validate) {
+      const std::vector<std::string> problems =
+          FindGridProblems(submap->submap_2d().grid(), name);
+      if (!problems.empty()) {
+        return records_.Error(absl::StatusCode::kInvalidArgument,
+                              problems.front());
+      }
+    }
+    if (!options_.take_grid) return absl::OkStatus();
+    options_.take_grid(*submap);
+    auto* const grid = submap->mutable_submap_2d()->mutable_grid();
+    // Clearing would keep the memory.
+    cartographer::mapping::proto::Grid2D head;
+    *head.mutable_limits() = grid->limits();
+    grid->Swap(&head);
+    return absl::OkStatus();
   }
 
   absl::Status Fill(absl::string_view kind, absl::string_view message,

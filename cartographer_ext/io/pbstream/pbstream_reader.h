@@ -8,6 +8,7 @@
 #define CARTOGRAPHER_EXT_IO_PBSTREAM_PBSTREAM_READER_H_
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,10 @@ struct PbstreamReaderOptions {
   PbstreamLimits limits;
   // Reject contents with problems found by FindPbstreamProblems.
   bool validate = true;
+  // Takes each submap with a grid as it is read, before the rest of the file is
+  // checked. Of the grid only the limits are then in the result: the cells of
+  // all of them together would take most of the memory.
+  std::function<void(const cartographer::mapping::proto::Submap&)> take_grid;
 };
 
 // Errors name the file and, where there is one, the record (the header is

@@ -109,8 +109,7 @@ PbstreamRecords::PbstreamRecords(absl::string_view content, std::string name)
   position_ = magic.size();
 }
 
-absl::StatusOr<bool> PbstreamRecords::Next(const ContentLimit& limit,
-                                           std::string* data) {
+absl::StatusOr<bool> PbstreamRecords::Skip() {
   if (!status_.ok()) return status_;
   if (position_ == content_.size()) return false;
   ++index_;
@@ -129,11 +128,18 @@ absl::StatusOr<bool> PbstreamRecords::Next(const ContentLimit& limit,
                                  "file ends after %d",
                                  size, left));
   }
-  auto expanded = ExpandGzipMember(content_.substr(position_, size), limit);
+  position_ += size;
+  return true;
+}
+
+absl::StatusOr<bool> PbstreamRecords::Next(const ContentLimit& limit,
+                                           std::string* data) {
+  const absl::StatusOr<bool> more = Skip();
+  if (!more.ok() || !*more) return more;
+  auto expanded = ExpandGzipMember(bytes().substr(kNumberSize), limit);
   if (!expanded.ok()) {
     return Error(expanded.status().code(), expanded.status().message());
   }
-  position_ += size;
   *data = *std::move(expanded);
   return true;
 }

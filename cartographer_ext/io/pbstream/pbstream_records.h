@@ -46,6 +46,8 @@ class PbstreamRecords {
 
   // False at the end of the file.
   absl::StatusOr<bool> Next(const ContentLimit& limit, std::string* data);
+  // The same without expanding the record.
+  absl::StatusOr<bool> Skip();
 
   // An error about the record that Next has last been asked for.
   absl::Status Error(absl::StatusCode code, absl::string_view message) const;

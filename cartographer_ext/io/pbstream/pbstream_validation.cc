@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
+#include "cartographer_ext/io/pbstream/grid_validation.h"
 
 namespace cartographer_ext {
 namespace io {
@@ -24,10 +25,7 @@ namespace transform = cartographer::transform::proto;
 // Trajectory and index.
 using Id = std::pair<int, int>;
 
-constexpr int64_t kMaxCells = int64_t{1} << 28;
-constexpr int kMaxCellValue = 32767;  // bit 15 marks updates in memory
 constexpr double kMaxQuaternionError = 1e-3;
-constexpr double kMaxCoordinate = 1e9;  // metres
 
 bool IsFinite(const transform::Vector3d& v) {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
@@ -86,8 +84,11 @@ bool CanBeUnpacked(const sensor::CompressedPointCloud& cloud) {
 
 class Checker {
  public:
-  Checker(const Pbstream& pbstream, const size_t max_problems)
-      : pbstream_(pbstream), max_problems_(max_problems) {}
+  Checker(const Pbstream& pbstream, const bool with_grids,
+          const size_t max_problems)
+      : pbstream_(pbstream),
+        with_grids_(with_grids),
+        max_problems_(max_problems) {}
 
   std::vector<std::string> Run() {
     CheckTrajectories();
@@ -162,62 +163,11 @@ class Checker {
       Expect(IsPose(submap_2d.local_pose()), name, " has no valid local pose");
       Expect(submap_2d.num_range_data() >= 0, name,
              " has a negative number of scans");
-      if (submap_2d.has_grid()) CheckGrid(submap_2d.grid(), name);
-    }
-  }
-
-  void CheckGrid(const mapping::Grid2D& grid, const std::string& name) {
-    const mapping::MapLimits& limits = grid.limits();
-    Expect(std::isfinite(limits.resolution()) && limits.resolution() > 1e-6 &&
-               limits.resolution() < 1e6,
-           name, " has cells of ", limits.resolution(), " m");
-    Expect(std::abs(limits.max().x()) < kMaxCoordinate &&
-               std::abs(limits.max().y()) < kMaxCoordinate,
-           name, " has no finite place");
-    const int64_t width = limits.cell_limits().num_x_cells();
-    const int64_t height = limits.cell_limits().num_y_cells();
-    if (!Expect(width > 0 && height > 0 && width <= kMaxCells / height, name,
-                " has the size ", width, " x ", height)) {
-      return;
-    }
-    Expect(grid.cells_size() == width * height, name, " has ",
-           grid.cells_size(), " cells instead of ", width, " x ", height);
-    CheckCellValues(grid.cells(), name, "a cell");
-    const float min = grid.min_correspondence_cost();
-    const float max = grid.max_correspondence_cost();
-    // Both are zero in old files.
-    Expect((min == 0.f && max == 0.f) ||
-               (std::isfinite(min) && std::isfinite(max) && min < max),
-           name, " has correspondence costs between ", min, " and ", max);
-    if (grid.has_known_cells_box()) {
-      const auto& box = grid.known_cells_box();
-      Expect(box.min_x() >= 0 && box.min_x() <= box.max_x() &&
-                 box.max_x() < width && box.min_y() >= 0 &&
-                 box.min_y() <= box.max_y() && box.max_y() < height,
-             name, " has a box of known cells beyond its limits");
-    }
-    Expect(grid.grid_case() != mapping::Grid2D::GRID_NOT_SET, name,
-           " has a grid of unknown type");
-    if (grid.has_tsdf_2d()) {
-      const mapping::TSDF2D& tsdf = grid.tsdf_2d();
-      Expect(std::isfinite(tsdf.truncation_distance()) &&
-                 tsdf.truncation_distance() > 0.f &&
-                 std::isfinite(tsdf.max_weight()) && tsdf.max_weight() > 0.f,
-             name, " has no valid truncation distance or weight");
-      Expect(tsdf.weight_cells_size() == grid.cells_size(), name, " has ",
-             tsdf.weight_cells_size(), " weights for ", grid.cells_size(),
-             " cells");
-      CheckCellValues(tsdf.weight_cells(), name, "a weight");
-    }
-  }
-
-  template <typename Cells>
-  void CheckCellValues(const Cells& cells, const std::string& name,
-                       absl::string_view what) {
-    for (const int cell : cells) {
-      if (!Expect(cell >= 0 && cell <= kMaxCellValue, name, " has ", what,
-                  " with the value ", cell)) {
-        return;
+      if (with_grids_ && submap_2d.has_grid()) {
+        for (const std::string& problem :
+             FindGridProblems(submap_2d.grid(), name)) {
+          Expect(false, problem);
+        }
       }
     }
   }
@@ -352,6 +302,7 @@ class Checker {
   }
 
   const Pbstream& pbstream_;
+  const bool with_grids_;
   const size_t max_problems_;
   std::vector<std::string> problems_;
   absl::flat_hash_set<int> trajectories_;
@@ -365,7 +316,12 @@ class Checker {
 
 std::vector<std::string> FindPbstreamProblems(const Pbstream& pbstream,
                                               const size_t max_problems) {
-  return Checker(pbstream, max_problems).Run();
+  return Checker(pbstream, true, max_problems).Run();
+}
+
+std::vector<std::string> FindProblemsBesideGrids(const Pbstream& pbstream,
+                                                 const size_t max_problems) {
+  return Checker(pbstream, false, max_problems).Run();
 }
 
 }  // namespace io

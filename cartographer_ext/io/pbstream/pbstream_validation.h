@@ -27,6 +27,10 @@ namespace io {
 std::vector<std::string> FindPbstreamProblems(const Pbstream& pbstream,
                                               size_t max_problems = 100);
 
+// Without those of the grids (grid_validation.h).
+std::vector<std::string> FindProblemsBesideGrids(const Pbstream& pbstream,
+                                                 size_t max_problems = 100);
+
 }  // namespace io
 }  // namespace cartographer_ext
 

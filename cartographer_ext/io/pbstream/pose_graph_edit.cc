@@ -60,11 +60,13 @@ absl::StatusOr<std::string> WithEditedPoseGraph(
   std::string result(PbstreamMagic());
   bool is_edited = false;
   for (;;) {
+    const bool is_pose_graph = records.index() == 0;  // it follows the header
     std::string record;
-    const absl::StatusOr<bool> more = records.Next(LargestRecord(), &record);
+    const absl::StatusOr<bool> more =
+        is_pose_graph ? records.Next(LargestRecord(), &record) : records.Skip();
     if (!more.ok()) return more.status();
     if (!*more) break;
-    if (records.index() != 1) {  // the pose graph follows the header
+    if (!is_pose_graph) {
       result.append(records.bytes().data(), records.bytes().size());
       continue;
     }

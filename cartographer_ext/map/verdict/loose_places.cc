@@ -12,6 +12,7 @@
 
 #include "Eigen/Geometry"
 #include "Eigen/LU"
+#include "absl/strings/str_format.h"
 #include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/optimization/solvers/block_ldlt.h"
 #include "cartographer_ext/uncertainty/uncertain_pose.h"
@@ -183,6 +184,12 @@ double Sigma(const PathTies& path, const std::vector<int>& places,
 }
 
 }  // namespace
+
+std::string DescribeLooseShare(const double share) {
+  return absl::StrFormat(
+      "%.1f %% of the path may lie elsewhere without contradicting anything",
+      100. * share);
+}
 
 LoosePlaces FindLoosePlaces(const MapGraph& graph,
                             const std::vector<RevisitTie>& ties,

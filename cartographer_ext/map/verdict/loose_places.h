@@ -29,6 +29,7 @@
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_LOOSE_PLACES_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_LOOSE_PLACES_H_
 
+#include <string>
 #include <vector>
 
 #include "cartographer_ext/common/pose2.h"
@@ -69,6 +70,9 @@ struct LoosePlaces {
     return looked_at == 0 ? 0. : static_cast<double>(places.size()) / looked_at;
   }
 };
+
+// Such as "7.5 % of the path may lie elsewhere without contradicting anything".
+std::string DescribeLooseShare(double share);
 
 LoosePlaces FindLoosePlaces(const MapGraph& graph,
                             const std::vector<RevisitTie>& ties,

@@ -52,12 +52,6 @@ bool HardlyRevisits(const SelfConsistency& result, const size_t num_nodes,
          std::max(1., options.judged_share * static_cast<double>(num_nodes));
 }
 
-// Nothing contradicts the map, nor would anything if parts of it lay elsewhere.
-bool IsLoose(const SelfConsistency& result,
-             const SelfConsistencyOptions& options) {
-  return result.loose.share() >= options.loose_share;
-}
-
 std::string DescribeLoosePlaces(const MapGraph& graph,
                                 const LoosePlaces& loose) {
   const auto worst =
@@ -66,11 +60,11 @@ std::string DescribeLoosePlaces(const MapGraph& graph,
                          return a.sigma < b.sigma;
                        });
   return absl::StrFormat(
-      "%.1f %% of the path may lie elsewhere without contradicting anything: "
-      "nothing ties it closely to other parts that are within reach, so visits "
+      "%s: nothing ties it closely to other parts that are within reach, so "
+      "visits "
       "to one place may be drawn as two places; worst at %s (node %s, known to "
       "%.1f m, and %.1f m from node %s)",
-      100. * loose.share(),
+      DescribeLooseShare(loose.share()),
       Place(graph.nodes.at(worst->node_id).global_pose.translation()),
       ToString(worst->node_id), worst->sigma, worst->distance,
       ToString(worst->other_id));
@@ -226,7 +220,7 @@ std::string WordOf(const SelfConsistency& result, const size_t num_nodes,
   if (HardlyRevisits(result, num_nodes, options)) return "unknown";
   if (IsDisplaced(result, options)) return "doubtful";
   if (result.displacements.tied_share < options.tied_share) return "unknown";
-  return IsLoose(result, options) ? "doubtful" : "sound";
+  return IsLoose(result.loose.share(), options) ? "doubtful" : "sound";
 }
 
 // Of steps within this time of each other, in order of time, the largest one.
@@ -299,6 +293,10 @@ SelfConsistency Assess(const MapGraph& graph, const MapContents& contents,
 }
 
 }  // namespace
+
+bool IsLoose(const double loose_share, const SelfConsistencyOptions& options) {
+  return loose_share >= options.loose_share;
+}
 
 SelfConsistency AssessSelfConsistency(const MapGraph& graph,
                                       const MapContents& contents,

@@ -82,6 +82,9 @@ struct SelfConsistency {
   std::vector<std::string> reasons;
 };
 
+// Whether so much of the path is loose that the map cannot vouch for itself.
+bool IsLoose(double loose_share, const SelfConsistencyOptions& options);
+
 // Trajectories of which no node is tied to a submap are left out, and a reason
 // says so.
 SelfConsistency AssessSelfConsistency(const MapGraph& graph,

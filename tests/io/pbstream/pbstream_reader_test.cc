@@ -80,6 +80,38 @@ TEST(PbstreamReaderTest, RoundTrip) {
   EXPECT_EQ(SerializePbstream(*loaded), content);
 }
 
+TEST(PbstreamReaderTest, GridsCanBeTakenOneByOne) {
+  Pbstream example = ExamplePbstream();
+  std::vector<std::string> taken;
+  PbstreamReaderOptions options;
+  options.take_grid =
+      [&taken](const cartographer::mapping::proto::Submap& submap) {
+        taken.push_back(submap.SerializeAsString());
+      };
+  auto loaded =
+      ParsePbstream(SerializePbstream(example), "x.pbstream", options);
+  ASSERT_TRUE(loaded.ok()) << loaded.status();
+  ASSERT_EQ(taken.size(), 2u);
+  for (int i = 0; i != 2; ++i) {
+    EXPECT_EQ(taken[i], example.submaps[i].SerializeAsString());
+    const auto& grid = loaded->submaps[i].submap_2d().grid();
+    EXPECT_EQ(grid.cells_size(), 0);
+    EXPECT_EQ(
+        grid.limits().SerializeAsString(),
+        example.submaps[i].submap_2d().grid().limits().SerializeAsString());
+  }
+  // The rest is there.
+  loaded->submaps = example.submaps;
+  EXPECT_EQ(SerializePbstream(*loaded), SerializePbstream(example));
+  // What is wrong with a grid is said of its record.
+  example.submaps[1].mutable_submap_2d()->mutable_grid()->set_cells(0, 40000);
+  ExpectError(Read(SerializePbstream(example), options),
+              absl::StatusCode::kInvalidArgument,
+              "submap (0, 1) has a cell with the value 40000");
+  ExpectError(Read(SerializePbstream(example)),
+              absl::StatusCode::kInvalidArgument, "record 4 at byte ");
+}
+
 TEST(PbstreamReaderTest, FilesOnDisk) {
   const std::string path = ::testing::TempDir() + "/pbstream_test.pbstream";
   ASSERT_TRUE(WritePbstream(ExamplePbstream(), path).ok());

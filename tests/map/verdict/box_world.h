@@ -91,8 +91,9 @@ inline BoxWorld MakeBoxWorld(const int first_wrong, const Pose2& wrong) {
     submap.num_range_data = 10;
     if (90 * index >= first_wrong) submap.global_pose = wrong;
     world.graph.submaps[{0, index}] = submap;
-    world.contents.submaps.emplace(GraphId{0, index},
-                                   evaluation::SubmapCells(BoxGrid(), 0.15));
+    world.contents.submaps.emplace(
+        GraphId{0, index}, evaluation::SubmapCells(
+                               *evaluation::SubmapGrid::Make(BoxGrid()), 0.15));
     for (int i = 0; i < 10; ++i) {
       evaluation::GraphConstraint constraint;
       constraint.submap_id = {0, index};

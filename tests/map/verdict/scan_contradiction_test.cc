@@ -15,7 +15,7 @@ using testing::ElementsAre;
 constexpr int kNever = 1000;
 
 TEST(MapContentsTest, CellsSayWhatTheGridSays) {
-  const SubmapCells cells(test::BoxGrid(), 0.15);
+  const SubmapCells cells(*SubmapGrid::Make(test::BoxGrid()), 0.15);
   EXPECT_EQ(cells.At({0., 0.}), CellEvidence::kFree);
   EXPECT_EQ(cells.At({4., 1.}), CellEvidence::kOccupied);
   EXPECT_EQ(cells.At({3.75, 1.}), CellEvidence::kUnsure);  // beside the wall
@@ -29,7 +29,7 @@ TEST(MapContentsTest, CellsSayWhatTheGridSays) {
 }
 
 TEST(MapContentsTest, CountsPointsNearWallsUnderShifts) {
-  const SubmapCells cells(test::BoxGrid(), 0.15);
+  const SubmapCells cells(*SubmapGrid::Make(test::BoxGrid()), 0.15);
   // Walls from 3.9 to 4.1 m in cells of 0.1 m; the grid ends at 5 m.
   const std::vector<Eigen::Vector2d> points = {
       {3.95, 0.}, {3.75, 0.}, {3., 0.}, {-3.95, 0.}};
@@ -43,7 +43,7 @@ TEST(MapContentsTest, CountsPointsNearWallsUnderShifts) {
 }
 
 TEST(MapContentsTest, ScoresWhereTheScanFits) {
-  const SubmapCells cells(test::BoxGrid(), 0.15);
+  const SubmapCells cells(*SubmapGrid::Make(test::BoxGrid()), 0.15);
   const Pose2 pose(1., -0.5, 0.3);
   const auto scan = test::BoxScan(pose);
   EXPECT_GT(cells.Score(scan, pose), 0.85);

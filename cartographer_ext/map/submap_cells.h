@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the grid of a submap says about a place: whether it is free or occupied,
+// and how far the next wall is. Scans are held against it.
+//
+// Distances are numbers of cells along the axis in which they are more
+// (chessboard distance). Where nothing is known and no wall is near, one lower
+// bound stands for a whole tile.
+#ifndef CARTOGRAPHER_EXT_MAP_SUBMAP_CELLS_H_
+#define CARTOGRAPHER_EXT_MAP_SUBMAP_CELLS_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "Eigen/Core"
+#include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/map/submap_grid.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+
+// State of a cell in a submap. Cells with intermediate probability, and those
+// next to unknown cells, are unsure.
+enum class CellEvidence : uint8_t { kUnsure, kFree, kOccupied };
+
+// A cell on a ray.
+struct CellView {
+  CellEvidence evidence = CellEvidence::kUnsure;
+  // So many steps of one cell from the point, in any direction, do not end in
+  // an occupied cell.
+  int clear_steps = 0;
+};
+
+class SubmapCells {
+ public:
+  // The largest tolerance of CountNearOccupied, metres.
+  static constexpr double kReach = 0.25;
+
+  // `margin`: metres around occupied or unknown cells in which a free cell does
+  // not count as free. It and kReach are at most kFar - 1 cells, or count so.
+  SubmapCells(SubmapGrid grid, double margin);
+
+  const SubmapGrid& grid() const { return grid_; }
+  double resolution() const { return grid_.resolution(); }
+  // Corners of the grid in the local frame of the trajectory, metres.
+  Eigen::Vector2d min_corner() const { return grid_.min_corner(); }
+  Eigen::Vector2d max_corner() const { return grid_.max_corner(); }
+
+  // `point`: in the local frame of the trajectory, metres.
+  CellEvidence At(const Eigen::Vector2d& point) const {
+    const Eigen::Vector2d cell = Cell(point);
+    return IsInside(cell) ? ToEvidence(Code(cell)) : CellEvidence::kUnsure;
+  }
+  // The same, and how far it is to the next wall.
+  CellView View(const Eigen::Vector2d& point) const {
+    CellView view;
+    const Eigen::Vector2d cell = Cell(point);
+    double distance = 0.;
+    if (IsInside(cell)) {
+      const uint8_t code = Code(cell);
+      view.evidence = ToEvidence(code);
+      distance = code & kFar;
+    } else if (cell.allFinite()) {
+      distance = std::min((cell - Eigen::Vector2d(grid_.num_x(), grid_.num_y()))
+                              .cwiseMax(-cell)
+                              .maxCoeff(),
+                          1e6);
+    }
+    // Rounding may move a cell by one.
+    view.clear_steps = std::max(0, static_cast<int>(distance) - 2);
+    return view;
+  }
+  // Occupied, or within the margin of an occupied cell.
+  bool NearOccupied(const Eigen::Vector2d& point) const;
+  // For each shift, how many of the points come to lie at most `tolerance`
+  // (metres, in whole cells, each axis) from an occupied cell. `points` and
+  // `shifts` in the local frame.
+  std::vector<int> CountNearOccupied(const std::vector<Eigen::Vector2d>& points,
+                                     const std::vector<Eigen::Vector2d>& shifts,
+                                     double tolerance) const;
+  // Mean probability of occupancy under the points, as the loop search scores a
+  // match (0.1 for unknown cells); accurate to a few thousandths. `points` in
+  // the frame of a node, `local_from_node` places them in the local frame.
+  double Score(const std::vector<Eigen::Vector2d>& points,
+               const Pose2& local_from_node) const;
+  // Centres of the occupied cells, in the local frame.
+  std::vector<Eigen::Vector2d> OccupiedCells() const;
+
+ private:
+  // A code is the distance to the nearest occupied cell, at most kFar, and
+  // whether the cell is free.
+  static constexpr uint8_t kFar = 127;
+  static constexpr uint8_t kFree = 128;
+
+  static CellEvidence ToEvidence(const uint8_t code) {
+    return code == 0      ? CellEvidence::kOccupied
+           : code < kFree ? CellEvidence::kUnsure
+                          : CellEvidence::kFree;
+  }
+  class BoxBytes;
+  // `codes` of all that is known, and of `reach` cells around it.
+  void TakeTiles(BoxBytes* codes, int reach);
+  int InCells(double metres) const;
+
+  // Continuous indices of a point.
+  Eigen::Vector2d Cell(const Eigen::Vector2d& point) const {
+    return Eigen::Vector2d(
+        (grid_.max_corner().y() - point.y()) / grid_.resolution(),
+        (grid_.max_corner().x() - point.x()) / grid_.resolution());
+  }
+  bool IsInside(const Eigen::Vector2d& cell) const {
+    return cell.x() >= 0. && cell.y() >= 0. && cell.x() < grid_.num_x() &&
+           cell.y() < grid_.num_y();
+  }
+  // Of a cell inside.
+  uint8_t Code(const Eigen::Vector2d& cell) const {
+    return Code(static_cast<int>(cell.x()), static_cast<int>(cell.y()));
+  }
+  uint8_t Code(const int ix, const int iy) const {
+    const int begin = begins_[grid_.tiles().TileOf(ix, iy)];
+    return begin < 0 ? static_cast<uint8_t>(-begin)
+                     : codes_[begin + TileLayout::CellInTile(ix, iy)];
+  }
+
+  SubmapGrid grid_;
+  int radius_;  // the margin, cells
+  // Where in `codes_` each tile begins; negative: less the distance of all its
+  // cells, which are unsure.
+  std::vector<int32_t> begins_;
+  std::vector<uint8_t> codes_;
+};
+
+}  // namespace evaluation
+}  // namespace cartographer_ext
+
+#endif  // CARTOGRAPHER_EXT_MAP_SUBMAP_CELLS_H_

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/map/submap_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_format.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using cartographer::mapping::proto::Grid2D;
+
+constexpr int kMaxCellValue = 32767;
+// Marks a cell that was touched in the current update; never meant for files.
+constexpr int kUpdateMarker = 1 << 15;
+constexpr float kSurface = 0.9f;
+constexpr float kFree = 0.1f;
+
+// 1 to kMaxCellValue; 0 for an unknown cell.
+uint16_t ToValue(const int cell) {
+  const int number = cell >= kUpdateMarker ? cell - kUpdateMarker : cell;
+  return static_cast<uint16_t>(number <= 0 || number > kMaxCellValue ? 0
+                                                                     : number);
+}
+
+}  // namespace
+
+constexpr int TileLayout::kBits;
+constexpr int TileLayout::kSide;
+constexpr int TileLayout::kArea;
+constexpr uint32_t SubmapGrid::kUnknown;
+
+absl::Status CheckGrid(const Grid2D& grid) {
+  const int64_t num_x = grid.limits().cell_limits().num_x_cells();
+  const int64_t num_y = grid.limits().cell_limits().num_y_cells();
+  if (num_x < 0 || num_y < 0 || num_x * num_y != grid.cells_size()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("the grid has %d cells but limits of %d x %d",
+                        grid.cells_size(), num_x, num_y));
+  }
+  if (!(grid.limits().resolution() > 0.) ||
+      !std::isfinite(grid.limits().resolution()) ||
+      !std::isfinite(grid.limits().max().x()) ||
+      !std::isfinite(grid.limits().max().y())) {
+    return absl::InvalidArgumentError(
+        "the grid's resolution or corner is out of range");
+  }
+  const double lower = grid.min_correspondence_cost();
+  const double upper = grid.max_correspondence_cost();
+  if (!grid.has_tsdf_2d() && !(lower == 0. && upper == 0.) &&
+      !(lower > 0. && lower < upper && upper < 1.)) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "the grid's correspondence costs %g to %g are not within (0, 1)", lower,
+        upper));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<SubmapGrid> SubmapGrid::Make(const Grid2D& grid) {
+  const absl::Status status = CheckGrid(grid);
+  if (!status.ok()) return status;
+  return SubmapGrid(grid);
+}
+
+SubmapGrid::SubmapGrid(const Grid2D& grid)
+    : resolution_(grid.limits().resolution()),
+      max_(grid.limits().max().x(), grid.limits().max().y()),
+      num_x_(grid.limits().cell_limits().num_x_cells()),
+      num_y_(grid.limits().cell_limits().num_y_cells()),
+      is_tsdf_(grid.has_tsdf_2d()),
+      tiles_(num_x_, num_y_),
+      begins_(tiles_.size(), kUnknown) {
+  if (is_tsdf_) {
+    upper_ = grid.tsdf_2d().truncation_distance();
+    lower_ = -upper_;
+  } else {
+    // Older files do not name their bounds.
+    const bool named = grid.max_correspondence_cost() > 0.f;
+    lower_ = named ? grid.min_correspondence_cost() : 0.1;
+    upper_ = named ? grid.max_correspondence_cost() : 0.9;
+  }
+  TakeCells(grid);
+}
+
+void SubmapGrid::TakeCells(const Grid2D& grid) {
+  values_.resize(TileLayout::kArea, 0);
+  CellBox known{num_x_, -1, num_y_, -1};
+  std::array<uint16_t, TileLayout::kArea> values;
+  for (size_t tile = 0; tile != tiles_.size(); ++tile) {
+    const CellBox cells = tiles_.CellsOf(tile);
+    const int64_t known_before = num_known_;
+    values.fill(0);
+    for (int iy = cells.min_y; iy <= cells.max_y; ++iy) {
+      const int* const row =
+          grid.cells().data() + static_cast<int64_t>(num_x_) * iy;
+      for (int ix = cells.min_x; ix <= cells.max_x; ++ix) {
+        const uint16_t value = ToValue(row[ix]);
+        if (value == 0) continue;
+        values[TileLayout::CellInTile(ix, iy)] = value;
+        ++num_known_;
+        known = {std::min(known.min_x, ix), std::max(known.max_x, ix),
+                 std::min(known.min_y, iy), std::max(known.max_y, iy)};
+      }
+    }
+    if (num_known_ == known_before) continue;
+    begins_[tile] = static_cast<uint32_t>(values_.size());
+    values_.insert(values_.end(), values.begin(), values.end());
+  }
+  values_.shrink_to_fit();
+  if (num_known_ > 0) known_box_ = known;
+}
+
+float SubmapGrid::Occupancy(const int ix, const int iy) const {
+  const int number =
+      values_[begins_[tiles_.TileOf(ix, iy)] + TileLayout::CellInTile(ix, iy)];
+  if (number == 0) return std::numeric_limits<float>::quiet_NaN();
+  const double value =
+      lower_ + (number - 1) * (upper_ - lower_) / (kMaxCellValue - 1);
+  if (is_tsdf_) return std::abs(value) <= 0.5 * resolution_ ? kSurface : kFree;
+  return static_cast<float>(1. - value);
+}
+
+}  // namespace evaluation
+}  // namespace cartographer_ext

@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/map/submap_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "gtest/gtest.h"
+
+namespace cartographer_ext {
+namespace evaluation {
+namespace {
+
+using cartographer::mapping::proto::Grid2D;
+
+// Ten by six cells of 0.1 m in x and y, corner at (2, 3): x from 1 to 2, y from
+// 2.4 to 3. Cell (ix, iy) is ix from the top and iy from the right.
+Grid2D FreeGrid() {
+  Grid2D grid;
+  grid.mutable_limits()->set_resolution(0.1);
+  grid.mutable_limits()->mutable_max()->set_x(2.);
+  grid.mutable_limits()->mutable_max()->set_y(3.);
+  grid.mutable_limits()->mutable_cell_limits()->set_num_x_cells(6);
+  grid.mutable_limits()->mutable_cell_limits()->set_num_y_cells(10);
+  grid.mutable_probability_grid_2d();
+  grid.set_min_correspondence_cost(0.1f);
+  grid.set_max_correspondence_cost(0.9f);
+  for (int i = 0; i < 60; ++i) grid.add_cells(32767);
+  return grid;
+}
+
+void Set(const int ix, const int iy, const int value, Grid2D* const grid) {
+  grid->set_cells(6 * iy + ix, value);
+}
+
+SubmapCells CellsOf(const Grid2D& grid, const double margin) {
+  return SubmapCells(*SubmapGrid::Make(grid), margin);
+}
+
+TEST(SubmapCellsTest, CellsSayWhatIsSure) {
+  Grid2D grid = FreeGrid();
+  Set(2, 1, 1, &grid);      // x 1.8 to 1.9, y 2.7 to 2.8: occupied
+  Set(2, 5, 16384, &grid);  // x 1.4 to 1.5: as likely as not
+  Set(2, 8, 0, &grid);      // x 1.1 to 1.2: unknown
+  const SubmapCells cells = CellsOf(grid, 0.1);
+  EXPECT_EQ(cells.resolution(), 0.1);
+  EXPECT_EQ(cells.grid().num_x(), 6);
+  EXPECT_EQ(cells.grid().num_y(), 10);
+  EXPECT_NEAR(cells.min_corner().x(), 1., 1e-12);
+  EXPECT_NEAR(cells.min_corner().y(), 2.4, 1e-12);
+  EXPECT_NEAR(cells.max_corner().y(), 3., 1e-12);
+  EXPECT_EQ(cells.At({1.85, 2.75}), CellEvidence::kOccupied);
+  // Within the margin of what is not free.
+  EXPECT_EQ(cells.At({1.75, 2.75}), CellEvidence::kUnsure);
+  EXPECT_EQ(cells.At({1.75, 2.65}), CellEvidence::kUnsure);
+  EXPECT_EQ(cells.At({1.45, 2.75}), CellEvidence::kUnsure);
+  EXPECT_EQ(cells.At({1.15, 2.75}), CellEvidence::kUnsure);
+  EXPECT_EQ(cells.At({1.65, 2.45}), CellEvidence::kFree);
+  // Outside.
+  EXPECT_EQ(cells.At({2.05, 2.75}), CellEvidence::kUnsure);
+  EXPECT_EQ(cells.At({1.5, 3.05}), CellEvidence::kUnsure);
+  EXPECT_EQ(cells.At({std::nan(""), 2.5}), CellEvidence::kUnsure);
+  EXPECT_TRUE(cells.NearOccupied({1.85, 2.75}));
+  EXPECT_TRUE(cells.NearOccupied({1.95, 2.85}));
+  EXPECT_FALSE(cells.NearOccupied({1.65, 2.75}));
+  EXPECT_FALSE(cells.NearOccupied({1.15, 2.75}));
+  EXPECT_FALSE(cells.NearOccupied({5., 5.}));
+  ASSERT_EQ(cells.OccupiedCells().size(), 1u);
+  EXPECT_NEAR((cells.OccupiedCells()[0] - Eigen::Vector2d(1.85, 2.75)).norm(),
+              0., 1e-9);
+}
+
+TEST(SubmapCellsTest, WithoutMarginEveryCellStandsForItself) {
+  Grid2D grid = FreeGrid();
+  Set(2, 1, 1, &grid);
+  const SubmapCells cells = CellsOf(grid, 0.);
+  EXPECT_EQ(cells.At({1.75, 2.75}), CellEvidence::kFree);
+  EXPECT_FALSE(cells.NearOccupied({1.75, 2.75}));
+}
+
+// In grids with some occupied cells, a walk of clear steps from anywhere never
+// ends in one of them, and most steps are clear in the middle of an empty grid.
+TEST(SubmapCellsTest, ClearStepsMeetNoWall) {
+  std::mt19937 random(7);
+  const auto uniform = [&](const double from, const double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  int skipped = 0;
+  for (int round = 0; round < 300; ++round) {
+    Grid2D grid = FreeGrid();
+    for (int i = round % 4; i > 0; --i) {
+      Set(static_cast<int>(uniform(0., 6.)), static_cast<int>(uniform(0., 10.)),
+          1, &grid);
+    }
+    const SubmapCells cells = CellsOf(grid, 0.1);
+    const Eigen::Vector2d from(uniform(0., 3.), uniform(1.5, 4.));
+    const double angle = uniform(-kPi, kPi);
+    const Eigen::Vector2d step(0.1 * std::cos(angle), 0.1 * std::sin(angle));
+    const CellView view = cells.View(from);
+    EXPECT_EQ(view.evidence, cells.At(from));
+    for (int i = 1; i <= std::min(view.clear_steps, 100); ++i) {
+      EXPECT_NE(cells.At(from + i * step), CellEvidence::kOccupied);
+      ++skipped;
+    }
+  }
+  EXPECT_GT(skipped, 1000);
+  const SubmapCells cells = CellsOf(FreeGrid(), 0.1);
+  EXPECT_EQ(cells.View({std::nan(""), 2.5}).clear_steps, 0);
+}
+
+TEST(SubmapCellsTest, ScoresAreMeansOfProbabilities) {
+  Grid2D grid = FreeGrid();
+  Set(2, 1, 1, &grid);      // 0.9
+  Set(2, 5, 16384, &grid);  // 0.5
+  const SubmapCells cells = CellsOf(grid, 0.1);
+  const Pose2 at_corner(1., 2.4, 0.);
+  EXPECT_EQ(cells.Score({}, at_corner), 0.);
+  EXPECT_NEAR(cells.Score({{0.85, 0.35}}, at_corner), 0.9, 3e-3);
+  // Occupied, half, free (0.1), outside (0.1).
+  EXPECT_NEAR(cells.Score({{0.85, 0.35}, {0.45, 0.35}, {0.25, 0.05}, {9., 9.}},
+                          at_corner),
+              (0.9 + 0.5 + 0.1 + 0.1) / 4., 3e-3);
+  // Turned by a quarter: (0.35, -0.85) comes to lie at (0.85, 0.35).
+  EXPECT_NEAR(cells.Score({{0.35, -0.85}}, Pose2(1., 2.4, kPi / 2.)), 0.9,
+              3e-3);
+}
+
+// A grid of random size, cells of 0.05 m, with some walls, free space around
+// them and the rest unknown.
+Grid2D RandomGrid(std::mt19937* const random) {
+  const auto uniform = [random](const int from, const int to) {
+    return std::uniform_int_distribution<int>(from, to)(*random);
+  };
+  Grid2D grid = FreeGrid();
+  grid.clear_cells();
+  const int num_x = uniform(1, 90), num_y = uniform(1, 90);
+  grid.mutable_limits()->set_resolution(0.05);
+  grid.mutable_limits()->mutable_cell_limits()->set_num_x_cells(num_x);
+  grid.mutable_limits()->mutable_cell_limits()->set_num_y_cells(num_y);
+  grid.mutable_cells()->Resize(num_x * num_y, 0);
+  for (int wall = uniform(0, 3); wall > 0; --wall) {
+    const int x = uniform(0, num_x - 1), y = uniform(0, num_y - 1);
+    const int length = uniform(1, 30), side = uniform(0, 15);
+    for (int iy = std::max(0, y - side); iy < std::min(num_y, y + side); ++iy) {
+      for (int ix = x; ix < std::min(num_x, x + length); ++ix) {
+        const int values[] = {0, 1, 9000, 16384, 24000};
+        grid.set_cells(iy * num_x + ix, iy == y ? 1
+                                        : uniform(0, 99) == 0
+                                            ? values[uniform(0, 4)]
+                                            : 32767);
+      }
+    }
+  }
+  return grid;
+}
+
+// By its definition.
+int DistanceToOccupied(const SubmapGrid& grid, const int ix, const int iy) {
+  int distance = 1000;
+  for (int y = 0; y < grid.num_y(); ++y) {
+    for (int x = 0; x < grid.num_x(); ++x) {
+      if (!(grid.Occupancy(x, y) >= 0.6f)) continue;
+      distance =
+          std::min(distance, std::max(std::abs(x - ix), std::abs(y - iy)));
+    }
+  }
+  return distance;
+}
+
+bool HasFreeSurroundings(const SubmapGrid& grid, const int ix, const int iy,
+                         const int radius) {
+  for (int y = iy - radius; y <= iy + radius; ++y) {
+    for (int x = ix - radius; x <= ix + radius; ++x) {
+      if (x < 0 || y < 0 || x >= grid.num_x() || y >= grid.num_y()) continue;
+      if (!(grid.Occupancy(x, y) <= 0.4f)) return false;
+    }
+  }
+  return true;
+}
+
+// Most tiles of the random grids are unknown or partly known.
+TEST(SubmapCellsTest, TilesSayWhatEveryCellWouldSay) {
+  std::mt19937 random(11);
+  int free = 0, near = 0;
+  for (int round = 0; round < 40; ++round) {
+    const SubmapCells cells = CellsOf(RandomGrid(&random), 0.15);
+    const SubmapGrid& grid = cells.grid();
+    for (int iy = 0; iy < grid.num_y(); ++iy) {
+      for (int ix = 0; ix < grid.num_x(); ++ix) {
+        const Eigen::Vector2d center =
+            grid.max_corner() - 0.05 * Eigen::Vector2d(iy + 0.5, ix + 0.5);
+        const int distance = DistanceToOccupied(grid, ix, iy);
+        const bool is_free =
+            distance > 0 && HasFreeSurroundings(grid, ix, iy, 3);
+        ASSERT_EQ(cells.At(center), distance == 0 ? CellEvidence::kOccupied
+                                    : is_free     ? CellEvidence::kFree
+                                                  : CellEvidence::kUnsure);
+        ASSERT_EQ(cells.NearOccupied(center), distance <= 3);
+        for (const int tolerance : {0, 2, 4}) {
+          ASSERT_EQ(cells.CountNearOccupied({center}, {{0., 0.}},
+                                            0.05 * (tolerance + 0.5))[0],
+                    distance <= tolerance ? 1 : 0);
+        }
+        ASSERT_LE(cells.View(center).clear_steps, std::max(0, distance - 2));
+        free += is_free;
+        near += distance > 3 && distance <= 4;
+      }
+    }
+  }
+  EXPECT_GT(free, 100);
+  EXPECT_GT(near, 100);
+}
+
+TEST(SubmapCellsTest, AnUnknownGridSaysNothing) {
+  Grid2D grid = FreeGrid();
+  for (int i = 0; i < 60; ++i) grid.set_cells(i, 0);
+  const SubmapCells cells = CellsOf(grid, 0.1);
+  EXPECT_EQ(cells.At({1.5, 2.7}), CellEvidence::kUnsure);
+  EXPECT_FALSE(cells.NearOccupied({1.5, 2.7}));
+  EXPECT_TRUE(cells.OccupiedCells().empty());
+}
+
+}  // namespace
+}  // namespace evaluation
+}  // namespace cartographer_ext
