@@ -34,6 +34,8 @@ namespace stock_proto = cartographer::mapping::scan_matching::proto;
 constexpr double kScoreRate = 0.02;
 // Penalties of the search, per metre and radian: only to break ties.
 constexpr double kSearchPenalty = 0.1;
+// Of a prediction, metres and radians; smaller ones are taken for this.
+constexpr double kLeastSigma = 1e-6;
 // Limits of Inconsistency().
 constexpr double kConsistentTranslation = 0.05;            // metres
 constexpr double kInconsistentTranslation = 0.15;          // metres
@@ -110,6 +112,14 @@ bool IsNear(const Pose2& a, const Pose2& b) {
          std::abs(NormalizeAngle(a.theta - b.theta)) < 0.01;
 }
 
+// Of the translation along its worst direction, square metres.
+double WorstTranslationVariance(const Eigen::Matrix3d& covariance) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
+             Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()),
+             Eigen::EigenvaluesOnly)
+      .eigenvalues()(1);
+}
+
 // Standard deviation of the position of a point of the cloud, metres: the root
 // mean square over the cloud, along the worst direction.
 double PointSpread(const Eigen::Matrix3d& covariance, const PointCloud& cloud) {
@@ -117,18 +127,47 @@ double PointSpread(const Eigen::Matrix3d& covariance, const PointCloud& cloud) {
   for (const auto& point : cloud)
     squares += point.position.head<2>().squaredNorm();
   squares /= std::max<size_t>(1, cloud.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
-      Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()),
-      Eigen::EigenvaluesOnly);
-  return std::sqrt(solver.eigenvalues()(1) + squares * covariance(2, 2));
+  return std::sqrt(WorstTranslationVariance(covariance) +
+                   squares * covariance(2, 2));
 }
 
-// Whether scan and prediction together favour `a` over `b`, two matches from
-// one prediction, by the difference of their log-likelihoods.
+// The best pose around `initial` by score * exp(-(w_t |translation| + w_r
+// |rotation|)^2).
+Pose2 SearchAround(const Pose2& initial,
+                   const scan_matching::SearchWindow& window,
+                   const double translation_weight,
+                   const double rotation_weight, const PointCloud& cloud,
+                   const Grid2D& grid) {
+  stock_proto::RealTimeCorrelativeScanMatcherOptions options;
+  options.set_linear_search_window(window.linear);
+  options.set_angular_search_window(window.angular);
+  options.set_translation_delta_cost_weight(translation_weight);
+  options.set_rotation_delta_cost_weight(rotation_weight);
+  const scan_matching::RealTimeMatcher2D search(options);
+  Rigid2d found = ToRigid2d(initial);
+  search.Match(ToRigid2d(initial), cloud, grid, &found);
+  return ToPose2(found);
+}
+
+// chi2 of a pose by a prediction, whatever the scan determines of it: along a
+// corridor a match is consistent with its prediction wherever it ends.
+double ChiSquare(const Prediction& predicted, const Pose2& pose) {
+  const Eigen::Vector3d off(pose.x - predicted.pose.x,
+                            pose.y - predicted.pose.y,
+                            NormalizeAngle(pose.theta - predicted.pose.theta));
+  return off.dot(predicted.covariance.ldlt().solve(off));
+}
+
+// Whether scan and prediction together favour `a` over `b` by the difference of
+// their log-likelihoods. It must fit better, too: a scan turned towards what was
+// never seen contradicts nothing.
 bool IsLikelier(const LocalMatch& a, const LocalMatch& b,
-                const PointCloud& cloud, const Grid2D& grid) {
-  return scan_matching::ScanEvidence(a.pose, b.pose, cloud, grid) >
-         0.5 * (a.report.mahalanobis - b.report.mahalanobis);
+                const Prediction& predicted, const PointCloud& cloud,
+                const Grid2D& grid) {
+  return a.score > b.score &&
+         scan_matching::ScanEvidence(a.pose, b.pose, cloud, grid) >
+             0.5 *
+                 (ChiSquare(predicted, a.pose) - ChiSquare(predicted, b.pose));
 }
 
 struct SearchedMotion {
@@ -232,18 +271,31 @@ double LocalMatcher::LinearWindow(const Pose2& motion,
 Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
                            const MotionPrediction& prediction,
                            const PointCloud& cloud, const Grid2D& grid) const {
-  stock_proto::RealTimeCorrelativeScanMatcherOptions options;
-  options.set_linear_search_window(LinearWindow(motion, prediction));
-  options.set_angular_search_window(
+  const double angular_window =
       std::max(prediction.search_angle,
                std::min(options_.max_angular_window,
-                        options_.angular_window + std::abs(motion.theta))));
-  options.set_translation_delta_cost_weight(kSearchPenalty);
-  options.set_rotation_delta_cost_weight(kSearchPenalty);
-  const scan_matching::RealTimeMatcher2D search(options);
-  Rigid2d found = ToRigid2d(center);
-  search.Match(ToRigid2d(center), cloud, grid, &found);
-  return ToPose2(found);
+                        options_.angular_window + std::abs(motion.theta)));
+  return SearchAround(center,
+                      {LinearWindow(motion, prediction), angular_window},
+                      kSearchPenalty, kSearchPenalty, cloud, grid);
+}
+
+Pose2 LocalMatcher::SearchConsistent(const Prediction& predicted,
+                                     const PointCloud& cloud,
+                                     const Grid2D& grid) const {
+  const double sigma_translation =
+      std::sqrt(WorstTranslationVariance(predicted.covariance));
+  const double sigma_rotation = std::sqrt(predicted.covariance(2, 2));
+  const double farthest = std::sqrt(options_.gate);
+  const scan_matching::SearchWindow window = {
+      std::min(options_.max_linear_window, farthest * sigma_translation),
+      std::min(options_.max_angular_window, farthest * sigma_rotation)};
+  // A log-likelihood of n ln(score) - chi2 / 2, divided by n.
+  const double n = std::max(1, scan_matching::NumPatches(cloud));
+  const double weight = 1. / std::sqrt(2. * n);
+  return SearchAround(
+      predicted.pose, window, weight / std::max(sigma_translation, kLeastSigma),
+      weight / std::max(sigma_rotation, kLeastSigma), cloud, grid);
 }
 
 bool LocalMatcher::IsOverruled(const MotionPrediction& prediction,
@@ -303,6 +355,23 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
   LocalMatch best = matched;
   best.searched = true;
   double to_beat = matched.score + options_.min_gain;
+  // Matches from there; returns whether the result is consistent with the
+  // prediction.
+  const auto try_consistent = [&](const Pose2& found) {
+    const LocalMatch match = MatchFrom(predicted, found, cloud, grid);
+    if (match.report.mahalanobis > options_.gate ||
+        ChiSquare(predicted, match.pose) > options_.gate) {
+      return false;
+    }
+    if (!IsLikelier(match, best, predicted, cloud, grid)) return true;
+    best = match;
+    best.searched = best.relocated = true;
+    to_beat = best.score + options_.min_gain;
+    return true;
+  };
+  if (!prediction.is_uncertain) {
+    try_consistent(SearchConsistent(predicted, cloud, grid));
+  }
   for (const SearchedMotion& searched : MotionsToSearch(prediction)) {
     const Pose2& motion = searched.motion;
     if (searched.is_hint &&
@@ -312,15 +381,7 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
     }
     const Pose2 found =
         Search(last_pose * motion, motion, prediction, cloud, grid);
-    const LocalMatch consistent = MatchFrom(predicted, found, cloud, grid);
-    if (!prediction.is_uncertain &&
-        consistent.report.mahalanobis <= options_.gate) {
-      if (!IsLikelier(consistent, best, cloud, grid)) continue;
-      best = consistent;
-      best.searched = best.relocated = true;
-      to_beat = best.score + options_.min_gain;
-      continue;
-    }
+    if (!prediction.is_uncertain && try_consistent(found)) continue;
     if (searched.is_hint) continue;
     Prediction start = ToPrediction(
         last_pose, motion, kCovarianceScaleAfterSearch * prediction.covariance);

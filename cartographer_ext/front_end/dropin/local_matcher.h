@@ -6,9 +6,12 @@
 // motions that the robot may have made.
 //
 // A match finds the nearest minimum only. Where the prediction may be farther
-// off than that reaches (a slow laser, a sharp turn), the search looks for other
-// minima. One that is consistent with the prediction is taken if it is likelier,
-// scan and prediction together.
+// off than that reaches (a slow laser, a sharp turn), other minima are searched
+// for: first the likeliest pose, scan and prediction together, among those that
+// are consistent with the prediction, then the best score in a window, which may be
+// inconsistent with it. Where scans fit badly some wrong place nearly always has
+// the best score, so the second search alone would hide the right one. One that is
+// consistent with the prediction is taken if it is likelier.
 //
 // Elsewhere the search only provides initial poses. Each of them is matched with
 // the motion it came from as prediction, so that along a direction that the scan
@@ -88,8 +91,15 @@ class LocalMatcher {
   // Half width of the window around a motion, metres.
   double LinearWindow(const Pose2& motion,
                       const MotionPrediction& prediction) const;
-  // Around `center`, the end of `motion`, in a window that covers the
-  // uncertainty of the prediction.
+  // The likeliest pose by scan and prediction: the best by
+  //   score exp(-chi2 / (2 n)),
+  // chi2 that of the difference from the prediction, up to the gate, n the number
+  // of independent parts of the scan (NumPatches).
+  Pose2 SearchConsistent(const scan_matching::Prediction& predicted,
+                         const cartographer::sensor::PointCloud& cloud,
+                         const cartographer::mapping::Grid2D& grid) const;
+  // The best score around `center`, the end of `motion`, in a window that covers
+  // the uncertainty of the prediction.
   Pose2 Search(const Pose2& center, const Pose2& motion,
                const MotionPrediction& prediction,
                const cartographer::sensor::PointCloud& cloud,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,12 @@ constexpr double kPatch = 0.25;
 constexpr double kUnseen = 0.5;
 
 using cartographer::mapping::Grid2D;
+
+std::pair<int, int> PatchOf(const Eigen::Vector2f& point) {
+  const Eigen::Vector2d p = point.cast<double>();
+  return {static_cast<int>(std::floor(p.x() / kPatch)),
+          static_cast<int>(std::floor(p.y() / kPatch))};
+}
 
 class Likelihood {
  public:
@@ -44,6 +51,15 @@ class Likelihood {
 
 }  // namespace
 
+int NumPatches(const cartographer::sensor::PointCloud& cloud) {
+  std::set<std::pair<int, int>> patches;
+  for (const auto& point : cloud) {
+    const Eigen::Vector2f p = point.position.head<2>();
+    if (p.allFinite()) patches.insert(PatchOf(p));
+  }
+  return static_cast<int>(patches.size());
+}
+
 PoseEvidence::PoseEvidence(const Pose2& pose,
                            const cartographer::sensor::PointCloud& cloud,
                            const Grid2D& grid)
@@ -54,9 +70,8 @@ PoseEvidence::PoseEvidence(const Pose2& pose,
   for (const auto& point : cloud) {
     const Eigen::Vector2d p = point.position.head<2>().cast<double>();
     if (!p.allFinite()) continue;
-    patches[{static_cast<int>(std::floor(p.x() / kPatch)),
-             static_cast<int>(std::floor(p.y() / kPatch))}]
-        .push_back({p, likelihood.Log(p)});
+    patches[PatchOf(point.position.head<2>())].push_back(
+        {p, likelihood.Log(p)});
   }
   patches_.reserve(patches.size());
   for (auto& patch : patches) patches_.push_back(std::move(patch.second));

@@ -24,6 +24,10 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// The number of patches that the sum above has; points that are not finite have
+// none.
+int NumPatches(const cartographer::sensor::PointCloud& cloud);
+
 // For one pose of a scan, against any other. Poses are (frame of the grid <-
 // cloud).
 class PoseEvidence {

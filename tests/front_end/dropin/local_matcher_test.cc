@@ -132,6 +132,34 @@ TEST_F(LocalMatcherTest, AWidePredictionIsSearchedForTheLikeliestMinimum) {
   EXPECT_NEAR(match.pose.theta, 0., 0.02);
 }
 
+// Most of the scan fits a place that the prediction all but excludes, as leaves
+// of trees do: the rest tells where the robot is.
+TEST_F(LocalMatcherTest, AHigherScoreFartherOffDoesNotHideTheLikeliestPose) {
+  options_.contradiction_gain = 1.;
+  LocalMatcher matcher(options_, matcher_options_);
+  const Pose2 off(0.1, -0.05, DegToRad(5.));
+  const Pose2 elsewhere(-0.3, 0.2, -DegToRad(4.));
+  prediction_.motion = Pose2(0.7, 0., 0.);
+  prediction_.covariance =
+      Eigen::Vector3d(0.0064, 0.0064, std::pow(DegToRad(4.), 2)).asDiagonal();
+  PointCloud cloud;
+  for (const auto& point : Cloud()) {
+    const Eigen::Vector2d seen =
+        (cloud.size() % 5 < 2 ? Pose2() : elsewhere.Inverse()) *
+        Eigen::Vector2d(point.position.head<2>().cast<double>());
+    cloud.push_back({Eigen::Vector3f(seen.x(), seen.y(), 0.f)});
+  }
+  const auto& submap = *submaps_->submaps().front();
+  ASSERT_GT(scan_matching::MeanScore(elsewhere, cloud, *submap.grid()),
+            scan_matching::MeanScore(Pose2(), cloud, *submap.grid()) + 0.05);
+  const LocalMatch match = matcher.Match(off * prediction_.motion.Inverse(),
+                                         prediction_, cloud, submap);
+  EXPECT_TRUE(match.relocated);
+  EXPECT_NEAR(match.pose.x, 0., 0.03);
+  EXPECT_NEAR(match.pose.y, 0., 0.03);
+  EXPECT_NEAR(match.pose.theta, 0., 0.02);
+}
+
 // What a hint leads to does not overrule a prediction, however well it fits.
 TEST_F(LocalMatcherTest, AHintIsNoAlternative) {
   const Pose2 off(1.5, 0.3, 0.);
@@ -161,9 +189,13 @@ TEST_F(LocalMatcherTest, AHintFarOffIsNotFollowed) {
 
 TEST_F(LocalMatcherTest, ASlightlyBetterPlaceDoesNot) {
   options_.contradiction_gain = 1.;
-  const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
+  const Pose2 off(0.15, 0.1, DegToRad(6.));
+  const LocalMatch match = MatchFrom(off);
   EXPECT_TRUE(match.searched);
-  EXPECT_FALSE(match.relocated);
+  // Nearer to the prediction than to the place.
+  EXPECT_LE(match.report.mahalanobis, options_.gate);
+  EXPECT_LT(std::hypot(match.pose.x - off.x, match.pose.y - off.y), 0.05);
+  EXPECT_NEAR(match.pose.theta, off.theta, 0.025);
 }
 
 TEST_F(LocalMatcherTest, APredictionInDoubtIsOverruledSooner) {

@@ -71,6 +71,19 @@ TEST_F(ScanEvidenceTest, BeamsOfOnePatchCountOnce) {
               2. * std::log(4.), 1e-3);
 }
 
+TEST_F(ScanEvidenceTest, PatchesAreCells) {
+  EXPECT_EQ(NumPatches(Wall(0.5, 1.5)), 4);
+  PointCloud cloud = Wall(0.5, 0.75);
+  EXPECT_EQ(NumPatches(cloud), 1);
+  cloud.push_back({Eigen::Vector3f(std::nanf(""), 0.f, 0.f)});
+  EXPECT_EQ(NumPatches(cloud), 1);
+  // Left of zero begins another one.
+  cloud.push_back({Eigen::Vector3f(-0.1f, 0.6f, 0.f)});
+  cloud.push_back({Eigen::Vector3f(0.1f, 0.6f, 0.f)});
+  EXPECT_EQ(NumPatches(cloud), 3);
+  EXPECT_EQ(NumPatches(PointCloud()), 0);
+}
+
 TEST_F(ScanEvidenceTest, NothingSeenSaysNothing) {
   EXPECT_EQ(ScanEvidence(Pose2(), Pose2(1., 0., 0.), PointCloud(), grid_), 0.);
   // Both places are outside of what has been seen, one of the grid, too.
