@@ -40,9 +40,10 @@ LoopPipeline::LoopPipeline(const LoopOptions& options,
       scores_(options),
       consensus_(options, &paths_) {}
 
-bool LoopPipeline::AddNode(const int trajectory_id, HistoryNode node) {
+bool LoopPipeline::AddNode(const int trajectory_id, HistoryNode node,
+                           const Eigen::Matrix3d& doubt) {
   paths_.Add(uncertainty::NodeId{trajectory_id, node.node_index},
-             node.local_pose);
+             node.local_pose, doubt);
   typical_step_.Add(trajectory_id, node.node_index, node.local_pose);
   return history_.Add(trajectory_id, std::move(node));
 }

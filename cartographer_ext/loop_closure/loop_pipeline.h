@@ -31,6 +31,7 @@
 #include <deque>
 #include <vector>
 
+#include "Eigen/Core"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/loop_closure/consensus/closed_prediction.h"
 #include "cartographer_ext/loop_closure/consensus/drift_learner.h"
@@ -60,8 +61,9 @@ class LoopPipeline {
   LoopPipeline& operator=(const LoopPipeline&) = delete;
 
   // To be called for every proposed node, before any sampler. Returns whether
-  // it is new.
-  bool AddNode(int trajectory_id, HistoryNode node);
+  // it is new. `doubt`: see PathUncertainty::Add.
+  bool AddNode(int trajectory_id, HistoryNode node,
+               const Eigen::Matrix3d& doubt = Eigen::Matrix3d::Zero());
   // For every submap proposed; the order of the calls does not matter.
   void AddSubmap(const uncertainty::SubmapId& submap, const Pose2& local_pose);
   bool HasNode(const uncertainty::NodeId& node) const;

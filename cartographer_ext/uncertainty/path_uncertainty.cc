@@ -129,7 +129,8 @@ PathUncertainty::PathUncertainty(const PathNoiseOptions& options,
   CHECK_GT(max_vertices, 0);
 }
 
-void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose) {
+void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose,
+                          const Eigen::Matrix3d& doubt) {
   Sequence& sequence = sequences_[KeyOf(vertex)];
   std::deque<Entry>& entries = sequence.entries;
   const auto place = LowerBound(entries, vertex.index());
@@ -138,6 +139,7 @@ void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose) {
   Entry entry;
   entry.index = vertex.index();
   entry.local_pose = local_pose;
+  entry.doubt = doubt;
   const size_t offset = static_cast<size_t>(place - entries.begin());
   entries.insert(place, entry);
   sequence.num_valid = std::min(sequence.num_valid, offset);
@@ -194,8 +196,9 @@ void PathUncertainty::Accumulate(JumpThresholds thresholds,
   entry->corrected = before.corrected * corrected;
   thresholds.metres *= entry->index - before.index;
   thresholds.radians *= entry->index - before.index;
-  const CovarianceParts step_parts =
+  CovarianceParts step_parts =
       StepCovariance(options_, thresholds, metres, std::abs(step.theta));
+  step_parts.other += entry->doubt;
   entry->travelled = before.travelled + metres;
   entry->cost = before.cost + PathCostOf(step_parts.Total(
                                   DriftFactors(), Eigen::Matrix3d::Zero()));

@@ -26,6 +26,8 @@
 // assume (a slow laser, a fast robot), both thresholds are scaled accordingly, and
 // a step that is ordinary among those nodes, in metres or in radians, is no jump.
 //
+// So is the covariance of a step that local SLAM itself doubts (doubtful_steps.h).
+//
 // The sums are kept apart for the errors of translation, of rotation per metre
 // and of rotation while turning, so that each can be scaled for a trajectory
 // whose drift is estimated (drift_model.h).
@@ -96,7 +98,7 @@ struct CovarianceParts {
   Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
   // Effects of the errors of CommonDrift, one per column.
   Eigen::Matrix3d common = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d other = Eigen::Matrix3d::Zero();  // jumps, loops
+  Eigen::Matrix3d other = Eigen::Matrix3d::Zero();  // jumps, doubts, loops
 
   // Component by component.
   CovarianceParts& operator+=(const CovarianceParts& parts);
@@ -125,8 +127,9 @@ class PathUncertainty {
 
   // (local frame of the trajectory <- vertex). A vertex that has been added
   // before, or that is older than all that are kept of a full trajectory, is
-  // ignored.
-  void Add(const VertexId& vertex, const Pose2& local_pose);
+  // ignored. `doubt`: what is added to the covariance of the step that ends there.
+  void Add(const VertexId& vertex, const Pose2& local_pose,
+           const Eigen::Matrix3d& doubt = Eigen::Matrix3d::Zero());
 
   // (u <- v). Empty for a node and a submap, between trajectories, and for
   // vertices that are not kept.
@@ -171,6 +174,7 @@ class PathUncertainty {
     int index;
     Pose2 local_pose;
     Pose2 step;             // from the entry before, frame of that entry
+    Eigen::Matrix3d doubt;  // of this step, frame of this entry
     double travelled = 0.;  // prefix sum, metres
     double cost = 0.;       // prefix sum, metres
     Pose2 corrected;        // of corrected steps, from that of the first entry

@@ -339,6 +339,24 @@ TEST_F(LoopPipelineTest, TimesAndFullMatrixOnlyWhereAskedFor) {
   }
 }
 
+TEST_F(LoopPipelineTest, KnowsWhichStepsAreDoubted) {
+  MakePipeline();
+  const Eigen::Matrix3d doubt = Eigen::Vector3d(0., 0., 0.25).asDiagonal();
+  for (int i = 0; i <= 2; ++i) {
+    HistoryNode node;
+    node.node_index = i;
+    node.local_pose = True(i);
+    pipeline_->AddNode(1, node, i == 1 ? doubt : Eigen::Matrix3d::Zero());
+  }
+  const auto variance = [this](const int a, const int b) {
+    return pipeline_->paths()
+        .Between(uncertainty::NodeId{1, a}, uncertainty::NodeId{1, b})
+        ->covariance(2, 2);
+  };
+  EXPECT_GT(variance(0, 1), 0.25);
+  EXPECT_LT(variance(1, 2), 0.01);
+}
+
 TEST_F(LoopPipelineTest, UnpredictedLoopsOfAnotherRunNeedMorePlaces) {
   options_.compatible_subset.single_strong_enabled = true;
   MakePipeline();

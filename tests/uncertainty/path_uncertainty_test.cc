@@ -52,6 +52,32 @@ TEST(PathUncertaintyTest, StraightPathByHand) {
   EXPECT_NEAR(*paths.Travelled(Key(4), Key(1)), 3., 1e-12);
 }
 
+// Of the second step the heading is doubted, which moves the end by the two metres
+// that are left to go; other paths do not know of it.
+TEST(PathUncertaintyTest, ADoubtedStepIsLessCertain) {
+  PathUncertainty paths(Noise(), 100), usual(Noise(), 100);
+  const Eigen::Matrix3d doubt = Eigen::Vector3d(0., 0., 0.04).asDiagonal();
+  for (int i = 0; i <= 4; ++i) {
+    const Pose2 pose(5. + i, 7., 0.);
+    paths.Add(Key(i), pose, i == 2 ? doubt : Eigen::Matrix3d::Zero());
+    usual.Add(Key(i), pose);
+  }
+  Eigen::Matrix3d more;
+  more << 0., 0., 0., 0., 0.16, 0.08, 0., 0.08, 0.04;
+  EXPECT_NEAR((paths.Between(Key(0), Key(4))->covariance -
+               usual.Between(Key(0), Key(4))->covariance - more)
+                  .norm(),
+              0., 1e-12);
+  EXPECT_NEAR((paths.Between(Key(2), Key(4))->covariance -
+               usual.Between(Key(2), Key(4))->covariance)
+                  .norm(),
+              0., 1e-12);
+  // Whatever the estimate of the drift makes of the usual noise.
+  paths.SetDrift(0, {0.5, 0.5, 0.5}, CommonDrift());
+  EXPECT_NEAR(paths.Parts(Key(0), Key(4))->other(2, 2), 0.04, 1e-12);
+  EXPECT_GT(*paths.PathCost(Key(1), Key(2)), *usual.PathCost(Key(1), Key(2)));
+}
+
 TEST(PathUncertaintyTest, EqualsComposingTheSteps) {
   Random random(5);
   PathUncertainty paths(Noise(), 1000);

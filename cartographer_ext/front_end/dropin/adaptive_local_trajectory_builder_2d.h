@@ -50,6 +50,7 @@
 #include "cartographer_ext/front_end/match_recorder.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
 #include "cartographer_ext/front_end/point_cloud/field_of_view.h"
+#include "cartographer_ext/front_end/step_doubt.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -145,6 +146,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   double last_seconds_ = 0.;
   Pose2 pose_;            // (local <- gravity-aligned robot) at the last match
   Pose2 insertion_pose_;  // the same at the last scan that was inserted
+  StepDoubt step_doubt_;  // since the last node
   // Scans are dropped after a gap until odometry has caught up.
   bool is_waiting_ = false;
   double waiting_since_ = 0.;

@@ -17,6 +17,7 @@
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
+#include "cartographer_ext/uncertainty/doubtful_steps.h"
 #include "cartographer_ext/uncertainty/drift_model.h"
 #include "cartographer_ext/uncertainty/loop_ambiguity.h"
 #include "glog/logging.h"
@@ -36,15 +37,12 @@ using proto::LoopDecision;
 constexpr double kDistanceBehindSubmap = 3.;
 // A trajectory without submaps is freed after this many nodes of others.
 constexpr int64_t kNodesUntilFreed = 100;
-
 // Loops accepted at the end of a run predict others, at most this often.
 constexpr int kMostPredictions = 10;
 
 ConstraintWeights StockWeights(const ConstraintBuilderOptions& options) {
-  ConstraintWeights weights;
-  weights.translation = options.loop_closure_translation_weight();
-  weights.rotation = options.loop_closure_rotation_weight();
-  return weights;
+  return {options.loop_closure_translation_weight(),
+          options.loop_closure_rotation_weight()};
 }
 
 TypicalFitOptions NoTypicalFit() {
@@ -168,7 +166,9 @@ void LoopClosure2D::RememberNode(const Proposal& proposal) {
                  &node);
   }
   submaps_.AddNode(id, node.time);
-  pipeline_.AddNode(id.trajectory_id, std::move(node));
+  const Eigen::Matrix3d doubt =
+      context_->Get<uncertainty::DoubtfulSteps>()->CovarianceAt(node.time);
+  pipeline_.AddNode(id.trajectory_id, std::move(node), doubt);
 }
 
 void LoopClosure2D::MeasureFit(const Proposal& proposal,

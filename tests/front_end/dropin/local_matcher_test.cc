@@ -45,6 +45,15 @@ TEST(ContradictionTest, GrowsBetweenItsBounds) {
       1e-9);
 }
 
+TEST(MatchDoubtTest, GrowsWhereTheScoreIsBelowTheUsual) {
+  EXPECT_EQ(MatchDoubt(0.5, 0.5), 0.);
+  EXPECT_EQ(MatchDoubt(0.4, 0.5), 0.);
+  EXPECT_EQ(MatchDoubt(0.1, 0.), 0.);
+  EXPECT_NEAR(MatchDoubt(0.37, 0.5), 1. / (1. + std::exp(3.96)), 1e-9);
+  EXPECT_NEAR(MatchDoubt(0.2, 0.5), 1. / (1. + std::exp(0.9)), 1e-9);
+  EXPECT_NEAR(MatchDoubt(0.15, 0.5), 0.5, 1e-9);
+}
+
 // A field of view that is no evidence enough against odometry that is trusted.
 constexpr double kFewDegrees = 40.;
 

@@ -20,6 +20,7 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/front_end/dropin/adaptive_local_trajectory_builder_2d.h"
 #include "cartographer_ext/front_end/match_recorder.h"
+#include "cartographer_ext/uncertainty/doubtful_steps.h"
 #include "tests/front_end/dropin/simulated_room.h"
 
 namespace cartographer_ext {
@@ -57,6 +58,8 @@ struct RunResult {
   Pose2 last;                  // seen from the first pose
   Pose2 true_last;
   std::vector<proto::MatchRecord> records;
+  // What of the step to each of them is doubted, radians squared.
+  std::vector<double> doubts;
 };
 
 struct RunOptions {
@@ -65,6 +68,8 @@ struct RunOptions {
   std::function<Pose2(double)> odometry = Path;
   std::function<bool(double)> has_scan = [](double) { return true; };
   std::function<bool(double)> has_odometry = [](double) { return true; };
+  // Most beams end at people.
+  std::function<bool(double)> is_crowded = [](double) { return false; };
   bool use_odometry = true;
   double seconds = 40.;
   double max_range = 12.;
@@ -97,6 +102,12 @@ inline RunResult RunDrive(const RunOptions& options) {
     if (!options.has_scan(t)) continue;
     auto scan =
         Scan(options.walls, t, options.path(t), options.max_range, &random);
+    if (options.is_crowded(t)) {
+      for (auto& point : scan.ranges) {
+        const bool is_wall = random.Uniform(0., 1.) < 0.2;
+        if (!is_wall) point.position *= random.Uniform(0.3, 0.8);
+      }
+    }
     const auto unseen =
         [&](const cartographer::sensor::TimedRangefinderPoint& point) {
           return std::abs(std::atan2(point.position.y(), point.position.x())) >
@@ -125,6 +136,11 @@ inline RunResult RunDrive(const RunOptions& options) {
   }
   result.mean_error /= std::max(1, result.matched);
   result.records = context->Get<MatchRecorder>()->All();
+  for (const proto::MatchRecord& record : result.records) {
+    result.doubts.push_back(
+        context->Get<uncertainty::DoubtfulSteps>()->CovarianceAt(record.time())(
+            2, 2));
+  }
   return result;
 }
 

@@ -39,6 +39,27 @@ TEST(SparseScansTest, GoodOdometryIsGivenCredit) {
   EXPECT_LT(along(15), 0.9 * along(2));
 }
 
+// A scan that hardly fits is where the odometry put it: the loop closure is told.
+TEST(SparseScansTest, AScanThatHardlyFitsIsDoubted) {
+  RunOptions options;
+  options.path = [](const double t) { return test::Path(0.5 * t); };
+  options.odometry = options.path;
+  options.has_scan = [](const double t) {
+    return std::abs(std::remainder(t, 2.)) < 0.01;
+  };
+  options.is_crowded = [](const double t) { return std::abs(t - 30.) < 0.01; };
+  options.seconds = 40.;
+  const RunResult result = RunDrive(options);
+  ASSERT_EQ(result.records.size(), 21u);
+  for (size_t i = 0; i < result.records.size(); ++i) {
+    if (i == 15) {
+      EXPECT_GT(result.doubts[i], 1e-6) << result.records[i].score();
+    } else {
+      EXPECT_EQ(result.doubts[i], 0.) << i << " " << result.records[i].score();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace front_end
 }  // namespace cartographer_ext
