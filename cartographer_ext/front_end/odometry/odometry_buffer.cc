@@ -38,6 +38,8 @@ bool OdometryBuffer::Add(const double time, const Pose2& pose) {
     return false;
   }
   if (!readings_.empty() && time <= readings_.back().time) return false;
+  has_moved_ = has_moved_ ||
+               (!readings_.empty() && !IsSame(readings_.back().pose, pose));
   readings_.push_back({time, pose});
   // The reading before the span stays, so that all of it can be interpolated.
   while (readings_.size() > 2 && readings_[1].time < time - seconds_) {

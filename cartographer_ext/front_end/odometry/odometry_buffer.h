@@ -56,6 +56,9 @@ class OdometryBuffer {
   // which the interval from `from` to `to` lies, or a part of it.
   bool HasJump(double from, double to, const OdometryJump& jump) const;
 
+  // Whether any two readings so far differed.
+  bool has_moved() const { return has_moved_; }
+
   // Median time between the last readings, seconds; 0 with fewer than two.
   double MedianInterval() const;
 
@@ -77,6 +80,7 @@ class OdometryBuffer {
   const size_t max_readings_;
   const double max_extrapolation_;
   std::deque<Reading> readings_;
+  bool has_moved_ = false;
 };
 
 }  // namespace front_end

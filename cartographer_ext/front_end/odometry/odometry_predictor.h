@@ -89,12 +89,13 @@ class OdometryPredictor {
   // for matches with an observable rotation.
   void AddMatch(double from, double to, const Pose2& match);
 
-  // Updates the calibration.
   // Of the readings between two scans.
   bool HasJump(double from, double to, const OdometryJump& jump) const {
     return buffer_.HasJump(from - time_offset(), to - time_offset(), jump);
   }
+  bool has_moved() const { return buffer_.has_moved(); }
 
+  // Updates the calibration.
   void Calibrate(const CalibrationInterval& interval) {
     calibration_.Add(interval);
   }
