@@ -101,7 +101,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   if (has_imu) PredictByImu(interval, imu, &prediction);
 
   OdometryMotion odometry;
-  if (IsOdometryDead()) return prediction;
+  if (!odometry_.has_moved()) return prediction;
   if (IntegrateOdometry(last_time_, time, &odometry)) {
     PredictByOdometry(time, odometry, has_imu, &prediction);
   } else {
@@ -290,7 +290,7 @@ bool MotionPredictor::HasJump(const double time) const {
 bool MotionPredictor::IsStationary(const double time,
                                    const Pose2& match) const {
   OdometryMotion odometry;
-  return monitor_.IsTrusted() && !IsOdometryDead() &&
+  return monitor_.IsTrusted() &&
          IntegrateOdometry(last_time_, time, &odometry) && !odometry.is_late &&
          std::hypot(odometry.motion.x, odometry.motion.y) <
              kStationaryWheelMotion &&
@@ -392,14 +392,13 @@ OdometryState MotionPredictor::Compare(
     comparison.inertial_speed_change = imu.speed_change;
   }
   const OdometryState state = monitor_.Add(comparison);
-  was_stale_ = was_stale_ || state == OdometryState::kStale;
 
   CalibrationInterval interval;
   interval.time = time;
   interval.interval = comparison.interval;
   interval.odometry = odometry.raw;
   interval.match = uncompared_.motion;
-  interval.is_sound = state == OdometryState::kOk && !IsOdometryDead();
+  interval.is_sound = state == OdometryState::kOk && odometry_.has_moved();
   interval.translation_observable = uncompared_.translation_observable;
   interval.rotation_observable = uncompared_.rotation_observable;
   interval.covariance = uncompared_.covariance;

@@ -28,13 +28,9 @@ TEST(DeadOdometryTest, IsNotUsed) {
   RunOptions options = AfterARest();
   options.odometry = [](const double) { return Pose2(); };
   const RunResult result = RunDrive(options);
-  int num_by_odometry = 0;
   for (const proto::MatchRecord& record : result.records) {
-    num_by_odometry += record.source() == proto::MatchRecord::ODOMETRY;
+    EXPECT_NE(record.source(), proto::MatchRecord::ODOMETRY);
   }
-  // While it stood, and until it was clear that it moved.
-  EXPECT_GT(num_by_odometry, 45);
-  EXPECT_LT(num_by_odometry, 80);
   EXPECT_LT(result.max_error, 0.1);
 }
 
