@@ -101,9 +101,12 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   if (has_imu) PredictByImu(interval, imu, &prediction);
 
   OdometryMotion odometry;
-  if (!odometry_.has_moved()) return prediction;
+  if (IsOdometryDead()) return prediction;
   if (IntegrateOdometry(last_time_, time, &odometry)) {
     PredictByOdometry(time, odometry, has_imu, &prediction);
+    if (!odometry_.has_moved()) {
+      prediction.covariance += WideCovariance(interval);
+    }
   } else {
     prediction.odometry_pending =
         prediction.source == PredictionSource::kNothing &&
@@ -290,7 +293,7 @@ bool MotionPredictor::HasJump(const double time) const {
 bool MotionPredictor::IsStationary(const double time,
                                    const Pose2& match) const {
   OdometryMotion odometry;
-  return monitor_.IsTrusted() &&
+  return monitor_.IsTrusted() && !IsOdometryDead() &&
          IntegrateOdometry(last_time_, time, &odometry) && !odometry.is_late &&
          std::hypot(odometry.motion.x, odometry.motion.y) <
              kStationaryWheelMotion &&
@@ -392,6 +395,7 @@ OdometryState MotionPredictor::Compare(
     comparison.inertial_speed_change = imu.speed_change;
   }
   const OdometryState state = monitor_.Add(comparison);
+  was_stale_ = was_stale_ || state == OdometryState::kStale;
 
   CalibrationInterval interval;
   interval.time = time;

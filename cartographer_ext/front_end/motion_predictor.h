@@ -20,8 +20,9 @@
 // motions to search around; the match then decides between them.
 //
 // Odometry that has repeated its first pose ever since may be dead (no encoder, a
-// driver that publishes zeros). It predicts nothing until it moves: to say that
-// the robot stands still it would hold the matches of one that drives.
+// driver that publishes zeros). That the robot stands still it says without weight,
+// so that it does not hold the matches of one that drives, and once the robot has
+// moved it is not used until it moves, too.
 //
 // Scans matched against the same submap have correlated errors: against a map
 // of few scans, every match may fall a little short of the true motion, and the
@@ -181,6 +182,7 @@ class MotionPredictor {
   double SpeedChange(double interval, const ImuMotion& imu) const;
   // Whether odometry jumped since the last scan.
   bool HasJump(double time) const;
+  bool IsOdometryDead() const { return was_stale_ && !odometry_.has_moved(); }
   // The wheels do not move, and the match only by its noise.
   bool IsStationary(double time, const Pose2& match) const;
 
@@ -197,6 +199,7 @@ class MotionPredictor {
   ImuPredictor imu_;
   DeadReckoning reckoning_;
   OdometryMonitor monitor_;
+  bool was_stale_ = false;  // odometry, at any time
   OdometryNoiseScale noise_scale_;
   double field_of_view_scale_ = 1.;
   bool has_match_ = false;
