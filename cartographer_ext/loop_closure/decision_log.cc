@@ -73,7 +73,20 @@ void AddFusion(const LoopDecision& decision, Line* const line) {
   }
 }
 
-std::string CsvLine(const LoopDecision& decision) {
+}  // namespace
+
+void AppendDecision(const LoopDecision& decision, std::string* const bytes) {
+  AppendDelimited(decision, bytes);
+}
+
+absl::StatusOr<std::vector<LoopDecision>> ParseDecisions(
+    const absl::string_view bytes) {
+  return ParseDelimited<LoopDecision>(bytes, "decision record");
+}
+
+absl::string_view DecisionCsvHead() { return kHead; }
+
+std::string DecisionCsvRow(const LoopDecision& decision) {
   Line line;
   line.Integer(decision.candidate());
   line.Integer(decision.submap_trajectory_id());
@@ -148,27 +161,10 @@ std::string CsvLine(const LoopDecision& decision) {
   return line.Join();
 }
 
-}  // namespace
-
-void AppendDecision(const LoopDecision& decision, std::string* const bytes) {
-  AppendDelimited(decision, bytes);
-}
-
-absl::StatusOr<std::vector<LoopDecision>> ParseDecisions(
-    const absl::string_view bytes) {
-  return ParseDelimited<LoopDecision>(bytes, "decision record");
-}
-
-absl::string_view DecisionCsvHead() { return kHead; }
-
-std::string DecisionCsvRow(const LoopDecision& decision) {
-  return CsvLine(decision);
-}
-
 std::string DecisionCsvRows(const std::vector<LoopDecision>& decisions) {
   std::string rows;
   for (const LoopDecision& decision : decisions) {
-    absl::StrAppend(&rows, CsvLine(decision));
+    absl::StrAppend(&rows, DecisionCsvRow(decision));
   }
   return rows;
 }
