@@ -5,9 +5,7 @@
 //
 // cartographer_ext_evaluate: how good is a map?
 #include <iostream>
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -21,11 +19,9 @@
 #include "cartographer_ext/collection/map_files.h"
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
-#include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/io/relations_file.h"
-#include "cartographer_ext/io/trajectory_file.h"
-#include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/map/verdict/decision_table.h"
+#include "cartographer_ext/map/verdict/evaluation_inputs.h"
 #include "cartographer_ext/map/verdict/evaluation_report.h"
 #include "cartographer_ext/map/verdict/map_evaluation.h"
 #include "cartographer_ext/map/verdict/map_relations.h"
@@ -126,45 +122,18 @@ The relations metric is that of Cartographer's compute_relations_metrics;
 relations more than a minute apart close loops and are listed separately,
 because a folded map looks fine in the others.)";
 
-struct Inputs {
-  absl::optional<io::Pbstream> pbstream;
-  evaluation::MapGraph graph;
-  evaluation::MapContents contents;
-  std::map<int, evaluation::Trajectory> odometry;
-  absl::optional<evaluation::Trajectory> trajectory;
-  evaluation::GroundTruth truth;
-};
+using evaluation::EvaluationInputs;
 
-absl::Status ReadInputs(Inputs* const inputs) {
-  if (!FLAGS_pbstream_filename.empty()) {
-    evaluation::MapContentsOptions options;
-    // Only re-runs need the grids as they are stored.
-    options.keep_grids = !FLAGS_rerun_configuration_directory.empty();
-    auto map = evaluation::ReadMapFile(FLAGS_pbstream_filename, options);
-    if (!map.ok()) return map.status();
-    inputs->pbstream = std::move(map->pbstream);
-    inputs->contents = std::move(map->contents);
-    inputs->graph = evaluation::MakeMapGraph(*inputs->pbstream);
-    inputs->odometry = evaluation::ReadOdometry(*inputs->pbstream);
-  }
-  if (!FLAGS_trajectory_filename.empty()) {
-    auto poses = io::ReadTumTrajectory(FLAGS_trajectory_filename);
-    if (!poses.ok()) return poses.status();
-    inputs->trajectory = evaluation::Trajectory(*std::move(poses));
-  }
-  if (!FLAGS_relations_filename.empty()) {
-    auto relations = io::ReadRelations(FLAGS_relations_filename);
-    if (!relations.ok()) return relations.status();
-    inputs->truth.relations = *std::move(relations);
-    inputs->truth.relations_name = FLAGS_relations_filename;
-  }
-  if (!FLAGS_reference_trajectory_filename.empty()) {
-    auto poses = io::ReadTumTrajectory(FLAGS_reference_trajectory_filename);
-    if (!poses.ok()) return poses.status();
-    inputs->truth.reference = evaluation::Trajectory(*std::move(poses));
-    inputs->truth.reference_name = FLAGS_reference_trajectory_filename;
-  }
-  return absl::OkStatus();
+absl::StatusOr<EvaluationInputs> ReadInputs() {
+  evaluation::EvaluationFiles files;
+  files.pbstream = FLAGS_pbstream_filename;
+  files.trajectory = FLAGS_trajectory_filename;
+  files.relations = FLAGS_relations_filename;
+  files.reference_trajectory = FLAGS_reference_trajectory_filename;
+  evaluation::EvaluationUses uses;
+  uses.contents = FLAGS_self_consistency || !FLAGS_report_filename.empty();
+  uses.stored_grids = !FLAGS_rerun_configuration_directory.empty();
+  return evaluation::ReadEvaluationInputs(files, uses);
 }
 
 evaluation::MapEvaluationOptions EvaluationOptions(
@@ -190,7 +159,7 @@ std::string BesideReport(const std::string& ending) {
                       ending);
 }
 
-absl::Status WriteTables(const Inputs& inputs,
+absl::Status WriteTables(const EvaluationInputs& inputs,
                          const evaluation::Evaluation& result) {
   if (!FLAGS_constraints_filename.empty()) {
     const absl::Status status = WriteFileAtomically(
@@ -230,7 +199,7 @@ absl::Status WriteReport(const report::ReportData& data,
   return status;
 }
 
-absl::Status WriteMapRelations(const Inputs& inputs,
+absl::Status WriteMapRelations(const EvaluationInputs& inputs,
                                const evaluation::Evaluation& result) {
   if (FLAGS_write_relations.empty()) return absl::OkStatus();
   const auto relations = evaluation::MakeRelationsIfSound(
@@ -245,7 +214,8 @@ absl::Status WriteMapRelations(const Inputs& inputs,
 
 // The runs over the map, for the report and the JSON. A map that cannot be run
 // again still has its report: `run_again` says why.
-absl::Status RunAgain(const Inputs& inputs, report::ReportData* const data,
+absl::Status RunAgain(const EvaluationInputs& inputs,
+                      report::ReportData* const data,
                       absl::Status* const run_again) {
   report::RunInputs runs;
   runs.pbstream = &*inputs.pbstream;
@@ -312,10 +282,10 @@ absl::Status RunOne(const std::string& command_line, bool* const fails) {
   const absl::Status writable = CheckOutputs();
   if (!writable.ok()) return writable;
   AtomicFileSet files;
-  Inputs inputs;
   auto step = tools::ShowStep("judging the map");
-  const absl::Status read = ReadInputs(&inputs);
-  if (!read.ok()) return read;
+  const auto read = ReadInputs();
+  if (!read.ok()) return read.status();
+  const EvaluationInputs& inputs = *read;
 
   evaluation::MapToEvaluate map;
   const bool has_map = inputs.pbstream.has_value();
