@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -21,6 +22,7 @@ constexpr int kMinPixels = 64;
 constexpr double kMargin = 24.;  // pixels
 constexpr double kLegendTextSize = 16.;
 constexpr double kUnknownGrey = 0.88;
+constexpr int kBytesPerPixel = 4;
 
 // 1, 2 or 5 times a power of ten, at most `limit`.
 double RoundLength(double limit) {
@@ -39,6 +41,29 @@ cairo_status_t WriteToStream(void* closure, const unsigned char* data,
 }
 
 bool IsFinite(const Eigen::Vector2d& point) { return point.allFinite(); }
+
+// Makes the cells of a map pixels of CAIRO_FORMAT_RGB24, in their place: of a
+// large map, there is no room for both. Row 0 of a picture is the top.
+unsigned char* ToPixels(OccupancyMap* const map) {
+  static_assert(sizeof(float) == kBytesPerPixel, "a pixel replaces a cell");
+  unsigned char* const bytes =
+      reinterpret_cast<unsigned char*>(map->occupancy.data());
+  for (size_t i = 0; i != map->occupancy.size(); ++i) {
+    const double occupancy = map->occupancy[i];
+    const double grey = std::isnan(occupancy)
+                            ? kUnknownGrey
+                            : 1. - std::min(1., std::max(0., occupancy));
+    const uint32_t value = static_cast<uint32_t>(std::lround(255. * grey));
+    const uint32_t pixel = value << 16 | value << 8 | value;
+    std::memcpy(bytes + kBytesPerPixel * i, &pixel, kBytesPerPixel);
+  }
+  const size_t stride = kBytesPerPixel * static_cast<size_t>(map->width);
+  for (int y = 0; y < map->height / 2; ++y) {
+    unsigned char* const row = bytes + stride * y;
+    std::swap_ranges(row, row + stride, bytes + stride * (map->height - 1 - y));
+  }
+  return bytes;
+}
 
 }  // namespace
 
@@ -161,7 +186,7 @@ class Picture::Canvas {
     cairo_fill(context_);
   }
 
-  void DrawMap(const OccupancyMap& map);
+  void DrawMap(OccupancyMap map);
   void DrawTitle();
   void DrawLegend();
   void DrawScaleBar();
@@ -187,35 +212,19 @@ class Picture::Canvas {
   cairo_t* context_;
 };
 
-void Picture::Canvas::DrawMap(const OccupancyMap& map) {
+void Picture::Canvas::DrawMap(OccupancyMap map) {
   if (map.width < 1 || map.height < 1 || !(map.resolution > 0.) ||
       map.occupancy.size() != static_cast<size_t>(map.width) * map.height) {
     return;
   }
-  // One pixel a cell; cairo scales it. Row 0 of the picture is the top.
-  cairo_surface_t* const cells =
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, map.width, map.height);
+  // One pixel a cell; cairo scales it.
+  cairo_surface_t* const cells = cairo_image_surface_create_for_data(
+      ToPixels(&map), CAIRO_FORMAT_RGB24, map.width, map.height,
+      kBytesPerPixel * map.width);
   if (cairo_surface_status(cells) != CAIRO_STATUS_SUCCESS) {
     cairo_surface_destroy(cells);
     return;
   }
-  cairo_surface_flush(cells);
-  unsigned char* const data = cairo_image_surface_get_data(cells);
-  const int stride = cairo_image_surface_get_stride(cells);
-  for (int y = 0; y < map.height; ++y) {
-    uint32_t* const row = reinterpret_cast<uint32_t*>(
-        data + static_cast<size_t>(map.height - 1 - y) * stride);
-    for (int x = 0; x < map.width; ++x) {
-      const double occupancy = map.at(x, y);
-      const double grey = std::isnan(occupancy)
-                              ? kUnknownGrey
-                              : 1. - std::min(1., std::max(0., occupancy));
-      const uint32_t value = static_cast<uint32_t>(std::lround(255. * grey));
-      row[x] = value << 16 | value << 8 | value;
-    }
-  }
-  cairo_surface_mark_dirty(cells);
-
   const Eigen::Vector2d corner = ToPixel(map.origin.translation());
   cairo_save(context_);
   cairo_translate(context_, corner.x(), corner.y());
@@ -294,7 +303,7 @@ Picture::~Picture() = default;
 int Picture::width() const { return canvas_->width(); }
 int Picture::height() const { return canvas_->height(); }
 
-void Picture::DrawMap(const OccupancyMap& map) { canvas_->DrawMap(map); }
+void Picture::DrawMap(OccupancyMap map) { canvas_->DrawMap(std::move(map)); }
 
 void Picture::DrawPolyline(const std::vector<Eigen::Vector2d>& points,
                            const LineStyle& style) {

@@ -8,7 +8,7 @@
 //   PictureBounds bounds;
 //   bounds.Add(map);
 //   Picture picture(bounds);
-//   picture.DrawMap(map);
+//   picture.DrawMap(std::move(map));
 //   picture.DrawPolyline(points, {palette::kBlue, 2.});
 //   picture.AddLegend("trajectory", palette::kBlue);
 //   status = picture.Write("map.png");
@@ -75,8 +75,9 @@ class Picture {
   int width() const;
   int height() const;
 
-  // Occupied black, free white, unknown light grey.
-  void DrawMap(const OccupancyMap& map);
+  // Occupied black, free white, unknown light grey. No copy is made of a map
+  // that is moved: its cells become the pixels.
+  void DrawMap(OccupancyMap map);
   // Breaks the line at points that are not finite.
   void DrawPolyline(const std::vector<Eigen::Vector2d>& points,
                     const LineStyle& style);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "cartographer_ext/io/picture.h"
@@ -76,7 +77,7 @@ void DrawMarks(const MapGraph& graph, io::Picture* const picture) {
 
 }  // namespace
 
-absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
+absl::Status WriteMapPicture(io::OccupancyMap map, const MapGraph& graph,
                              const std::string& title,
                              const std::string& filename) {
   io::PictureBounds bounds;
@@ -85,7 +86,7 @@ absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
     bounds.Add(entry.second.global_pose.translation());
   }
   io::Picture picture(bounds);
-  picture.DrawMap(map);
+  picture.DrawMap(std::move(map));
 
   const auto inserted = graph.InsertedNodes();
   // Consistent loops first, so that the others are drawn over them.

@@ -16,8 +16,8 @@ namespace evaluation {
 // constraints as lines from submap to node: those with a residual of at most
 // half a metre in one colour, the others in another. Nodes marked by
 // MarkMatches get a dash along the degenerate direction of their scan, or a dot
-// for an odometry fault. Atomically.
-absl::Status WriteMapPicture(const io::OccupancyMap& map, const MapGraph& graph,
+// for an odometry fault. Atomically. No copy is made of a map that is moved.
+absl::Status WriteMapPicture(io::OccupancyMap map, const MapGraph& graph,
                              const std::string& title,
                              const std::string& filename);
 

@@ -71,7 +71,7 @@ constexpr char kDescription[] =
 
 absl::Status ExportMap(const io::Pbstream& pbstream,
                        const evaluation::MapGraph& graph) {
-  const auto map = evaluation::PaintPbstreamMap(pbstream, FLAGS_resolution);
+  auto map = evaluation::PaintPbstreamMap(pbstream, FLAGS_resolution);
   if (!map.ok()) {
     return absl::Status(
         map.status().code(),
@@ -82,7 +82,7 @@ absl::Status ExportMap(const io::Pbstream& pbstream,
     if (!status.ok()) return status;
   }
   if (!FLAGS_picture_filename.empty()) {
-    return evaluation::WriteMapPicture(*map, graph,
+    return evaluation::WriteMapPicture(*std::move(map), graph,
                                        tools::BaseName(FLAGS_pbstream_filename),
                                        FLAGS_picture_filename);
   }

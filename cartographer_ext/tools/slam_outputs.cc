@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -184,15 +185,16 @@ absl::Status WritePaintedMap(
   if (FLAGS_map_filestem.empty() && FLAGS_picture_filename.empty()) {
     return absl::OkStatus();
   }
-  const auto map = paint(FLAGS_resolution);
+  auto map = paint(FLAGS_resolution);
   if (!map.ok()) return map.status();
   if (!FLAGS_map_filestem.empty()) {
     const absl::Status status = io::WriteOccupancyMap(*map, FLAGS_map_filestem);
     if (!status.ok()) return status;
   }
   if (!FLAGS_picture_filename.empty()) {
-    return evaluation::WriteMapPicture(
-        *map, graph, BaseName(FLAGS_input_filename), FLAGS_picture_filename);
+    return evaluation::WriteMapPicture(*std::move(map), graph,
+                                       BaseName(FLAGS_input_filename),
+                                       FLAGS_picture_filename);
   }
   return absl::OkStatus();
 }

@@ -3,8 +3,10 @@
 #include "cartographer_ext/io/picture.h"
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cairo.h"
@@ -94,6 +96,37 @@ TEST(PictureTest, TurnedMap) {
   const Png png(file.path());
   EXPECT_EQ(png.at(24 + 150, 24 + 150), 0x000000u);
   EXPECT_EQ(png.at(24 + 250, 24 + 150), 0xffffffu);
+}
+
+// Bytes, by the system; -1 if it does not tell.
+int64_t PeakMemory() {
+  std::ifstream file("/proc/self/status");
+  for (std::string word; file >> word;) {
+    int64_t kilobytes;
+    if (word == "VmHWM:" && file >> kilobytes) return 1024 * kilobytes;
+  }
+  return -1;
+}
+
+// False if the system does not do so.
+bool ResetPeakMemory() {
+  std::ofstream file("/proc/self/clear_refs");
+  file << "5";
+  file.close();
+  return file.good();
+}
+
+TEST(PictureTest, AMapThatIsMovedIsNotCopied) {
+  OccupancyMap map = OccupancyMap::Make(6000, 3000, 0.05, Pose2());
+  const int64_t size = sizeof(float) * map.occupancy.size();
+  PictureBounds bounds;
+  bounds.Add(map);
+  Picture picture(bounds, 600);
+  if (!ResetPeakMemory()) GTEST_SKIP() << "no peak of memory";
+  const int64_t before = PeakMemory();
+  ASSERT_GT(before, size);
+  picture.DrawMap(std::move(map));
+  EXPECT_LT(PeakMemory() - before, size / 2);
 }
 
 TEST(PictureTest, SurvivesStrangeInput) {
