@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "absl/strings/str_format.h"
+#include "cartographer_ext/io/pbstream/grid_validation.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -35,34 +35,8 @@ constexpr int TileLayout::kSide;
 constexpr int TileLayout::kArea;
 constexpr uint32_t SubmapGrid::kUnknown;
 
-absl::Status CheckGrid(const Grid2D& grid) {
-  const int64_t num_x = grid.limits().cell_limits().num_x_cells();
-  const int64_t num_y = grid.limits().cell_limits().num_y_cells();
-  if (num_x < 0 || num_y < 0 || num_x * num_y != grid.cells_size()) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("the grid has %d cells but limits of %d x %d",
-                        grid.cells_size(), num_x, num_y));
-  }
-  if (!(grid.limits().resolution() > 0.) ||
-      !std::isfinite(grid.limits().resolution()) ||
-      !std::isfinite(grid.limits().max().x()) ||
-      !std::isfinite(grid.limits().max().y())) {
-    return absl::InvalidArgumentError(
-        "the grid's resolution or corner is out of range");
-  }
-  const double lower = grid.min_correspondence_cost();
-  const double upper = grid.max_correspondence_cost();
-  if (!grid.has_tsdf_2d() && !(lower == 0. && upper == 0.) &&
-      !(lower > 0. && lower < upper && upper < 1.)) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "the grid's correspondence costs %g to %g are not within (0, 1)", lower,
-        upper));
-  }
-  return absl::OkStatus();
-}
-
 absl::StatusOr<SubmapGrid> SubmapGrid::Make(const Grid2D& grid) {
-  const absl::Status status = CheckGrid(grid);
+  const absl::Status status = io::CheckGridLayout(grid);
   if (!status.ok()) return status;
   return SubmapGrid(grid);
 }

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "Eigen/Core"
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer/mapping/proto/grid_2d.pb.h"
 
@@ -78,12 +77,9 @@ class TileLayout {
   int per_row_;
 };
 
-// An error if sizes or limits of the grid are invalid.
-absl::Status CheckGrid(const cartographer::mapping::proto::Grid2D& grid);
-
 class SubmapGrid {
  public:
-  // An error where CheckGrid has one.
+  // An error where io::CheckGridLayout has one.
   static absl::StatusOr<SubmapGrid> Make(
       const cartographer::mapping::proto::Grid2D& grid);
 

@@ -21,11 +21,11 @@
 #include "cartographer/mapping/internal/2d/scan_matching/ceres_scan_matcher_2d.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/mapping/value_conversion_tables.h"
+#include "cartographer_ext/io/pbstream/grid_validation.h"
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/dropin/submap_matcher.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/loop_closure/verification/temporal_verification.h"
-#include "cartographer_ext/map/submap_grid.h"
 
 namespace cartographer_ext {
 namespace repair {
@@ -94,8 +94,10 @@ class StoredMap {
     }
     for (const auto& record : pbstream.submaps) {
       const auto& submap = record.submap_2d();
-      if (!submap.has_grid() || !evaluation::CheckGrid(submap.grid()).ok())
+      if (!submap.has_grid() ||
+          !io::FindGridProblems(submap.grid(), "").empty()) {
         continue;
+      }
       submaps_[{record.submap_id().trajectory_id(),
                 record.submap_id().submap_index()}] = &submap;
     }

@@ -22,7 +22,8 @@ class GridChecker {
  public:
   explicit GridChecker(const std::string& name) : name_(name) {}
 
-  void Check(const mapping::Grid2D& grid) {
+  // False if there is no use in looking at the cells.
+  bool CheckLayout(const mapping::Grid2D& grid) {
     const mapping::MapLimits& limits = grid.limits();
     Expect(std::isfinite(limits.resolution()) && limits.resolution() > 1e-6 &&
                limits.resolution() < 1e6,
@@ -34,22 +35,30 @@ class GridChecker {
     const int64_t height = limits.cell_limits().num_y_cells();
     if (!Expect(width > 0 && height > 0 && width <= kMaxCells / height,
                 " has the size ", width, " x ", height)) {
-      return;
+      return false;
     }
     Expect(grid.cells_size() == width * height, " has ", grid.cells_size(),
            " cells instead of ", width, " x ", height);
-    CheckCellValues(grid.cells(), "a cell");
     const float min = grid.min_correspondence_cost();
     const float max = grid.max_correspondence_cost();
-    // Both are zero in old files.
-    Expect((min == 0.f && max == 0.f) ||
-               (std::isfinite(min) && std::isfinite(max) && min < max),
+    // Both are zero in old files. Those of a TSDF are distances.
+    const bool possible = grid.has_tsdf_2d()
+                              ? std::isfinite(min) && std::isfinite(max)
+                              : min > 0.f && max < 1.f;
+    Expect((min == 0.f && max == 0.f) || (possible && min < max),
            " has correspondence costs between ", min, " and ", max);
+    return true;
+  }
+
+  void CheckCells(const mapping::Grid2D& grid) {
+    const auto& cell_limits = grid.limits().cell_limits();
+    CheckCellValues(grid.cells(), "a cell");
     if (grid.has_known_cells_box()) {
       const auto& box = grid.known_cells_box();
       Expect(box.min_x() >= 0 && box.min_x() <= box.max_x() &&
-                 box.max_x() < width && box.min_y() >= 0 &&
-                 box.min_y() <= box.max_y() && box.max_y() < height,
+                 box.max_x() < cell_limits.num_x_cells() && box.min_y() >= 0 &&
+                 box.min_y() <= box.max_y() &&
+                 box.max_y() < cell_limits.num_y_cells(),
              " has a box of known cells beyond its limits");
     }
     Expect(grid.grid_case() != mapping::Grid2D::GRID_NOT_SET,
@@ -93,10 +102,18 @@ class GridChecker {
 
 }  // namespace
 
+absl::Status CheckGridLayout(const mapping::Grid2D& grid) {
+  GridChecker checker("the grid");
+  checker.CheckLayout(grid);
+  const std::vector<std::string> problems = checker.TakeProblems();
+  return problems.empty() ? absl::OkStatus()
+                          : absl::InvalidArgumentError(problems.front());
+}
+
 std::vector<std::string> FindGridProblems(const mapping::Grid2D& grid,
                                           const std::string& name) {
   GridChecker checker(name);
-  checker.Check(grid);
+  if (checker.CheckLayout(grid)) checker.CheckCells(grid);
   return checker.TakeProblems();
 }
 

@@ -174,6 +174,11 @@ TEST(PbstreamValidationTest, ProblemsOfSubmaps) {
       "submap (0, 1) has correspondence costs between 0.95 and 0.9");
   ExpectProblem(
       [](Pbstream* p) {
+        SecondSubmap(p)->mutable_grid()->set_max_correspondence_cost(1.5f);
+      },
+      "submap (0, 1) has correspondence costs between 0.1 and 1.5");
+  ExpectProblem(
+      [](Pbstream* p) {
         auto* const tsdf = SecondSubmap(p)->mutable_grid()->mutable_tsdf_2d();
         tsdf->set_truncation_distance(0.3f);
         tsdf->set_max_weight(10.f);
