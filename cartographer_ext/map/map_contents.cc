@@ -56,6 +56,14 @@ void AddScans(const io::Pbstream& pbstream, const MapContentsOptions& options,
   }
 }
 
+// Nothing if the graph lacks the submap.
+void Place(const MapGraph& graph, const GraphId& id, const SubmapGrid& grid,
+           std::vector<PlacedGrid>* const placed) {
+  const auto poses = graph.submaps.find(id);
+  if (poses == graph.submaps.end()) return;
+  placed->push_back({&grid, MapFromLocal(poses->second)});
+}
+
 }  // namespace
 
 MapContents ReadMapContents(const io::Pbstream& pbstream,
@@ -108,9 +116,25 @@ absl::StatusOr<io::OccupancyMap> PaintContents(const MapGraph& graph,
                                                const double resolution) {
   std::vector<PlacedGrid> placed;
   for (const auto& submap : contents.submaps) {
-    const auto poses = graph.submaps.find(submap.first);
-    if (poses == graph.submaps.end()) continue;
-    placed.push_back({&submap.second.grid(), MapFromLocal(poses->second)});
+    Place(graph, submap.first, submap.second.grid(), &placed);
+  }
+  return PaintMap(placed, resolution);
+}
+
+MapGrids TakeGrids(MapContents contents) {
+  MapGrids grids;
+  for (auto& submap : contents.submaps) {
+    grids.emplace(submap.first, std::move(submap.second).TakeGrid());
+  }
+  return grids;
+}
+
+absl::StatusOr<io::OccupancyMap> PaintGrids(const MapGraph& graph,
+                                            const MapGrids& grids,
+                                            const double resolution) {
+  std::vector<PlacedGrid> placed;
+  for (const auto& grid : grids) {
+    Place(graph, grid.first, grid.second, &placed);
   }
   return PaintMap(placed, resolution);
 }

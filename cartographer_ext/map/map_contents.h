@@ -60,6 +60,16 @@ absl::StatusOr<io::OccupancyMap> PaintContents(const MapGraph& graph,
                                                const MapContents& contents,
                                                double resolution);
 
+// What is painted of the contents, the rest of which is freed: a picture of a
+// large map takes as much again.
+using MapGrids = std::map<GraphId, SubmapGrid>;
+MapGrids TakeGrids(MapContents contents);
+
+// As PaintContents.
+absl::StatusOr<io::OccupancyMap> PaintGrids(const MapGraph& graph,
+                                            const MapGrids& grids,
+                                            double resolution);
+
 // (map <- local frame of the trajectory), by the poses of a submap.
 Pose2 MapFromLocal(const GraphSubmap& submap);
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "Eigen/Core"
@@ -44,6 +45,7 @@ class SubmapCells {
   SubmapCells(SubmapGrid grid, double margin);
 
   const SubmapGrid& grid() const { return grid_; }
+  SubmapGrid TakeGrid() && { return std::move(grid_); }
   double resolution() const { return grid_.resolution(); }
   // Corners of the grid in the local frame of the trajectory, metres.
   Eigen::Vector2d min_corner() const { return grid_.min_corner(); }

@@ -26,7 +26,7 @@ absl::Status InFile(const std::string& filename, const absl::Status& status) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<const JudgedMap>> JudgeMap(
+absl::StatusOr<std::unique_ptr<JudgedMap>> JudgeMap(
     const std::string& pbstream_filename) {
   auto judged = std::make_unique<JudgedMap>();
   judged->filename = pbstream_filename;
@@ -49,7 +49,7 @@ absl::StatusOr<std::unique_ptr<const JudgedMap>> JudgeMap(
   auto evaluation = evaluation::EvaluateMap(map, {}, options);
   if (!evaluation.ok()) return InFile(pbstream_filename, evaluation.status());
   judged->evaluation = *std::move(evaluation);
-  return std::unique_ptr<const JudgedMap>(std::move(judged));
+  return judged;
 }
 
 absl::StatusOr<std::string> MakeMapPage(const JudgedMap& map,

@@ -26,7 +26,7 @@ struct JudgedMap {
 };
 
 // Errors name the file.
-absl::StatusOr<std::unique_ptr<const JudgedMap>> JudgeMap(
+absl::StatusOr<std::unique_ptr<JudgedMap>> JudgeMap(
     const std::string& pbstream_filename);
 
 // The page of a map, with the records of loop closure and local SLAM beside it,

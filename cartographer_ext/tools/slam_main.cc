@@ -202,12 +202,16 @@ absl::Status WriteReport(const evaluation::MapGraph& graph,
   if (!page.ok()) return page.status();
   const std::string text = evaluation::ToText((*map)->evaluation);
   (*json)["evaluation"] = evaluation::ToJson((*map)->evaluation);
+  const evaluation::MapGraph stored = std::move((*map)->graph);
+  evaluation::MapGrids grids =
+      evaluation::TakeGrids(std::move((*map)->contents));
+  map->reset();
+  GiveBackMemory();
   const absl::Status painted =
-      tools::WritePaintedMap(graph, [&map](const double resolution) {
-        auto painted = evaluation::PaintContents((*map)->graph,
-                                                 (*map)->contents, resolution);
-        map->reset();
-        GiveBackMemory();  // a picture of a large map takes as much again
+      tools::WritePaintedMap(graph, [&](const double resolution) {
+        auto painted = evaluation::PaintGrids(stored, grids, resolution);
+        grids.clear();
+        GiveBackMemory();
         return painted;
       });
   step.reset();

@@ -127,6 +127,33 @@ TEST(MapContentsTest, ReadsAFileInPieces) {
   EXPECT_TRUE(absl::IsNotFound(ReadMapFile(filename, {}).status()));
 }
 
+// Of a map that is to be painted alone.
+TEST(MapContentsTest, TakesTheGrids) {
+  Grid2D grid = FreeGrid();
+  Set(2, 1, 1, &grid);
+  MapContents contents;
+  contents.submaps.emplace(GraphId{0, 3},
+                           SubmapCells(*SubmapGrid::Make(grid), 0.1));
+  MapGraph graph;
+  graph.submaps[{0, 3}].global_pose = Pose2(10., 0., 0.);
+  const auto expected = PaintContents(graph, contents, 0.05);
+  ASSERT_TRUE(expected.ok()) << expected.status();
+  const MapGrids grids = TakeGrids(std::move(contents));
+  ASSERT_EQ(grids.size(), 1u);
+  EXPECT_GT(grids.at({0, 3}).num_known(), 0);
+  const auto painted = PaintGrids(graph, grids, 0.05);
+  ASSERT_TRUE(painted.ok()) << painted.status();
+  ASSERT_EQ(painted->occupancy.size(), expected->occupancy.size());
+  for (size_t i = 0; i < expected->occupancy.size(); ++i) {
+    if (std::isnan(expected->occupancy[i])) {
+      EXPECT_TRUE(std::isnan(painted->occupancy[i]));
+    } else {
+      EXPECT_EQ(painted->occupancy[i], expected->occupancy[i]);
+    }
+  }
+  EXPECT_FALSE(PaintGrids(MapGraph(), grids, 0.05).ok());
+}
+
 TEST(MapContentsTest, PaintsWhatGraphAndContentsShare) {
   Grid2D grid = FreeGrid();
   Set(2, 1, 1, &grid);
