@@ -28,6 +28,7 @@
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/simulation/world_source.h"
+#include "glog/logging.h"
 #include "tests/mutation.h"
 
 namespace cartographer_ext {
@@ -53,11 +54,19 @@ bool ReadWorld(const std::string& name) {
   return Drain(simulation::OpenWorld(name, 1));
 }
 
+// Both ways of reading: whole, and each grid alone. The map is then painted.
 bool ReadMap(const std::string& name) {
-  const auto pbstream = io::ReadPbstream(name);
-  if (!pbstream.ok()) return false;
-  evaluation::MakeMapGraph(*pbstream);
-  evaluation::ReadMapContents(*pbstream, {});
+  constexpr double kResolution = 0.05;  // metres
+  const auto whole = io::ReadPbstream(name);
+  const auto map = evaluation::ReadMapFile(name, {});
+  CHECK_EQ(whole.ok(), map.ok());
+  if (!map.ok()) return false;
+  const auto graph = evaluation::MakeMapGraph(map->pbstream);
+  const auto contents = evaluation::ReadMapContents(*whole, {});
+  CHECK(evaluation::LoopScores(graph, map->contents) ==
+        evaluation::LoopScores(graph, contents));
+  CHECK_EQ(evaluation::PaintContents(graph, map->contents, kResolution).ok(),
+           evaluation::PaintContents(graph, contents, kResolution).ok());
   return true;
 }
 
