@@ -5,6 +5,9 @@
 #ifndef CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_
 #define CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_
 
+#include <algorithm>
+#include <cstdint>
+
 #include "Eigen/Geometry"
 #include "cartographer/common/time.h"
 #include "cartographer/transform/rigid_transform.h"
@@ -26,10 +29,15 @@ inline cartographer::common::Time ToHostTime(const io::TimeNs time) {
       cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000LL);
 }
 
+// A file may hold any number: those more than 146 years from 1970 become the
+// nearest that is not, so that the difference of two can be represented.
 inline io::TimeNs FromHostTicks(const int64_t universal_ticks) {
-  return (universal_ticks -
-          cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds *
-              10000000LL) *
+  constexpr int64_t kMaxTicks = (int64_t{1} << 62) / 100;
+  constexpr int64_t kUnixEpoch =
+      cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000LL;
+  return (std::clamp(universal_ticks, kUnixEpoch - kMaxTicks,
+                     kUnixEpoch + kMaxTicks) -
+          kUnixEpoch) *
          100;
 }
 

@@ -3,6 +3,8 @@
 #include "cartographer_ext/map/pbstream_map.h"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "cartographer_ext/map/host_types.h"
 #include "gtest/gtest.h"
@@ -61,6 +63,20 @@ io::Pbstream OneNode() {
   constraint->set_translation_weight(500.);
   constraint->set_rotation_weight(1600.);
   return state;
+}
+
+// Of a file that holds any number.
+TEST(PbstreamMapTest, StampsFarFromOursAreBounded) {
+  constexpr int64_t kMin = std::numeric_limits<int64_t>::min();
+  constexpr int64_t kMax = std::numeric_limits<int64_t>::max();
+  constexpr int64_t kUnixEpoch = int64_t{719162} * 86400 * 10000000;
+  EXPECT_EQ(FromHostTicks(kUnixEpoch), 0);
+  EXPECT_EQ(FromHostTicks(kUnixEpoch - 15), -1500);
+  const io::TimeNs first = FromHostTicks(kMin), last = FromHostTicks(kMax);
+  EXPECT_EQ(FromHostTicks(0), first);
+  EXPECT_LT(first, FromHostTicks(kUnixEpoch - 4000000000 * 10000000));
+  EXPECT_GT(last, FromHostTicks(kUnixEpoch + 4000000000 * 10000000));
+  EXPECT_GT(last - first, 0);
 }
 
 TEST(PbstreamMapTest, NodesStandForTheTrackingFrame) {
