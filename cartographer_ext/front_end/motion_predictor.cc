@@ -43,17 +43,16 @@ constexpr double kRelativeSpeedError = 0.2;
 constexpr double kLongestStop = 5.;
 // Odometry that is faster than the robot ever was by this factor jumped.
 constexpr double kFasterThanTheRobot = 1.5;
-// Longer intervals are bridged by dead reckoning, seconds.
-constexpr double kReckonedInterval = 1.;
-// Least speed by which the age of the map that a scan sees is computed, m/s.
-constexpr double kMinSpeed = 0.1;
+constexpr double kReckonedInterval = 1.;  // s, by dead reckoning if longer
+constexpr double kMinSpeed = 0.1;  // m/s, for the age of the map that is seen
 // A submap of fewer scans is hardly more than the last scan, whose errors a match
 // repeats: no evidence of a bias of the gyroscope.
 constexpr int kMinScansInMap = 10;
 
-// The second moment of an error of `difference`.
-Eigen::Matrix3d Spread(const Pose2& difference) {
-  const Eigen::Vector3d d(difference.x, difference.y, difference.theta);
+// The second moment of an error that is the difference of two motions.
+Eigen::Matrix3d Spread(const Pose2& a, const Pose2& b) {
+  const Eigen::Vector3d d(b.x - a.x, b.y - a.y,
+                          NormalizeAngle(b.theta - a.theta));
   return d.cwiseAbs2().asDiagonal();
 }
 
@@ -208,9 +207,7 @@ void MotionPredictor::PredictByOdometry(
     // Of the rotation nothing is in doubt that the gyroscope has measured.
     const double rotation_variance = prediction->covariance(2, 2);
     prediction->covariance += covariance_without;
-    prediction->covariance += Spread(
-        Pose2(odometry.motion.x - without.x, odometry.motion.y - without.y,
-              NormalizeAngle(odometry.motion.theta - without.theta)));
+    prediction->covariance += Spread(without, odometry.motion);
     if (has_imu) prediction->covariance(2, 2) = rotation_variance;
   } else {
     PredictFromInsertion(time, prediction);
@@ -343,7 +340,7 @@ OdometryState MotionPredictor::AddMatch(const double time,
            std::max(kMinSpeed, std::hypot(velocity().x, velocity().y))});
   UpdateVelocity(time, matched, speed_change);
   last_time_ = time;
-  UpdateInsertion(time, matched.motion, state);
+  UpdateInsertion(time, matched, state);
   return state;
 }
 
@@ -371,6 +368,7 @@ OdometryState MotionPredictor::CheckOdometry(const double time,
   uncompared_.rotation_observable =
       uncompared_.rotation_observable && matched.rotation_observable;
   uncompared_.covariance = matched.covariance;
+  uncompared_.ends_contest = matched.ends_contest;
   return Compare(time, has_odometry, matched.evidence);
 }
 
@@ -387,6 +385,7 @@ OdometryState MotionPredictor::Compare(
       has_odometry && odometry_.Predict(compared_time_, time, &odometry);
   comparison.odometry = odometry.motion;
   comparison.frozen = odometry.frozen;
+  comparison.makes_up = uncompared_.ends_contest;
   comparison.match = uncompared_.motion;
   comparison.translation_observable = uncompared_.translation_observable;
   ImuMotion imu;
@@ -428,17 +427,17 @@ void MotionPredictor::UpdateVelocity(const double time,
   }
 }
 
-void MotionPredictor::UpdateInsertion(const double time, const Pose2& motion,
+void MotionPredictor::UpdateInsertion(const double time,
+                                      const MatchedMotion& matched,
                                       const OdometryState state) {
-  since_insertion_ = since_insertion_ * motion;
+  since_insertion_ = since_insertion_ * matched.motion;
   const bool is_far =
-      std::hypot(since_insertion_.x, since_insertion_.y) >
-          kMaxTranslationSinceInsertion ||
+      since_insertion_.translation().norm() > kMaxTranslationSinceInsertion ||
       std::abs(since_insertion_.theta) > kMaxRotationSinceInsertion ||
       time - insertion_time_ > kMaxTimeSinceInsertion;
   const bool is_faulty =
       state != OdometryState::kOk && state != OdometryState::kSlipSuspected;
-  if (is_far || is_faulty) AddInsertion();
+  if (is_far || is_faulty || matched.overrules_odometry) AddInsertion();
 }
 
 void MotionPredictor::AddInsertion() {

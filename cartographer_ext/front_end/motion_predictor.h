@@ -105,6 +105,10 @@ struct MatchedMotion {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   // The match started from a prediction by the velocity, with or without IMU.
   bool from_velocity = false;
+  // The matcher holds the odometry of this motion for wrong.
+  bool overrules_odometry = false;
+  // It makes up for errors of several motions before.
+  bool ends_contest = false;
   // See MotionComparison; used while it is added only.
   std::function<double(const Pose2&)> evidence;
 };
@@ -192,7 +196,8 @@ class MotionPredictor {
                         const std::function<double(const Pose2&)>& evidence);
   void UpdateVelocity(double time, const MatchedMotion& matched,
                       double speed_change);
-  void UpdateInsertion(double time, const Pose2& motion, OdometryState state);
+  void UpdateInsertion(double time, const MatchedMotion& matched,
+                       OdometryState state);
 
   const MotionPredictorOptions options_;
   OdometryPredictor odometry_;

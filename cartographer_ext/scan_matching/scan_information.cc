@@ -12,9 +12,6 @@ namespace cartographer_ext {
 namespace scan_matching {
 namespace {
 
-// An axis with less belief is not compared with the prediction.
-constexpr double kMinComparedWeight = 0.5;
-
 Eigen::Vector3d Difference(const Pose2& pose, const Pose2& from) {
   return Eigen::Vector3d(pose.x - from.x, pose.y - from.y,
                          NormalizeAngle(pose.theta - from.theta));
@@ -121,9 +118,11 @@ void Compare(const ScanInformation& scan, const Pose2& prediction,
   }
   report->degrees_of_freedom = 0;
   for (int k = 0; k < 3; ++k) {
-    if (scan.weights(k) >= kMinComparedWeight) {
+    if (scan.weights(k) > 0.) {
+      // Its share in the result is that of its weighted information, so it is
+      // compared with that.
       ++report->degrees_of_freedom;
-      scatter(k, k) += scan.variances(k);
+      scatter(k, k) += scan.variances(k) / scan.weights(k);
     } else {
       // This direction is decoupled from the others and has no residual.
       along(k) = 0.;

@@ -218,6 +218,39 @@ TEST(ScanInformationTest, OnlyDeterminedDirectionsAreCompared) {
   EXPECT_EQ(report.mahalanobis, 0.);
 }
 
+// What the scan hardly determines it still moves: a direction is compared as far
+// as it has a share in the result.
+TEST(ScanInformationTest, HalfDeterminedDirectionsAreCompared) {
+  ScanCurvature curvature;
+  curvature.values << 0.06, 0.06, 0.12;
+  curvature.axes.setIdentity();
+  curvature.rises << 0.06, 0.06, 0.0012;
+  const ScanInformation scan = AnalyzeScan(
+      ScanInformationOptions(), ScaledMotion(Square(), 0.05, Pose2()),
+      curvature, 200, Eigen::Matrix3d::Identity());
+  int half = 0;
+  for (int k = 0; k < 3; ++k) {
+    half += scan.weights(k) > 0.01 && scan.weights(k) < 0.5 ? 1 : 0;
+  }
+  ASSERT_EQ(half, 1);
+  const Eigen::Matrix3d covariance = 1e-4 * Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d prior;
+  ASSERT_TRUE(uncertainty::InvertCovariance(covariance, &prior));
+  const Pose2 match(0.1, 0.1, 0.4);
+  MatchReport report;
+  Compare(scan, Pose2(), &covariance, match, &report);
+  EXPECT_EQ(report.degrees_of_freedom, 3);
+  const Eigen::Vector3d innovation(0.1, 0.1, 0.4);
+  EXPECT_NEAR(
+      report.mahalanobis,
+      innovation.dot((covariance + scan.information.inverse()).inverse() *
+                     innovation),
+      1e-6 * report.mahalanobis);
+  // A result that the match has moved this far has a statistic that tells.
+  EXPECT_GT(std::abs(Remap(scan, &prior, Pose2(), match).theta), 0.1);
+  EXPECT_GT(report.mahalanobis, 100.);
+}
+
 TEST(ScanInformationTest, ElongatedAlongTheCorridor) {
   for (double angle = 0.1; angle < kPi; angle += 0.3) {
     ScanCurvature curvature;

@@ -12,8 +12,8 @@
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
-#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
+#include "cartographer_ext/front_end/dropin/matched_motion.h"
 #include "cartographer_ext/front_end/insertion_count.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/match_record.pb.h"
@@ -31,81 +31,17 @@ using cartographer::transform::Rigid3d;
 
 namespace mapping = cartographer::mapping;
 
-// A direction of translation, or rotation, with a lower weight in the match is
-// not observable in the scan.
-constexpr double kMinObservableWeight = 0.5;
-
 // The first scans are inserted whether or not the robot moves: a single scan is
 // not enough to match the next one against.
 constexpr int kNumFirstScans = 5;
 
+// A scan at a contested pose is kept out of the map while the last one is not
+// farther away: a part of what narrow lasers see.
+constexpr double kFarthestContested = 0.5;  // metres
+constexpr double kWidestContested = 0.5;    // radians
+
 // Seconds of sensor time between two lines in the log of the program.
 constexpr double kSecondsBetweenLines = 60.;
-
-// Whether the scan determines the translation along the direction of motion.
-bool IsTranslationObservable(const scan_matching::DegeneracyResult& degeneracy,
-                             const Pose2& from, const Pose2& to) {
-  const Eigen::Vector2d translation(to.x - from.x, to.y - from.y);
-  const double length = translation.norm();
-  const Eigen::Vector2d heading =
-      length > 0.01 ? Eigen::Vector2d(translation / length)
-                    : Eigen::Vector2d(std::cos(to.theta), std::sin(to.theta));
-  double weight = 0.;
-  for (int i = 0; i < 2; ++i) {
-    const double along = degeneracy.eigenvectors.col(i).dot(heading);
-    weight += along * along * degeneracy.translation_weights(i);
-  }
-  return weight > kMinObservableWeight;
-}
-
-// A covariance from the local frame into that of the robot at `pose`.
-Eigen::Matrix3d InFrameOf(const Pose2& pose,
-                          const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix3d rotation = PlanarRotation(pose.theta);
-  return rotation.transpose() * covariance * rotation;
-}
-
-// Along the direction of translation that the scan determines best; false where
-// it determines none, or where a search (of which there is one for every scan
-// where they are far apart) was left with a match beyond `gate`.
-bool InnovationOf(const Pose2& last_pose, const MotionPrediction& prediction,
-                  const LocalMatch& match, const double gate,
-                  MatchInnovation* innovation) {
-  const scan_matching::DegeneracyResult& degeneracy = match.report.degeneracy;
-  if (prediction.source != PredictionSource::kOdometry ||
-      prediction.is_uncertain ||
-      (match.searched && match.report.mahalanobis > gate) ||
-      degeneracy.translation_weights(1) < 1. ||
-      !(degeneracy.eigenvalues(1) > 0.)) {
-    return false;
-  }
-  const Pose2 predicted = last_pose * prediction.motion;
-  const Eigen::Vector2d direction = degeneracy.eigenvectors.col(1);
-  const Eigen::Vector2d off(match.report.match.x - predicted.x,
-                            match.report.match.y - predicted.y);
-  const Eigen::Matrix3d rotation = PlanarRotation(last_pose.theta);
-  const Eigen::Matrix3d covariance =
-      rotation * prediction.covariance * rotation.transpose();
-  innovation->squared = std::pow(direction.dot(off), 2);
-  innovation->match_variance = 1. / degeneracy.eigenvalues(1);
-  innovation->prediction_variance =
-      direction.dot(covariance.topLeftCorner<2, 2>() * direction);
-  return true;
-}
-
-// Of the heading by the scan alone, radians. Without the scan a metre and a radian
-// are unknown, so that there is always a covariance.
-double ScanHeadingSigma(const scan_matching::MatchReport& report) {
-  const Eigen::Matrix3d information =
-      report.scan_information + Eigen::Matrix3d::Identity();
-  return std::sqrt(information.inverse()(2, 2));
-}
-
-double MeanRange(const PointCloud& cloud) {
-  double sum = 0.;
-  for (const auto& point : cloud) sum += point.position.head<2>().norm();
-  return cloud.empty() ? 0. : sum / static_cast<double>(cloud.size());
-}
 
 PointCloud FeaturePoints(const AdaptiveFeatureOptions& options,
                          const PointCloud& cloud) {
@@ -254,7 +190,8 @@ AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
       UpdatePredictor(seconds, prediction, match, cloud);
 
   AssembledScan in_local = Transform(scan, pose_);
-  auto node = MaybeInsert(sweep.time, in_local, cloud, alignment);
+  auto node =
+      MaybeInsert(sweep.time, in_local, cloud, alignment, match.contested);
   Record(sweep.time, interval, prediction, match, odometry, node != nullptr);
   return absl::make_unique<MatchingResult>(
       MatchingResult{sweep.time, LocalPose(alignment),
@@ -307,27 +244,18 @@ LocalMatch AdaptiveLocalTrajectoryBuilder2D::MatchScan(
 OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
     const double seconds, const MotionPrediction& prediction,
     const LocalMatch& match, const PointCloud& cloud) {
-  MatchedMotion matched;
-  matched.motion = Between(pose_, match.pose);
-  matched.translation_observable =
-      IsTranslationObservable(match.report.degeneracy, pose_, match.pose);
-  matched.rotation_observable =
-      match.report.degeneracy.rotation_weight > kMinObservableWeight;
-  matched.covariance = InFrameOf(pose_, match.report.covariance);
-  matched.scan_heading =
-      NormalizeAngle(match.report.match.theta - match.pose.theta);
-  matched.scan_heading_sigma = ScanHeadingSigma(match.report);
-  matched.mean_range = MeanRange(cloud);
-  matched.from_velocity =
-      (prediction.source == PredictionSource::kConstantVelocity ||
-       prediction.source == PredictionSource::kImu) &&
-      !match.relocated;
+  MatchedMotion matched = ToMatchedMotion(pose_, prediction, match, cloud);
   const auto submap = submaps_.Reference();
   if (submap != nullptr) {
     matched.scans_in_map = submap->num_range_data();
+  }
+  if (submap != nullptr && !match.overrules_odometry) {
     matched.evidence = [&](const Pose2& error) {
-      return scan_matching::ScanEvidence(match.pose, match.pose * error, cloud,
-                                         *submap->grid());
+      // Along a corridor it fits as well on the other side.
+      const scan_matching::PoseEvidence evidence(match.pose, cloud,
+                                                 *submap->grid());
+      return std::min(evidence.Against(match.pose * error),
+                      evidence.Against(match.pose * error.Inverse()));
     };
   }
   MatchInnovation innovation;
@@ -351,12 +279,14 @@ Rigid3d AdaptiveLocalTrajectoryBuilder2D::LocalPose(
 std::unique_ptr<AdaptiveLocalTrajectoryBuilder2D::InsertionResult>
 AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
     const cartographer::common::Time time, const AssembledScan& scan_in_local,
-    const PointCloud& cloud, const Eigen::Quaterniond& alignment) {
+    const PointCloud& cloud, const Eigen::Quaterniond& alignment,
+    const bool is_contested) {
   const Rigid3d local_pose = LocalPose(alignment);
   const auto reference = submaps_.Reference();
   const bool is_first_scan =
       reference == nullptr || reference->num_range_data() < kNumFirstScans;
-  if (motion_filter_.IsSimilar(time, local_pose) && !is_first_scan) {
+  if (!is_first_scan && ((is_contested && IsNearInsertion()) ||
+                         motion_filter_.IsSimilar(time, local_pose))) {
     return nullptr;
   }
   RangeData with_filling = scan_in_local.range_data;
@@ -380,6 +310,12 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
         cartographer::common::ToUniversal(time), doubt);
   }
   return result;
+}
+
+bool AdaptiveLocalTrajectoryBuilder2D::IsNearInsertion() const {
+  const Pose2 motion = Between(insertion_pose_, pose_);
+  return motion.translation().norm() < kFarthestContested &&
+         std::abs(motion.theta) < kWidestContested;
 }
 
 LocalSubmaps::Submaps AdaptiveLocalTrajectoryBuilder2D::Insert(

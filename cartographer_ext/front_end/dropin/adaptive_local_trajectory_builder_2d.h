@@ -113,7 +113,9 @@ class AdaptiveLocalTrajectoryBuilder2D {
   std::unique_ptr<InsertionResult> MaybeInsert(
       cartographer::common::Time time, const AssembledScan& scan_in_local,
       const cartographer::sensor::PointCloud& cloud,
-      const Eigen::Quaterniond& alignment);
+      const Eigen::Quaterniond& alignment, bool is_contested);
+  // Whether a scan may be left out of the map.
+  bool IsNearInsertion() const;
   // As often as it stands for (insertion_count.h). After a gap of half a submap
   // and more without overlap it lies elsewhere (local_submaps.h).
   LocalSubmaps::Submaps Insert(const cartographer::sensor::RangeData& in_local);

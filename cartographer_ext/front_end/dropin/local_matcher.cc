@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <vector>
 
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
-#include "cartographer_ext/common/planar_matrix.h"
+#include "cartographer_ext/front_end/odometry/odometry_fault.h"
 #include "cartographer_ext/options/extension_field.h"
 #include "cartographer_ext/options/option_description.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
@@ -47,6 +45,15 @@ constexpr double kConsistentTranslation = 0.05;            // metres
 constexpr double kInconsistentTranslation = 0.15;          // metres
 constexpr double kConsistentRotation = 2. * kPi / 180.;    // radians
 constexpr double kInconsistentRotation = 5. * kPi / 180.;  // radians
+// Motions that differ by less are searched once.
+constexpr double kSameMotionDistance = 0.02;  // metres
+constexpr double kSameMotionAngle = 0.01;     // radians
+// What a search finds this near an alternative motion confirms it.
+constexpr double kConfirmedDistance = 0.125;  // metres
+constexpr double kConfirmedAngle = 0.1;       // radians
+// Half widths of the window around a rival of the odometry.
+constexpr double kRivalWindow = 0.25;  // metres
+constexpr double kRivalAngle = 0.2;    // radians
 // At most this many motions are searched around.
 constexpr size_t kMaxSearches = 4;
 // Scales the covariance of a motion after a search, so that the motion hardly
@@ -58,23 +65,8 @@ constexpr double kCovarianceScaleAfterSearch = 100.;
 // to the next wall, if anywhere.
 constexpr double kBasinCells = 3.;
 
-// The walls of a submap end where the sight of the scans before did, which are
-// inserted every 0.2 m; the laser may be half of this off the robot's origin.
-constexpr double kLimitZone = 0.5;  // metres
-// Longer ranges of a scan, of which there are at least this many, are no
-// outliers.
-constexpr size_t kMinFarthest = 3;
-// This many scans, this far from each other, distinguish the limit of a laser
-// from the size of a room.
-constexpr int kMinScansAtLimit = 50;
-constexpr double kRangeStep = 0.2;  // metres
-
 // The best of some 150 candidate poses needs this much more log-likelihood.
 constexpr double kLogPlaces = 5.;
-
-// Scans that contradict the odometry in succession see the same walls: of the
-// evidence of those before this part is new.
-constexpr double kEvidenceKept = 0.5;
 
 // The block of the scan matcher, or its defaults.
 proto::ScanMatcherOptions MatcherExtension(
@@ -86,36 +78,19 @@ proto::ScanMatcherOptions MatcherExtension(
   return extension;
 }
 
-// Logarithm of the odds against a fault of the odometry: it is unlikely, unless
-// the odometry was overruled before: wheels that slip do so for a while.
-double FaultOdds(const MotionPrediction& prediction, const bool was_overruled) {
-  return prediction.is_uncertain || was_overruled ? 0.
-                                                  : kLogOddsOfOdometryFault;
-}
-
 // Whether the scan is evidence enough (scan_evidence.h) for `found` against the
 // pose by odometry. Other predictions are guesses.
-bool MayOverrule(const MotionPrediction& prediction, const bool was_overruled,
+bool MayOverrule(const MotionPrediction& prediction, const double odds,
                  const Pose2& found, const Pose2& predicted,
                  const PointCloud& cloud, const Grid2D& grid) {
-  if (prediction.source != PredictionSource::kOdometry) return true;
-  return scan_matching::ScanEvidence(found, predicted, cloud, grid) >=
-         FaultOdds(prediction, was_overruled) + kLogPlaces;
+  return prediction.source != PredictionSource::kOdometry ||
+         scan_matching::ScanEvidence(found, predicted, cloud, grid) >= odds;
 }
 
-// In the local frame.
-Prediction ToPrediction(const Pose2& last_pose, const Pose2& motion,
-                        const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix3d rotation = PlanarRotation(last_pose.theta);
-  Prediction prediction;
-  prediction.pose = last_pose * motion;
-  prediction.covariance = rotation * covariance * rotation.transpose();
-  return prediction;
-}
-
-bool IsNear(const Pose2& a, const Pose2& b) {
-  return std::hypot(a.x - b.x, a.y - b.y) < 0.02 &&
-         std::abs(NormalizeAngle(a.theta - b.theta)) < 0.01;
+bool IsNear(const Pose2& a, const Pose2& b, const double distance,
+            const double angle) {
+  return (a.translation() - b.translation()).norm() < distance &&
+         std::abs(NormalizeAngle(a.theta - b.theta)) < angle;
 }
 
 // Standard deviation of the position of a point of the cloud, metres: the root
@@ -147,15 +122,6 @@ Pose2 SearchAround(const Pose2& initial,
   return ToPose2(found);
 }
 
-// chi2 of a pose by a prediction, whatever the scan determines of it: along a
-// corridor a match is consistent with its prediction wherever it ends.
-double ChiSquare(const Prediction& predicted, const Pose2& pose) {
-  const Eigen::Vector3d off(pose.x - predicted.pose.x,
-                            pose.y - predicted.pose.y,
-                            NormalizeAngle(pose.theta - predicted.pose.theta));
-  return off.dot(predicted.covariance.ldlt().solve(off));
-}
-
 // Whether scan and prediction together favour `a` over `b` by the difference of
 // their log-likelihoods. It must fit better, too: a scan turned towards what was
 // never seen contradicts nothing.
@@ -166,6 +132,34 @@ bool IsLikelier(const LocalMatch& a, const LocalMatch& b,
          scan_matching::ScanEvidence(a.pose, b.pose, cloud, grid) >
              0.5 *
                  (ChiSquare(predicted, a.pose) - ChiSquare(predicted, b.pose));
+}
+
+std::vector<float> Ranges(const PointCloud& cloud) {
+  std::vector<float> ranges;
+  ranges.reserve(cloud.size());
+  for (const auto& point : cloud) {
+    ranges.push_back(point.position.head<2>().norm());
+  }
+  return ranges;
+}
+
+// In case of doubt odometry is right more often than the match; its rotation is
+// that of the match if that is likelier and does not contradict the odometry.
+LocalMatch AtPrediction(const LocalMatch& matched, const Prediction& predicted,
+                        const double gate, const PointCloud& cloud,
+                        const Grid2D& grid) {
+  LocalMatch result = matched;
+  result.report.covariance = predicted.covariance;
+  result.report.scan_information.setZero();
+  result.pose = predicted.pose;
+  result.score = scan_matching::MeanScore(result.pose, cloud, grid);
+  LocalMatch turned = result;
+  turned.pose.theta = matched.pose.theta;
+  turned.score = scan_matching::MeanScore(turned.pose, cloud, grid);
+  const bool is_consistent = ChiSquare(predicted, turned.pose) <= gate;
+  return is_consistent && IsLikelier(turned, result, predicted, cloud, grid)
+             ? turned
+             : result;
 }
 
 struct SearchedMotion {
@@ -180,7 +174,8 @@ std::vector<SearchedMotion> MotionsToSearch(
   const auto add = [&](const Pose2& motion, const bool is_hint) {
     bool is_new = motions.size() < kMaxSearches;
     for (const SearchedMotion& other : motions) {
-      is_new = is_new && !IsNear(motion, other.motion);
+      is_new = is_new && !IsNear(motion, other.motion, kSameMotionDistance,
+                                 kSameMotionAngle);
     }
     if (is_new) motions.push_back({motion, is_hint});
   };
@@ -212,7 +207,8 @@ LocalMatcher::LocalMatcher(
     const LocalSearchOptions& options,
     const stock_proto::CeresScanMatcherOptions2D& matcher_options)
     : options_(options),
-      matcher_(matcher_options, MatcherExtension(matcher_options)) {}
+      matcher_(matcher_options, MatcherExtension(matcher_options)),
+      contest_(options.gate) {}
 
 LocalMatch LocalMatcher::MatchFrom(const Prediction& prediction,
                                    const Pose2& initial,
@@ -238,33 +234,6 @@ bool LocalMatcher::IsDoubtful(const LocalMatch& match,
          match.report.mahalanobis > options_.gate;
 }
 
-void LocalMatcher::UpdateRange(const Pose2& pose, const PointCloud& cloud) {
-  if (cloud.size() < kMinFarthest) return;
-  if (scans_ > 0 &&
-      std::hypot(pose.x - range_pose_.x, pose.y - range_pose_.y) < kRangeStep)
-    return;
-  range_pose_ = pose;
-  std::vector<float> squares;
-  squares.reserve(cloud.size());
-  for (const auto& point : cloud)
-    squares.push_back(point.position.head<2>().squaredNorm());
-  std::nth_element(squares.begin(), squares.begin() + (kMinFarthest - 1),
-                   squares.end(), std::greater<float>());
-  const double range = std::sqrt(squares[kMinFarthest - 1]);
-  if (range > range_ + kLimitZone) scans_ = scans_at_limit_ = 0;
-  range_ = std::max(range_, range);
-  ++scans_;
-  scans_at_limit_ += range > range_ - kLimitZone ? 1 : 0;
-}
-
-double LocalMatcher::LimitOfSight() const {
-  // Otherwise the size of the building limits the range.
-  const bool is_limit =
-      scans_ >= kMinScansAtLimit && 2 * scans_at_limit_ >= scans_;
-  return is_limit ? std::max(0., range_ - kLimitZone)
-                  : std::numeric_limits<double>::infinity();
-}
-
 double LocalMatcher::LinearWindow(const Pose2& motion,
                                   const MotionPrediction& prediction) const {
   return std::min(
@@ -285,34 +254,29 @@ Pose2 LocalMatcher::Search(const Pose2& center, const Pose2& motion,
                       kSearchPenalty, kSearchPenalty, cloud, grid);
 }
 
+scan_matching::SearchWindow LocalMatcher::ConsistentWindow(
+    const Prediction& predicted) const {
+  const double farthest = std::sqrt(options_.gate);
+  return {std::min(options_.max_linear_window,
+                   farthest * uncertainty::WorstTranslationSigma(
+                                  predicted.covariance)),
+          std::min(options_.max_angular_window,
+                   farthest * std::sqrt(predicted.covariance(2, 2)))};
+}
+
 Pose2 LocalMatcher::SearchConsistent(const Prediction& predicted,
                                      const PointCloud& cloud,
                                      const Grid2D& grid) const {
   const double sigma_translation =
       uncertainty::WorstTranslationSigma(predicted.covariance);
   const double sigma_rotation = std::sqrt(predicted.covariance(2, 2));
-  const double farthest = std::sqrt(options_.gate);
-  const scan_matching::SearchWindow window = {
-      std::min(options_.max_linear_window, farthest * sigma_translation),
-      std::min(options_.max_angular_window, farthest * sigma_rotation)};
   // A log-likelihood of n ln(score) - chi2 / 2, divided by n.
   const double n = std::max(1, scan_matching::NumPatches(cloud));
   const double weight = 1. / std::sqrt(2. * n);
-  return SearchAround(
-      predicted.pose, window, weight / std::max(sigma_translation, kLeastSigma),
-      weight / std::max(sigma_rotation, kLeastSigma), cloud, grid);
-}
-
-bool LocalMatcher::IsOverruled(const MotionPrediction& prediction,
-                               const Pose2& found, const Pose2& predicted,
-                               const PointCloud& cloud, const Grid2D& grid) {
-  if (prediction.source != PredictionSource::kOdometry) return true;
-  const double evidence =
-      kEvidenceKept * earlier_evidence_ +
-      scan_matching::ScanEvidence(found, predicted, cloud, grid);
-  const bool is_overruled = evidence >= FaultOdds(prediction, is_overruled_);
-  earlier_evidence_ = is_overruled ? 0. : std::max(0., evidence);
-  return is_overruled;
+  return SearchAround(predicted.pose, ConsistentWindow(predicted),
+                      weight / std::max(sigma_translation, kLeastSigma),
+                      weight / std::max(sigma_rotation, kLeastSigma), cloud,
+                      grid);
 }
 
 LocalMatch LocalMatcher::Match(const Pose2& last_pose,
@@ -323,28 +287,17 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   Prediction predicted =
       ToPrediction(last_pose, prediction.motion, prediction.covariance);
   predicted.scans_in_map = submap.num_range_data();
-  UpdateRange(last_pose, cloud);
-  predicted.limit_of_sight = LimitOfSight();
+  sight_.Add(last_pose, Ranges(cloud));
+  predicted.limit_of_sight = sight_.Limit();
   LocalMatch match = MatchFrom(predicted, predicted.pose, cloud, grid);
-  if (match.report.mahalanobis <= options_.gate) earlier_evidence_ = 0.;
-  if (options_.enabled && IsDoubtful(match, prediction, cloud, grid)) {
+  if (options_.enabled &&
+      (contest_.is_open() || IsDoubtful(match, prediction, cloud, grid))) {
     match =
         MatchWithSearch(last_pose, prediction, predicted, cloud, grid, match);
-    if (!match.relocated && match.report.mahalanobis > options_.gate &&
-        !IsOverruled(prediction, match.pose, predicted.pose, cloud, grid)) {
-      // In that case odometry is right more often than the match.
-      match.pose = predicted.pose;
-      match.report.covariance = predicted.covariance;
-      match.report.scan_information.setZero();
-      match.score = scan_matching::MeanScore(match.pose, cloud, grid);
-    }
+  } else {
+    contest_.Agree();
   }
-  if (prediction.source == PredictionSource::kOdometry) {
-    is_overruled_ =
-        match.relocated
-            ? Inconsistency(predicted.pose, match.pose) >= 1.
-            : is_overruled_ && match.score < mean_score_ - options_.score_drop;
-  }
+  match.overrules_odometry = contest_.is_overruled();
   if (has_mean_score_) match.doubt = MatchDoubt(match.score, mean_score_);
   mean_score_ +=
       (has_mean_score_ ? kScoreRate : 1.) * (match.score - mean_score_);
@@ -352,33 +305,77 @@ LocalMatch LocalMatcher::Match(const Pose2& last_pose,
   return match;
 }
 
+LocalMatch LocalMatcher::MatchAfter(const Pose2& last_pose, const Pose2& motion,
+                                    const MotionPrediction& prediction,
+                                    const Prediction& predicted,
+                                    const Pose2& found, const PointCloud& cloud,
+                                    const Grid2D& grid) const {
+  Prediction start = ToPrediction(
+      last_pose, motion, kCovarianceScaleAfterSearch * prediction.covariance);
+  start.scans_in_map = predicted.scans_in_map;
+  start.limit_of_sight = predicted.limit_of_sight;
+  LocalMatch match = MatchFrom(start, found, cloud, grid);
+  match.relocated = true;
+  return match;
+}
+
+double LocalMatcher::LogPlacesOf(const Pose2& found, const Pose2& last_pose,
+                                 const Pose2& motion, const bool is_alternative,
+                                 const MotionPrediction& prediction) const {
+  const bool is_confirmed =
+      is_alternative && SeeTheSame(prediction.motion) &&
+      IsNear(found, last_pose * motion, kConfirmedDistance, kConfirmedAngle);
+  return is_confirmed || contest_.IsRival(found, prediction.motion)
+             ? 0.
+             : kLogPlaces;
+}
+
 LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
                                          const MotionPrediction& prediction,
                                          const Prediction& predicted,
                                          const PointCloud& cloud,
                                          const Grid2D& grid,
-                                         const LocalMatch& matched) const {
+                                         const LocalMatch& matched) {
   LocalMatch best = matched;
-  best.searched = true;
+  const size_t num_plain = matched.report.mahalanobis > options_.gate ? 1 : 0;
+  std::vector<Rival> rivals(num_plain, Rival{matched, 0.});
   double to_beat = matched.score + options_.min_gain;
   // Matches from there; returns whether the result is consistent with the
   // prediction.
-  const auto try_consistent = [&](const Pose2& found) {
-    const LocalMatch match = MatchFrom(predicted, found, cloud, grid);
+  const auto try_consistent = [&](const Pose2& found, const double log_places) {
+    LocalMatch match = MatchFrom(predicted, found, cloud, grid);
+    match.relocated = true;
     if (match.report.mahalanobis > options_.gate ||
         ChiSquare(predicted, match.pose) > options_.gate) {
+      rivals.push_back({match, log_places});
       return false;
     }
-    if (!IsLikelier(match, best, predicted, cloud, grid)) return true;
+    if (!IsLikelier(match, best, predicted, cloud, grid)) {
+      rivals.push_back({match, log_places});
+      return true;
+    }
     best = match;
-    best.searched = best.relocated = true;
     to_beat = best.score + options_.min_gain;
     return true;
   };
-  if (!prediction.is_uncertain) {
-    try_consistent(SearchConsistent(predicted, cloud, grid));
+  const auto match_after = [&](const Pose2& motion, const Pose2& found) {
+    return MatchAfter(last_pose, motion, prediction, predicted, found, cloud,
+                      grid);
+  };
+  if (contest_.is_open()) {
+    const Pose2 expected = contest_.Expected(prediction.motion);
+    const Pose2 found =
+        SearchAround(expected, {kRivalWindow, kRivalAngle}, kSearchPenalty,
+                     kSearchPenalty, cloud, grid);
+    rivals.push_back({match_after(Between(last_pose, expected), found), 0.});
   }
-  for (const SearchedMotion& searched : MotionsToSearch(prediction)) {
+  if (!prediction.is_uncertain) {
+    const scan_matching::SearchWindow window = ConsistentWindow(predicted);
+    try_consistent(SearchConsistent(predicted, cloud, grid),
+                   LogPlaces(window.linear, window.angular));
+  }
+  const std::vector<SearchedMotion> motions = MotionsToSearch(prediction);
+  for (const SearchedMotion& searched : motions) {
     const Pose2& motion = searched.motion;
     if (searched.is_hint &&
         (motion.translation() - prediction.motion.translation()).norm() >
@@ -387,29 +384,53 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
     }
     const Pose2 found =
         Search(last_pose * motion, motion, prediction, cloud, grid);
-    if (!prediction.is_uncertain && try_consistent(found)) continue;
+    const double log_places = LogPlacesOf(
+        found, last_pose, motion, &searched != &motions.front(), prediction);
+    if (!prediction.is_uncertain && try_consistent(found, log_places)) continue;
     if (searched.is_hint) continue;
-    Prediction start = ToPrediction(
-        last_pose, motion, kCovarianceScaleAfterSearch * prediction.covariance);
-    start.scans_in_map = predicted.scans_in_map;
-    start.limit_of_sight = predicted.limit_of_sight;
-    const LocalMatch match = MatchFrom(start, found, cloud, grid);
-    const double gain = options_.min_gain +
-                        (prediction.is_uncertain
+    const LocalMatch match = match_after(motion, found);
+    rivals.push_back({match, log_places});
+    const double doubt = prediction.is_uncertain
                              ? 0.
-                             : options_.contradiction_gain *
-                                   Inconsistency(predicted.pose, match.pose));
+                             : Inconsistency(predicted.pose, match.pose);
+    const double gain = options_.min_gain + options_.contradiction_gain * doubt;
     if (match.score <= std::max(to_beat, matched.score + gain)) continue;
-    if (!MayOverrule(prediction, is_overruled_, match.pose, predicted.pose,
-                     cloud, grid)) {
+    if (!MayOverrule(prediction, contest_.FaultOdds(prediction) + log_places,
+                     match.pose, predicted.pose, cloud, grid)) {
       continue;
     }
     to_beat = match.score;
     best = match;
-    best.searched = true;
-    best.relocated = true;
   }
-  return best;
+  // What is uncertain is searched widely anyhow.
+  if (prediction.is_uncertain || !SeeTheSame(prediction.motion)) {
+    rivals.resize(num_plain);
+  }
+  return Decide(prediction, predicted, best, rivals, cloud, grid);
+}
+
+LocalMatch LocalMatcher::Decide(const MotionPrediction& prediction,
+                                const Prediction& predicted,
+                                const LocalMatch& best,
+                                const std::vector<Rival>& rivals,
+                                const PointCloud& cloud, const Grid2D& grid) {
+  LocalMatch result = best;
+  if (prediction.source == PredictionSource::kOdometry) {
+    const bool is_consistent = best.report.mahalanobis <= options_.gate;
+    if (best.relocated &&
+        (!is_consistent || ChiSquare(predicted, best.pose) > options_.gate)) {
+      contest_.Overrule(Inconsistency(predicted.pose, best.pose) >= 1.);
+    } else if (!best.relocated || SeeTheSame(prediction.motion)) {
+      result = contest_.Decide(
+          prediction, predicted,
+          is_consistent
+              ? best
+              : AtPrediction(best, predicted, options_.gate, cloud, grid),
+          rivals, mean_score_ - options_.score_drop, cloud, grid);
+    }
+  }
+  result.searched = true;
+  return result;
 }
 
 }  // namespace front_end

@@ -20,35 +20,29 @@
 // its score exceeds that of the match without search by a margin, which is
 // larger where the result is inconsistent with a prediction that was considered
 // certain: odometry is seldom wrong, and a scan that fits badly finds many
-// places that score nearly as high.
+// places that score nearly as high. What contradicts the odometry and does not
+// win is followed from scan to scan (odometry_contest.h).
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_LOCAL_MATCHER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_LOCAL_MATCHER_H_
+
+#include <vector>
 
 #include "cartographer/mapping/2d/grid_2d.h"
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/mapping/proto/scan_matching/ceres_scan_matcher_options_2d.pb.h"
 #include "cartographer/sensor/point_cloud.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/dropin/local_match.h"
+#include "cartographer_ext/front_end/dropin/odometry_contest.h"
 #include "cartographer_ext/front_end/front_end_options.h"
 #include "cartographer_ext/front_end/motion_predictor.h"
+#include "cartographer_ext/front_end/sight_limit.h"
 #include "cartographer_ext/scan_matching/dropin/degeneracy_aware_scan_matcher_2d.h"
+#include "cartographer_ext/scan_matching/dropin/real_time_matcher_2d.h"
 #include "cartographer_ext/scan_matching/match_report.h"
 
 namespace cartographer_ext {
 namespace front_end {
-
-// The result of a match.
-struct LocalMatch {
-  Pose2 pose;  // (local <- robot)
-  scan_matching::MatchReport report;
-  // Mean probability under the points, 0 to 1.
-  double score = 0.;
-  // Probability that it is wrong, by the score.
-  double doubt = 0.;
-  bool searched = false;
-  // The result comes from the search.
-  bool relocated = false;
-};
 
 // Matches scans with a grid, see above. Not thread-safe.
 class LocalMatcher {
@@ -71,28 +65,37 @@ class LocalMatcher {
   bool IsDoubtful(const LocalMatch& match, const MotionPrediction& prediction,
                   const cartographer::sensor::PointCloud& cloud,
                   const cartographer::mapping::Grid2D& grid) const;
-  // Whether the scan, and those before it that contradicted the odometry, are
-  // evidence enough for a match that is inconsistent with it.
-  bool IsOverruled(const MotionPrediction& prediction, const Pose2& found,
-                   const Pose2& predicted,
-                   const cartographer::sensor::PointCloud& cloud,
-                   const cartographer::mapping::Grid2D& grid);
   // The best of `matched` and the matches started from searches.
   LocalMatch MatchWithSearch(const Pose2& last_pose,
                              const MotionPrediction& prediction,
                              const scan_matching::Prediction& predicted,
                              const cartographer::sensor::PointCloud& cloud,
                              const cartographer::mapping::Grid2D& grid,
-                             const LocalMatch& matched) const;
-  // Takes what the scan, from near `pose`, says about how far the laser sees.
-  void UpdateRange(const Pose2& pose,
-                   const cartographer::sensor::PointCloud& cloud);
-  // Metres from where on points are at the limit of sight, infinity where that
-  // is not known.
-  double LimitOfSight() const;
+                             const LocalMatch& matched);
+  // Matches from `found` as if the robot had made `motion`.
+  LocalMatch MatchAfter(const Pose2& last_pose, const Pose2& motion,
+                        const MotionPrediction& prediction,
+                        const scan_matching::Prediction& predicted,
+                        const Pose2& found,
+                        const cartographer::sensor::PointCloud& cloud,
+                        const cartographer::mapping::Grid2D& grid) const;
+  // Logarithm of the number of places of which `found` is the best in a search
+  // around `motion`, zero where it confirms an alternative or a rival.
+  double LogPlacesOf(const Pose2& found, const Pose2& last_pose,
+                     const Pose2& motion, bool is_alternative,
+                     const MotionPrediction& prediction) const;
+  // Between `best` and those that contradict the odometry.
+  LocalMatch Decide(const MotionPrediction& prediction,
+                    const scan_matching::Prediction& predicted,
+                    const LocalMatch& best, const std::vector<Rival>& rivals,
+                    const cartographer::sensor::PointCloud& cloud,
+                    const cartographer::mapping::Grid2D& grid);
   // Half width of the window around a motion, metres.
   double LinearWindow(const Pose2& motion,
                       const MotionPrediction& prediction) const;
+  // The part of a prediction up to the gate.
+  scan_matching::SearchWindow ConsistentWindow(
+      const scan_matching::Prediction& predicted) const;
   // The likeliest pose by scan and prediction: the best by
   //   score exp(-chi2 / (2 n)),
   // chi2 that of the difference from the prediction, up to the gate, n the number
@@ -111,16 +114,8 @@ class LocalMatcher {
   const scan_matching::DegeneracyAwareScanMatcher2D matcher_;
   double mean_score_ = 0.;
   bool has_mean_score_ = false;
-  // A search contradicted the odometry, and no match has agreed with it since.
-  bool is_overruled_ = false;
-  // Against the odometry, of scans that were not enough by themselves, scan by
-  // scan until one agrees with it.
-  double earlier_evidence_ = 0.;
-  // The longest range so far, metres; of the scans since, one every
-  // kRangeStep, how many there are and how many reach as far.
-  double range_ = 0.;
-  int scans_ = 0, scans_at_limit_ = 0;
-  Pose2 range_pose_;  // of the last of them
+  OdometryContest contest_;
+  SightLimit sight_;
 };
 
 // Probability that a match is wrong, from what its score is of the usual one: 2 %

@@ -17,6 +17,9 @@ constexpr double kStationaryAngle = 0.035;    // radians
 constexpr double kStampJitterDistance = 0.06;
 // A fault ends below this fraction of the gate (hysteresis).
 constexpr double kExitRatio = 0.4;
+// It goes on while scans are this much evidence of it: it is as likely as not,
+// but where scans say nothing, odometry is all there is.
+constexpr double kEvidenceInFault = 1.;
 // A suspicion of slip expires after this time, seconds.
 constexpr double kSuspicionTime = 5.;
 // Bound of the window at any rate of scans.
@@ -97,8 +100,10 @@ OdometryState OdometryMonitor::CheckInterval(
                  comparison.match.y - comparison.odometry.y);
   const double angle = std::abs(
       NormalizeAngle(comparison.match.theta - comparison.odometry.theta));
-  if ((distance > options_.jump_distance || angle > options_.jump_angle) &&
-      IsEvident(comparison, comparison.odometry, comparison.match)) {
+  if (!comparison.makes_up &&
+      (distance > options_.jump_distance || angle > options_.jump_angle) &&
+      IsEvident(comparison, comparison.odometry, comparison.match,
+                options_.min_evidence)) {
     return OdometryState::kJumping;
   }
   // Smaller differences are decided by the window.
@@ -106,10 +111,10 @@ OdometryState OdometryMonitor::CheckInterval(
 }
 
 bool OdometryMonitor::IsEvident(const MotionComparison& comparison,
-                                const Pose2& odometry,
-                                const Pose2& match) const {
+                                const Pose2& odometry, const Pose2& match,
+                                const double min_evidence) {
   return !comparison.evidence ||
-         comparison.evidence(Between(match, odometry)) >= options_.min_evidence;
+         comparison.evidence(Between(match, odometry)) >= min_evidence;
 }
 
 OdometryState OdometryMonitor::CheckWindow(
@@ -121,7 +126,8 @@ OdometryState OdometryMonitor::CheckWindow(
       state_ == OdometryState::kWrongSign || state_ == OdometryState::kSlipping;
   const double gate = in_fault ? kExitRatio * options_.gate : options_.gate;
   if (ChiSquare(odometry, match) <= gate ||
-      !IsEvident(comparison, odometry, match)) {
+      !IsEvident(comparison, odometry, match,
+                 in_fault ? kEvidenceInFault : options_.min_evidence)) {
     return OdometryState::kOk;
   }
   const double sum = std::abs(odometry.x + match.x);

@@ -86,6 +86,8 @@ struct MotionComparison {
   Pose2 odometry;
   bool frozen = false;  // odometry repeated one pose
   Pose2 match;
+  // The match makes up for errors of several intervals before, and is no jump.
+  bool makes_up = false;
   // Whether the scan determines the translation along the direction of motion.
   bool translation_observable = true;
   // Change of forward speed by an IMU, m/s; only with has_inertial.
@@ -133,8 +135,9 @@ class OdometryMonitor {
   OdometryState CheckInterval(const MotionComparison& comparison) const;
   OdometryState CheckWindow(const MotionComparison& comparison) const;
   // Whether the scan itself tells that odometry is wrong.
-  bool IsEvident(const MotionComparison& comparison, const Pose2& odometry,
-                 const Pose2& match) const;
+  static bool IsEvident(const MotionComparison& comparison,
+                        const Pose2& odometry, const Pose2& match,
+                        double min_evidence);
   bool SuspectSlip(const MotionComparison& comparison);
   void Restart(double time);
 

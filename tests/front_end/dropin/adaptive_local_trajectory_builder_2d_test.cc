@@ -322,33 +322,6 @@ TEST(AdaptiveLocalTrajectoryBuilder2DTest, ACorridorKeepsTheLengthOfOdometry) {
   EXPECT_LT(worst_direction, DegToRad(5.));
 }
 
-// Every scan sees on by what the robot has moved, where the map ends. It fits
-// better where the robot has moved less, unless what nobody has seen is left
-// undecided.
-TEST(AdaptiveLocalTrajectoryBuilder2DTest,
-     ALaserOfShortRangeDoesNotShortenAPath) {
-  RunOptions run;
-  run.walls = test::Corridor();
-  for (int i = 0; i < 20; ++i) {
-    const double x = 2.9 * i + 1.3, y = i % 2 == 0 ? 1.2 : -1.2;
-    const double to = 0.9 * y;
-    run.walls.push_back({{x, y}, {x, to}});
-    run.walls.push_back({{x, to}, {x + 0.12, to}});
-    run.walls.push_back({{x + 0.12, to}, {x + 0.12, y}});
-  }
-  run.path =
-      run.odometry = [](const double t) { return Pose2(0.5 * t, 0., 0.); };
-  run.max_range = 4.5;
-  run.field_of_view = DegToRad(57.);
-  run.own.prediction.calibration.estimate_odometry_scale = false;
-  // The first metres tell that it is the laser's sight that ends.
-  run.seconds = 30.;
-  const RunResult half = RunDrive(run);
-  run.seconds = 80.;
-  const RunResult whole = RunDrive(run);
-  EXPECT_NEAR((whole.last.x - half.last.x) / 25., 1., 0.006);
-}
-
 TEST(AdaptiveLocalTrajectoryBuilder2DTest, FeaturesDoTheJob) {
   RunOptions options;
   options.own.match_features_only = true;

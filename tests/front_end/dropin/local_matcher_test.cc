@@ -196,15 +196,33 @@ TEST_F(LocalMatcherTest, AHintFarOffIsNotFollowed) {
   EXPECT_NEAR(match().pose.x, 0., 0.02);
 }
 
+// Where scans are far apart, a search needs a higher score, too.
 TEST_F(LocalMatcherTest, ASlightlyBetterPlaceDoesNot) {
   options_.contradiction_gain = 1.;
+  LocalMatcher matcher(options_, matcher_options_);
   const Pose2 off(0.15, 0.1, DegToRad(6.));
-  const LocalMatch match = MatchFrom(off);
+  const auto match_after = [&](const Pose2& motion, const Pose2& predicted) {
+    prediction_.motion = motion;
+    return matcher.Match(predicted * motion.Inverse(), prediction_, Cloud(),
+                         *submaps_->submaps().front());
+  };
+  match_after(Pose2(), Pose2());  // what is usual
+  const LocalMatch match = match_after(Pose2(0.7, 0., 0.), off);
   EXPECT_TRUE(match.searched);
   // Nearer to the prediction than to the place.
   EXPECT_LE(match.report.mahalanobis, options_.gate);
   EXPECT_LT(std::hypot(match.pose.x - off.x, match.pose.y - off.y), 0.05);
   EXPECT_NEAR(match.pose.theta, off.theta, 0.025);
+}
+
+// Where they see the same, evidence alone decides.
+TEST_F(LocalMatcherTest, EnoughEvidenceDoes) {
+  options_.contradiction_gain = 1.;
+  const LocalMatch match = MatchFrom(Pose2(0.15, 0.1, DegToRad(6.)));
+  EXPECT_TRUE(match.overrules_odometry);
+  EXPECT_FALSE(match.ends_contest);
+  EXPECT_NEAR(match.pose.x, 0., 0.03);
+  EXPECT_NEAR(match.pose.theta, 0., 0.02);
 }
 
 TEST_F(LocalMatcherTest, APredictionInDoubtIsOverruledSooner) {
@@ -263,15 +281,46 @@ TEST_F(LocalMatcherTest, ContradictionsInSuccessionOverruleOdometry) {
     return match.report.scan_information.norm() > 0.;
   };
   const Pose2 slip(0.08, 0.08, DegToRad(3.));
+  constexpr double kFew = 25.;
   ASSERT_TRUE(is_overruled(Pose2(), 360.));
   for (int i = 0; i < 5; ++i) {
-    EXPECT_FALSE(is_overruled(slip, kFewDegrees));
+    EXPECT_FALSE(is_overruled(slip, kFew));
     EXPECT_TRUE(is_overruled(Pose2(), 360.));  // agrees
   }
-  EXPECT_FALSE(is_overruled(slip, kFewDegrees));
+  EXPECT_FALSE(is_overruled(slip, kFew));
   bool later = false;
-  for (int i = 0; i < 3; ++i) later = later || is_overruled(slip, kFewDegrees);
+  for (int i = 0; i < 3; ++i) later = later || is_overruled(slip, kFew);
   EXPECT_TRUE(later);
+}
+
+// While wheels slip, the pose by the odometry moves away from that of the scans,
+// which is followed until it is evident: the last match makes up for the rest.
+TEST_F(LocalMatcherTest, ARivalIsFollowedFromScanToScan) {
+  LocalMatcher matcher(options_, matcher_options_);
+  const auto match = [&](const Pose2& last, const Pose2& motion,
+                         const double degrees) {
+    prediction_.motion = motion;
+    field_of_view_ = DegToRad(degrees);
+    return matcher.Match(last, prediction_, Cloud(),
+                         *submaps_->submaps().front());
+  };
+  match(Pose2(), Pose2(), 360.);  // what is usual
+  Pose2 last;
+  int contested = 0;
+  bool is_over = false;
+  for (int i = 0; i < 8 && !is_over; ++i) {
+    const LocalMatch found = match(last, Pose2(0.03, 0., DegToRad(4.)), 25.);
+    contested += found.contested ? 1 : 0;
+    is_over = found.ends_contest;
+    EXPECT_EQ(found.overrules_odometry, is_over);
+    last = found.pose;
+  }
+  EXPECT_GT(contested, 0);
+  EXPECT_TRUE(is_over);
+  EXPECT_LT(std::hypot(last.x, last.y), 0.1);
+  EXPECT_NEAR(last.theta, 0., 0.02);
+  // The next scan agrees with the odometry, which is trusted again.
+  EXPECT_FALSE(match(Pose2(), Pose2(), 360.).overrules_odometry);
 }
 
 TEST_F(LocalMatcherTest, WithoutSearchItStaysWithThePrediction) {

@@ -230,6 +230,49 @@ TEST(OdometryMonitorTest, AFaultNeedsEvidence) {
   }
 }
 
+// Once wheels slip, scans that would not have refuted them are enough for
+// distrusting them further; scans that say nothing are not.
+TEST(OdometryMonitorTest, AFaultGoesOnWithLessEvidence) {
+  for (const double later : {0.5, 2.}) {
+    OdometryMonitor monitor((OdometryCheckOptions()));
+    MotionComparison comparison;
+    comparison.interval = kInterval;
+    comparison.odometry = kForward;
+    comparison.match = Pose2(0.02, 0., 0.);
+    double evidence = 8.;
+    comparison.evidence = [&](const Pose2&) { return evidence; };
+    for (int i = 1; i <= 20; ++i) {
+      comparison.time = i * kInterval;
+      monitor.Add(comparison);
+    }
+    ASSERT_EQ(monitor.state(), OdometryState::kSlipping);
+    evidence = later;
+    comparison.time += kInterval;
+    EXPECT_EQ(monitor.Add(comparison) == OdometryState::kSlipping, later > 1.);
+  }
+}
+
+// A match that makes up for the errors of several intervals is no jump of the
+// odometry in the last of them, which would be over with it.
+TEST(OdometryMonitorTest, WhatMakesUpForErrorsIsNoJump) {
+  for (const bool makes_up : {false, true}) {
+    OdometryMonitor monitor((OdometryCheckOptions()));
+    MotionComparison comparison;
+    comparison.interval = kInterval;
+    comparison.odometry = comparison.match = kForward;
+    for (int i = 1; i <= 10; ++i) {
+      comparison.time = i * kInterval;
+      ASSERT_EQ(monitor.Add(comparison), OdometryState::kOk);
+    }
+    comparison.time += kInterval;
+    comparison.match = Pose2(-0.4, 0., 0.);
+    comparison.makes_up = makes_up;
+    const OdometryState state = monitor.Add(comparison);
+    EXPECT_EQ(state == OdometryState::kJumping, !makes_up);
+    EXPECT_EQ(monitor.IsTrusted(), !makes_up);
+  }
+}
+
 }  // namespace
 }  // namespace front_end
 }  // namespace cartographer_ext

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/front_end/dropin/odometry_contest.h"
+
+#include <algorithm>
+
+#include "cartographer_ext/front_end/odometry/odometry_fault.h"
+#include "cartographer_ext/front_end/odometry/odometry_monitor.h"
+#include "cartographer_ext/scan_matching/dropin/scan_evidence.h"
+
+namespace cartographer_ext {
+namespace front_end {
+namespace {
+
+using cartographer::mapping::Grid2D;
+using cartographer::sensor::PointCloud;
+using scan_matching::Prediction;
+
+// Scans that contradict the odometry in succession see the same walls: of the
+// evidence of those before this part is new.
+constexpr double kEvidenceKept = 0.5;
+constexpr double kEvidenceOfMotionKept = 0.8;  // if the motion does, too
+
+// Of the motion of a rival between two matches, square metres and radians.
+const Eigen::Vector3d kRivalVariances(2e-4, 2e-4, 1e-4);
+
+}  // namespace
+
+bool OdometryContest::IsRival(const Pose2& found, const Pose2& motion) const {
+  return has_rival_ && IsOnePlace(found, Expected(motion));
+}
+
+double OdometryContest::FaultOdds(const MotionPrediction& prediction) const {
+  // It is unlikely, unless the odometry was overruled before: wheels that slip
+  // do so for a while.
+  return prediction.is_uncertain || is_overruled_ ? 0.
+                                                  : kLogOddsOfOdometryFault;
+}
+
+void OdometryContest::Agree() {
+  has_rival_ = is_overruled_ = false;
+  evidence_ = 0.;
+}
+
+void OdometryContest::Overrule(const bool is_lasting) {
+  has_rival_ = false;
+  is_overruled_ = is_lasting;
+  evidence_ = 0.;
+}
+
+Eigen::Matrix3d OdometryContest::StepCovariance(
+    const Eigen::Matrix3d& covariance) const {
+  // It grows from scan to scan until one is inserted into the map.
+  const bool has_grown = covariance(2, 2) >= rival_covariance_(2, 2);
+  Eigen::Vector3d variances = covariance.diagonal();
+  if (has_grown) {
+    variances = (variances - rival_covariance_.diagonal()).cwiseMax(0.);
+  }
+  return (variances + kRivalVariances).asDiagonal();
+}
+
+double OdometryContest::BestEvidence(const MotionPrediction& prediction,
+                                     const Prediction& predicted,
+                                     const LocalMatch& consistent,
+                                     const std::vector<Rival>& rivals,
+                                     const PointCloud& cloud,
+                                     const Grid2D& grid,
+                                     const Rival** const best) const {
+  const scan_matching::PoseEvidence base(consistent.pose, cloud, grid);
+  const Pose2 expected =
+      has_rival_ ? Expected(prediction.motion) : predicted.pose;
+  *best = nullptr;
+  double most = 0.;
+  for (const Rival& rival : rivals) {
+    const Pose2& pose = rival.match.pose;
+    if (rival.match.score <= consistent.score) continue;
+    double evidence = -base.Against(pose);
+    if (SeeTheSame(prediction.motion)) {
+      const Pose2 beyond = Beyond(consistent.pose, pose);
+      evidence = std::min(
+          evidence, scan_matching::ScanEvidence(pose, beyond, cloud, grid));
+      evidence -= rival.log_places +
+                  FaultCost(Between(expected, pose), prediction.motion);
+    }
+    if (*best != nullptr && evidence <= most) continue;
+    *best = &rival;
+    most = evidence;
+  }
+  return most;
+}
+
+LocalMatch OdometryContest::Decide(
+    const MotionPrediction& prediction, const Prediction& predicted,
+    const LocalMatch& consistent, const std::vector<Rival>& rivals,
+    const double least_score, const PointCloud& cloud, const Grid2D& grid) {
+  const bool was_open = has_rival_;
+  const Rival* best = nullptr;
+  const double of_scan = BestEvidence(prediction, predicted, consistent, rivals,
+                                      cloud, grid, &best);
+  has_rival_ = false;
+  LocalMatch result = consistent;
+  if (best != nullptr) {
+    // Had only the matches been wrong, and by the same, their motion would
+    // still agree with the odometry.
+    const bool is_moving =
+        was_open &&
+        ChiSquare(ToPrediction(rival_, prediction.motion,
+                               StepCovariance(prediction.covariance)),
+                  best->match.pose) > gate_;
+    const double evidence =
+        (is_moving ? kEvidenceOfMotionKept : kEvidenceKept) * evidence_ +
+        of_scan;
+    if (evidence >= FaultOdds(prediction)) {
+      Overrule(SeeTheSame(prediction.motion));
+      result = best->match;
+      result.ends_contest = was_open;
+      return result;
+    }
+    evidence_ = std::max(0., evidence);
+    has_rival_ = evidence > 0. && SeeTheSame(prediction.motion);
+    rival_ = best->match.pose;
+    rival_covariance_ = prediction.covariance;
+    result.contested = has_rival_ && result.score < least_score;
+  } else {
+    evidence_ = 0.;
+  }
+  if (!prediction.is_uncertain) {
+    is_overruled_ = is_overruled_ && result.score < least_score;
+  }
+  return result;
+}
+
+}  // namespace front_end
+}  // namespace cartographer_ext
