@@ -51,9 +51,6 @@ constexpr double kSameMotionAngle = 0.01;     // radians
 // What a search finds this near an alternative motion confirms it.
 constexpr double kConfirmedDistance = 0.125;  // metres
 constexpr double kConfirmedAngle = 0.1;       // radians
-// Half widths of the window around a rival of the odometry.
-constexpr double kRivalWindow = 0.25;  // metres
-constexpr double kRivalAngle = 0.2;    // radians
 // At most this many motions are searched around.
 constexpr size_t kMaxSearches = 4;
 // Scales the covariance of a motion after a search, so that the motion hardly
@@ -365,8 +362,8 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
   if (contest_.is_open()) {
     const Pose2 expected = contest_.Expected(prediction.motion);
     const Pose2 found =
-        SearchAround(expected, {kRivalWindow, kRivalAngle}, kSearchPenalty,
-                     kSearchPenalty, cloud, grid);
+        SearchAround(expected, {kSamePlaceDistance, kSamePlaceAngle},
+                     kSearchPenalty, kSearchPenalty, cloud, grid);
     rivals.push_back({match_after(Between(last_pose, expected), found), 0.});
   }
   if (!prediction.is_uncertain) {

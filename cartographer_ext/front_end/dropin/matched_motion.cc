@@ -93,17 +93,15 @@ bool InnovationOf(const Pose2& last_pose, const MotionPrediction& prediction,
       !(degeneracy.eigenvalues(1) > 0.)) {
     return false;
   }
-  const Pose2 predicted = last_pose * prediction.motion;
+  const scan_matching::Prediction predicted =
+      ToPrediction(last_pose, prediction.motion, prediction.covariance);
   const Eigen::Vector2d direction = degeneracy.eigenvectors.col(1);
-  const Eigen::Vector2d off(match.report.match.x - predicted.x,
-                            match.report.match.y - predicted.y);
-  const Eigen::Matrix3d rotation = PlanarRotation(last_pose.theta);
-  const Eigen::Matrix3d covariance =
-      rotation * prediction.covariance * rotation.transpose();
+  const Eigen::Vector2d off(match.report.match.x - predicted.pose.x,
+                            match.report.match.y - predicted.pose.y);
   innovation->squared = std::pow(direction.dot(off), 2);
   innovation->match_variance = 1. / degeneracy.eigenvalues(1);
   innovation->prediction_variance =
-      direction.dot(covariance.topLeftCorner<2, 2>() * direction);
+      direction.dot(predicted.covariance.topLeftCorner<2, 2>() * direction);
   return true;
 }
 

@@ -66,10 +66,11 @@ double OdometryContest::BestEvidence(const MotionPrediction& prediction,
                                      const PointCloud& cloud,
                                      const Grid2D& grid,
                                      const Rival** const best) const {
+  *best = nullptr;
+  if (rivals.empty()) return 0.;
   const scan_matching::PoseEvidence base(consistent.pose, cloud, grid);
   const Pose2 expected =
       has_rival_ ? Expected(prediction.motion) : predicted.pose;
-  *best = nullptr;
   double most = 0.;
   for (const Rival& rival : rivals) {
     const Pose2& pose = rival.match.pose;

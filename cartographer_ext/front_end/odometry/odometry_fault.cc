@@ -16,13 +16,10 @@ constexpr double kLeastPlaces = 1e-3;
 // Sizes of a fault, without those that grow with the motion.
 constexpr double kLeastFaultTranslation = 0.05;  // metres
 constexpr double kLeastFaultRotation = 0.05;     // radians
-// Of SeeTheSame and IsOnePlace.
-constexpr double kSameDistance = 0.25;  // metres
 constexpr double kSameViewAngle = 0.4;  // radians, less than half a narrow view
-constexpr double kSamePlaceAngle = 0.2;  // radians
 
 bool IsWithin(const Pose2& motion, const double angle) {
-  return motion.translation().norm() < kSameDistance &&
+  return motion.translation().norm() < kSamePlaceDistance &&
          std::abs(NormalizeAngle(motion.theta)) < angle;
 }
 

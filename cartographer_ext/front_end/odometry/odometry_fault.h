@@ -11,6 +11,10 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// Poses that differ by less are one place.
+constexpr double kSamePlaceDistance = 0.25;  // metres
+constexpr double kSamePlaceAngle = 0.2;      // radians
+
 // Whether two scans with this motion of the robot between them see the same.
 // What is found instead of a pose by odometry can be followed through them.
 bool SeeTheSame(const Pose2& motion);

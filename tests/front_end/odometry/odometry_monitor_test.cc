@@ -200,15 +200,21 @@ TEST(OdometryMonitorTest, SuspicionBeforeTheMatch) {
   EXPECT_FALSE(monitor.IsSuspect(0.1, kStill, true, kStill));
 }
 
+// Wheels that turn more than twice as far as the robot drives.
+MotionComparison Slip() {
+  MotionComparison comparison;
+  comparison.interval = kInterval;
+  comparison.odometry = kForward;
+  comparison.match = Pose2(0.02, 0., 0.);
+  return comparison;
+}
+
 // A scan that cannot tell the pose of the match from that of odometry is no
 // witness of a fault.
 TEST(OdometryMonitorTest, AFaultNeedsEvidence) {
   for (const double evidence : {6.9, 7.1}) {
     OdometryMonitor monitor((OdometryCheckOptions()));
-    MotionComparison comparison;
-    comparison.interval = kInterval;
-    comparison.odometry = kForward;
-    comparison.match = Pose2(0.02, 0., 0.);
+    MotionComparison comparison = Slip();
     Pose2 error;
     comparison.evidence = [&](const Pose2& by) {
       error = by;
@@ -235,10 +241,7 @@ TEST(OdometryMonitorTest, AFaultNeedsEvidence) {
 TEST(OdometryMonitorTest, AFaultGoesOnWithLessEvidence) {
   for (const double later : {0.5, 2.}) {
     OdometryMonitor monitor((OdometryCheckOptions()));
-    MotionComparison comparison;
-    comparison.interval = kInterval;
-    comparison.odometry = kForward;
-    comparison.match = Pose2(0.02, 0., 0.);
+    MotionComparison comparison = Slip();
     double evidence = 8.;
     comparison.evidence = [&](const Pose2&) { return evidence; };
     for (int i = 1; i <= 20; ++i) {
