@@ -10,7 +10,7 @@
 #include "Eigen/Cholesky"
 #include "Eigen/LU"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
-#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+#include "cartographer_ext/optimization/solvers/loop_predictor.h"
 #include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
@@ -32,6 +32,8 @@ constexpr double kMuch = 0.05;
 constexpr double kWorkOfBlock = 27.;
 // Predictions that one is worth which makes a loop certain.
 constexpr double kWorthOfCertain = 4.;
+// Loops that are predicted before the work that is left is looked at.
+constexpr size_t kAtOnce = 32;
 // A step that lowers the cost by less than this fraction is the last of a round.
 constexpr double kRoundTolerance = 1e-2;
 
@@ -227,23 +229,24 @@ class CertainGrowth {
     if (factorised == nullptr) return;
     double left = std::max(options_.min_prediction_work,
                            options_.prediction_work * factorised->work());
-    IncrementalFactor factor;
-    factor.Reset(*factorised, rhs);
+    LoopPredictor predictor(edges_, poses_, *factorised);
     const double log_area = LogArea(poses_);
-    for (const Candidate& candidate : candidates) {
-      if (left <= 0.) return;
-      const WhitenedEdge& edge = edges_[candidate.edge];
-      LinearFactor linear;
-      linear.a = edge.from - 1;
-      linear.b = edge.to - 1;
-      Linearize(edge, poses_[edge.from], poses_[edge.to], &linear.jacobian_a,
-                &linear.jacobian_b);
-      covariances_[candidate.edge] =
-          Eigen::Matrix3d::Identity() + factor.PredictedCovariance(linear);
-      const double work = kWorkOfBlock * factor.last_prediction_blocks();
-      left += IsCertain(Weigh(candidate.edge, log_area), enough)
-                  ? kWorthOfCertain * work
-                  : -work;
+    for (size_t begin = 0; begin < candidates.size(); begin += kAtOnce) {
+      const size_t end = std::min(candidates.size(), begin + kAtOnce);
+      std::vector<int> loops;
+      for (size_t k = begin; k != end; ++k) {
+        loops.push_back(candidates[k].edge);
+      }
+      const std::vector<LoopPrediction> predictions = predictor.Predict(loops);
+      for (size_t k = 0; k != loops.size(); ++k) {
+        if (left <= 0.) return;
+        covariances_[loops[k]] =
+            Eigen::Matrix3d::Identity() + predictions[k].covariance;
+        const double work = kWorkOfBlock * predictions[k].blocks;
+        left += IsCertain(Weigh(loops[k], log_area), enough)
+                    ? kWorthOfCertain * work
+                    : -work;
+      }
     }
   }
 

@@ -9,7 +9,7 @@
 
 #include "Eigen/Cholesky"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
-#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+#include "cartographer_ext/optimization/solvers/loop_predictor.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -62,25 +62,21 @@ std::vector<Flip> PromisingFlips(const FlipOptions& options,
   Eigen::VectorXd rhs;
   const BlockLdlt* const factorised = solver->Factor(poses, weights, &rhs);
   if (factorised == nullptr) return result;
-  IncrementalFactor factor;
-  factor.Reset(*factorised, rhs);
-  for (const auto& entry : near) {
-    const WhitenedEdge& edge = edges[entry.second];
-    LinearFactor linear;
-    linear.a = edge.from - 1;
-    linear.b = edge.to - 1;
-    const Eigen::Vector3d residual =
-        Linearize(edge, poses[edge.from], poses[edge.to], &linear.jacobian_a,
-                  &linear.jacobian_b);
-    const bool in_force = weights[entry.second] > 0.;
+  std::vector<int> loops;
+  for (const auto& entry : near) loops.push_back(entry.second);
+  const std::vector<LoopPrediction> predictions =
+      LoopPredictor(edges, poses, *factorised).Predict(loops);
+  for (size_t k = 0; k != loops.size(); ++k) {
+    const Eigen::Vector3d& residual = predictions[k].residual;
+    const bool in_force = weights[loops[k]] > 0.;
     const Eigen::Matrix3d covariance =
         Eigen::Matrix3d::Identity() +
-        (in_force ? -1. : 1.) * factor.PredictedCovariance(linear);
+        (in_force ? -1. : 1.) * predictions[k].covariance;
     const Eigen::LLT<Eigen::Matrix3d> root(covariance);
     if (root.info() != Eigen::Success) continue;
     const double cost = residual.dot(root.solve(residual));
     const double gain = in_force ? cost - options.gate : options.gate - cost;
-    if (gain > 0.) result.push_back({entry.second, gain});
+    if (gain > 0.) result.push_back({loops[k], gain});
   }
   std::sort(result.begin(), result.end(), [](const Flip& a, const Flip& b) {
     return a.gain != b.gain ? a.gain > b.gain : a.edge < b.edge;

@@ -10,7 +10,7 @@
 #include "Eigen/Cholesky"
 #include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
-#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+#include "cartographer_ext/optimization/solvers/loop_predictor.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -182,18 +182,11 @@ std::vector<Innovation> PredictLoops(const std::vector<int>& loops,
   Eigen::VectorXd rhs;
   const BlockLdlt* const factorised = solver->Factor(poses, weights, &rhs);
   if (factorised == nullptr) return result;
-  IncrementalFactor factor;
-  factor.Reset(*factorised, rhs);
-  for (const int i : loops) {
-    const WhitenedEdge& edge = solver->edges()[i];
-    LinearFactor linear;
-    linear.a = edge.from - 1;
-    linear.b = edge.to - 1;
-    const Eigen::Vector3d residual =
-        Linearize(edge, poses[edge.from], poses[edge.to], &linear.jacobian_a,
-                  &linear.jacobian_b);
+  for (const LoopPrediction& prediction :
+       LoopPredictor(solver->edges(), poses, *factorised).Predict(loops)) {
+    const Eigen::Vector3d& residual = prediction.residual;
     const Eigen::Matrix3d covariance =
-        Eigen::Matrix3d::Identity() + factor.PredictedCovariance(linear);
+        Eigen::Matrix3d::Identity() + prediction.covariance;
     const Eigen::LLT<Eigen::Matrix3d> root(covariance);
     Innovation innovation;
     innovation.covariance = covariance;

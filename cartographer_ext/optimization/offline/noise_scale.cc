@@ -9,7 +9,7 @@
 #include "Eigen/Cholesky"
 #include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/common/thinned.h"
-#include "cartographer_ext/optimization/solvers/incremental_factor.h"
+#include "cartographer_ext/optimization/solvers/loop_predictor.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -22,17 +22,11 @@ constexpr size_t kMaxLoopsForTrace = 300;
 constexpr double k5th = 0.351846317749272;
 constexpr double kMedian = 2.365973884375338;
 
-// J H^-1 J' and the residual of some loops in force.
-struct Prediction {
-  Eigen::Matrix3d covariance;
-  Eigen::Vector3d residual;
-};
-
-std::vector<Prediction> Predict(const std::vector<Pose2>& poses,
-                                const std::vector<double>& weights,
-                                const size_t limit,
-                                RobustSolver* const solver) {
-  std::vector<Prediction> result;
+// Of some loops in force.
+std::vector<LoopPrediction> Predict(const std::vector<Pose2>& poses,
+                                    const std::vector<double>& weights,
+                                    const size_t limit,
+                                    RobustSolver* const solver) {
   const std::vector<WhitenedEdge>& edges = solver->edges();
   std::vector<int> loops;
   for (size_t i = 0; i != edges.size(); ++i) {
@@ -40,21 +34,9 @@ std::vector<Prediction> Predict(const std::vector<Pose2>& poses,
   }
   Eigen::VectorXd rhs;
   const BlockLdlt* const factorised = solver->Factor(poses, weights, &rhs);
-  if (factorised == nullptr) return result;
-  IncrementalFactor factor;
-  factor.Reset(*factorised, rhs);
-  for (const int i : Thinned(loops, limit)) {
-    const WhitenedEdge& edge = edges[i];
-    LinearFactor linear;
-    linear.a = edge.from - 1;
-    linear.b = edge.to - 1;
-    Prediction prediction;
-    prediction.residual = Linearize(edge, poses[edge.from], poses[edge.to],
-                                    &linear.jacobian_a, &linear.jacobian_b);
-    prediction.covariance = factor.PredictedCovariance(linear);
-    result.push_back(prediction);
-  }
-  return result;
+  if (factorised == nullptr) return {};
+  return LoopPredictor(edges, poses, *factorised)
+      .Predict(Thinned(loops, limit));
 }
 
 // Quantile of chi2 by the approximation of Wilson and Hilferty; `z` is that of
@@ -102,9 +84,9 @@ NoiseScale EstimateNoiseScale(const std::vector<Pose2>& poses,
     loops += edge.is_loop;
   }
   double trace = 0.;
-  const std::vector<Prediction> predictions =
+  const std::vector<LoopPrediction> predictions =
       Predict(poses, weights, kMaxLoopsForTrace, solver);
-  for (const Prediction& prediction : predictions) {
+  for (const LoopPrediction& prediction : predictions) {
     trace += std::max(0., 3. - prediction.covariance.trace());
   }
   const double loop_redundancy =
@@ -121,7 +103,8 @@ std::vector<double> LeaveOneOutInnovations(const std::vector<Pose2>& poses,
                                            const size_t limit,
                                            RobustSolver* const solver) {
   std::vector<double> result;
-  for (const Prediction& prediction : Predict(poses, weights, limit, solver)) {
+  for (const LoopPrediction& prediction :
+       Predict(poses, weights, limit, solver)) {
     const Eigen::Matrix3d rest =
         Eigen::Matrix3d::Identity() - prediction.covariance;
     const Eigen::LLT<Eigen::Matrix3d> root(rest);

@@ -4,11 +4,6 @@
 
 #include "cartographer_ext/optimization/solvers/block_product.h"
 
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define CARTOGRAPHER_EXT_X86_KERNELS 1
-#include <immintrin.h>
-#endif
-
 namespace cartographer_ext {
 namespace optimization {
 namespace {
@@ -24,6 +19,58 @@ void SubtractProducts(const Eigen::Matrix3d& factor,
     right.SubtractedFrom(PackedBlock(target), PackedBlock(sources[k]))
         .CopyTo(&target);
   }
+}
+
+void SubtractPanel(const double* const sources, const int stride,
+                   const int inner, const double* const factor,
+                   const int* const places, const int count,
+                   Eigen::Matrix3d* const targets) {
+  for (int k = 0; k < count; ++k) {
+    PackedColumn sums[3] = {PackedColumn(0.), PackedColumn(0.),
+                            PackedColumn(0.)};
+    for (int i = 0; i != inner; ++i) {
+      const PackedColumn source(sources + 3 * k + i * stride);
+      for (int c = 0; c != 3; ++c) {
+        sums[c] = sums[c] + source * PackedColumn(factor[3 * i + c]);
+      }
+    }
+    double* const target = targets[places[k]].data();
+    for (int c = 0; c != 3; ++c) {
+      (PackedColumn(target + 3 * c) - sums[c]).CopyTo(target + 3 * c);
+    }
+  }
+}
+
+void SubtractFromPivot(const Eigen::Matrix3d& pivot,
+                       const Eigen::Matrix3d& block,
+                       Eigen::Matrix3d* const factor,
+                       Eigen::Matrix3d* const target) {
+  RightFactor(block.transpose()).ProductWith(PackedBlock(pivot)).CopyTo(factor);
+  RightFactor(*factor)
+      .SubtractedFrom(PackedBlock(*target), PackedBlock(block))
+      .CopyTo(target);
+}
+
+void Scale(const Eigen::Matrix3d& factor, const int count,
+           Eigen::Matrix3d* const blocks) {
+  const RightFactor right(factor);
+  for (int k = 0; k < count; ++k) {
+    right.ProductWith(PackedBlock(blocks[k])).CopyTo(&blocks[k]);
+  }
+}
+
+void Substitute(const Eigen::Vector3d& value,
+                const Eigen::Matrix3d* const blocks, const int* const rows,
+                const int count, Eigen::Vector3d* const x) {
+  for (int k = 0; k < count; ++k) x[rows[k]].noalias() -= blocks[k] * value;
+}
+
+Eigen::Vector3d SubstituteBack(const Eigen::Matrix3d* const blocks,
+                               const int* const rows, const int count,
+                               const Eigen::Vector3d* const x) {
+  TransposedProducts products;
+  for (int k = 0; k < count; ++k) products.Add(blocks[k], x[rows[k]]);
+  return products.Sum();
 }
 
 void UpdateColumn(const Eigen::Matrix3d& head, const Eigen::Matrix3d& gain,
@@ -54,143 +101,25 @@ void PredictColumn(const Eigen::Matrix3d& head, const Eigen::Matrix3d& middle,
   }
 }
 
-constexpr BlockKernels kPlain = {"plain", &SubtractProducts, &UpdateColumn,
-                                 &PredictColumn};
-
-#ifdef CARTOGRAPHER_EXT_X86_KERNELS
-
-// A column in the lower three of four values. Loads and stores cover it exactly:
-// what is stored is soon loaded again, which waits where they overlap.
-__attribute__((target("avx"))) inline __m256d LoadColumn(
-    const double* const values) {
-  return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(values)),
-                              _mm_load_sd(values + 2), 1);
-}
-
-__attribute__((target("avx"))) inline void StoreColumn(const __m256d column,
-                                                       double* const values) {
-  _mm_storeu_pd(values, _mm256_castpd256_pd128(column));
-  _mm_store_sd(values + 2, _mm256_extractf128_pd(column, 1));
-}
-
-struct BlockAvx {
-  __m256d columns[3];
-};
-
-__attribute__((target("avx"))) inline BlockAvx LoadBlock(
-    const Eigen::Matrix3d& block) {
-  const double* const values = block.data();
-  return {{LoadColumn(values), LoadColumn(values + 3), LoadColumn(values + 6)}};
-}
-
-// The right factor of products, each value four times.
-struct FactorAvx {
-  __m256d values[3][3];  // by column and row
-};
-
-__attribute__((target("avx"))) inline FactorAvx Broadcast(
-    const Eigen::Matrix3d& factor) {
-  FactorAvx result;
-  for (int c = 0; c != 3; ++c) {
+void PredictRows(const double* const head, const Eigen::Matrix3d* const blocks,
+                 const int* const rows, const int count, double* const values) {
+  for (int k = 0; k < count; ++k) {
+    double* const below = values + 3 * kPathWidth * rows[k];
     for (int r = 0; r != 3; ++r) {
-      result.values[c][r] = _mm256_set1_pd(factor(r, c));
-    }
-  }
-  return result;
-}
-
-// A column of the product of a block and a factor.
-__attribute__((target("avx"))) inline __m256d ColumnOfProduct(
-    const BlockAvx& block, const FactorAvx& factor, const int column) {
-  const __m256d* const values = factor.values[column];
-  return _mm256_add_pd(
-      _mm256_add_pd(_mm256_mul_pd(block.columns[0], values[0]),
-                    _mm256_mul_pd(block.columns[1], values[1])),
-      _mm256_mul_pd(block.columns[2], values[2]));
-}
-
-__attribute__((target("avx"))) void SubtractProductsAvx(
-    const Eigen::Matrix3d& factor, const Eigen::Matrix3d* const sources,
-    const int* const rows, const int count, const int* const places,
-    Eigen::Matrix3d* const targets) {
-  const FactorAvx right = Broadcast(factor);
-  for (int k = 0; k < count; ++k) {
-    double* const target =
-        targets[places == nullptr ? rows[k] : places[rows[k]]].data();
-    const BlockAvx source = LoadBlock(sources[k]);
-    for (int c = 0; c != 3; ++c) {
-      StoreColumn(_mm256_sub_pd(LoadColumn(target + 3 * c),
-                                ColumnOfProduct(source, right, c)),
-                  target + 3 * c);
+      const double a = blocks[k](r, 0), b = blocks[k](r, 1),
+                   c = blocks[k](r, 2);
+      for (int i = 0; i != kPathWidth; ++i) {
+        below[kPathWidth * r + i] -= a * head[i] + b * head[kPathWidth + i] +
+                                     c * head[2 * kPathWidth + i];
+      }
     }
   }
 }
 
-__attribute__((target("avx"))) void UpdateColumnAvx(
-    const Eigen::Matrix3d& head, const Eigen::Matrix3d& gain,
-    const int* const rows, const int count, Eigen::Matrix3d* const blocks,
-    Eigen::Matrix3d* const work) {
-  const FactorAvx of_head = Broadcast(head), of_gain = Broadcast(gain);
-  for (int k = 0; k < count; ++k) {
-    double* const values = blocks[k].data();
-    double* const target = work[rows[k]].data();
-    const BlockAvx block = LoadBlock(blocks[k]);
-    BlockAvx below;
-    for (int c = 0; c != 3; ++c) {
-      below.columns[c] = _mm256_sub_pd(LoadColumn(target + 3 * c),
-                                       ColumnOfProduct(block, of_head, c));
-      StoreColumn(below.columns[c], target + 3 * c);
-    }
-    for (int c = 0; c != 3; ++c) {
-      StoreColumn(
-          _mm256_add_pd(block.columns[c], ColumnOfProduct(below, of_gain, c)),
-          values + 3 * c);
-    }
-  }
-}
-
-// The fourth value of each column is of no meaning.
-__attribute__((target("avx"))) inline BlockAvx Transposed(
-    const BlockAvx& block) {
-  const __m256d *const c = block.columns, even = _mm256_unpacklo_pd(c[0], c[1]),
-                       odd = _mm256_unpackhi_pd(c[0], c[1]);
-  return {{_mm256_permute2f128_pd(even, c[2], 0x20),
-           _mm256_permute2f128_pd(odd, _mm256_permute_pd(c[2], 0x5), 0x20),
-           _mm256_permute2f128_pd(even, c[2], 0x31)}};
-}
-
-__attribute__((target("avx"))) void PredictColumnAvx(
-    const Eigen::Matrix3d& head, const Eigen::Matrix3d& middle,
-    const int* const rows, const int count, const Eigen::Matrix3d* const blocks,
-    Eigen::Matrix3d* const sum, Eigen::Matrix3d* const work) {
-  const FactorAvx of_head = Broadcast(head);
-  const BlockAvx left = LoadBlock(middle);
-  BlockAvx product;
-  for (int c = 0; c != 3; ++c) {
-    product.columns[c] = ColumnOfProduct(left, of_head, c);
-  }
-  product = Transposed(product);
-  for (int c = 0; c != 3; ++c) {
-    double* const values = sum->data() + 3 * c;
-    StoreColumn(
-        _mm256_add_pd(LoadColumn(values), ColumnOfProduct(product, of_head, c)),
-        values);
-  }
-  for (int k = 0; k < count; ++k) {
-    double* const below = work[rows[k]].data();
-    const BlockAvx block = LoadBlock(blocks[k]);
-    for (int c = 0; c != 3; ++c) {
-      StoreColumn(_mm256_sub_pd(LoadColumn(below + 3 * c),
-                                ColumnOfProduct(block, of_head, c)),
-                  below + 3 * c);
-    }
-  }
-}
-
-constexpr BlockKernels kAvx = {"avx", &SubtractProductsAvx, &UpdateColumnAvx,
-                               &PredictColumnAvx};
-
-#endif
+constexpr BlockKernels kPlain = {
+    "plain",        &SubtractProducts, &SubtractPanel,  &SubtractFromPivot,
+    &Scale,         &Substitute,       &SubstituteBack, &UpdateColumn,
+    &PredictColumn, &PredictRows};
 
 }  // namespace
 
@@ -201,9 +130,7 @@ const BlockKernels& BestBlockKernels() {
 
 std::vector<const BlockKernels*> AllBlockKernels() {
   std::vector<const BlockKernels*> all = {&kPlain};
-#ifdef CARTOGRAPHER_EXT_X86_KERNELS
-  if (__builtin_cpu_supports("avx")) all.push_back(&kAvx);
-#endif
+  if (AvxBlockKernels() != nullptr) all.push_back(AvxBlockKernels());
   return all;
 }
 

@@ -7,7 +7,6 @@
 
 #include "camd.h"
 #include "cartographer_ext/optimization/solvers/block_kernels.h"
-#include "cartographer_ext/optimization/solvers/block_product.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -51,13 +50,25 @@ Adjacency FullAdjacency(const int size,
   return result;
 }
 
-// Sum of the transposed blocks times the rows.
+// The substitutions with a column below its pivot: x[rows[k]] -= blocks[k] * value,
+// and the sum of blocks[k]' * x[rows[k]].
+void Substitute(const Eigen::Vector3d& value,
+                const Eigen::Matrix3d* const blocks, const int* const rows,
+                const int count, std::vector<Eigen::Vector3d>* const x) {
+  BestBlockKernels().substitute(value, blocks, rows, count, x->data());
+}
+
+void Substitute(const Eigen::Matrix3d& value,
+                const Eigen::Matrix3d* const blocks, const int* const rows,
+                const int count, std::vector<Eigen::Matrix3d>* const x) {
+  BestBlockKernels().subtract_products(value, blocks, rows, count, nullptr,
+                                       x->data());
+}
+
 Eigen::Vector3d TransposedSum(const Eigen::Matrix3d* const blocks,
                               const int* const rows, const int count,
                               const std::vector<Eigen::Vector3d>& x) {
-  TransposedProducts products;
-  for (int k = 0; k != count; ++k) products.Add(blocks[k], x[rows[k]]);
-  return products.Sum();
+  return BestBlockKernels().substitute_back(blocks, rows, count, x.data());
 }
 
 Eigen::Matrix3d TransposedSum(const Eigen::Matrix3d* const blocks,
@@ -211,8 +222,13 @@ void BlockLdlt::AnalyzeInOrder(const std::vector<std::pair<int, int>>& pairs) {
   ReserveForMore(slot_of_matrix_.size(), &matrix_);
   matrix_.resize(slot_of_matrix_.size());
   diagonal_.resize(size);
+  CountWork();
+  FindPanels();
+}
+
+void BlockLdlt::CountWork() {
   work_ = 0.;
-  for (int j = 0; j != size; ++j) {
+  for (int j = 0; j != size(); ++j) {
     const double rows = starts_[j + 1] - starts_[j];
     work_ += 27. * (0.5 * rows * rows + rows + 1.);
   }
@@ -257,60 +273,6 @@ void BlockLdlt::AddOffDiagonal(const int pair, const Eigen::Matrix3d& block) {
   }
 }
 
-bool BlockLdlt::Factorize(const double lambda) {
-  const BlockKernels& kernels = BestBlockKernels();
-  const int n = size();
-  for (Eigen::Matrix3d& block : blocks_) block.setZero();
-  for (size_t k = 0; k != matrix_.size(); ++k) {
-    blocks_[slot_of_matrix_[k]] += matrix_[k];
-  }
-  // Left-looking by columns. A finished column waits in the list of the row it
-  // reaches next.
-  std::vector<int> first(n, -1), link(n, -1), reached(n, 0);
-  std::vector<int> index_of_row(n, -1);
-  Eigen::Matrix3d factor;
-  for (int j = 0; j != n; ++j) {
-    for (int p = starts_[j]; p != starts_[j + 1]; ++p) {
-      index_of_row[rows_[p]] = p;
-    }
-    Eigen::Matrix3d pivot = diagonal_[j];
-    for (int d = 0; d != 3; ++d) pivot(d, d) += lambda * diagonal_[j](d, d);
-    for (int k = first[j]; k != -1;) {
-      const int next_in_list = link[k];
-      const int p0 = reached[k], end = starts_[k + 1];
-      factor.noalias() = pivots_[k] * blocks_[p0].transpose();
-      RightFactor(factor)
-          .SubtractedFrom(PackedBlock(pivot), PackedBlock(blocks_[p0]))
-          .CopyTo(&pivot);
-      kernels.subtract_products(factor, &blocks_[p0] + 1, &rows_[p0] + 1,
-                                end - p0 - 1, index_of_row.data(),
-                                blocks_.data());
-      if (p0 + 1 < end) {
-        reached[k] = p0 + 1;
-        const int row = rows_[p0 + 1];
-        link[k] = first[row];
-        first[row] = k;
-      }
-      k = next_in_list;
-    }
-    // What is asymmetric by rounding would grow from column to column.
-    CopyLowerTriangle(&pivot);
-    pivots_[j] = pivot;
-    if (!InvertSpd(pivot, &pivot_inverses_[j])) return false;
-    for (int p = starts_[j]; p != starts_[j + 1]; ++p) {
-      const Eigen::Matrix3d block = blocks_[p];
-      blocks_[p].noalias() = block * pivot_inverses_[j];
-    }
-    if (starts_[j] != starts_[j + 1]) {
-      reached[j] = starts_[j];
-      const int row = rows_[starts_[j]];
-      link[j] = first[row];
-      first[row] = j;
-    }
-  }
-  return true;
-}
-
 template <typename Row, typename Rhs>
 void BlockLdlt::SolveRows(Rhs* const rhs) const {
   const int n = size();
@@ -319,9 +281,8 @@ void BlockLdlt::SolveRows(Rhs* const rhs) const {
     x[j] = rhs->template middleRows<3>(3 * order_[j]);
   for (int j = 0; j != n; ++j) {
     const Row value = x[j];
-    for (int p = starts_[j]; p != starts_[j + 1]; ++p) {
-      x[rows_[p]].noalias() -= blocks_[p] * value;
-    }
+    Substitute(value, blocks_.data() + starts_[j], rows_.data() + starts_[j],
+               starts_[j + 1] - starts_[j], &x);
   }
   for (int j = n - 1; j >= 0; --j) {
     const Row value = pivot_inverses_[j] * x[j];

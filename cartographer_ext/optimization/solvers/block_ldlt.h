@@ -12,6 +12,7 @@
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -72,6 +73,7 @@ class BlockLdlt {
   // Column structure by position: rows [start(c), start(c + 1)), ascending.
   int start(int column) const { return starts_[column]; }
   int row(int index) const { return rows_[index]; }
+  const int* rows(int index) const { return rows_.data() + index; }
   const Eigen::Matrix3d& block(int index) const { return blocks_[index]; }
   const Eigen::Matrix3d& pivot(int column) const { return pivots_[column]; }
   const Eigen::Matrix3d& pivot_inverse(int column) const {
@@ -83,6 +85,11 @@ class BlockLdlt {
     int index = 0;  // into blocks_
     bool transpose = false;
   };
+
+  void CountWork();
+  // Of the factorisation by panels, block_ldlt_panels.cc.
+  class PanelFactorization;
+  void FindPanels();
 
   // `Row` holds the three rows of one variable.
   template <typename Row, typename Rhs>
@@ -100,6 +107,12 @@ class BlockLdlt {
   std::vector<Eigen::Matrix3d> matrix_;  // their values
   std::vector<int> matrix_of_pair_;
   std::vector<Eigen::Matrix3d> diagonal_;  // by position
+  // Panels: neighbouring columns with the same rows below the last of them.
+  std::vector<int> panel_starts_;  // first column of each, and the size
+  std::vector<int> panel_of_column_;
+  std::vector<size_t> packed_starts_;  // of each panel in packed_
+  size_t packed_size_ = 0;
+  std::unique_ptr<double[]> packed_;  // scratch of the factorisation
   double work_ = 0.;
 };
 

@@ -76,6 +76,13 @@ class RightFactor {
     }
   }
 
+  // a * b.
+  PackedBlock ProductWith(const PackedBlock& a) const {
+    PackedBlock result;
+    for (int c = 0; c != 3; ++c) result.columns[c] = Times(a, c);
+    return result;
+  }
+
   // y - a * b and y + a * b.
   PackedBlock SubtractedFrom(const PackedBlock& y, const PackedBlock& a) const {
     PackedBlock result;

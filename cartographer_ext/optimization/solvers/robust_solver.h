@@ -95,7 +95,8 @@ class RobustSolver {
   const std::vector<double>& weights() const { return weights_; }
 
   // The factorised system of the edges at these poses with these weights, one
-  // per edge, and its right hand side. Null when it is not positive definite.
+  // per edge, and its right hand side. Null when it is not positive definite. What
+  // was asked last is known.
   const BlockLdlt* Factor(const std::vector<Pose2>& poses,
                           const std::vector<double>& weights,
                           Eigen::VectorXd* rhs);
@@ -112,6 +113,8 @@ class RobustSolver {
   // What all solutions and factors so far have taken, in multiplications: unlike
   // time the same on every machine.
   double work() const { return work_; }
+  // Factors that were made so far; what is known counts as work, too.
+  int factorizations() const { return factorizations_; }
 
  private:
   // Weights and shapes of all edges at given poses.
@@ -155,6 +158,7 @@ class RobustSolver {
                                   const std::vector<double>& now) const;
   bool CarryToTheLimit(const std::vector<int>& loops, const Evaluation& now,
                        Eigen::VectorXd* step) const;
+  void CountFactorization();
   bool Factorize(double lambda);
   bool UpdatePattern(const std::vector<double>& weights);
   void AddToPattern(const std::vector<int>& edges,
@@ -175,8 +179,13 @@ class RobustSolver {
   int num_pairs_ = 0;
   BlockLdlt factor_;
   std::deque<Solution> solutions_;  // the last ones that are remembered
-  size_t ordered_blocks_ = 0;       // of the factor when it was last ordered
+  // What the factor is that of, after Factor(); no poses after another one.
+  std::vector<Pose2> factored_poses_;
+  std::vector<double> factored_weights_;
+  Eigen::VectorXd factored_gradient_;
+  size_t ordered_blocks_ = 0;  // of the factor when it was last ordered
   double work_ = 0.;
+  int factorizations_ = 0;
   Eigen::VectorXd gradient_;
   Eigen::VectorXd diagonal_;
 };

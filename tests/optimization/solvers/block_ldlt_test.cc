@@ -95,6 +95,58 @@ TEST(BlockLdltTest, SolvesLikeADenseFactorisation) {
   }
 }
 
+// Two grids that a separator joins: its columns have the same rows and are many
+// panels.
+TEST(BlockLdltTest, FactorisesWideSeparators) {
+  constexpr int kWidth = 12, kSize = kWidth * kWidth;
+  Random random(4);
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i != kSize; ++i) {
+    if ((i + 1) % kWidth != 0) pairs.push_back({i, i + 1});
+    if (i + kWidth < kSize) pairs.push_back({i, i + kWidth});
+    if (i % 3 == 0) pairs.push_back({(7 * i + 40) % kSize, i});
+  }
+  BlockLdlt factor;
+  factor.Analyze(kSize, pairs, {});
+  EXPECT_GT(factor.num_blocks(), 8u * pairs.size() / 2);
+  factor.SetZero();
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * kSize, 3 * kSize);
+  for (size_t p = 0; p != pairs.size(); ++p) {
+    const Eigen::Matrix3d block = RandomBlock(&random);
+    const int i = pairs[p].first, j = pairs[p].second;
+    dense.block<3, 3>(3 * i, 3 * j) += block;
+    dense.block<3, 3>(3 * j, 3 * i) += block.transpose();
+    factor.AddOffDiagonal(p, block);
+  }
+  for (int i = 0; i != kSize; ++i) {
+    factor.AddDiagonal(i, 30. * Eigen::Matrix3d::Identity());
+  }
+  dense += 30. * Eigen::MatrixXd::Identity(3 * kSize, 3 * kSize);
+  // Again: what a factorisation leaves behind does not matter.
+  for (int round = 0; round != 2; ++round) {
+    ASSERT_TRUE(factor.Factorize(0.));
+    Eigen::VectorXd solution = Eigen::VectorXd::LinSpaced(3 * kSize, -1., 1.);
+    const Eigen::VectorXd expected = dense.ldlt().solve(solution);
+    factor.Solve(&solution);
+    EXPECT_LT((solution - expected).norm(), 1e-12 * expected.norm());
+  }
+  // L D L' is the matrix.
+  Eigen::MatrixXd l = Eigen::MatrixXd::Identity(3 * kSize, 3 * kSize);
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(3 * kSize, 3 * kSize);
+  Eigen::MatrixXd permuted = d;
+  for (int j = 0; j != kSize; ++j) {
+    d.block<3, 3>(3 * j, 3 * j) = factor.pivot(j);
+    for (int p = factor.start(j); p != factor.start(j + 1); ++p) {
+      l.block<3, 3>(3 * factor.row(p), 3 * j) = factor.block(p);
+    }
+    for (int i = 0; i != kSize; ++i) {
+      permuted.block<3, 3>(3 * i, 3 * j) =
+          dense.block<3, 3>(3 * factor.order()[i], 3 * factor.order()[j]);
+    }
+  }
+  EXPECT_LT((l * d * l.transpose() - permuted).cwiseAbs().maxCoeff(), 1e-11);
+}
+
 TEST(BlockLdltTest, RefusesAnIndefiniteMatrix) {
   BlockLdlt factor;
   factor.Analyze(2, {{0, 1}}, {});

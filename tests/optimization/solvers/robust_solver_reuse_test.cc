@@ -111,6 +111,44 @@ TEST_F(RobustSolverReuseTest, OnlyWhatCostsNoMoreIsRecalled) {
   EXPECT_FALSE(solver.Recall(others, &poses));
 }
 
+TEST_F(RobustSolverReuseTest, WhatWasAskedLastIsFactorisedOnce) {
+  std::vector<WhitenedEdge> edges = clean_;
+  RobustSolver solver(edges);
+  std::vector<double> weights(edges.size(), 1.);
+  // The solution of the factor, and whether it was made anew.
+  const auto ask = [&](const std::vector<Pose2>& poses, Eigen::VectorXd* step) {
+    const int before = solver.factorizations();
+    const double work = solver.work();
+    const BlockLdlt* const factor = solver.Factor(poses, weights, step);
+    EXPECT_NE(factor, nullptr);
+    EXPECT_GT(solver.work(), work);
+    factor->Solve(step);
+    return solver.factorizations() != before;
+  };
+  const std::vector<Pose2> poses = Disturbed();
+  Eigen::VectorXd first, again, step;
+  EXPECT_TRUE(ask(poses, &first));
+  EXPECT_FALSE(ask(poses, &again));
+  EXPECT_EQ(again, first);
+  // Not with other edges, weights or poses, nor after another factor.
+  edges[3].whitening *= 1.1;
+  EXPECT_TRUE(ask(poses, &step));
+  EXPECT_NE(step, first);
+  edges = clean_;
+  EXPECT_TRUE(ask(poses, &again));
+  EXPECT_EQ(again, first);
+  weights.back() = 0.5;
+  EXPECT_TRUE(ask(poses, &step));
+  weights.back() = 1.;
+  EXPECT_TRUE(ask(optimum_, &step));
+  EXPECT_TRUE(ask(poses, &again));
+  EXPECT_EQ(again, first);
+  std::vector<Pose2> solved = poses;
+  solver.Solve(SolverOptions(), &solved);
+  EXPECT_TRUE(ask(poses, &again));
+  EXPECT_LT((again - first).norm(), 1e-9 * first.norm());
+}
+
 TEST_F(RobustSolverReuseTest, ChangedEdgesAreNoticed) {
   std::vector<WhitenedEdge> edges = clean_;
   RobustSolver solver(edges);

@@ -82,7 +82,7 @@ ExplainedMap Explain(const std::vector<Pose2>& poses,
         LogEvidenceOfMap({last.poses, decisions}, portfolio->support(),
                          portfolio->edges(), log_area, &solver);
     if (last.evidence > result.evidence) result = last;
-    if (last.accepted < kMinLoops) break;
+    if (last.accepted < kMinLoops || round + 1 == explanation.max_rounds) break;
     const NoiseScale noise = EstimateNoiseScale(last.poses, decisions, &solver);
     const NoiseMetric next = {
         std::min(1., last.metric.odometry * noise.odometry.factor),
