@@ -81,12 +81,13 @@ Eigen::Matrix3d TransposedSum(const Eigen::Matrix3d* const blocks,
   return result;
 }
 
-// Room for the next, somewhat larger pattern, without copies of old values.
+// Room for the next, larger pattern, without copies of old values. What is not
+// used takes no memory.
 void ReserveForMore(const size_t size,
                     std::vector<Eigen::Matrix3d>* const blocks) {
   if (size <= blocks->capacity()) return;
   blocks->clear();
-  blocks->reserve(size + size / 8);
+  blocks->reserve(2 * size);
 }
 
 }  // namespace

@@ -56,9 +56,9 @@ void BlockLdlt::FindPanels() {
   panel_starts_.push_back(n);
   packed_starts_.push_back(packed);
   packed += kPanelPadding;
-  if (packed <= packed_size_) return;
+  if (packed_ != nullptr && packed <= packed_size_) return;
   // Without values: those that are not used take no memory.
-  packed_size_ = packed + packed / 8;
+  packed_size_ = 2 * packed;
   packed_.reset(new double[packed_size_]);
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "cartographer_ext/optimization/solvers/block_kernels.h"
+#include "cartographer_ext/optimization/solvers/block_product.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -158,7 +159,6 @@ Eigen::Matrix3d IncrementalFactor::PredictedCovariance(
 
 Eigen::Vector3d IncrementalFactor::SolveFor(const int variable) const {
   if (variable < 0) return Eigen::Vector3d::Zero();
-  const BlockKernels& kernels = BestBlockKernels();
   // The path to the root holds all rows of its columns, and so does the part of
   // it that is known already.
   std::vector<int> path;
@@ -169,44 +169,46 @@ Eigen::Vector3d IncrementalFactor::SolveFor(const int variable) const {
   }
   for (auto it = path.rbegin(); it != path.rend(); ++it) {
     const Column& column = columns_[*it];
-    const Eigen::Vector3d sum =
-        kernels.substitute_back(column.blocks.data(), column.rows.data(),
-                                column.rows.size(), work_solution_.data());
-    work_solution_[*it] = column.rhs - sum;
+    TransposedProducts products;
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      products.Add(column.blocks[k], work_solution_[column.rows[k]]);
+    }
+    work_solution_[*it] = column.rhs - products.Sum();
     solution_version_[*it] = version_;
   }
   return work_solution_[position_[variable]];
 }
 
 void IncrementalFactor::Solve(Eigen::VectorXd* const solution) const {
-  const BlockKernels& kernels = BestBlockKernels();
   solution->resize(3 * columns_.size());
   for (int j = static_cast<int>(columns_.size()) - 1; j >= 0; --j) {
     const Column& column = columns_[j];
-    const Eigen::Vector3d sum =
-        kernels.substitute_back(column.blocks.data(), column.rows.data(),
-                                column.rows.size(), work_solution_.data());
-    work_solution_[j] = column.rhs - sum;
+    TransposedProducts products;
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      products.Add(column.blocks[k], work_solution_[column.rows[k]]);
+    }
+    work_solution_[j] = column.rhs - products.Sum();
     solution->segment<3>(3 * variable_[j]) = work_solution_[j];
   }
 }
 
 void IncrementalFactor::SolveSystem(Eigen::VectorXd* const rhs) const {
-  const BlockKernels& kernels = BestBlockKernels();
   const int n = columns_.size();
   std::vector<Eigen::Vector3d> x(n);
   for (int j = 0; j != n; ++j) x[j] = rhs->segment<3>(3 * variable_[j]);
   for (int j = 0; j != n; ++j) {
     const Column& column = columns_[j];
-    const Eigen::Vector3d value = x[j];
-    kernels.substitute(value, column.blocks.data(), column.rows.data(),
-                       column.rows.size(), x.data());
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      x[column.rows[k]].noalias() -= column.blocks[k] * x[j];
+    }
   }
   for (int j = n - 1; j >= 0; --j) {
     const Column& column = columns_[j];
-    x[j] = column.pivot_inverse * x[j] -
-           kernels.substitute_back(column.blocks.data(), column.rows.data(),
-                                   column.rows.size(), x.data());
+    TransposedProducts products;
+    for (size_t k = 0; k != column.rows.size(); ++k) {
+      products.Add(column.blocks[k], x[column.rows[k]]);
+    }
+    x[j] = column.pivot_inverse * x[j] - products.Sum();
     rhs->segment<3>(3 * variable_[j]) = x[j];
   }
 }

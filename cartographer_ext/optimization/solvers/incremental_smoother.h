@@ -230,6 +230,7 @@ class IncrementalSmoother {
   double work_of_steps_ = 0.;  // in this epoch
   double work_of_last_end_ = 0.;
   std::unique_ptr<RobustSolver> batch_;  // of an epoch whose factor is to come
+  BlockLdlt memory_;                     // for the next one
   int iterations_left_ = 0;              // of its solution
   int batch_iterations_ = 0;             // in this step
   int num_late_rejections_ = 0;

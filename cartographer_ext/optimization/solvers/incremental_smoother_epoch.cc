@@ -86,6 +86,7 @@ void IncrementalSmoother::SolveEpoch() {
   SolverOptions solver = BatchOptions();
   batch_ =
       absl::make_unique<RobustSolver>(edges_, RobustSolver::LastPoseLast());
+  batch_->TakeMemory(std::move(memory_));
   SolveWithPredicted(solver);
   iterations_left_ = solver.max_iterations;
   if (num_poses() > options_.two_step_map) {
@@ -140,6 +141,7 @@ void IncrementalSmoother::TakeOverEpoch() {
   first_edge_of_epoch_ = edges_.size();
   work_of_steps_ = 0.;
   work_of_last_end_ = batch->work();
+  memory_ = batch->ReleaseMemory();
 }
 
 void IncrementalSmoother::DecideLoops() {

@@ -88,6 +88,14 @@ class RobustSolver {
   RobustSolver(const std::vector<WhitenedEdge>& edges, LastPoseLast)
       : edges_(edges), last_pose_last_(true) {}
 
+  // Memory of the factor of a solver that has ended: new memory takes as long as a
+  // factorisation. Nothing else of it counts.
+  void TakeMemory(BlockLdlt factor) {
+    factor_ = std::move(factor);
+    analysed_ = false;
+  }
+  BlockLdlt ReleaseMemory() { return std::move(factor_); }
+
   // Improves `poses` in place; their number is the same in all calls.
   SolverSummary Solve(const SolverOptions& options, std::vector<Pose2>* poses);
 

@@ -149,6 +149,26 @@ TEST_F(RobustSolverReuseTest, WhatWasAskedLastIsFactorisedOnce) {
   EXPECT_LT((again - first).norm(), 1e-9 * first.norm());
 }
 
+TEST_F(RobustSolverReuseTest, MemoryOfAnotherGraphChangesNothing) {
+  SolverOptions options;
+  options.kernel = DefaultKernel(KernelType::kDcs);
+  std::vector<Pose2> expected = Disturbed();
+  SolveRobust(clean_, options, &expected);
+  for (const std::vector<WhitenedEdge>* const other : {&dirty_, &clean_}) {
+    RobustSolver larger(*other);
+    std::vector<Pose2> poses = Disturbed();
+    larger.Solve(options, &poses);
+    RobustSolver solver(clean_);
+    solver.TakeMemory(larger.ReleaseMemory());
+    poses = Disturbed();
+    solver.Solve(options, &poses);
+    for (size_t i = 0; i != poses.size(); ++i) {
+      EXPECT_EQ(poses[i].x, expected[i].x);
+      EXPECT_EQ(poses[i].theta, expected[i].theta);
+    }
+  }
+}
+
 TEST_F(RobustSolverReuseTest, ChangedEdgesAreNoticed) {
   std::vector<WhitenedEdge> edges = clean_;
   RobustSolver solver(edges);
