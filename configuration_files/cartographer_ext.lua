@@ -276,7 +276,9 @@ CARTOGRAPHER_EXT.optimization_problem = {
   -- loop_sigma from the map, optimise again with loops that may pull and with
   -- single steps of local SLAM that may give way, as where wheels slip in a
   -- corridor; kept if nearly all loops are in force then. Not where places
-  -- look alike, nor with landmarks or fixed frames. Needs our loop closure
-  -- and the swap full_information.
+  -- look alike, nor with landmarks or fixed frames; that needs our loop
+  -- closure and the swap full_information. Then, if nearly all loops hold in
+  -- the map, those that it contradicts by more than half a metre are taken
+  -- back.
   loops_in_force = true,
 }

@@ -96,6 +96,13 @@ LoopDescription DescribeConstraint(const Constraint& constraint) {
   return loop;
 }
 
+// The mark that withdraws a loop.
+template <typename Constraint>
+Constraint WithdrawalMark(Constraint loop) {
+  loop.pose.translation_weight = loop.pose.rotation_weight = 0.;
+  return loop;
+}
+
 // For Cartographer's message PoseGraph.Constraint.
 template <typename ConstraintProto>
 LoopDescription DescribeConstraintProto(const ConstraintProto& constraint) {

@@ -56,17 +56,6 @@ Eigen::Matrix3d Spread(const Pose2& a, const Pose2& b) {
   return d.cwiseAbs2().asDiagonal();
 }
 
-// The mean of two independent rotations, weighted by their variances.
-void FuseRotation(const double angle, const double variance,
-                  OdometryMotion* const odometry) {
-  const double own = odometry->covariance(2, 2);
-  const double ratio = own / (own + variance);
-  odometry->motion.theta =
-      NormalizeAngle(odometry->motion.theta +
-                     ratio * NormalizeAngle(angle - odometry->motion.theta));
-  odometry->covariance(2, 2) = own * variance / (own + variance);
-}
-
 }  // namespace
 
 MotionPredictor::MotionPredictor(const MotionPredictorOptions& options)
@@ -190,6 +179,7 @@ void MotionPredictor::PredictByOdometry(
   prediction->motion = turned.motion;
   prediction->covariance = OdometryMotionCovariance(turned, interval);
   prediction->is_uncertain = is_suspect;
+  prediction->bridges_gap = odometry.is_reckoned && !is_suspect;
   OdometryMotion since_anchor;
   if (monitor_.state() == OdometryState::kAbsent && has_anchor_ &&
       odometry_.Predict(anchor_time_, time, &since_anchor)) {
@@ -243,10 +233,19 @@ bool MotionPredictor::IntegrateImu(const double from, const double to,
 
 bool MotionPredictor::IntegrateOdometry(const double from, const double to,
                                         OdometryMotion* const motion) const {
-  if (!odometry_.Predict(from, to, motion)) return false;
+  if (!PredictByWheels(from, to, motion)) return false;
   motion->by_gyroscope =
       to - from > kReckonedInterval &&
       reckoning_.Predict(from, to, odometry_, imu_.gyroscope(), motion);
+  return true;
+}
+
+bool MotionPredictor::PredictByWheels(const double from, const double to,
+                                      OdometryMotion* const motion) const {
+  if (!odometry_.Predict(from, to, motion)) return false;
+  if (to - from > kReckonedInterval) {
+    odometry_.Reckon(from, to, monitor_.faults_per_metre(), motion);
+  }
   return true;
 }
 
@@ -262,7 +261,9 @@ Eigen::Matrix3d MotionPredictor::WideCovariance(const double interval) const {
 
 Eigen::Matrix3d MotionPredictor::OdometryMotionCovariance(
     const OdometryMotion& odometry, const double interval) const {
-  const double scale = std::sqrt(odometry_noise_scale());
+  // Of the motion between two scans.
+  const double scale =
+      odometry.is_reckoned ? 1. : std::sqrt(odometry_noise_scale());
   const Eigen::Vector3d factors(scale, scale, 1.);
   Eigen::Matrix3d covariance =
       factors.asDiagonal() * odometry.covariance * factors.asDiagonal();
@@ -382,7 +383,7 @@ OdometryState MotionPredictor::Compare(
   if (!(comparison.interval > 0.)) return monitor_.state();
   OdometryMotion odometry;
   comparison.has_odometry =
-      has_odometry && odometry_.Predict(compared_time_, time, &odometry);
+      has_odometry && PredictByWheels(compared_time_, time, &odometry);
   comparison.odometry = odometry.motion;
   comparison.frozen = odometry.frozen;
   comparison.makes_up = uncompared_.ends_contest;

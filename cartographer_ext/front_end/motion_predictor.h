@@ -77,6 +77,9 @@ struct MotionPrediction {
   // metres and radians, where no sensor measured the motion; otherwise zero.
   double search_radius = 0.;
   double search_angle = 0.;
+  // By dead reckoning over metres without a scan; the covariance is the error of
+  // that.
+  bool bridges_gap = false;
   // Odometry covered the last scan and its next reading will cover the gap
   // since then.
   bool odometry_pending = false;
@@ -175,8 +178,10 @@ class MotionPredictor {
 
   // Integrates the IMU between two times.
   bool IntegrateImu(double from, double to, ImuMotion* motion) const;
-  // Odometry between two times, over a gap by dead reckoning where possible.
+  // Odometry between two times, over a gap by dead reckoning; the heading by the
+  // gyroscope where that is proven.
   bool IntegrateOdometry(double from, double to, OdometryMotion* motion) const;
+  bool PredictByWheels(double from, double to, OdometryMotion* motion) const;
   // Where the velocity is hardly known.
   Eigen::Matrix3d WideCovariance(double interval) const;
   Eigen::Matrix3d OdometryMotionCovariance(const OdometryMotion& odometry,

@@ -30,17 +30,25 @@ Eigen::Matrix3d Bounded(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 void StepDoubt::Add(const Pose2& motion, const Eigen::Matrix3d& covariance,
-                    const double probability) {
+                    const double probability, const bool bridges_gap) {
   const Eigen::Matrix3d adjoint = uncertainty::Adjoint(motion.Inverse());
-  sum_ = adjoint * sum_ * adjoint.transpose();
-  if (!(probability > 0.)) return;
+  sum_.doubt = adjoint * sum_.doubt * adjoint.transpose();
+  if (sum_.bridged.has_value()) {
+    sum_.bridged = adjoint * *sum_.bridged * adjoint.transpose();
+  }
   const Eigen::Matrix3d rotation = PlanarRotation(motion.theta);
-  sum_ += probability * rotation.transpose() * Bounded(covariance) * rotation;
+  if (bridges_gap) {
+    const Eigen::Matrix3d gap = rotation.transpose() * covariance * rotation;
+    sum_.bridged = sum_.bridged.has_value() ? *sum_.bridged + gap : gap;
+  } else if (probability > 0.) {
+    sum_.doubt +=
+        probability * rotation.transpose() * Bounded(covariance) * rotation;
+  }
 }
 
-Eigen::Matrix3d StepDoubt::Take() {
-  const Eigen::Matrix3d sum = sum_;
-  sum_.setZero();
+uncertainty::StepError StepDoubt::Take() {
+  const uncertainty::StepError sum = sum_;
+  sum_ = uncertainty::StepError();
   return sum;
 }
 

@@ -59,6 +59,29 @@ void DecisionRecorder::Record(const Decisions& decisions) {
   }
 }
 
+void DecisionRecorder::TakeBack(const std::set<LoopId>& loops) {
+  absl::MutexLock lock(&mutex_);
+  if (!started_ || loops.empty()) return;
+  Decisions taken;
+  KeepLast(records_).ForEach([&](const proto::LoopDecision& decision) {
+    LoopId id;
+    id.submap_trajectory = decision.submap_trajectory_id();
+    id.submap_index = decision.submap_index();
+    id.node_trajectory = decision.node_trajectory_id();
+    id.node_index = decision.node_index();
+    if (decision.verdict() != proto::LoopDecision::ACCEPTED ||
+        loops.count(id) == 0) {
+      return;
+    }
+    taken.push_back(decision);
+    taken.back().set_verdict(proto::LoopDecision::REJECTED);
+    taken.back().set_reason(proto::LoopDecision::OFF_MAP);
+  });
+  // Even beyond the capacity: they are no more than were kept.
+  for (const proto::LoopDecision& decision : taken) records_.Add(decision);
+  has_withdrawn_ = has_withdrawn_ || !taken.empty();
+}
+
 int64_t DecisionRecorder::AddPending(std::function<Decisions()> undecided) {
   absl::MutexLock lock(&pending_mutex_);
   pending_.emplace(next_pending_, std::move(undecided));

@@ -11,10 +11,12 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
+#include "cartographer_ext/common/loop_id.h"
 #include "cartographer_ext/loop_closure/decision_records.h"
 #include "cartographer_ext/loop_decision.pb.h"
 
@@ -33,6 +35,8 @@ class DecisionRecorder {
   bool started() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   void Record(const Decisions& decisions) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Of these loops, what was accepted is rejected: the map contradicts it.
+  void TakeBack(const std::set<LoopId>& loops) ABSL_LOCKS_EXCLUDED(mutex_);
   // Registers a source of undecided candidates. `undecided` is called without
   // holding any lock of the recorder. Returns a number for `RemovePending`,
   // after which it is no longer called.

@@ -41,9 +41,9 @@ LoopPipeline::LoopPipeline(const LoopOptions& options,
       consensus_(options, &paths_) {}
 
 bool LoopPipeline::AddNode(const int trajectory_id, HistoryNode node,
-                           const Eigen::Matrix3d& doubt) {
+                           const uncertainty::StepError& error) {
   paths_.Add(uncertainty::NodeId{trajectory_id, node.node_index},
-             node.local_pose, doubt);
+             node.local_pose, error);
   typical_step_.Add(trajectory_id, node.node_index, node.local_pose);
   return history_.Add(trajectory_id, std::move(node));
 }

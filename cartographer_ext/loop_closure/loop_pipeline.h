@@ -61,9 +61,9 @@ class LoopPipeline {
   LoopPipeline& operator=(const LoopPipeline&) = delete;
 
   // To be called for every proposed node, before any sampler. Returns whether
-  // it is new. `doubt`: see PathUncertainty::Add.
+  // it is new. `error`: see PathUncertainty::Add.
   bool AddNode(int trajectory_id, HistoryNode node,
-               const Eigen::Matrix3d& doubt = Eigen::Matrix3d::Zero());
+               const uncertainty::StepError& error = uncertainty::StepError());
   // For every submap proposed; the order of the calls does not matter.
   void AddSubmap(const uncertainty::SubmapId& submap, const Pose2& local_pose);
   bool HasNode(const uncertainty::NodeId& node) const;

@@ -147,6 +147,7 @@ nlohmann::ordered_json ToJson(const SlamRun& run) {
         {"after", in_force.after.off},
         {"steps_gave_way", in_force.relaxed}};
   }
+  json["optimizations"]["loops_taken_back"] = switched.taken_back.size();
   json["metrics"] = run.metrics;
   json["warnings"] = run.input_warnings;
   for (const std::string& warning : run.warnings) {
@@ -201,6 +202,13 @@ std::string ToText(const SlamRun& run) {
                               "gave way to them",
                               in_force.before.off)
             : "which no single steps of local SLAM explain");
+  }
+  if (!run.switched_loops.taken_back.empty()) {
+    absl::StrAppendFormat(
+        &text,
+        "Taken back %d loops, as the finished map contradicts "
+        "them by more than 0.5 m or 17 degrees\n",
+        run.switched_loops.taken_back.size());
   }
   return text;
 }

@@ -24,6 +24,7 @@
 #include "cartographer_ext/io/pbstream/pose_graph_edit.h"
 #include "cartographer_ext/loop_closure/decision_recorder.h"
 #include "cartographer_ext/map/host_types.h"
+#include "cartographer_ext/optimization/dropin/taken_back_loops.h"
 #include "cartographer_ext/slam/back_end_metrics.h"
 #include "cartographer_ext/slam/latency_meter.h"
 #include "cartographer_ext/slam/metrics_collector.h"
@@ -315,11 +316,14 @@ class Runner {
     const double start = Now();
     run_.map_builder->pose_graph()->RunFinalOptimization();
     run_.final_optimization_wall_seconds = Now() - start;
+    run_.switched_loops =
+        context_->Get<optimization::SwitchedLoopRecorder>()->Get();
+    const std::set<LoopId>& taken_back = run_.switched_loops.taken_back;
+    optimization::MarkTakenBack(taken_back, run_.map_builder->pose_graph());
+    decision_recorder_->TakeBack(taken_back);
   }
 
   void CollectRecords() {
-    run_.switched_loops =
-        context_->Get<optimization::SwitchedLoopRecorder>()->Get();
     run_.matches = match_recorder_->All();
     match_recorder_->Stop();
     if (match_recorder_->num_dropped() > 0) {

@@ -32,6 +32,12 @@ constexpr int kShares = 8;
 constexpr int kReweightings = 5;
 constexpr int kAlternations = 5;
 
+// Starts for the drift that is the same all along, in standard deviations of its
+// prior, and by how much (a logarithm) a result must be likelier than that from
+// none.
+constexpr double kFarthestStart = 3.;
+constexpr double kBetter = 1e-3;
+
 // Range of the headings of wrong loops that are not aligned, radians.
 constexpr double kHeadings = 1.;
 // Wrong cycles that the prior of the share of aligned ones is worth.
@@ -74,15 +80,6 @@ double HeadingVariance(const HeadingCycle& heading,
          Squared(factors.turning) * heading.turning + heading.other;
 }
 
-Eigen::Vector3d ErrorOf(const Pose2& cycle) {
-  return Eigen::Vector3d(cycle.x, cycle.y, NormalizeAngle(cycle.theta));
-}
-
-Eigen::Matrix3d Moved(const Eigen::Matrix3d& covariance, const Pose2& pose) {
-  const Eigen::Matrix3d adjoint = Adjoint(pose);
-  return adjoint * covariance * adjoint.transpose();
-}
-
 double ShareOf(const int level) { return (level + 0.5) / kShares; }
 
 DriftFactors FactorsOf(const Eigen::Vector3d& logarithms) {
@@ -94,43 +91,6 @@ DriftFactors FactorsOf(const Eigen::Vector3d& logarithms) {
 }
 
 }  // namespace
-
-DriftCycle CycleOfLoops(const UncertainPose& loop_u, const DriftStretch& path_b,
-                        const UncertainPose& loop_v,
-                        const DriftStretch& path_a) {
-  const UncertainPose back = Invert(loop_v);
-  DriftCycle cycle;
-  cycle.error = ErrorOf(loop_u.pose * path_b.pose * back.pose * path_a.pose);
-  // What is right of each edge moves its error to the end of the cycle.
-  const Pose2 right_of_back = path_a.pose;
-  const Pose2 right_of_b = back.pose * right_of_back;
-  const Pose2 right_of_u = path_b.pose * right_of_b;
-  cycle.parts = Transported(path_b.parts, Adjoint(right_of_b.Inverse()));
-  cycle.parts += path_a.parts;
-  cycle.parts.other += Moved(loop_u.covariance, right_of_u.Inverse()) +
-                       Moved(back.covariance, right_of_back.Inverse());
-  return cycle;
-}
-
-DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path) {
-  DriftCycle cycle;
-  cycle.error = ErrorOf(loop.pose * path.pose);
-  cycle.parts = path.parts;
-  cycle.parts.other += Moved(loop.covariance, path.pose.Inverse());
-  return cycle;
-}
-
-HeadingCycle HeadingOfLoop(const UncertainPose& loop,
-                           const DriftStretch& path) {
-  const DriftCycle cycle = CycleOfLoop(loop, path);
-  HeadingCycle heading;
-  heading.error = cycle.error.z();
-  heading.rotation = cycle.parts.rotation(2, 2);
-  heading.turning = cycle.parts.turning(2, 2);
-  heading.other = cycle.parts.other(2, 2);
-  heading.common = cycle.parts.common.row(2);
-  return heading;
-}
 
 DriftEstimator::DriftEstimator(const DriftEstimatorOptions& options)
     : options_(options) {
@@ -173,11 +133,80 @@ DriftEstimator::WrongDensity DriftEstimator::DensityOfWrong(
   return density;
 }
 
+Eigen::Vector3d DriftEstimator::PriorSigma() const {
+  return Eigen::Vector3d(options_.prior_heading, options_.prior_turning,
+                         options_.prior_scale);
+}
+
+double DriftEstimator::LogOfHeadings(const DriftFit& fit,
+                                     const Eigen::Vector3d& common) const {
+  const double unaligned = UnalignedShare(fit);
+  double sum = 0.;
+  for (const HeadingCycle& heading : headings_) {
+    const double error = heading.error + heading.common.dot(common);
+    sum +=
+        std::log((1. - unaligned) *
+                     NormalDensity(error, HeadingVariance(heading, fit.mean)) +
+                 unaligned / kHeadings);
+  }
+  return heading_weight_ * sum -
+         0.5 * common.cwiseQuotient(PriorSigma()).squaredNorm();
+}
+
+double DriftEstimator::LogPosterior(const DriftFit& fit,
+                                    const Eigen::Vector3d& common) const {
+  double sum = LogOfHeadings(fit, common);
+  for (const DriftCycle& cycle : cycles_) {
+    const Eigen::LLT<Eigen::Matrix3d> factor(
+        Symmetric(cycle.parts.Total(fit.mean, Eigen::Matrix3d::Zero())));
+    const double right = std::exp(
+        LogNormalDensity(cycle.error + cycle.parts.common * common, factor));
+    sum += std::log((1. - fit.wrong_share) * right +
+                    fit.wrong_share *
+                        DensityOfWrong(cycle, fit.aligned_share).Sum());
+  }
+  return sum;
+}
+
+Eigen::Vector3d DriftEstimator::StartByHeadings(const DriftFit& fit,
+                                                const int axis) const {
+  Eigen::Vector3d best = Eigen::Vector3d::Zero();
+  double most = LogOfHeadings(fit, best);
+  for (const HeadingCycle& heading : headings_) {
+    Eigen::Vector3d start = Eigen::Vector3d::Zero();
+    start(axis) = -heading.error / heading.common(axis);
+    if (!(std::abs(start(axis)) < kFarthestStart * PriorSigma()(axis))) {
+      continue;
+    }
+    const double log = LogOfHeadings(fit, start);
+    if (log <= most) continue;
+    most = log;
+    best = start;
+  }
+  return best;
+}
+
 CommonDrift DriftEstimator::FitCommon(const DriftFit& fit) const {
+  CommonDrift best = FitCommonFrom(fit, Eigen::Vector3d::Zero());
+  double most = LogPosterior(fit, best.mean) + kBetter;
+  for (const int axis : {0, 1}) {
+    const Eigen::Vector3d start = StartByHeadings(fit, axis);
+    if (start.isZero(0.)) continue;
+    const CommonDrift found = FitCommonFrom(fit, start);
+    const double log = LogPosterior(fit, found.mean);
+    if (log <= most) continue;
+    most = log;
+    best = found;
+  }
+  return best;
+}
+
+CommonDrift DriftEstimator::FitCommonFrom(const DriftFit& fit,
+                                          const Eigen::Vector3d& start) const {
   const double log_right = std::log1p(-fit.wrong_share);
-  const Eigen::Vector3d prior_sigma(
-      options_.prior_heading, options_.prior_turning, options_.prior_scale);
+  const Eigen::Vector3d prior_sigma = PriorSigma();
   CommonDrift common;
+  common.mean = start;
   for (int iteration = 0; iteration < kReweightings; ++iteration) {
     // In units of the prior.
     Eigen::Matrix3d information = Eigen::Matrix3d::Identity();

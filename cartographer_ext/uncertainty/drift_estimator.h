@@ -30,7 +30,10 @@
 // them.
 //
 // Given f, w and h, c has a normal prior and is found by reweighted least
-// squares, where the weight of a cycle is its probability of being right. Given
+// squares, where the weight of a cycle is its probability of being right. It
+// starts from none and from what single headings of long paths (below) would tell, and the
+// likeliest result counts: from none alone, a drift of half a radian along the run
+// would pass for wrong loops, all of them. Given
 // c and h, the posterior of (ln f_t, ln f_r, ln f_u, w) is computed on a grid,
 // with a normal prior of the logarithms that allows for a factor of ten within
 // two standard deviations, and a uniform one of w; given those, h is the mean
@@ -66,49 +69,11 @@
 #include <vector>
 
 #include "Eigen/Core"
+#include "cartographer_ext/uncertainty/drift_cycle.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
-#include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
 namespace uncertainty {
-
-// A cycle that would close without errors.
-struct DriftCycle {
-  Eigen::Vector3d error;  // metres, metres, radians
-  CovarianceParts parts;  // of the error; loops are in `other`
-  // Half width of the window in which its loops were searched, metres, > 0.
-  double window = 5.;
-};
-
-// The heading of a cycle of one loop over a long path. Places that look alike are
-// mostly parallel, so the heading of a loop tells the drift of the heading even
-// where the place is wrong.
-struct HeadingCycle {
-  double error = 0.;     // radians
-  double rotation = 0.;  // prior variances from rotation, square radians
-  double turning = 0.;
-  double other = 0.;
-  // Effects of the errors of CommonDrift.
-  Eigen::Vector3d common = Eigen::Vector3d::Zero();
-  double length = 0.;  // of the path, metres
-};
-
-// A piece of the path of local SLAM, not corrected.
-struct DriftStretch {
-  Pose2 pose;
-  CovarianceParts parts;
-};
-
-// The cycle of two loops (cycle_consistency.h): `loop_u` is (a_u <- b_u),
-// `path_b` (b_u <- b_v), `loop_v` (a_v <- b_v), `path_a` (a_v <- a_u).
-DriftCycle CycleOfLoops(const UncertainPose& loop_u, const DriftStretch& path_b,
-                        const UncertainPose& loop_v,
-                        const DriftStretch& path_a);
-// The cycle of one loop (a <- b) with the path (b <- a).
-DriftCycle CycleOfLoop(const UncertainPose& loop, const DriftStretch& path);
-
-// The same of a long path.
-HeadingCycle HeadingOfLoop(const UncertainPose& loop, const DriftStretch& path);
 
 // Priors of the estimation.
 struct DriftEstimatorOptions {
@@ -176,8 +141,19 @@ class DriftEstimator {
   };
   WrongDensity DensityOfWrong(const DriftCycle& cycle,
                               double aligned_share) const;
+  Eigen::Vector3d PriorSigma() const;
   // With the drift and the shares of `fit`.
   CommonDrift FitCommon(const DriftFit& fit) const;
+  CommonDrift FitCommonFrom(const DriftFit& fit,
+                            const Eigen::Vector3d& start) const;
+  // Where only the heading (0) or only the turning (1) drifts all along, by as much
+  // as the headings tell.
+  Eigen::Vector3d StartByHeadings(const DriftFit& fit, int axis) const;
+  // Logarithms of the densities of c with its prior, less a constant: of the
+  // headings, of everything.
+  double LogOfHeadings(const DriftFit& fit,
+                       const Eigen::Vector3d& common) const;
+  double LogPosterior(const DriftFit& fit, const Eigen::Vector3d& common) const;
   // Updates the masses of the levels in `grid`. Returns the mean of w.
   double FitFactors(const DriftFit& fit, std::array<Marginal, 3>* grid) const;
   double FitAlignedShare(const DriftFit& fit) const;

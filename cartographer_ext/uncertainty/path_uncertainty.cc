@@ -130,7 +130,7 @@ PathUncertainty::PathUncertainty(const PathNoiseOptions& options,
 }
 
 void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose,
-                          const Eigen::Matrix3d& doubt) {
+                          const StepError& error) {
   Sequence& sequence = sequences_[KeyOf(vertex)];
   std::deque<Entry>& entries = sequence.entries;
   const auto place = LowerBound(entries, vertex.index());
@@ -139,7 +139,7 @@ void PathUncertainty::Add(const VertexId& vertex, const Pose2& local_pose,
   Entry entry;
   entry.index = vertex.index();
   entry.local_pose = local_pose;
-  entry.doubt = doubt;
+  entry.error = error;
   const size_t offset = static_cast<size_t>(place - entries.begin());
   entries.insert(place, entry);
   sequence.num_valid = std::min(sequence.num_valid, offset);
@@ -198,7 +198,9 @@ void PathUncertainty::Accumulate(JumpThresholds thresholds,
   thresholds.radians *= entry->index - before.index;
   CovarianceParts step_parts =
       StepCovariance(options_, thresholds, metres, std::abs(step.theta));
-  step_parts.other += entry->doubt;
+  if (entry->error.bridged.has_value())
+    step_parts.other = *entry->error.bridged;
+  step_parts.other += entry->error.doubt;
   entry->travelled = before.travelled + metres;
   entry->cost = before.cost + PathCostOf(step_parts.Total(
                                   DriftFactors(), Eigen::Matrix3d::Zero()));

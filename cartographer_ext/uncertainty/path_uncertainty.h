@@ -26,7 +26,9 @@
 // assume (a slow laser, a fast robot), both thresholds are scaled accordingly, and
 // a step that is ordinary among those nodes, in metres or in radians, is no jump.
 //
-// So is the covariance of a step that local SLAM itself doubts (doubtful_steps.h).
+// So is the covariance of a step that local SLAM itself doubts, and where it knows
+// that of dead reckoning over a gap, that is the error of the step instead of its
+// excess (step_error.h).
 //
 // The sums are kept apart for the errors of translation, of rotation per metre
 // and of rotation while turning, so that each can be scaled for a trajectory
@@ -46,6 +48,7 @@
 #include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/uncertainty/ids.h"
+#include "cartographer_ext/uncertainty/step_error.h"
 #include "cartographer_ext/uncertainty/uncertain_pose.h"
 
 namespace cartographer_ext {
@@ -127,9 +130,9 @@ class PathUncertainty {
 
   // (local frame of the trajectory <- vertex). A vertex that has been added
   // before, or that is older than all that are kept of a full trajectory, is
-  // ignored. `doubt`: what is added to the covariance of the step that ends there.
+  // ignored. `error`: of the step that ends there.
   void Add(const VertexId& vertex, const Pose2& local_pose,
-           const Eigen::Matrix3d& doubt = Eigen::Matrix3d::Zero());
+           const StepError& error = StepError());
 
   // (u <- v). Empty for a node and a submap, between trajectories, and for
   // vertices that are not kept.
@@ -174,7 +177,7 @@ class PathUncertainty {
     int index;
     Pose2 local_pose;
     Pose2 step;             // from the entry before, frame of that entry
-    Eigen::Matrix3d doubt;  // of this step, frame of this entry
+    StepError error;        // of this step
     double travelled = 0.;  // prefix sum, metres
     double cost = 0.;       // prefix sum, metres
     Pose2 corrected;        // of corrected steps, from that of the first entry

@@ -98,6 +98,7 @@ TEST(MotionPredictorTest, OdometryBridgesMinutes) {
   }
   const MotionPrediction prediction = predictor.Predict(299.99);
   EXPECT_EQ(prediction.source, PredictionSource::kOdometry);
+  EXPECT_TRUE(prediction.bridges_gap);
   EXPECT_NEAR(prediction.motion.x, 150., 0.02);
   // Less certain than over one metre.
   EXPECT_GT(prediction.covariance(0, 0), 1.);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cartographer_ext/common/withdrawn_loops.h"
 #include "gtest/gtest.h"
 #include "tests/host/square_walk.h"
 
@@ -91,6 +92,31 @@ TEST_F(LoopsPutInForceTest, AmbiguousLoopsAreNotPutInForce) {
   }
   EXPECT_EQ(LargestDifference(stock, unknown), 0.);
   EXPECT_EQ(LargestDifference(stock, ambiguous), 0.);
+}
+
+// One of 81 that nearly all others contradict: the map is the same as without it,
+// and it is known which it was.
+TEST_F(LoopsPutInForceTest, ALoopThatTheFinishedMapContradictsIsTakenBack) {
+  std::vector<Constraint> loops = AllRightLoops();
+  OptimizationProblem2D without = MakeProblem(kPutInForce),
+                        with = MakeProblem(kPutInForce);
+  RunToTheEnd(loops, &without);
+  EXPECT_TRUE(LastSwitchedLoops().taken_back.empty());
+  ASSERT_GT(loops.size(), 20u);
+  loops.push_back(WrongLoops().front());
+  Fill(&with);
+  with.Solve(With(loops), active_, {});
+  EXPECT_TRUE(LastSwitchedLoops().taken_back.empty());  // not during the run
+  with.SetMaxNumIterations(200);
+  with.Solve(With(loops), active_, {});
+  EXPECT_LT(LargestDifference(without, with), 0.02);
+  const auto taken_back = LastSwitchedLoops().taken_back;
+  ASSERT_EQ(taken_back.size(), 1u);
+  EXPECT_EQ(taken_back.begin()->node_index,
+            WrongLoops().front().node_id.node_index);
+  // Nor does it count from now on.
+  EXPECT_EQ(context_->Get<cartographer_ext::WithdrawnLoops>()->All(),
+            taken_back);
 }
 
 TEST_F(LoopsPutInForceTest, LandmarksKeepTheProblem) {

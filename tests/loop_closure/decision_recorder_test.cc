@@ -66,6 +66,37 @@ TEST(DecisionRecorderTest, OfSeveralRecordsOfACandidateTheLastCounts) {
   EXPECT_EQ(all[2].reason(), proto::LoopDecision::OVERTURNED);
 }
 
+// Of a loop that the finished map contradicts what was accepted is rejected,
+// whatever else was decided about its submap and node.
+TEST(DecisionRecorderTest, LoopsOffTheMapAreTakenBack) {
+  DecisionRecorder recorder;
+  recorder.Start(100);
+  DecisionRecorder::Decisions decisions = Some(0, 4);
+  for (proto::LoopDecision& decision : decisions) {
+    decision.set_verdict(proto::LoopDecision::ACCEPTED);
+    decision.set_submap_index(3);
+    decision.set_node_index(decision.candidate() < 2 ? 20 : 30);
+  }
+  decisions[0].set_verdict(proto::LoopDecision::REJECTED);
+  decisions[0].set_reason(proto::LoopDecision::LOW_GRID_SCORE);
+  recorder.Record(decisions);
+  recorder.TakeBack({});
+  EXPECT_EQ(recorder.All().size(), 4u);
+  LoopId loop;
+  loop.submap_index = 3;
+  loop.node_index = 20;
+  recorder.TakeBack({loop});
+  recorder.TakeBack({loop});  // nothing is left
+  const DecisionRecorder::Decisions all = recorder.All();
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all[0].reason(), proto::LoopDecision::LOW_GRID_SCORE);
+  EXPECT_EQ(all[1].verdict(), proto::LoopDecision::ACCEPTED);
+  EXPECT_EQ(all[2].verdict(), proto::LoopDecision::ACCEPTED);
+  EXPECT_EQ(all[3].candidate(), 1);
+  EXPECT_EQ(all[3].verdict(), proto::LoopDecision::REJECTED);
+  EXPECT_EQ(all[3].reason(), proto::LoopDecision::OFF_MAP);
+}
+
 TEST(DecisionRecorderTest, ManyRecordsComeBackUnchanged) {
   // Several megabytes.
   constexpr int kCount = 20000;

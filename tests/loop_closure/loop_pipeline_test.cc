@@ -341,12 +341,13 @@ TEST_F(LoopPipelineTest, TimesAndFullMatrixOnlyWhereAskedFor) {
 
 TEST_F(LoopPipelineTest, KnowsWhichStepsAreDoubted) {
   MakePipeline();
-  const Eigen::Matrix3d doubt = Eigen::Vector3d(0., 0., 0.25).asDiagonal();
+  uncertainty::StepError doubted;
+  doubted.doubt = Eigen::Vector3d(0., 0., 0.25).asDiagonal();
   for (int i = 0; i <= 2; ++i) {
     HistoryNode node;
     node.node_index = i;
     node.local_pose = True(i);
-    pipeline_->AddNode(1, node, i == 1 ? doubt : Eigen::Matrix3d::Zero());
+    pipeline_->AddNode(1, node, i == 1 ? doubted : uncertainty::StepError());
   }
   const auto variance = [this](const int a, const int b) {
     return pipeline_->paths()

@@ -21,6 +21,7 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/io/pbstream/pbstream_writer.h"
+#include "cartographer_ext/optimization/dropin/taken_back_loops.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "cartographer_ext/swaps.h"
 #include "gtest/gtest.h"
@@ -260,6 +261,32 @@ TEST(WithdrawnLoopsTest, WithoutTheSwapTheyActUntilOurToolsWriteTheState) {
   ASSERT_TRUE(written.ok()) << written.status();
   EXPECT_EQ(written->num_withdrawn_constraints, 2);
   EXPECT_EQ(LargestDifference(OptimizeWithoutSwap(*written), expected), 0.);
+}
+
+TEST(WithdrawnLoopsTest, LoopsTakenBackAreMarkedInThePoseGraph) {
+  const auto context = std::make_shared<PoseGraphContext>();
+  const ScopedPoseGraphContext scope(context);
+  const auto map_builder = mapping::CreateMapBuilder(Options(kStock));
+  map_builder->LoadStateFromFile(
+      Write(MakeMap(WrongLoop::kInForce), "in.pbstream"), false);
+  LoopId loop;
+  loop.node_index = kWrongNode;
+  optimization::MarkTakenBack({}, map_builder->pose_graph());
+  optimization::MarkTakenBack({loop}, map_builder->pose_graph());
+  auto constraints = map_builder->pose_graph()->constraints();
+  RemoveWithdrawnLoops(&constraints);
+  size_t loops = 0;
+  for (const Constraint& constraint : constraints) {
+    if (constraint.tag != Constraint::INTER_SUBMAP) continue;
+    ++loops;
+    EXPECT_NE(constraint.node_id.node_index, kWrongNode);
+  }
+  EXPECT_EQ(loops, 1u);
+  const std::string saved = ::testing::TempDir() + "loop_taken_back.pbstream";
+  EXPECT_TRUE(map_builder->SerializeStateToFile(true, saved));
+  const auto written = io::ReadPbstream(saved);
+  ASSERT_TRUE(written.ok()) << written.status();
+  EXPECT_EQ(written->num_withdrawn_constraints, 2);
 }
 
 TEST(WithdrawnLoopsTest, TheContextWithdrawsWithoutAMark) {

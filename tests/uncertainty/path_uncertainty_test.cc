@@ -56,10 +56,11 @@ TEST(PathUncertaintyTest, StraightPathByHand) {
 // that are left to go; other paths do not know of it.
 TEST(PathUncertaintyTest, ADoubtedStepIsLessCertain) {
   PathUncertainty paths(Noise(), 100), usual(Noise(), 100);
-  const Eigen::Matrix3d doubt = Eigen::Vector3d(0., 0., 0.04).asDiagonal();
+  StepError doubted;
+  doubted.doubt = Eigen::Vector3d(0., 0., 0.04).asDiagonal();
   for (int i = 0; i <= 4; ++i) {
     const Pose2 pose(5. + i, 7., 0.);
-    paths.Add(Key(i), pose, i == 2 ? doubt : Eigen::Matrix3d::Zero());
+    paths.Add(Key(i), pose, i == 2 ? doubted : StepError());
     usual.Add(Key(i), pose);
   }
   Eigen::Matrix3d more;
@@ -181,6 +182,19 @@ TEST(PathUncertaintyTest, JumpsAreAsUncertainAsTheyAreLong) {
   EXPECT_NEAR(path->covariance(0, 0), 0.8 * 0.8, 1e-12);
   EXPECT_NEAR(path->covariance(1, 1), 0.8 * 0.8, 1e-12);
   EXPECT_NEAR(path->covariance(2, 2), 0.1 * 0.1, 1e-12);
+}
+
+// What dead reckoning may be off is the error of a long step, not its length.
+TEST(PathUncertaintyTest, ABridgedGapIsAsUncertainAsItsReckoning) {
+  PathUncertainty paths(OnlyJumps(), 100);
+  StepError error;
+  error.bridged = Eigen::Vector3d(0.09, 0.16, 0.01).asDiagonal();
+  paths.Add(Key(0), Pose2(0., 0., 0.));
+  paths.Add(Key(1), Pose2(20., 0., 0.), error);
+  paths.Add(Key(2), Pose2(20.4, 0., 0.));
+  EXPECT_TRUE(paths.Between(Key(0), Key(1))
+                  ->covariance.isApprox(*error.bridged, 1e-12));
+  EXPECT_TRUE(paths.Between(Key(1), Key(2))->covariance.isZero(1e-12));
 }
 
 TEST(PathUncertaintyTest, NodesThatAreStillMissingAreNoJump) {

@@ -18,7 +18,7 @@
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/match_record.pb.h"
 #include "cartographer_ext/scan_matching/dropin/scan_evidence.h"
-#include "cartographer_ext/uncertainty/doubtful_steps.h"
+#include "cartographer_ext/uncertainty/step_errors.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -263,7 +263,8 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
                                 extension_.search.gate, &innovation)) {
     predictor_.AddInnovation(innovation);
   }
-  step_doubt_.Add(matched.motion, prediction.covariance, match.doubt);
+  step_doubt_.Add(matched.motion, prediction.covariance, match.doubt,
+                  prediction.bridges_gap);
   pose_ = match.pose;
   last_seconds_ = seconds;
   has_pose_ = true;
@@ -304,10 +305,10 @@ AdaptiveLocalTrajectoryBuilder2D::MaybeInsert(
   data->local_pose = local_pose;
   result->constant_data = std::move(data);
   predictor_.AddInsertion();
-  const Eigen::Matrix3d doubt = step_doubt_.Take();
-  if (context_ != nullptr && !doubt.isZero(0.)) {
-    context_->Get<uncertainty::DoubtfulSteps>()->Add(
-        cartographer::common::ToUniversal(time), doubt);
+  const uncertainty::StepError error = step_doubt_.Take();
+  if (context_ != nullptr && !error.is_usual()) {
+    context_->Get<uncertainty::StepErrors>()->Add(
+        cartographer::common::ToUniversal(time), error);
   }
   return result;
 }

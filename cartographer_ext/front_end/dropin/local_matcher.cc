@@ -425,6 +425,8 @@ LocalMatch LocalMatcher::Decide(const MotionPrediction& prediction,
               : AtPrediction(best, predicted, options_.gate, cloud, grid),
           rivals, mean_score_ - options_.score_drop, cloud, grid);
     }
+  } else {
+    contest_.Drop();
   }
   result.searched = true;
   return result;

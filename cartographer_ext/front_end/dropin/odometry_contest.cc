@@ -37,15 +37,19 @@ double OdometryContest::FaultOdds(const MotionPrediction& prediction) const {
                                                   : kLogOddsOfOdometryFault;
 }
 
-void OdometryContest::Agree() {
-  has_rival_ = is_overruled_ = false;
+void OdometryContest::Drop() {
+  has_rival_ = false;
   evidence_ = 0.;
 }
 
+void OdometryContest::Agree() {
+  Drop();
+  is_overruled_ = false;
+}
+
 void OdometryContest::Overrule(const bool is_lasting) {
-  has_rival_ = false;
+  Drop();
   is_overruled_ = is_lasting;
-  evidence_ = 0.;
 }
 
 Eigen::Matrix3d OdometryContest::StepCovariance(

@@ -60,6 +60,8 @@ class OdometryContest {
 
   // The scan agrees with the odometry without a search.
   void Agree();
+  // Something else than the odometry predicts: there is nothing to contest.
+  void Drop();
   // A search alone was evidence enough; `is_lasting` as is_overruled().
   void Overrule(bool is_lasting);
 

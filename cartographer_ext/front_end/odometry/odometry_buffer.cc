@@ -107,6 +107,20 @@ bool OdometryBuffer::HasJump(const double from, const double to,
   return false;
 }
 
+std::vector<Pose2> OdometryBuffer::Steps(const double from,
+                                         const double to) const {
+  std::vector<Pose2> steps;
+  OdometrySample last, end;
+  if (!Lookup(from, &last) || !Lookup(to, &end)) return steps;
+  for (auto next = FirstAfter(from); next != readings_.end() && next->time < to;
+       ++next) {
+    steps.push_back(Between(last.pose, next->pose));
+    last.pose = next->pose;
+  }
+  steps.push_back(Between(last.pose, end.pose));
+  return steps;
+}
+
 bool OdometryBuffer::Lookup(const double time,
                             OdometrySample* const sample) const {
   if (readings_.empty()) return false;

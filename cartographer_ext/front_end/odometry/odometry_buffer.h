@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <vector>
 
 #include "cartographer_ext/common/pose2.h"
 
@@ -51,6 +52,11 @@ class OdometryBuffer {
 
   // False without readings.
   bool Lookup(double time, OdometrySample* sample) const;
+
+  // The motions from reading to reading between two times, of the first and the
+  // last the parts in between; empty without readings. Each is (robot <- robot at
+  // the next).
+  std::vector<Pose2> Steps(double from, double to) const;
 
   // Whether two successive readings are as far apart as a jump, of those between
   // which the interval from `from` to `to` lies, or a part of it.

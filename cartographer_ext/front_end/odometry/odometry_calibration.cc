@@ -52,6 +52,11 @@ double Clamped(const double value, const double initial, const double most) {
   return std::min(initial + most, std::max(initial - most, value));
 }
 
+// What the wheels roll over a path, metres.
+double WheelPath(const double length, const double rotation) {
+  return length + kWheelRadius * rotation;
+}
+
 // Direction of a motion on an arc, in the frame of its start.
 Eigen::Vector2d Forward(const Pose2& motion) {
   return Eigen::Vector2d(std::cos(0.5 * motion.theta),
@@ -100,6 +105,17 @@ bool OdometryCalibration::IsGap(const double interval) {
   const auto median = sorted.begin() + kNumIntervals / 2;
   std::nth_element(sorted.begin(), median, sorted.end());
   return interval > kUsualIntervals * *median;
+}
+
+double OdometryCalibration::TranslationVariance(const double length) const {
+  return translation_filter_.noise_factor() * Squared(kTranslationNoise.walk) *
+         length;
+}
+
+double OdometryCalibration::RotationVariance(const double length,
+                                             const double rotation) const {
+  return rotation_filter_.noise_factor() * Squared(kRotationNoise.walk) *
+         WheelPath(length, rotation);
 }
 
 double OdometryCalibration::translation_scale_sigma() const {
@@ -182,8 +198,8 @@ void OdometryCalibration::Learn(const Segment& segment) {
   if (segment.rotation_observable) {
     rotation_filter_.Add(
         Eigen::Vector2d(segment.matched_rotation, segment.odometry_translation),
-        segment.length + kWheelRadius * segment.rotation,
-        segment.odometry_rotation, segment.rotation_sigma);
+        WheelPath(segment.length, segment.rotation), segment.odometry_rotation,
+        segment.rotation_sigma);
   } else {
     rotation_filter_.Restart();
   }

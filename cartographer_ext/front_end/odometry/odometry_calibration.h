@@ -90,6 +90,11 @@ class OdometryCalibration {
   // frame of its start.
   Eigen::Matrix3d Covariance(const Pose2& odometry) const;
 
+  // Random errors of the wheels over a path of so many metres and a sum of
+  // absolute rotations of so many radians: square metres, square radians.
+  double TranslationVariance(double length) const;
+  double RotationVariance(double length, double rotation) const;
+
   double translation_scale() const;
   double translation_scale_sigma() const;
   double rotation_scale() const;

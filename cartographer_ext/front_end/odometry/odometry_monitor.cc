@@ -163,6 +163,18 @@ bool OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
 }
 
 OdometryState OdometryMonitor::Add(const MotionComparison& given) {
+  const bool was_trusted = IsTrusted();
+  const OdometryState state = Judge(given);
+  if (given.has_odometry) {
+    metres_ += given.match.translation().norm();
+    num_faults_ += state == OdometryState::kJumping ||
+                   (was_trusted && (state == OdometryState::kSlipping ||
+                                    state == OdometryState::kWrongSign));
+  }
+  return state;
+}
+
+OdometryState OdometryMonitor::Judge(const MotionComparison& given) {
   MotionComparison comparison = given;
   Pose2& match = comparison.match;
   if (!comparison.translation_observable) {

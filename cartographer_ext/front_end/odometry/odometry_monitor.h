@@ -119,6 +119,11 @@ class OdometryMonitor {
            state_ == OdometryState::kSlipSuspected;
   }
 
+  // Faults of odometry per metre that the robot drove, by those that scans showed.
+  double faults_per_metre() const {
+    return (kPriorFaults + num_faults_) / (kPriorMetres + metres_);
+  }
+
   // The difference of the motions by odometry and by the matches since they
   // last agreed: (robot now <- robot according to odometry). Identity while
   // they agree.
@@ -131,6 +136,11 @@ class OdometryMonitor {
     Pose2 match;
   };
 
+  // Before any scan: wheels slip once in two hundred metres.
+  static constexpr double kPriorFaults = 1.;
+  static constexpr double kPriorMetres = 200.;
+
+  OdometryState Judge(const MotionComparison& given);
   double ChiSquare(const Pose2& odometry, const Pose2& match) const;
   OdometryState CheckInterval(const MotionComparison& comparison) const;
   OdometryState CheckWindow(const MotionComparison& comparison) const;
@@ -146,6 +156,8 @@ class OdometryMonitor {
   // Never empty: the first entry is the start of both.
   std::deque<Entry> window_;
   Entry last_agreed_;
+  int num_faults_ = 0;
+  double metres_ = 0.;  // driven by the matches
   // For the suspicion of slip.
   bool has_speed_ = false;
   double speed_ = 0.;         // by odometry, m/s

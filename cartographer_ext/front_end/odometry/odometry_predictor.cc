@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "cartographer_ext/common/planar_matrix.h"
 #include "cartographer_ext/common/squared.h"
+#include "cartographer_ext/front_end/odometry/wheel_reckoning.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -15,6 +17,9 @@ namespace {
 constexpr double kMaxLateness = 1.25;
 // ... if the median interval is not longer than this, seconds.
 constexpr double kMaxMedianInterval = 0.8;
+// A shorter path is that between two scans, metres: what an arc neglects is less
+// than what the calibration does not know (play, slip in turns).
+constexpr double kLeastReckoned = 3.;
 
 }  // namespace
 
@@ -43,6 +48,16 @@ Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
   return TravelCovariance(options, motion, Squared(rotation));
 }
 
+void FuseRotation(const double angle, const double variance,
+                  OdometryMotion* const odometry) {
+  const double own = odometry->covariance(2, 2);
+  const double ratio = own / (own + variance);
+  odometry->motion.theta =
+      NormalizeAngle(odometry->motion.theta +
+                     ratio * NormalizeAngle(angle - odometry->motion.theta));
+  odometry->covariance(2, 2) = own * variance / (own + variance);
+}
+
 OdometryPredictor::OdometryPredictor(
     const OdometryNoiseOptions& noise, const TimeOffsetOptions& offset,
     const OdometryCalibrationOptions& calibration)
@@ -61,6 +76,7 @@ bool OdometryPredictor::Predict(const double from, const double to,
       begin.extrapolated > noise_.max_extrapolation) {
     return false;
   }
+  *motion = OdometryMotion();
   motion->is_late = end.extrapolated > noise_.max_extrapolation;
   if (motion->is_late) {
     const double interval = buffer_.MedianInterval();
@@ -75,6 +91,22 @@ bool OdometryPredictor::Predict(const double from, const double to,
   motion->covariance = OdometryCovariance(noise_, motion->motion) +
                        calibration_.Covariance(motion->raw);
   return true;
+}
+
+void OdometryPredictor::Reckon(const double from, const double to,
+                               const double faults_per_metre,
+                               OdometryMotion* const motion) const {
+  if (motion->is_late) return;
+  const double offset = offset_.offset();
+  const ReckonedMotion reckoned =
+      ReckonByWheels(buffer_.Steps(from - offset, to - offset), calibration_,
+                     faults_per_metre);
+  if (reckoned.length < kLeastReckoned) return;
+  motion->is_reckoned = true;
+  motion->motion = reckoned.motion.pose;
+  const Eigen::Matrix3d rotation = PlanarRotation(motion->motion.theta);
+  motion->covariance =
+      rotation * reckoned.motion.covariance * rotation.transpose();
 }
 
 void OdometryPredictor::AddMatch(const double from, const double to,

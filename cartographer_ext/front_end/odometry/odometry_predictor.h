@@ -61,6 +61,8 @@ struct OdometryMotion {
   bool is_late = false;
   // The heading is that of the gyroscope (dead_reckoning.h).
   bool by_gyroscope = false;
+  // Of a gap, with the errors of one (wheel_reckoning.h).
+  bool is_reckoned = false;
 };
 
 // The covariance above for a motion.
@@ -70,6 +72,10 @@ Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
 // The same with another variance of the rotation, square radians.
 Eigen::Matrix3d TravelCovariance(const OdometryNoiseOptions& options,
                                  const Pose2& motion, double rotation_variance);
+
+// Replaces the rotation by the mean with another, independent one, weighted by
+// their variances: radians, square radians.
+void FuseRotation(double angle, double variance, OdometryMotion* odometry);
 
 // Predicts from odometry, see above. Not thread-safe.
 class OdometryPredictor {
@@ -83,6 +89,11 @@ class OdometryPredictor {
   // The motion between two stamps of scans, seconds, from < to. False when
   // readings do not cover them.
   bool Predict(double from, double to, OdometryMotion* motion) const;
+
+  // Reckons a motion that Predict() has found step by step where that makes a
+  // difference (wheel_reckoning.h); otherwise it stays.
+  void Reckon(double from, double to, double faults_per_metre,
+              OdometryMotion* motion) const;
 
   // The motion of the scan matcher between two stamps, from which the clock
   // offset is estimated as soon as odometry covers all candidate offsets. Only

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cstddef>
 #include <fstream>
-#include <limits>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -31,6 +30,23 @@ class LargestRecord : public ContentLimit {
   }
 };
 
+// Most pose graphs end within so many bytes of a file.
+constexpr size_t kFirstRead = 4 << 20;
+
+// Of the records up to the pose graph, which follows the header; 0 if `content`
+// ends before.
+size_t SizeThroughPoseGraph(const absl::string_view content,
+                            const std::string& name) {
+  PbstreamRecords records(content, name);
+  size_t size = PbstreamMagic().size();
+  for (int i = 0; i < 2; ++i) {
+    const absl::StatusOr<bool> more = records.Skip();
+    if (!more.ok() || !*more) return 0;
+    size += records.bytes().size();
+  }
+  return size;
+}
+
 }  // namespace
 
 int64_t RemoveWithdrawnLoops(proto::PoseGraph* const pose_graph) {
@@ -53,7 +69,7 @@ int64_t RemoveWithdrawnLoops(proto::PoseGraph* const pose_graph) {
 }
 
 absl::StatusOr<std::string> WithEditedPoseGraph(
-    const std::string& content, const std::string& name,
+    const absl::string_view content, const std::string& name,
     const std::function<void(proto::PoseGraph*)>& edit) {
   PbstreamRecords records(content, name);
   if (!records.status().ok()) return records.status();
@@ -94,12 +110,26 @@ absl::Status CopyWithEditedPoseGraph(
     return absl::ErrnoToStatus(errno, absl::StrCat("cannot open ", written));
   }
   std::string content;
-  if (!ReadUpTo(std::numeric_limits<size_t>::max(), &file, &content)) {
-    return absl::DataLossError(absl::StrCat(written, ": cannot be read"));
+  size_t beginning = 0;
+  for (size_t limit = kFirstRead; beginning == 0; limit *= 2) {
+    if (!ReadUpTo(limit, &file, &content)) {
+      return absl::DataLossError(absl::StrCat(written, ": cannot be read"));
+    }
+    beginning = SizeThroughPoseGraph(content, filename);
+    if (content.size() <= limit) break;
   }
-  const auto edited = WithEditedPoseGraph(content, filename, edit);
+  if (beginning == 0) beginning = content.size();
+  const auto edited = WithEditedPoseGraph(
+      absl::string_view(content).substr(0, beginning), filename, edit);
   if (!edited.ok()) return edited.status();
-  return WriteFileAtomically(filename, *edited);
+  AtomicFile result(filename);
+  if (!result.status().ok()) return result.status();
+  result.stream() << *edited;
+  result.stream() << absl::string_view(content).substr(beginning);
+  if (file.peek() != std::ifstream::traits_type::eof()) {
+    result.stream() << file.rdbuf();
+  }
+  return result.Commit();
 }
 
 }  // namespace io

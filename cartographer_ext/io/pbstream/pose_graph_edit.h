@@ -13,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "cartographer/mapping/proto/pose_graph.pb.h"
 
 namespace cartographer_ext {
@@ -27,10 +28,11 @@ int64_t RemoveWithdrawnLoops(
 // The state `content`, a file in memory, after `edit`. `name` is for errors:
 // InvalidArgument where it is no state, DataLoss where it is damaged.
 absl::StatusOr<std::string> WithEditedPoseGraph(
-    const std::string& content, const std::string& name,
+    absl::string_view content, const std::string& name,
     const std::function<void(cartographer::mapping::proto::PoseGraph*)>& edit);
 
-// The same for the file `written`. Writes the whole file `filename` or nothing.
+// The same for the file `written`, of which only what precedes the submaps is held
+// in memory. Writes the whole file `filename` or nothing.
 absl::Status CopyWithEditedPoseGraph(
     const std::string& written, const std::string& filename,
     const std::function<void(cartographer::mapping::proto::PoseGraph*)>& edit);

@@ -42,6 +42,8 @@ constexpr double kFewWrong = 0.2;
 constexpr double kManyWrong = 0.5;
 // Change of the logarithm of a factor that matters.
 constexpr double kNoticeableChange = 0.1;
+// Of the relative error of the rotations along a run.
+constexpr double kTurningChanges = 0.005;
 // Cycles are worth another fit when there are this many times those before.
 constexpr double kLeastGrowth = 1.1;
 
@@ -217,6 +219,7 @@ bool DriftLearner::Update(const double share_wrong) {
     CommonDrift common = trajectory.fit.common;
     Eigen::Matrix3d changes = PriorCommonDrift(prior_).covariance;
     changes(0, 0) *= Squared(std::min(1., factors.rotation));
+    changes(1, 1) = Squared(kTurningChanges);
     common.covariance += changes;
     if (!Differ(factors, paths_->Drift(entry.first)) &&
         !Differ(common, paths_->Common(entry.first))) {

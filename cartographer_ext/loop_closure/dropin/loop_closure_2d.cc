@@ -17,9 +17,9 @@
 #include "cartographer_ext/loop_closure/dropin/node_geometry.h"
 #include "cartographer_ext/loop_closure/loop_options.h"
 #include "cartographer_ext/scan_matching/dropin/mean_score.h"
-#include "cartographer_ext/uncertainty/doubtful_steps.h"
 #include "cartographer_ext/uncertainty/drift_model.h"
 #include "cartographer_ext/uncertainty/loop_ambiguity.h"
+#include "cartographer_ext/uncertainty/step_errors.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -166,9 +166,9 @@ void LoopClosure2D::RememberNode(const Proposal& proposal) {
                  &node);
   }
   submaps_.AddNode(id, node.time);
-  const Eigen::Matrix3d doubt =
-      context_->Get<uncertainty::DoubtfulSteps>()->CovarianceAt(node.time);
-  pipeline_.AddNode(id.trajectory_id, std::move(node), doubt);
+  const uncertainty::StepError error =
+      context_->Get<uncertainty::StepErrors>()->At(node.time);
+  pipeline_.AddNode(id.trajectory_id, std::move(node), error);
 }
 
 void LoopClosure2D::MeasureFit(const Proposal& proposal,

@@ -27,13 +27,6 @@ void Report(const std::string& loops) {
 #endif
 }
 
-// A loop constraint that withdraws those of its submap and node before it.
-LoopWithdrawer::Constraint MarkOf(LoopWithdrawer::Constraint loop) {
-  loop.pose.translation_weight = 0.;
-  loop.pose.rotation_weight = 0.;
-  return loop;
-}
-
 }  // namespace
 
 void LoopWithdrawer::Add(const Constraint& loop,
@@ -42,7 +35,7 @@ void LoopWithdrawer::Add(const Constraint& loop,
   // Its node was not trimmed, or the loop would not have been accepted again.
   if (context->Get<WithdrawnLoops>()->Erase(
           MakeLoopId(loop.submap_id, loop.node_id))) {
-    constraints->push_back(MarkOf(loop));
+    constraints->push_back(WithdrawalMark(loop));
   }
   const int trajectory_id = loop.node_id.trajectory_id;
   const int map_trajectory_id = loop.submap_id.trajectory_id;
@@ -90,7 +83,7 @@ void LoopWithdrawer::MarkOrNote(
         MakeLoopId(loop.submap_id, loop.node_id));
     return;
   }
-  constraints->push_back(MarkOf(loop));
+  constraints->push_back(WithdrawalMark(loop));
 }
 
 void LoopWithdrawer::DeleteSubmap(

@@ -5,6 +5,7 @@
 #include "cartographer_ext/swaps.h"
 #ifdef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
 #include <cmath>
+#include <utility>
 
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/optimization/dropin/loops_in_force.h"
@@ -25,6 +26,20 @@ constexpr int64_t kLeastOff = 5;
 constexpr double kShareOff = 0.02;
 constexpr double kShareStillOff = 0.1;
 constexpr double kStillOffOfThese = 0.25;
+constexpr double kFarOffMetres = 0.5;
+constexpr double kFarOffRadians = 0.3;
+
+using Nodes =
+    mapping::MapById<mapping::NodeId, mapping::optimization::NodeSpec2D>;
+using Submaps =
+    mapping::MapById<mapping::SubmapId, mapping::optimization::SubmapSpec2D>;
+
+bool IsPresentLoop(const Constraint& constraint, const Nodes& nodes,
+                   const Submaps& submaps) {
+  return constraint.tag == Constraint::INTER_SUBMAP &&
+         nodes.Contains(constraint.node_id) &&
+         submaps.Contains(constraint.submap_id);
+}
 
 }  // namespace
 
@@ -38,26 +53,40 @@ bool IsOff(const Constraint& constraint, const transform::Rigid2d& submap_pose,
          std::abs(error.normalized_angle()) > radians;
 }
 
-LoopsOffMap CountLoopsOffMap(
-    const std::vector<Constraint>& constraints,
-    const mapping::MapById<mapping::NodeId, mapping::optimization::NodeSpec2D>&
-        nodes,
-    const mapping::MapById<mapping::SubmapId,
-                           mapping::optimization::SubmapSpec2D>& submaps,
-    const double distance) {
+LoopsOffMap CountLoopsOffMap(const std::vector<Constraint>& constraints,
+                             const Nodes& nodes, const Submaps& submaps,
+                             const double distance) {
   LoopsOffMap result;
   for (const Constraint& constraint : constraints) {
-    if (constraint.tag != Constraint::INTER_SUBMAP ||
-        !nodes.Contains(constraint.node_id) ||
-        !submaps.Contains(constraint.submap_id)) {
-      continue;
-    }
+    if (!IsPresentLoop(constraint, nodes, submaps)) continue;
     ++result.loops;
     result.off += IsOff(
         constraint, submaps.at(constraint.submap_id).global_pose,
         nodes.at(constraint.node_id).global_pose_2d, distance, kOffRadians);
   }
   return result;
+}
+
+std::vector<LoopId> TakeOutFarOff(const Nodes& nodes, const Submaps& submaps,
+                                  std::vector<Constraint>* const constraints) {
+  std::vector<LoopId> taken;
+  std::vector<Constraint> kept;
+  int64_t loops = 0;
+  for (const Constraint& constraint : *constraints) {
+    const bool is_loop = IsPresentLoop(constraint, nodes, submaps);
+    loops += is_loop;
+    if (is_loop &&
+        IsOff(constraint, submaps.at(constraint.submap_id).global_pose,
+              nodes.at(constraint.node_id).global_pose_2d, kFarOffMetres,
+              kFarOffRadians)) {
+      taken.push_back(MakeLoopId(constraint.submap_id, constraint.node_id));
+    } else {
+      kept.push_back(constraint);
+    }
+  }
+  if (static_cast<double>(taken.size()) > kShareStillOff * loops) return {};
+  *constraints = std::move(kept);
+  return taken;
 }
 
 Relaxation RelaxationOf(

@@ -11,6 +11,10 @@
 // cannot be, and the stiff problem is the safer one, since it follows wrong
 // loops less. For the same reason nothing is done where many matches of the run
 // were wrong (uncertainty/loop_ambiguity.h).
+//
+// A loop that is far off even so, where nearly all others hold, is wrong and taken
+// back, so that what is accepted is in force. If many are, the map may be wrong
+// instead.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_LOOPS_IN_FORCE_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_DROPIN_LOOPS_IN_FORCE_H_
 
@@ -22,6 +26,7 @@
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/proto/pose_graph/optimization_problem_options.pb.h"
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/common/loop_id.h"
 #include "cartographer_ext/optimization/graph/relaxation.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
 
@@ -48,6 +53,18 @@ LoopsOffMap CountLoopsOffMap(
         cartographer::mapping::SubmapId,
         cartographer::mapping::optimization::SubmapSpec2D>& submaps,
     double distance);
+
+// Takes the loops out of `constraints` that the poses contradict by more than half a
+// metre or 0.3 rad; none if that is more than a tenth of all.
+std::vector<LoopId> TakeOutFarOff(
+    const cartographer::mapping::MapById<
+        cartographer::mapping::NodeId,
+        cartographer::mapping::optimization::NodeSpec2D>& nodes,
+    const cartographer::mapping::MapById<
+        cartographer::mapping::SubmapId,
+        cartographer::mapping::optimization::SubmapSpec2D>& submaps,
+    std::vector<cartographer::mapping::PoseGraphInterface::Constraint>*
+        constraints);
 
 // The relaxed problem of these options: loops pull thirty times as hard, and
 // steps have a loss of 300, 3 mm with the stock weights.

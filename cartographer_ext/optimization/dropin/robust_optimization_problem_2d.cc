@@ -13,6 +13,7 @@
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/loop_information.h"
 #include "cartographer_ext/common/pose_graph_context.h"
+#include "cartographer_ext/common/withdrawn_loops.h"
 #include "cartographer_ext/optimization/dropin/loops_in_force.h"
 #include "cartographer_ext/optimization/dropin/recent_solve.h"
 #include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
@@ -39,6 +40,8 @@ constexpr double kOffSigmas = 3.;
 // Of the matches of a run, the share of wrong ones up to which its loops are put
 // in force. Corridors with a laser of 5.6 m have up to 0.19, equal shelves 0.7.
 constexpr double kMostWrong = 0.25;
+// Without the loops that contradict it the map moves, away from others maybe.
+constexpr int kMostTimesTakenBack = 3;
 // Of the number of nodes until the next thorough selection.
 constexpr double kThoroughGrowth = 2.;
 // Of the number of nodes until the next optimisation of the whole graph: in any
@@ -150,13 +153,17 @@ void RobustOptimizationProblem2D::SolveWhole(
   const double selected = ThreadCpuSeconds();
   StockSolve(kept, trajectories_state, landmark_nodes, context, nullptr,
              &stock_);
+  bool is_relaxed = false;
 #ifdef CARTOGRAPHER_EXT_SWAP_FULL_INFORMATION
   if (is_final_ && extension_.loops_in_force() && landmark_nodes.empty() &&
       !HasFixedFrames() && AreLoopsUnambiguous(context)) {
-    PutInForce(kept, trajectories_state, context);
+    is_relaxed = PutInForce(kept, trajectories_state, context);
   }
 #endif
   if (context == nullptr) return;
+  if (is_final_ && extension_.loops_in_force()) {
+    TakeBack(is_relaxed, trajectories_state, landmark_nodes, context, kept);
+  }
   context->Get<SwitchedLoopRecorder>()->Record(
       loops, std::move(off), selected - start, ThreadCpuSeconds() - selected);
 }
@@ -170,7 +177,7 @@ bool RobustOptimizationProblem2D::HasFixedFrames() const {
   return false;
 }
 
-void RobustOptimizationProblem2D::PutInForce(
+bool RobustOptimizationProblem2D::PutInForce(
     const std::vector<Constraint>& constraints,
     const std::map<int, TrajectoryState>& trajectories_state,
     PoseGraphContext* const context) {
@@ -191,6 +198,28 @@ void RobustOptimizationProblem2D::PutInForce(
       << (result.relaxed ? "relaxed" : "relaxed in vain") << ": "
       << result.after.off;
   context->Get<SwitchedLoopRecorder>()->Record(result);
+  return result.relaxed;
+}
+
+void RobustOptimizationProblem2D::TakeBack(
+    const bool is_relaxed,
+    const std::map<int, TrajectoryState>& trajectories_state,
+    const std::map<std::string, LandmarkNode>& landmark_nodes,
+    PoseGraphContext* const context, std::vector<Constraint> constraints) {
+  const Relaxation relaxation = RelaxationOf(options_);
+  std::set<LoopId> taken;
+  for (int i = 0; i < kMostTimesTakenBack; ++i) {
+    const std::vector<LoopId> off =
+        TakeOutFarOff(stock_.node_data(), stock_.submap_data(), &constraints);
+    if (off.empty()) break;
+    taken.insert(off.begin(), off.end());
+    StockSolve(constraints, trajectories_state, landmark_nodes, context,
+               is_relaxed ? &relaxation : nullptr, &stock_);
+  }
+  for (const LoopId& loop : taken) context->Get<WithdrawnLoops>()->Add(loop);
+  LOG_IF(INFO, !taken.empty())
+      << taken.size() << " loops are taken back: the map contradicts them";
+  context->Get<SwitchedLoopRecorder>()->RecordTakenBack(std::move(taken));
 }
 
 bool RobustOptimizationProblem2D::SolveRecentPart(

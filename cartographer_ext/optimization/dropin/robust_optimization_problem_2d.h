@@ -174,11 +174,19 @@ class RobustOptimizationProblem2D
                   const std::map<std::string, LandmarkNode>& landmark_nodes,
                   PoseGraphContext* context);
   bool HasFixedFrames() const;
-  // At the end of a run: with loops that the map contradicts put in force.
-  void PutInForce(const std::vector<Constraint>& constraints,
+  // At the end of a run: with loops that the map contradicts put in force; returns
+  // whether the problem was relaxed for that.
+  bool PutInForce(const std::vector<Constraint>& constraints,
                   const std::map<int, PoseGraphInterface::TrajectoryState>&
                       trajectories_state,
                   PoseGraphContext* context);
+
+  // At the end of a run: withdraws loops that the map contradicts even so.
+  void TakeBack(bool is_relaxed,
+                const std::map<int, PoseGraphInterface::TrajectoryState>&
+                    trajectories_state,
+                const std::map<std::string, LandmarkNode>& landmark_nodes,
+                PoseGraphContext* context, std::vector<Constraint> constraints);
 
   const proto::RobustOptimizationOptions extension_;
   cartographer::mapping::optimization::proto::OptimizationProblemOptions

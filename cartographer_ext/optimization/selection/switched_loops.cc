@@ -37,6 +37,11 @@ void SwitchedLoopRecorder::Record(const LoopsPutInForce& in_force) {
   loops_.in_force = in_force;
 }
 
+void SwitchedLoopRecorder::RecordTakenBack(std::set<LoopId> loops) {
+  const absl::MutexLock lock(&mutex_);
+  loops_.taken_back = std::move(loops);
+}
+
 SwitchedLoops SwitchedLoopRecorder::Get() const {
   const absl::MutexLock lock(&mutex_);
   return loops_;

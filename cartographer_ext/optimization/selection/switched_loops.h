@@ -8,6 +8,7 @@
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SELECTION_SWITCHED_LOOPS_H_
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,8 @@ struct SwitchedLoops {
   double selection_cpu_seconds = 0.;  // of all
   double solution_cpu_seconds = 0.;   // of all, in the stock problem
   LoopsPutInForce in_force;           // the last time
+  // Withdrawn at the end, as the map contradicts them (dropin/loops_in_force.h).
+  std::set<LoopId> taken_back;
 };
 
 // A part of PoseGraphContext: counts over all optimizations, the loops of the
@@ -60,6 +63,7 @@ class SwitchedLoopRecorder {
               double selection_cpu_seconds, double solution_cpu_seconds)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void Record(const LoopsPutInForce& in_force) ABSL_LOCKS_EXCLUDED(mutex_);
+  void RecordTakenBack(std::set<LoopId> loops) ABSL_LOCKS_EXCLUDED(mutex_);
   SwitchedLoops Get() const ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:

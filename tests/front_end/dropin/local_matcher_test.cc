@@ -293,6 +293,33 @@ TEST_F(LocalMatcherTest, ContradictionsInSuccessionOverruleOdometry) {
   EXPECT_TRUE(later);
 }
 
+// Where something else than the odometry predicts, there is nothing to contest: its
+// scans are not searched for the sake of a rival, which is forgotten.
+TEST_F(LocalMatcherTest, ARivalOfTheOdometryEndsWithTheOdometry) {
+  LocalMatcher matcher(options_, matcher_options_);
+  const auto match = [&](const PredictionSource source, const Pose2& motion,
+                         const double degrees) {
+    prediction_.source = source;
+    prediction_.motion = motion;
+    field_of_view_ = DegToRad(degrees);
+    return matcher.Match(Pose2(), prediction_, Cloud(),
+                         *submaps_->submaps().front());
+  };
+  constexpr double kFew = 25.;
+  const Pose2 slip(0.08, 0.08, DegToRad(3.));
+  match(PredictionSource::kOdometry, Pose2(), 360.);  // what is usual
+  bool is_overruled = false;
+  for (int i = 0; i < 8; ++i) {
+    const LocalMatch contested = match(PredictionSource::kOdometry, slip, kFew);
+    EXPECT_TRUE(contested.searched);
+    is_overruled = is_overruled || contested.overrules_odometry;
+    match(PredictionSource::kConstantVelocity, Pose2(), 360.);
+    EXPECT_FALSE(
+        match(PredictionSource::kConstantVelocity, Pose2(), 360.).searched);
+  }
+  EXPECT_FALSE(is_overruled);
+}
+
 // While wheels slip, the pose by the odometry moves away from that of the scans,
 // which is followed until it is evident: the last match makes up for the rest.
 TEST_F(LocalMatcherTest, ARivalIsFollowedFromScanToScan) {

@@ -20,7 +20,7 @@
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/front_end/dropin/adaptive_local_trajectory_builder_2d.h"
 #include "cartographer_ext/front_end/match_recorder.h"
-#include "cartographer_ext/uncertainty/doubtful_steps.h"
+#include "cartographer_ext/uncertainty/step_errors.h"
 #include "tests/front_end/dropin/simulated_room.h"
 
 namespace cartographer_ext {
@@ -138,8 +138,7 @@ inline RunResult RunDrive(const RunOptions& options) {
   result.records = context->Get<MatchRecorder>()->All();
   for (const proto::MatchRecord& record : result.records) {
     result.doubts.push_back(
-        context->Get<uncertainty::DoubtfulSteps>()->CovarianceAt(record.time())(
-            2, 2));
+        context->Get<uncertainty::StepErrors>()->At(record.time()).doubt(2, 2));
   }
   return result;
 }

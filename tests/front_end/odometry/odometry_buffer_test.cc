@@ -3,6 +3,7 @@
 #include "cartographer_ext/front_end/odometry/odometry_buffer.h"
 
 #include <limits>
+#include <vector>
 
 #include "gtest/gtest.h"
 
@@ -41,6 +42,21 @@ TEST(OdometryBufferTest, GoesOnWithTheLastVelocityForABoundedTime) {
   ASSERT_TRUE(buffer.Lookup(5., &sample));
   EXPECT_NEAR(sample.pose.x, 0.4, 1e-12);  // 0.3 s at 1 m/s
   EXPECT_NEAR(sample.extrapolated, 4.9, 1e-12);
+}
+
+TEST(OdometryBufferTest, StepsLeadFromTheStartToTheEnd) {
+  OdometryBuffer buffer(100., 1000, 0.3);
+  EXPECT_TRUE(buffer.Steps(0., 1.).empty());
+  for (int i = 0; i <= 4; ++i) buffer.Add(i, Pose2(i, 0., 0.));
+  const std::vector<Pose2> steps = buffer.Steps(0.75, 3.5);
+  ASSERT_EQ(steps.size(), 4u);
+  EXPECT_NEAR(steps[0].x, 0.25, 1e-12);
+  EXPECT_NEAR(steps[1].x, 1., 1e-12);
+  EXPECT_NEAR(steps[2].x, 1., 1e-12);
+  EXPECT_NEAR(steps[3].x, 0.5, 1e-12);
+  // Between two readings.
+  ASSERT_EQ(buffer.Steps(1.25, 1.5).size(), 1u);
+  EXPECT_NEAR(buffer.Steps(1.25, 1.5).front().x, 0.25, 1e-12);
 }
 
 TEST(OdometryBufferTest, AJumpIsFarAndFast) {

@@ -236,6 +236,23 @@ TEST(OdometryMonitorTest, AFaultNeedsEvidence) {
   }
 }
 
+// One fault in two hundred metres before any, as many as there were afterwards; one
+// that lasts is one.
+TEST(OdometryMonitorTest, CountsFaultsPerMetre) {
+  Drive drive((OdometryCheckOptions()));
+  EXPECT_NEAR(drive.monitor()->faults_per_metre(), 1. / 200., 1e-12);
+  for (int i = 0; i < 2000; ++i) drive.Step(kForward, kForward);
+  EXPECT_NEAR(drive.monitor()->faults_per_metre(), 1. / 300., 1e-9);
+  for (int k = 1; k <= 3; ++k) {
+    ASSERT_GT(drive.StepsUntil(OdometryState::kSlipping, kForward, kStill, 50),
+              0);
+    for (int i = 0; i < 10; ++i) drive.Step(kForward, kStill);
+    ASSERT_GT(drive.StepsUntil(OdometryState::kOk, kForward, kForward, 50), 0);
+    for (int i = 0; i < 50; ++i) drive.Step(kForward, kForward);
+  }
+  EXPECT_NEAR(drive.monitor()->faults_per_metre(), 4. / 310., 5e-4);
+}
+
 // Once wheels slip, scans that would not have refuted them are enough for
 // distrusting them further; scans that say nothing are not.
 TEST(OdometryMonitorTest, AFaultGoesOnWithLessEvidence) {

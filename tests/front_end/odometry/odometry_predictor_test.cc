@@ -115,6 +115,40 @@ TEST(OdometryPredictorTest, AGapInTheScansIsBridged) {
   EXPECT_NEAR(motion.motion.theta, 3., 1e-9);
 }
 
+// Over metres step by step, in the frame of the start: a heading that is uncertain
+// moves the end across the line to it.
+TEST(OdometryPredictorTest, AGapIsReckonedStepByStep) {
+  OdometryCalibrationOptions calibration;
+  calibration.rotation_per_metre = 0.1;
+  OdometryPredictor predictor(OdometryNoiseOptions(), Fixed(0.), calibration);
+  for (int i = 0; i <= 100; ++i) {
+    predictor.Add(0.1 * i, Pose2(0., 0.1 * i, 0.5 * kPi));
+  }
+  OdometryMotion motion;
+  ASSERT_TRUE(predictor.Predict(0., 10., &motion));
+  predictor.Reckon(0., 10., 0., &motion);
+  EXPECT_TRUE(motion.is_reckoned);
+  EXPECT_NEAR(motion.motion.x, 10. * std::sin(1.), 0.01);
+  EXPECT_NEAR(motion.motion.y, 10. * (1. - std::cos(1.)), 0.01);
+  EXPECT_NEAR(motion.motion.theta, 1., 1e-9);
+  const Eigen::Vector2d line = motion.motion.translation().normalized();
+  const Eigen::Vector2d across(-line.y(), line.x());
+  const Eigen::Matrix2d position = motion.covariance.topLeftCorner<2, 2>();
+  EXPECT_GT(across.dot(position * across), 4. * line.dot(position * line));
+
+  // Not between two scans, ...
+  ASSERT_TRUE(predictor.Predict(0., 2., &motion));
+  const OdometryMotion before = motion;
+  predictor.Reckon(0., 2., 0., &motion);
+  EXPECT_FALSE(motion.is_reckoned);
+  EXPECT_EQ(motion.motion.x, before.motion.x);
+  EXPECT_EQ(motion.covariance, before.covariance);
+  // ... nor where readings are still missing.
+  motion.is_late = true;
+  predictor.Reckon(0., 10., 0., &motion);
+  EXPECT_FALSE(motion.is_reckoned);
+}
+
 TEST(OdometryPredictorTest, LearnsTheOffsetFromMatches) {
   OdometryPredictor predictor(OdometryNoiseOptions(), TimeOffsetOptions(),
                               NoCalibration());

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/pbstream/pose_graph_edit.h"
 
+#include <fstream>
+#include <iterator>
 #include <string>
 
+#include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/random.h"
 #include "cartographer_ext/io/pbstream/pbstream_records.h"
 #include "cartographer_ext/io/pbstream/pbstream_writer.h"
 #include "gmock/gmock.h"
@@ -95,6 +99,35 @@ TEST(PoseGraphEditTest, CopiesAFile) {
   EXPECT_EQ(read->pose_graph.constraint_size(), 0);
   EXPECT_THAT(CopyWithEditedPoseGraph(written + "x", filename, clear).message(),
               HasSubstr("cannot open"));
+}
+
+// Whatever comes behind the pose graph is copied, however long the two are.
+TEST(PoseGraphEditTest, CopiesALargeFile) {
+  Random random(1);
+  Pbstream large = ExamplePbstream();
+  for (int i = 0; i < 200000; ++i) {
+    auto* const pose =
+        large.pose_graph.add_constraint()->mutable_relative_pose();
+    pose->mutable_translation()->set_x(random.Uniform(0., 1.));
+    pose->mutable_translation()->set_y(random.Uniform(0., 1.));
+    pose->mutable_translation()->set_z(random.Uniform(0., 1.));
+  }
+  std::string content = SerializePbstream(large);
+  ASSERT_GT(content.size(), 4u << 20);
+  std::string noise(5 << 20, 0);
+  for (char& byte : noise) byte = static_cast<char>(random.Uniform(0., 256.));
+  AppendPbstreamRecord(noise, &content);
+  const std::string written = testing::TempDir() + "/large.pbstream";
+  const std::string filename = testing::TempDir() + "/large_edited.pbstream";
+  ASSERT_TRUE(WriteFileAtomically(written, content).ok());
+  const auto clear = [](PoseGraph* const graph) { graph->clear_constraint(); };
+  ASSERT_TRUE(CopyWithEditedPoseGraph(written, filename, clear).ok());
+  const auto expected = WithEditedPoseGraph(content, filename, clear);
+  ASSERT_TRUE(expected.ok()) << expected.status();
+  std::ifstream file(filename, std::ios::binary);
+  const std::string copied((std::istreambuf_iterator<char>(file)),
+                           std::istreambuf_iterator<char>());
+  EXPECT_TRUE(copied == *expected);
 }
 
 }  // namespace

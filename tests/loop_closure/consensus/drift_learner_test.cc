@@ -139,6 +139,23 @@ TEST_F(DriftLearnerTest, MedianIsWithinAFactorOfTwo) {
   }
 }
 
+// However many cycles: what is constant in the model is not in a building.
+TEST_F(DriftLearnerTest, CommonErrorsAreNeverKnownExactly) {
+  int within = 0;
+  for (int seed = 1; seed <= 11; ++seed) {
+    Drive(DriftFactors(), seed);
+    AddLaps(0.);
+    learner_->Update(0.);
+    const uncertainty::CommonDrift common = paths_->Common(0);
+    EXPECT_GE(std::sqrt(common.covariance(1, 1)), 0.005);
+    EXPECT_GE(std::sqrt(common.covariance(2, 2)), Noise().scale_error);
+    // The truth is none.
+    within +=
+        std::abs(common.mean(1)) < 2. * std::sqrt(common.covariance(1, 1));
+  }
+  EXPECT_GE(within, 10);
+}
+
 TEST_F(DriftLearnerTest, WrongLoopsAreNoDrift) {
   Drive(DriftFactors());
   AddLaps(0.15);

@@ -49,6 +49,40 @@ TEST(CountLoopsOffMapTest, CountsLoopsByDistanceAndHeading) {
   EXPECT_EQ(result.off, 2);
 }
 
+TEST(TakeOutFarOffTest, TakesTheLoopsThatThePosesContradict) {
+  MapById<SubmapId, SubmapSpec2D> submaps;
+  submaps.Append(0, SubmapSpec2D{Rigid2d::Identity()});
+  MapById<NodeId, NodeSpec2D> nodes;
+  for (int i = 0; i < 3; ++i) {
+    nodes.Append(0, NodeSpec2D{cartographer::common::FromUniversal(i),
+                               {},
+                               Rigid2d({3., 1.}, 0.5),
+                               Eigen::Quaterniond::Identity()});
+  }
+  const std::vector<Constraint> some = {
+      Loop(0, 0, Rigid2d({3.49, 1.}, 0.5)),
+      Loop(0, 1, Rigid2d({3.51, 1.}, 0.5)),  // far off
+      Loop(0, 2, Rigid2d({3., 1.}, 0.19)),   // turned
+      Loop(0, 2, Rigid2d({3., 1.}, 0.79)),
+      Loop(0, 0, Rigid2d({9., 9.}, 0.5), Constraint::INTRA_SUBMAP),
+      Loop(0, 3, Rigid2d({9., 9.}, 0.5))};  // no such node
+  // Two of 19 are more than a tenth, and the map may be wrong.
+  std::vector<Constraint> constraints = some;
+  for (int i = 0; i < 15; ++i) {
+    constraints.push_back(Loop(0, 0, Rigid2d({3., 1.}, 0.5)));
+  }
+  EXPECT_TRUE(TakeOutFarOff(nodes, submaps, &constraints).empty());
+  EXPECT_EQ(constraints.size(), 21u);
+  constraints.push_back(Loop(0, 0, Rigid2d({3., 1.}, 0.5)));
+  const std::vector<LoopId> taken = TakeOutFarOff(nodes, submaps, &constraints);
+  ASSERT_EQ(taken.size(), 2u);
+  EXPECT_EQ(taken[0].node_index, 1);
+  EXPECT_EQ(taken[1].node_index, 2);
+  ASSERT_EQ(constraints.size(), 20u);
+  EXPECT_NEAR(constraints[1].pose.zbar_ij.translation().x(), 3., 1e-12);
+  EXPECT_TRUE(TakeOutFarOff(nodes, submaps, &constraints).empty());
+}
+
 // What is solved, where so many of a hundred loops are off before, relaxed, and
 // solved again.
 struct Solutions {

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_ext authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/optimization/dropin/taken_back_loops.h"
+
+#include <vector>
+
+#include "cartographer/mapping/pose_graph.h"
+#include "cartographer_ext/common/withdrawn_loops.h"
+#include "glog/logging.h"
+
+namespace cartographer_ext {
+namespace optimization {
+
+using cartographer::mapping::PoseGraph;
+using cartographer::mapping::PoseGraphInterface;
+using Constraint = PoseGraphInterface::Constraint;
+
+void MarkTakenBack(const std::set<LoopId>& loops,
+                   PoseGraphInterface* const pose_graph) {
+  if (loops.empty()) return;
+  std::vector<Constraint> marks;
+  for (const Constraint& constraint : pose_graph->constraints()) {
+    const LoopDescription loop = DescribeConstraint(constraint);
+    if (loop.is_loop && loop.has_weight && loops.count(loop.id) != 0) {
+      marks.push_back(WithdrawalMark(constraint));
+    }
+  }
+  auto* const graph = dynamic_cast<PoseGraph*>(pose_graph);
+  CHECK(graph != nullptr);
+  graph->AddSerializedConstraints(marks);
+}
+
+}  // namespace optimization
+}  // namespace cartographer_ext
