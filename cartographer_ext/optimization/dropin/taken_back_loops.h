@@ -15,7 +15,8 @@
 namespace cartographer_ext {
 namespace optimization {
 
-// `pose_graph` must be one of Cartographer's. Nothing is done without `loops`.
+// `pose_graph` must be one of Cartographer's, with nothing left to do. Nothing is
+// done without `loops`.
 void MarkTakenBack(const std::set<LoopId>& loops,
                    cartographer::mapping::PoseGraphInterface* pose_graph);
 
