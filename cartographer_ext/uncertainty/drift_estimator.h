@@ -31,10 +31,9 @@
 //
 // Given f, w and h, c has a normal prior and is found by reweighted least
 // squares, where the weight of a cycle is its probability of being right. It
-// starts from none and from what single headings of long paths (below) would tell, and the
-// likeliest result counts: from none alone, a drift of half a radian along the run
-// would pass for wrong loops, all of them. Given
-// c and h, the posterior of (ln f_t, ln f_r, ln f_u, w) is computed on a grid,
+// starts from none and from what single headings of long paths (below) would
+// tell, and the likeliest result counts: from none alone, a drift of half a radian
+// along the run would pass for wrong loops, all of them. Given c and h, the posterior of (ln f_t, ln f_r, ln f_u, w) is computed on a grid,
 // with a normal prior of the logarithms that allows for a factor of ten within
 // two standard deviations, and a uniform one of w; given those, h is the mean
 // probability of the wrong cycles to be aligned. The steps alternate a fixed

@@ -198,8 +198,9 @@ void PathUncertainty::Accumulate(JumpThresholds thresholds,
   thresholds.radians *= entry->index - before.index;
   CovarianceParts step_parts =
       StepCovariance(options_, thresholds, metres, std::abs(step.theta));
-  if (entry->error.bridged.has_value())
+  if (entry->error.bridged.has_value()) {
     step_parts.other = *entry->error.bridged;
+  }
   step_parts.other += entry->error.doubt;
   entry->travelled = before.travelled + metres;
   entry->cost = before.cost + PathCostOf(step_parts.Total(

@@ -41,6 +41,14 @@ bool IsPresentLoop(const Constraint& constraint, const Nodes& nodes,
          submaps.Contains(constraint.submap_id);
 }
 
+// Of a loop that is present.
+bool IsOffMap(const Constraint& loop, const Nodes& nodes,
+              const Submaps& submaps, const double metres,
+              const double radians) {
+  return IsOff(loop, submaps.at(loop.submap_id).global_pose,
+               nodes.at(loop.node_id).global_pose_2d, metres, radians);
+}
+
 }  // namespace
 
 bool IsOff(const Constraint& constraint, const transform::Rigid2d& submap_pose,
@@ -60,9 +68,7 @@ LoopsOffMap CountLoopsOffMap(const std::vector<Constraint>& constraints,
   for (const Constraint& constraint : constraints) {
     if (!IsPresentLoop(constraint, nodes, submaps)) continue;
     ++result.loops;
-    result.off += IsOff(
-        constraint, submaps.at(constraint.submap_id).global_pose,
-        nodes.at(constraint.node_id).global_pose_2d, distance, kOffRadians);
+    result.off += IsOffMap(constraint, nodes, submaps, distance, kOffRadians);
   }
   return result;
 }
@@ -76,9 +82,7 @@ std::vector<LoopId> TakeOutFarOff(const Nodes& nodes, const Submaps& submaps,
     const bool is_loop = IsPresentLoop(constraint, nodes, submaps);
     loops += is_loop;
     if (is_loop &&
-        IsOff(constraint, submaps.at(constraint.submap_id).global_pose,
-              nodes.at(constraint.node_id).global_pose_2d, kFarOffMetres,
-              kFarOffRadians)) {
+        IsOffMap(constraint, nodes, submaps, kFarOffMetres, kFarOffRadians)) {
       taken.push_back(MakeLoopId(constraint.submap_id, constraint.node_id));
     } else {
       kept.push_back(constraint);
