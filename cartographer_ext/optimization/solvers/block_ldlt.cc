@@ -84,7 +84,7 @@ Eigen::Matrix3d TransposedSum(const Eigen::Matrix3d* const blocks,
 // Room for the next, larger pattern, without copies of old values. What is not
 // used takes no memory.
 void ReserveForMore(const size_t size,
-                    std::vector<Eigen::Matrix3d>* const blocks) {
+                    LargeVector<Eigen::Matrix3d>* const blocks) {
   if (size <= blocks->capacity()) return;
   blocks->clear();
   blocks->reserve(2 * size);
@@ -260,18 +260,6 @@ bool BlockLdlt::Extend(const std::vector<std::pair<int, int>>& pairs) {
 void BlockLdlt::SetZero() {
   for (Eigen::Matrix3d& block : matrix_) block.setZero();
   for (Eigen::Matrix3d& block : diagonal_) block.setZero();
-}
-
-void BlockLdlt::AddDiagonal(const int variable, const Eigen::Matrix3d& block) {
-  diagonal_[position_[variable]] += block;
-}
-
-void BlockLdlt::AddOffDiagonal(const int pair, const Eigen::Matrix3d& block) {
-  if (slots_[pair].transpose) {
-    matrix_[matrix_of_pair_[pair]] += block.transpose();
-  } else {
-    matrix_[matrix_of_pair_[pair]] += block;
-  }
 }
 
 template <typename Row, typename Rhs>

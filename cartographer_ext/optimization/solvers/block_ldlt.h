@@ -12,11 +12,13 @@
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_SOLVERS_BLOCK_LDLT_H_
 
+#include <cstdlib>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "Eigen/Core"
+#include "cartographer_ext/optimization/solvers/large_pages.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -49,9 +51,18 @@ class BlockLdlt {
   bool Extend(const std::vector<std::pair<int, int>>& pairs);
 
   void SetZero();
-  void AddDiagonal(int variable, const Eigen::Matrix3d& block);
+  void AddDiagonal(const int variable, const Eigen::Matrix3d& block) {
+    diagonal_[position_[variable]] += block;
+  }
   // `block` is H(pairs[pair].first, pairs[pair].second).
-  void AddOffDiagonal(int pair, const Eigen::Matrix3d& block);
+  void AddOffDiagonal(const int pair, const Eigen::Matrix3d& block) {
+    Eigen::Matrix3d& sum = matrix_[matrix_of_pair_[pair]];
+    if (slots_[pair].transpose) {
+      sum += block.transpose();
+    } else {
+      sum += block;
+    }
+  }
 
   // Factors H + lambda * diag(H). False if that is not positive definite.
   bool Factorize(double lambda);
@@ -99,20 +110,21 @@ class BlockLdlt {
   std::vector<int> position_;  // variable -> position
   std::vector<int> starts_;
   std::vector<int> rows_;
-  std::vector<Eigen::Matrix3d> blocks_;  // H before, L after factorising
-  std::vector<Eigen::Matrix3d> pivots_;
-  std::vector<Eigen::Matrix3d> pivot_inverses_;
+  LargeVector<Eigen::Matrix3d> blocks_;  // H before, L after factorising
+  LargeVector<Eigen::Matrix3d> pivots_;
+  LargeVector<Eigen::Matrix3d> pivot_inverses_;
   std::vector<Slot> slots_;              // per pair
   std::vector<int> slot_of_matrix_;      // slots of H, repeated by Extend
-  std::vector<Eigen::Matrix3d> matrix_;  // their values
+  LargeVector<Eigen::Matrix3d> matrix_;  // their values
   std::vector<int> matrix_of_pair_;
-  std::vector<Eigen::Matrix3d> diagonal_;  // by position
+  LargeVector<Eigen::Matrix3d> diagonal_;  // by position
   // Panels: neighbouring columns with the same rows below the last of them.
   std::vector<int> panel_starts_;  // first column of each, and the size
   std::vector<int> panel_of_column_;
   std::vector<size_t> packed_starts_;  // of each panel in packed_
   size_t packed_size_ = 0;
-  std::unique_ptr<double[]> packed_;  // scratch of the factorisation
+  // Scratch of the factorisation.
+  std::unique_ptr<double[], void (*)(void*)> packed_{nullptr, &std::free};
   double work_ = 0.;
 };
 

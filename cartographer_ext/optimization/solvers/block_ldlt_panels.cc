@@ -59,7 +59,8 @@ void BlockLdlt::FindPanels() {
   if (packed_ != nullptr && packed <= packed_size_) return;
   // Without values: those that are not used take no memory.
   packed_size_ = 2 * packed;
-  packed_.reset(new double[packed_size_]);
+  packed_.reset(static_cast<double*>(
+      AllocateOnLargePages(packed_size_ * sizeof(double))));
 }
 
 // One factorisation. The blocks hold the matrix before and L after it.
@@ -241,8 +242,8 @@ class BlockLdlt::PanelFactorization {
   BlockLdlt& ldlt_;
   const std::vector<int>& starts_;
   const std::vector<int>& rows_;
-  std::vector<Eigen::Matrix3d>& blocks_;
-  std::vector<Eigen::Matrix3d>& pivots_;
+  LargeVector<Eigen::Matrix3d>& blocks_;
+  LargeVector<Eigen::Matrix3d>& pivots_;
   std::vector<int> place_of_row_;  // in the present panel
   std::vector<int> places_;
   std::vector<double> factors_;

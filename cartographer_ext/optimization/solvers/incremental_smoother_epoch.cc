@@ -344,6 +344,7 @@ void IncrementalSmoother::Finish() {
     return;
   }
   RobustSolver batch(edges_, RobustSolver::LastPoseLast());
+  batch.TakeMemory(std::move(memory_));
   for (int round = 0;
        round != kMaxFinalRounds && TryHypotheses(0, kFinalMajority, &batch);
        ++round) {

@@ -13,6 +13,7 @@
 
 #include "cartographer_ext/optimization/graph/pose_graph.h"
 #include "cartographer_ext/optimization/solvers/block_ldlt.h"
+#include "cartographer_ext/optimization/solvers/large_pages.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -51,7 +52,7 @@ class LoopPredictor {
   const BlockLdlt& factor_;
   // v by position: three rows of three values for each of the loops. Zero between
   // walks.
-  std::vector<double> rows_;
+  LargeVector<double> rows_;
 };
 
 }  // namespace optimization

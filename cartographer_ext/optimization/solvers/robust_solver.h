@@ -172,6 +172,7 @@ class RobustSolver {
   void AddToPattern(const std::vector<int>& edges,
                     std::vector<std::pair<int, int>>* pairs);
   void Assemble(const std::vector<double>& weights);
+  void AddToSystem(const WhitenedEdge& edge, double weight, int pair);
   double PredictedDecrease(const Eigen::VectorXd& step, double lambda) const;
 
   const std::vector<WhitenedEdge>& edges_;
