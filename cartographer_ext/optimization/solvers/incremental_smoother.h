@@ -24,6 +24,13 @@
 // the graph is solved and the loop released again. The truncated cost decides,
 // and must decrease by more than the gate.
 //
+// Wrong loops that agree may still enter, where they outweigh the few right ones
+// of the time. Then the map contradicts most loops that follow, by certainty, and
+// none of these is a hypothesis. So if far fewer stretches with loops are accepted
+// since one of the last epochs than before, which chance would bring about once in
+// a thousand times (refused_loops.h), the end of the epoch tries hypotheses from
+// the map before that one (incremental_smoother_return.cc).
+//
 // The paper decides each loop once. Here every epoch re-evaluates all loops, so
 // that a wrong loop accepted early is rejected later (late rejection) and a
 // true one is accepted again (readmission); both can be disabled.
@@ -72,7 +79,8 @@ struct SmootherOptions {
   int epoch_poses = 100;
   // An epoch is at least as long as this share of the poses.
   double epoch_share = 0.025;
-  // With more poses than this the end of an epoch takes two steps.
+  // With more poses than this the end of an epoch takes two steps. With more than
+  // half as many none returns to an earlier map, which takes as long once more.
   int two_step_map = 7000;
   // With more poses than this an epoch is as long as a tenth of them unless its
   // work ends it earlier, and loops are predicted or wait, see above.
@@ -160,6 +168,12 @@ class IncrementalSmoother {
     double innovation = 0.;  // r' (I + Q)^-1 r
   };
 
+  // Poses and decisions at the end of an epoch.
+  struct EarlierMap {
+    std::vector<Pose2> poses;
+    std::vector<bool> accepted;
+  };
+
   // The two parts of the end of an epoch, the batch solution and the new factor; the
   // second does nothing without the first. In two steps, what the solution takes
   // beyond its first iterations is left to the second.
@@ -202,16 +216,28 @@ class IncrementalSmoother {
   bool KernelIsNarrow() const;
   // At the end, where rejected loops are within reach.
   void TryWiderKernels(RobustSolver* solver);
-  // Whether at least `majority` of all loops support `poses` as a hypothesis.
-  bool IsSupported(const std::vector<Pose2>& poses, double majority) const;
-  // Returns whether a hypothesis was accepted.
-  bool TryHypotheses(int first_edge, double majority, RobustSolver* solver);
+  // Whether at least `majority` of all loops support `poses` as a hypothesis that
+  // explains more than the present map.
+  bool IsSupported(const std::vector<Pose2>& poses,
+                   const std::vector<Pose2>& present, double majority) const;
+  // Returns whether a hypothesis was accepted, against the present map.
+  bool TryHypotheses(int first_edge, double majority,
+                     const std::vector<Pose2>& present, RobustSolver* solver);
+  // The rest is about earlier maps, incremental_smoother_return.cc.
+  bool MayReturn() const;
+  void KeepMap();
+  const EarlierMap* MapBeforeRefusals() const;
+  void ReturnTo(const EarlierMap& map, RobustSolver* batch);
+  // Hypotheses from the map of an earlier epoch, where loops since then are
+  // refused; returns whether one was accepted.
+  bool TryEarlierMap(RobustSolver* batch);
 
   const SmootherOptions options_;
   std::vector<WhitenedEdge> edges_;
   std::vector<bool> accepted_;
-  std::vector<bool> decided_;   // loops that went through an epoch
-  std::deque<int> waiting_;     // loops not yet tested
+  std::vector<bool> decided_;            // loops that went through an epoch
+  std::deque<int> waiting_;              // loops not yet tested
+  std::deque<EarlierMap> earlier_maps_;  // of the last epochs
   std::vector<int> predicted_;  // loops of this epoch that entered as certain
   int num_rejected_ = 0;        // loops that are not in force
   // Of each pose when it was new. More loops only make a pose more certain.

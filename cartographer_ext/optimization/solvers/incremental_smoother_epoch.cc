@@ -12,6 +12,7 @@
 #include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "cartographer_ext/optimization/solvers/incremental_smoother.h"
 #include "cartographer_ext/optimization/solvers/loop_evidence.h"
+#include "cartographer_ext/optimization/solvers/refused_loops.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -59,12 +60,11 @@ bool LoopsAgree(const std::vector<WhitenedEdge>& edges,
 int NewRevisits(const std::vector<WhitenedEdge>& edges,
                 const std::vector<Pose2>& before,
                 const std::vector<Pose2>& poses, const double gate) {
-  constexpr int kStretch = 15;  // poses
   std::set<int> stretches;
   for (const WhitenedEdge& edge : edges) {
     if (edge.is_loop && Agrees(edge, poses, gate) &&
         !Agrees(edge, before, gate)) {
-      stretches.insert(std::max(edge.from, edge.to) / kStretch);
+      stretches.insert(StretchOf(edge));
     }
   }
   return stretches.size();
@@ -132,12 +132,15 @@ void IncrementalSmoother::TakeOverEpoch() {
   RebuildFactor(batch.get());
   if (!status_.ok()) return;
   UpdateEstimate();
-  if (TryHypotheses(first_edge_of_epoch_, kEpochMajority, batch.get())) {
+  if (TryHypotheses(first_edge_of_epoch_, kEpochMajority, poses_,
+                    batch.get()) ||
+      TryEarlierMap(batch.get())) {
     DecideLoops();
     RebuildFactor(batch.get());
     if (!status_.ok()) return;
     UpdateEstimate();
   }
+  KeepMap();
   first_edge_of_epoch_ = edges_.size();
   work_of_steps_ = 0.;
   work_of_last_end_ = batch->work();
@@ -287,9 +290,10 @@ std::vector<int> IncrementalSmoother::ChooseSeeds(
 }
 
 bool IncrementalSmoother::IsSupported(const std::vector<Pose2>& poses,
+                                      const std::vector<Pose2>& present,
                                       const double majority) const {
   if (!LoopsAgree(edges_, poses, options_.gate, majority)) return false;
-  const int revisits = NewRevisits(edges_, poses_, poses, options_.gate);
+  const int revisits = NewRevisits(edges_, present, poses, options_.gate);
   if (revisits >= kMinRevisits) return true;
   // A small map has few stretches; there nearly all of its loops must agree.
   return revisits >= 2 && CountLoops(edges_) >= kManyLoops &&
@@ -298,12 +302,13 @@ bool IncrementalSmoother::IsSupported(const std::vector<Pose2>& poses,
 
 bool IncrementalSmoother::TryHypotheses(const int first_edge,
                                         const double majority,
+                                        const std::vector<Pose2>& present,
                                         RobustSolver* const batch) {
   if (options_.max_hypotheses <= 0) return false;
   const std::vector<Candidate> candidates =
       FindCandidates(first_edge, majority);
   if (candidates.empty()) return false;
-  double lowest = TruncatedCost(edges_, poses_) - options_.gate;
+  double lowest = TruncatedCost(edges_, present) - options_.gate;
   bool improved = false;
   std::vector<Pose2> best;
   SolverOptions solver = EpochSolverOptions();
@@ -327,7 +332,7 @@ bool IncrementalSmoother::TryHypotheses(const int first_edge,
     PolishTruncated(options_.gate, options_.polish_rounds, batch, &poses,
                     nullptr);
     const double cost = TruncatedCost(edges_, poses);
-    if (cost < lowest && IsSupported(poses, majority)) {
+    if (cost < lowest && IsSupported(poses, present, majority)) {
       lowest = cost;
       best = poses;
       improved = true;
@@ -345,8 +350,8 @@ void IncrementalSmoother::Finish() {
   }
   RobustSolver batch(edges_, RobustSolver::LastPoseLast());
   batch.TakeMemory(std::move(memory_));
-  for (int round = 0;
-       round != kMaxFinalRounds && TryHypotheses(0, kFinalMajority, &batch);
+  for (int round = 0; round != kMaxFinalRounds &&
+                      TryHypotheses(0, kFinalMajority, poses_, &batch);
        ++round) {
     DecideLoops();
     RebuildFactor(&batch);
