@@ -11,8 +11,11 @@ namespace front_end {
 namespace {
 
 // The walls of a submap end where the sight of the scans before did, which are
-// inserted every 0.2 m; the laser may be half of this off the robot's origin.
-constexpr double kLimitZone = 0.5;  // metres
+// inserted every 0.2 m, and it takes six hits until a cell is believed as much as
+// ever; metres.
+constexpr double kLimitZone = 1.;
+// Ranges at the limit differ by less, metres.
+constexpr double kSpread = 0.5;
 // Longer ranges of a scan, of which there are at least this many, are no
 // outliers.
 constexpr size_t kMinFarthest = 3;
@@ -33,10 +36,10 @@ void SightLimit::Add(const Pose2& pose, std::vector<float> ranges) {
   std::nth_element(ranges.begin(), ranges.begin() + (kMinFarthest - 1),
                    ranges.end(), std::greater<float>());
   const double range = ranges[kMinFarthest - 1];
-  if (range > range_ + kLimitZone) scans_ = scans_at_limit_ = 0;
+  if (range > range_ + kSpread) scans_ = scans_at_limit_ = 0;
   range_ = std::max(range_, range);
   ++scans_;
-  scans_at_limit_ += range > range_ - kLimitZone ? 1 : 0;
+  scans_at_limit_ += range > range_ - kSpread ? 1 : 0;
 }
 
 double SightLimit::Limit() const {

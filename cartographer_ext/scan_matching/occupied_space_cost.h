@@ -21,9 +21,16 @@
 // In the stock matcher an unknown cell costs as much as a free one. The walls
 // of a map end at the limit of the laser's range; a new scan extends beyond
 // them by the motion of the robot, and matches better if the robot has moved
-// less. With a laser of 4.5 m in a corridor this shortens a path by 3 %.
-// Therefore unknown cells cost 0.5 (even odds) for points at the limit of the
-// range.
+// less. With a laser of 4.5 m in a corridor this shortens a path by 3 %. What
+// was seen last has also been hit least, so that the cost rises towards the end
+// of a wall. Therefore unknown cells cost 0.5 (even odds) for points at the limit
+// of the range, and such a point tells only what is across its wall: its place
+// is
+//
+//   w(xi) = a + n n^T (R(theta) p + (x, y) - a),
+//
+// with a its place at the initial pose and n the unit vector across the wall
+// (wall_normals.h).
 //
 // c = u(f_row)^T P u(f_column) with P the 4 x 4 cells around the point, and the
 // derivatives have u' in place of one u. The solver evaluates a scan a few
@@ -37,11 +44,20 @@
 #include <vector>
 
 #include "Eigen/Core"
+#include "Eigen/Geometry"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/scan_matching/bicubic_kernels.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
+
+// The points at the limit of the range, which are the last ones.
+struct PointsAtLimit {
+  int num_near = -1;  // points before them; -1: there are none
+  Pose2 initial;      // grid <- node
+  // Across their walls, in the frame of the node; zero: the point tells nothing.
+  std::vector<Eigen::Vector2d> normals;
+};
 
 // Sums over the points of a scan at one pose.
 struct OccupiedSpaceSums {
@@ -66,15 +82,16 @@ class OccupiedSpaceCost {
   // Cost of unknown cells for points at the limit of the range.
   static constexpr float kUnknownAtLimit = 0.5f;
 
-  // `points` in metres, in the frame of the node; those from `num_near` on are
-  // at the limit of the range (-1: none). `cells` must outlive this object.
+  // `points` in metres, in the frame of the node. `cells` must outlive this
+  // object.
   OccupiedSpaceCost(const Cells* cells, std::vector<Eigen::Vector2d> points,
                     const BicubicKernels& kernels = BestBicubicKernels(),
-                    const int num_near = -1)
+                    const PointsAtLimit& at_limit = PointsAtLimit())
       : cells_(*cells),
         points_(std::move(points)),
-        num_near_(num_near < 0 ? points_.size()
-                               : static_cast<size_t>(num_near)),
+        num_near_(at_limit.num_near < 0
+                      ? points_.size()
+                      : static_cast<size_t>(at_limit.num_near)),
         kernels_(kernels),
         cells_per_metre_(1. / cells->resolution()),
         // An odd number of half cache lines.
@@ -84,6 +101,15 @@ class OccupiedSpaceCost {
     for (size_t i = 0; i != points_.size(); ++i) {
       Array(kPointX)[i] = points_[i].x();
       Array(kPointY)[i] = points_[i].y();
+    }
+    for (size_t i = num_near_; i != points_.size(); ++i) {
+      const Eigen::Vector2d place = at_limit.initial * points_[i];
+      Wall wall;
+      wall.row = (cells_.max_x() - place.x()) * cells_per_metre_ - 0.5;
+      wall.column = (cells_.max_y() - place.y()) * cells_per_metre_ - 0.5;
+      wall.normal = Eigen::Rotation2Dd(at_limit.initial.theta) *
+                    at_limit.normals[i - num_near_];
+      walls_.push_back(wall);
     }
   }
 
@@ -134,9 +160,9 @@ class OccupiedSpaceCost {
     for (size_t i = 0; i != points_.size(); ++i) {
       const Eigen::Vector2d& point = points_[i];
       const bool near = i < num_near_;
-      const double row = row_of_origin - cosine * point.x() + sine * point.y();
-      const double column =
-          column_of_origin - sine * point.x() - cosine * point.y();
+      double row = row_of_origin - cosine * point.x() + sine * point.y();
+      double column = column_of_origin - sine * point.x() - cosine * point.y();
+      if (!near) walls_[i - num_near_].Project(&row, &column);
       double cost = near ? kOutside : kUnknownAtLimit;
       if (row >= 0. && row < last_row && column >= 0. && column < last_column) {
         const int r = static_cast<int>(row);
@@ -172,6 +198,22 @@ class OccupiedSpaceCost {
   };
   static constexpr int kNoRow = -1000000;
 
+  // Of a point at the limit: where it is at the initial pose, cells, and the unit
+  // vector across its wall in the grid.
+  struct Wall {
+    double row = 0.;
+    double column = 0.;
+    Eigen::Vector2d normal = Eigen::Vector2d::Zero();
+
+    // Moves a place along the wall to the initial one.
+    void Project(double* const r, double* const c) const {
+      const double across =
+          normal.x() * (*r - row) + normal.y() * (*c - column);
+      *r = row + across * normal.x();
+      *c = column + across * normal.y();
+    }
+  };
+
   // Arrays with one element per point; the last are the 16 cells, column by
   // column.
   enum ArrayName {
@@ -201,6 +243,9 @@ class OccupiedSpaceCost {
         std::cos(pose.theta), std::sin(pose.theta), pose.x, pose.y,
         Array(kPointX), Array(kPointY), num_points,
         PointPlaces{Array(kTurnedX), Array(kTurnedY), rows, columns});
+    for (size_t i = 0; i != walls_.size(); ++i) {
+      walls_[i].Project(&rows[num_near_ + i], &columns[num_near_ + i]);
+    }
     const double end_row = cells_.num_rows() + 1.;
     const double end_column = cells_.num_columns() + 1.;
     bool any_outside = false;
@@ -228,6 +273,15 @@ class OccupiedSpaceCost {
       Array(kCost)[i] =
           static_cast<size_t>(i) < num_near_ ? kOutside : kUnknownAtLimit;
       Array(kRowSlope)[i] = Array(kColumnSlope)[i] = 0.;
+    }
+    for (size_t i = 0; i != walls_.size(); ++i) {
+      const Eigen::Vector2d& normal = walls_[i].normal;
+      double* const row_slope = Array(kRowSlope) + num_near_ + i;
+      double* const column_slope = Array(kColumnSlope) + num_near_ + i;
+      const double across =
+          normal.x() * *row_slope + normal.y() * *column_slope;
+      *row_slope = across * normal.x();
+      *column_slope = across * normal.y();
     }
   }
 
@@ -273,6 +327,7 @@ class OccupiedSpaceCost {
   const int stride_;
   std::vector<double> arrays_;
   std::vector<Patch> patches_;
+  std::vector<Wall> walls_;  // of the points from num_near_ on
 };
 
 template <typename Cells>

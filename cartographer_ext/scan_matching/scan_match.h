@@ -31,6 +31,7 @@
 #include "cartographer_ext/scan_matching/occupied_space_cost.h"
 #include "cartographer_ext/scan_matching/pose_solver.h"
 #include "cartographer_ext/scan_matching/scan_information.h"
+#include "cartographer_ext/scan_matching/wall_normals.h"
 #include "cartographer_ext/uncertainty/scan_curvature.h"
 #include "cartographer_ext/uncertainty/uncertain_pose.h"
 
@@ -113,11 +114,10 @@ namespace internal {
 template <typename Cells>
 class ScanMatch {
  public:
-  // Points, prediction and initial pose are finite; points from `num_near` on
-  // are at the limit of the range.
+  // Points, prediction and initial pose are finite.
   ScanMatch(const ScanMatchOptions& options, const Prediction& prediction,
             const Pose2& initial, std::vector<Eigen::Vector2d> points,
-            const int num_near, const Cells& cells)
+            const PointsAtLimit& at_limit, const Cells& cells)
       : options_(options),
         covariance_(prediction.covariance),
         scans_in_map_(prediction.scans_in_map),
@@ -127,7 +127,7 @@ class ScanMatch {
         weight2_(options.occupied_space_weight * options.occupied_space_weight),
         scale_(num_points_ == 0 ? 0. : weight2_ / num_points_),
         resolution_(cells.resolution()),
-        cost_(&cells, std::move(points), BestBicubicKernels(), num_near) {
+        cost_(&cells, std::move(points), BestBicubicKernels(), at_limit) {
     covariance_is_known_ =
         uncertainty::InvertCovariance(covariance_, &prediction_information_);
     const double translation2 =
@@ -263,13 +263,14 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
                                 return !point.allFinite();
                               }),
                points.end());
-  int num_near = static_cast<int>(points.size());
+  PointsAtLimit at_limit;
   if (std::isfinite(prediction.limit_of_sight)) {
     const auto limit = std::stable_partition(
         points.begin(), points.end(), [&](const Eigen::Vector2d& point) {
           return point.norm() < prediction.limit_of_sight;
         });
-    num_near = static_cast<int>(limit - points.begin());
+    at_limit.num_near = static_cast<int>(limit - points.begin());
+    at_limit.normals = WallNormals(points, at_limit.num_near);
   }
   Pose2 start = internal::IsFinite(initial) ? initial : prediction.pose;
   if (!internal::IsFinite(start)) start = Pose2();
@@ -277,8 +278,9 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
   if (!internal::IsFinite(predicted.pose)) predicted.pose = start;
   // One branch for all angles.
   predicted.pose.theta = UnwrapAngle(predicted.pose.theta, start.theta);
+  at_limit.initial = start;
   internal::ScanMatch<Cells> match(options, predicted, start, std::move(points),
-                                   num_near, cells);
+                                   at_limit, cells);
   return match.Match(report);
 }
 

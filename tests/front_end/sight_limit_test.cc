@@ -24,7 +24,7 @@ TEST(SightLimitTest, IsWhereMostScansEnd) {
   AddScans(49, 1, &limit);
   EXPECT_TRUE(std::isinf(limit.Limit()));
   AddScans(2, 1, &limit);
-  EXPECT_NEAR(limit.Limit(), 4., 1e-6);
+  EXPECT_NEAR(limit.Limit(), 3.5, 1e-6);
 }
 
 TEST(SightLimitTest, OtherwiseTheBuildingEndsIt) {
@@ -43,7 +43,7 @@ TEST(SightLimitTest, TwoLongRangesAreOutliers) {
   SightLimit limit;
   AddScans(60, 1, &limit);
   limit.Add(Pose2(100., 0., 0.), {9.f, 9.f, 4.5f});
-  EXPECT_NEAR(limit.Limit(), 4., 1e-6);
+  EXPECT_NEAR(limit.Limit(), 3.5, 1e-6);
   limit.Add(Pose2(101., 0., 0.), {9.f, 9.f, 9.f});
   EXPECT_TRUE(std::isinf(limit.Limit()));
 }
@@ -53,7 +53,7 @@ TEST(SightLimitTest, TooFewRangesSayNothing) {
   AddScans(60, 1, &limit);
   limit.Add(Pose2(100., 0., 0.), {9.f, 9.f});
   limit.Add(Pose2(101., 0., 0.), {});
-  EXPECT_NEAR(limit.Limit(), 4., 1e-6);
+  EXPECT_NEAR(limit.Limit(), 3.5, 1e-6);
 }
 
 }  // namespace

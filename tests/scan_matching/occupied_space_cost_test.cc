@@ -117,43 +117,107 @@ TEST(OccupiedSpaceCostTest, DerivativesAgreeWithDifferences) {
   }
 }
 
-// A wall along x that nobody has seen beyond x = 0.4, and points on it that
-// reach further.
-TEST(OccupiedSpaceCostTest, WhatNobodyHasSeenDoesNotPullPointsAtTheLimitBack) {
-  TestCells cells(0.05, 1., 0.7, 30, 20, 0.9f);
-  for (int row = 0; row < 30; ++row) {
-    for (int column = 0; column < 20; ++column) {
-      if (cells.CenterX(row) > 0.4) cells.Forget(row, column);
+// A wall along x that nobody has seen beyond x = 0.4 and that was hit the less
+// the further it is, and points on it that reach further.
+class PointsAtLimitTest : public ::testing::Test {
+ protected:
+  PointsAtLimitTest() : cells_(0.05, 1., 0.7, 30, 20, 0.9f) {
+    for (int row = 0; row < 30; ++row) {
+      const double x = cells_.CenterX(row);
+      for (int column = 0; column < 20; ++column) {
+        if (x > 0.4) cells_.Forget(row, column);
+      }
+      if (x <= 0.4) {
+        cells_.Set(row, 10, static_cast<float>(0.1 + 0.5 * std::max(0., x)));
+      }
     }
-    if (cells.CenterX(row) <= 0.4) cells.Set(row, 10, 0.1f);
+    for (int i = 0; i < 20; ++i) {
+      points_.emplace_back(0.1 + 0.02 * i, cells_.CenterY(10) + 0.01);
+    }
   }
-  std::vector<Eigen::Vector2d> points;
-  for (int i = 0; i < 20; ++i)
-    points.emplace_back(0.3 + 0.01 * i, cells.CenterY(10));
-  Cost near(&cells, points);
-  Cost limit(&cells, points, BestBicubicKernels(), 0);
-  const double pull = near.Evaluate(Pose2()).gradient.x();
-  EXPECT_GT(pull, 0.);
-  const double at_limit = limit.Evaluate(Pose2()).gradient.x();
-  EXPECT_GT(at_limit, 0.);
-  EXPECT_LT(at_limit, 0.4 * pull);
-  // The same where only the last points are at the limit: it is them that pull.
-  Cost last(&cells, points, BestBicubicKernels(), 5);
-  EXPECT_NEAR(last.Evaluate(Pose2()).gradient.x(), at_limit, 0.1 * at_limit);
 
-  // Both ways to sum agree with what the cells say, and with differences.
+  // The wall is across `normal` in the frame of the node.
+  PointsAtLimit From(const int num_near, const Pose2& initial,
+                     const Eigen::Vector2d& normal) const {
+    PointsAtLimit at_limit;
+    at_limit.num_near = num_near;
+    at_limit.initial = initial;
+    at_limit.normals.assign(points_.size() - num_near, normal);
+    return at_limit;
+  }
+
+  TestCells cells_;
+  std::vector<Eigen::Vector2d> points_;
+};
+
+TEST_F(PointsAtLimitTest, TellWhatIsAcrossTheirWallOnly) {
+  Cost near(&cells_, points_);
+  const double pull = near.Evaluate(Pose2()).gradient.x();
+  EXPECT_GT(pull, 1.);
+  Cost limit(&cells_, points_, BestBicubicKernels(),
+             From(0, Pose2(), Eigen::Vector2d::UnitY()));
+  const OccupiedSpaceSums sums = limit.Evaluate(Pose2());
+  EXPECT_NEAR(sums.gradient.x(), 0., 1e-12);
+  EXPECT_NEAR(sums.hessian(0, 0), 0., 1e-12);
+  EXPECT_GT(sums.gradient.y(), 1.);
+  EXPECT_GT(sums.hessian(1, 1), 1.);
+  // However far the robot moves along the wall, both sums stay the same.
+  for (const double x : {-0.3, 0.1, 0.5}) {
+    EXPECT_NEAR(limit.Evaluate(Pose2(x, 0., 0.)).squares, sums.squares, 1e-12);
+    EXPECT_NEAR(limit.LinearSquares(Pose2(x, 0., 0.)),
+                limit.LinearSquares(Pose2()), 1e-12);
+    EXPECT_NE(limit.LinearSquares(Pose2(x, 0.03, 0.)),
+              limit.LinearSquares(Pose2()));
+  }
+  // Without a wall they tell nothing.
+  Cost nothing(&cells_, points_, BestBicubicKernels(),
+               From(0, Pose2(), Eigen::Vector2d::Zero()));
+  EXPECT_NEAR(nothing.Evaluate(Pose2(0.1, 0.1, 0.2)).squares, sums.squares,
+              1e-12);
+  EXPECT_NEAR(nothing.Evaluate(Pose2()).hessian.norm(), 0., 1e-12);
+}
+
+TEST_F(PointsAtLimitTest, TheWallIsThatOfTheInitialPose) {
+  // The node looks along y; the wall is across its x.
+  const Pose2 initial(0., 0.3, -0.5 * kPi);
+  for (Eigen::Vector2d& point : points_) point = initial.Inverse() * point;
+  Cost limit(&cells_, points_, BestBicubicKernels(),
+             From(0, initial, Eigen::Vector2d::UnitX()));
+  const OccupiedSpaceSums sums = limit.Evaluate(initial);
+  EXPECT_NEAR(sums.gradient.x(), 0., 1e-9);
+  EXPECT_GT(std::abs(sums.gradient.y()), 1.);
+}
+
+TEST_F(PointsAtLimitTest, DerivativesAgreeWithDifferences) {
+  const Pose2 initial(0.02, -0.01, 0.05);
+  Cost limit(&cells_, points_, BestBicubicKernels(),
+             From(5, initial, Eigen::Vector2d(0.6, 0.8)));
+  const Pose2 pose(0.05, 0.01, 0.07);
+  const OccupiedSpaceSums sums = limit.Evaluate(pose);
+  const double step = 1e-6;
+  for (int k = 0; k < 3; ++k) {
+    const auto value = [&](const double by) {
+      return 0.5 * limit
+                       .Evaluate(Pose2(pose.x + (k == 0 ? by : 0.),
+                                       pose.y + (k == 1 ? by : 0.),
+                                       pose.theta + (k == 2 ? by : 0.)))
+                       .squares;
+    };
+    EXPECT_NEAR(sums.gradient(k), (value(step) - value(-step)) / (2. * step),
+                1e-5 * sums.gradient.norm());
+  }
+}
+
+TEST_F(PointsAtLimitTest, WhatNobodyHasSeenCostsEvenOddsThere) {
+  PointsAtLimit at_limit;
+  at_limit.num_near = 0;
+  at_limit.normals.assign(2, Eigen::Vector2d::UnitY());
   Cost beyond(
-      &cells,
-      {Eigen::Vector2d(0.675, cells.CenterY(10)), Eigen::Vector2d(5., 5.)},
-      BestBicubicKernels(), 0);
+      &cells_,
+      {Eigen::Vector2d(0.675, cells_.CenterY(10)), Eigen::Vector2d(5., 5.)},
+      BestBicubicKernels(), at_limit);
   EXPECT_NEAR(beyond.Evaluate(Pose2()).squares, 2. * 0.25, 1e-12);
   EXPECT_NEAR(beyond.LinearSquares(Pose2()), 2. * 0.25, 1e-12);
-  const double step = 1e-6;
-  EXPECT_NEAR(at_limit,
-              (limit.Evaluate(Pose2(step, 0., 0.)).squares -
-               limit.Evaluate(Pose2(-step, 0., 0.)).squares) /
-                  (4. * step),
-              1e-5 * at_limit);
 }
 
 // The kept patches make no difference.
