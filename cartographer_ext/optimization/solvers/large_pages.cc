@@ -23,9 +23,10 @@ void* AllocateOnLargePages(const size_t bytes) {
     return memory;
   }
   const size_t rounded = (bytes + kLargePage - 1) / kLargePage * kLargePage;
-  void* const memory =
-      rounded < bytes ? nullptr : std::aligned_alloc(kLargePage, rounded);
-  if (memory == nullptr) throw std::bad_alloc();
+  void* memory = nullptr;
+  if (rounded < bytes || posix_memalign(&memory, kLargePage, rounded) != 0) {
+    throw std::bad_alloc();
+  }
 #ifdef MADV_HUGEPAGE
   // Advice; without it the memory is the same, but slower.
   madvise(memory, rounded, MADV_HUGEPAGE);
