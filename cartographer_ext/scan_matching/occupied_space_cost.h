@@ -24,8 +24,8 @@
 // less. With a laser of 4.5 m in a corridor this shortens a path by 3 %. What
 // was seen last has also been hit least, so that the cost rises towards the end
 // of a wall. Therefore unknown cells cost 0.5 (even odds) for points at the limit
-// of the range, and such a point tells only what is across its wall: its place
-// is
+// of the range, and such a point constrains the pose only across its wall: its
+// place is
 //
 //   w(xi) = a + n n^T (R(theta) p + (x, y) - a),
 //
@@ -51,11 +51,11 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
-// The points at the limit of the range, which are the last ones.
+// The points at the limit of the range, which are the last ones of a scan.
 struct PointsAtLimit {
-  int num_near = -1;  // points before them; -1: there are none
-  Pose2 initial;      // grid <- node
-  // Across their walls, in the frame of the node; zero: the point tells nothing.
+  Pose2 initial;  // grid <- node
+  // Of each the unit vector across its wall, in the frame of the node; zero: the
+  // point does not constrain the pose.
   std::vector<Eigen::Vector2d> normals;
 };
 
@@ -82,16 +82,14 @@ class OccupiedSpaceCost {
   // Cost of unknown cells for points at the limit of the range.
   static constexpr float kUnknownAtLimit = 0.5f;
 
-  // `points` in metres, in the frame of the node. `cells` must outlive this
-  // object.
+  // `points` in metres, in the frame of the node; no fewer than `at_limit`.
+  // `cells` must outlive this object.
   OccupiedSpaceCost(const Cells* cells, std::vector<Eigen::Vector2d> points,
                     const BicubicKernels& kernels = BestBicubicKernels(),
                     const PointsAtLimit& at_limit = PointsAtLimit())
       : cells_(*cells),
         points_(std::move(points)),
-        num_near_(at_limit.num_near < 0
-                      ? points_.size()
-                      : static_cast<size_t>(at_limit.num_near)),
+        num_near_(points_.size() - at_limit.normals.size()),
         kernels_(kernels),
         cells_per_metre_(1. / cells->resolution()),
         // An odd number of half cache lines.
@@ -102,13 +100,13 @@ class OccupiedSpaceCost {
       Array(kPointX)[i] = points_[i].x();
       Array(kPointY)[i] = points_[i].y();
     }
+    const Eigen::Rotation2Dd rotation(at_limit.initial.theta);
     for (size_t i = num_near_; i != points_.size(); ++i) {
       const Eigen::Vector2d place = at_limit.initial * points_[i];
       Wall wall;
       wall.row = (cells_.max_x() - place.x()) * cells_per_metre_ - 0.5;
       wall.column = (cells_.max_y() - place.y()) * cells_per_metre_ - 0.5;
-      wall.normal = Eigen::Rotation2Dd(at_limit.initial.theta) *
-                    at_limit.normals[i - num_near_];
+      wall.normal = rotation * at_limit.normals[i - num_near_];
       walls_.push_back(wall);
     }
   }
@@ -205,12 +203,19 @@ class OccupiedSpaceCost {
     double column = 0.;
     Eigen::Vector2d normal = Eigen::Vector2d::Zero();
 
+    // The part of a displacement or slope across the wall.
+    void KeepAcross(double* const r, double* const c) const {
+      const double across = normal.x() * *r + normal.y() * *c;
+      *r = across * normal.x();
+      *c = across * normal.y();
+    }
     // Moves a place along the wall to the initial one.
     void Project(double* const r, double* const c) const {
-      const double across =
-          normal.x() * (*r - row) + normal.y() * (*c - column);
-      *r = row + across * normal.x();
-      *c = column + across * normal.y();
+      *r -= row;
+      *c -= column;
+      KeepAcross(r, c);
+      *r += row;
+      *c += column;
     }
   };
 
@@ -275,13 +280,8 @@ class OccupiedSpaceCost {
       Array(kRowSlope)[i] = Array(kColumnSlope)[i] = 0.;
     }
     for (size_t i = 0; i != walls_.size(); ++i) {
-      const Eigen::Vector2d& normal = walls_[i].normal;
-      double* const row_slope = Array(kRowSlope) + num_near_ + i;
-      double* const column_slope = Array(kColumnSlope) + num_near_ + i;
-      const double across =
-          normal.x() * *row_slope + normal.y() * *column_slope;
-      *row_slope = across * normal.x();
-      *column_slope = across * normal.y();
+      walls_[i].KeepAcross(Array(kRowSlope) + num_near_ + i,
+                           Array(kColumnSlope) + num_near_ + i);
     }
   }
 

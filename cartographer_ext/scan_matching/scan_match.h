@@ -269,8 +269,8 @@ Pose2 MatchScan(const ScanMatchOptions& options, const Prediction& prediction,
         points.begin(), points.end(), [&](const Eigen::Vector2d& point) {
           return point.norm() < prediction.limit_of_sight;
         });
-    at_limit.num_near = static_cast<int>(limit - points.begin());
-    at_limit.normals = WallNormals(points, at_limit.num_near);
+    at_limit.normals =
+        WallNormals(points, static_cast<int>(limit - points.begin()));
   }
   Pose2 start = internal::IsFinite(initial) ? initial : prediction.pose;
   if (!internal::IsFinite(start)) start = Pose2();

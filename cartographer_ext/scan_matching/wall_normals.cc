@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/scan_matching/wall_normals.h"
 
-#include <cmath>
 #include <cstddef>
 
 #include "Eigen/Eigenvalues"

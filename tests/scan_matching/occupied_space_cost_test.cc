@@ -140,7 +140,6 @@ class PointsAtLimitTest : public ::testing::Test {
   PointsAtLimit From(const int num_near, const Pose2& initial,
                      const Eigen::Vector2d& normal) const {
     PointsAtLimit at_limit;
-    at_limit.num_near = num_near;
     at_limit.initial = initial;
     at_limit.normals.assign(points_.size() - num_near, normal);
     return at_limit;
@@ -210,7 +209,6 @@ TEST_F(PointsAtLimitTest, DerivativesAgreeWithDifferences) {
 
 TEST_F(PointsAtLimitTest, WhatNobodyHasSeenCostsEvenOddsThere) {
   PointsAtLimit at_limit;
-  at_limit.num_near = 0;
   at_limit.normals.assign(2, Eigen::Vector2d::UnitY());
   Cost beyond(
       &cells_,

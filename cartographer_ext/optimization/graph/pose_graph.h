@@ -98,17 +98,24 @@ WhitenedEdge Whiten(const PoseGraphEdge& edge);
 // Prepares edges; the information matrix must be positive definite.
 std::vector<WhitenedEdge> Whiten(const std::vector<PoseGraphEdge>& edges);
 
-// Whitened residual r of the edge at the poses of its ends; `cos_from` and
-// `sin_from` are of the angle of `from`.
-inline Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,
-                                const Pose2& to, const double cos_from,
-                                const double sin_from) {
+// What the edge is off its measurement at the poses of its ends (metres, radians),
+// in the frame of `from`, whose angle has this cosine and sine.
+inline Eigen::Vector3d MeasurementError(const WhitenedEdge& edge,
+                                        const Pose2& from, const Pose2& to,
+                                        const double cos_from,
+                                        const double sin_from) {
   const double dx = to.x - from.x, dy = to.y - from.y;
-  const Eigen::Vector3d error(
+  return Eigen::Vector3d(
       cos_from * dx + sin_from * dy - edge.measurement.x(),
       -sin_from * dx + cos_from * dy - edge.measurement.y(),
       NormalizeAngle(to.theta - from.theta - edge.measurement.z()));
-  return edge.whitening * error;
+}
+
+// Whitened residual r of the edge at the poses of its ends.
+inline Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,
+                                const Pose2& to, const double cos_from,
+                                const double sin_from) {
+  return edge.whitening * MeasurementError(edge, from, to, cos_from, sin_from);
 }
 // The same without precomputed cosine and sine.
 Eigen::Vector3d Residual(const WhitenedEdge& edge, const Pose2& from,

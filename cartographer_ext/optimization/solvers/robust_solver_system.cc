@@ -122,10 +122,8 @@ void RobustSolver::AddToSystem(const WhitenedEdge& edge, const double weight,
   };
   const double xx = product(0, 0), xy = product(0, 1), yy = product(1, 1);
   const double xt = product(0, 2), yt = product(1, 2), tt = product(2, 2);
-  const double ex = c * dx + s * dy - edge.measurement.x();
-  const double ey = c * dy - s * dx - edge.measurement.y();
-  const double et =
-      NormalizeAngle(to.theta - from.theta - edge.measurement.z());
+  const Eigen::Vector3d error = MeasurementError(edge, from, to, c, s);
+  const double ex = error.x(), ey = error.y(), et = error.z();
   const double px = xx * ex + xy * ey + xt * et;
   const double py = xy * ex + yy * ey + yt * et;
   const Eigen::Vector3d gradient(c * px - s * py, s * px + c * py,
