@@ -72,7 +72,8 @@ struct OccupiedSpaceSums {
 //
 //   double resolution() const, max_x() const, max_y() const;  // metres
 //   int num_rows() const, num_columns() const;
-//   float Cost(int row, int column) const;                    // inside only
+//   // Of `count` <= 4 cells along the row, inside only.
+//   void CopyCosts(int row, int column, int count, float* costs) const;
 //   bool IsKnown(int row, int column) const;                  // inside only
 template <typename Cells>
 class OccupiedSpaceCost {
@@ -167,10 +168,11 @@ class OccupiedSpaceCost {
         const int c = static_cast<int>(column);
         const double v = row - r;
         const double u = column - c;
-        cost = (1. - v) * ((1. - u) * CostFor(near, r, c) +
-                           u * CostFor(near, r, c + 1)) +
-               v * ((1. - u) * CostFor(near, r + 1, c) +
-                    u * CostFor(near, r + 1, c + 1));
+        float here[2], below[2];
+        CopyCostsFor(near, r, c, 2, here);
+        CopyCostsFor(near, r + 1, c, 2, below);
+        cost = (1. - v) * ((1. - u) * here[0] + u * here[1]) +
+               v * ((1. - u) * below[0] + u * below[1]);
       }
       squares += cost * cost;
     }
@@ -290,9 +292,13 @@ class OccupiedSpaceCost {
     return cut - (x < cut);
   }
 
-  float CostFor(const bool near, const int row, const int column) const {
-    return near || cells_.IsKnown(row, column) ? cells_.Cost(row, column)
-                                               : kUnknownAtLimit;
+  // Of `count` <= 4 cells inside the grid, along the row.
+  void CopyCostsFor(const bool near, const int row, const int column,
+                    const int count, float* const costs) const {
+    cells_.CopyCosts(row, column, count, costs);
+    for (int j = 0; !near && j != count; ++j) {
+      if (!cells_.IsKnown(row, column + j)) costs[j] = kUnknownAtLimit;
+    }
   }
 
   void Load(const int row, const int column, const int point) {
@@ -307,15 +313,20 @@ class OccupiedSpaceCost {
     const bool is_whole = row >= 1 && row + 2 < num_rows && column >= 1 &&
                           column + 2 < num_columns;
     for (int i = 0; i != 4; ++i) {
-      for (int j = 0; j != 4; ++j) {
-        const int r = row - 1 + i;
-        const int c = column - 1 + j;
-        cells[(4 * j + i) * stride_] =
-            is_whole || (r >= 0 && r < num_rows && c >= 0 && c < num_columns)
-                ? CostFor(near, r, c)
-            : near ? kOutside
-                   : kUnknownAtLimit;
+      const int r = row - 1 + i;
+      float costs[4];
+      if (is_whole) {
+        CopyCostsFor(near, r, column - 1, 4, costs);
+      } else {
+        for (int j = 0; j != 4; ++j) {
+          const int c = column - 1 + j;
+          costs[j] = near ? kOutside : kUnknownAtLimit;
+          if (r >= 0 && r < num_rows && c >= 0 && c < num_columns) {
+            CopyCostsFor(near, r, c, 1, &costs[j]);
+          }
+        }
       }
+      for (int j = 0; j != 4; ++j) cells[(4 * j + i) * stride_] = costs[j];
     }
   }
 

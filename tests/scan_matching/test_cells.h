@@ -45,6 +45,10 @@ class TestCells {
   float Cost(const int row, const int column) const {
     return costs_[static_cast<size_t>(row) * num_columns_ + column];
   }
+  void CopyCosts(const int row, const int column, const int count,
+                 float* const costs) const {
+    for (int i = 0; i != count; ++i) costs[i] = Cost(row, column + i);
+  }
   void Set(const int row, const int column, const float cost) {
     costs_[static_cast<size_t>(row) * num_columns_ + column] = cost;
   }

@@ -9,6 +9,7 @@
 #include "Eigen/Core"
 #include "cartographer/mapping/2d/grid_2d.h"
 #include "cartographer/mapping/2d/map_limits.h"
+#include "cartographer_ext/scan_matching/dropin/grid_rows.h"
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -25,8 +26,9 @@ class GridCells {
   double max_y() const { return grid_.limits().max().y(); }
   int num_rows() const { return grid_.limits().cell_limits().num_y_cells; }
   int num_columns() const { return grid_.limits().cell_limits().num_x_cells; }
-  float Cost(const int row, const int column) const {
-    return grid_.GetCorrespondenceCost(Eigen::Array2i(column, row));
+  void CopyCosts(const int row, const int column, const int count,
+                 float* const costs) const {
+    CopyFewCosts(grid_, column, row, count, costs);
   }
   bool IsKnown(const int row, const int column) const {
     return grid_.IsKnown(Eigen::Array2i(column, row));

@@ -23,6 +23,17 @@
 namespace cartographer_ext {
 namespace scan_matching {
 
+// Costs to the steps of ProbabilityView::CopyRow.
+struct RoundUp {
+  void operator()(const float* const costs, const int count,
+                  uint8_t* const steps) const {
+    constexpr float kSteps = 255.f / (ProbabilityView::kMaxProbability -
+                                      ProbabilityView::kMinProbability);
+    BestSearchKernels().round_up(costs, ProbabilityView::kMaxProbability,
+                                 kSteps, count, steps);
+  }
+};
+
 // View of the host's probability grid for SearchInRealTime.
 class ProbabilityGridView : public ProbabilityView {
  public:
@@ -50,17 +61,8 @@ class ProbabilityGridView : public ProbabilityView {
   }
 
   void CopyRow(const int y, const int x_begin, const int x_end,
-               uint8_t* values) const override {
-    constexpr float kSteps = 255.f / (kMaxProbability - kMinProbability);
-    constexpr int kAtOnce = 64;
-    float costs[kAtOnce];
-    const SearchKernels& kernels = BestSearchKernels();
-    for (int begin = x_begin; begin < x_end; begin += kAtOnce) {
-      const int count = std::min(kAtOnce, x_end - begin);
-      CopyCosts(grid_, begin, y, count, costs);
-      kernels.round_up(costs, kMaxProbability, kSteps, count, values);
-      values += count;
-    }
+               uint8_t* const values) const override {
+    CopyBytes(grid_, x_begin, y, x_end - x_begin, RoundUp(), values);
   }
 
   float Probability(const int x, const int y) const override {
