@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/io/picture.h"
@@ -35,9 +37,29 @@ void AddKnownCells(const PlacedGrid& placed, io::PictureBounds* bounds) {
   }
 }
 
-float LogOdds(const float probability) {
-  return std::log(probability / (1.f - probability));
-}
+// Log odds of the values of a grid, NaN for unknown cells; found when they are
+// needed.
+class LogOddsOfValues {
+ public:
+  explicit LogOddsOfValues(const SubmapGrid& grid)
+      : grid_(grid),
+        log_odds_(SubmapGrid::kNumValues,
+                  std::numeric_limits<float>::quiet_NaN()) {}
+
+  float At(const int ix, const int iy) {
+    const int value = grid_.Value(ix, iy);
+    float& log_odds = log_odds_[value];
+    if (std::isnan(log_odds) && value != 0) {
+      const float probability = grid_.OccupancyOf(value);
+      log_odds = std::log(probability / (1.f - probability));
+    }
+    return log_odds;
+  }
+
+ private:
+  const SubmapGrid& grid_;
+  std::vector<float> log_odds_;
+};
 
 // Adds the log odds of one grid to the cells of the map that it covers.
 void AddGrid(const PlacedGrid& placed, io::OccupancyMap* map) {
@@ -55,6 +77,7 @@ void AddGrid(const PlacedGrid& placed, io::OccupancyMap* map) {
   const int begin_y = index(bounds.min_y, map->origin.y, map->height);
   const int end_y = index(bounds.max_y, map->origin.y, map->height);
   const Pose2 local_from_map = placed.map_from_local.Inverse();
+  LogOddsOfValues values(grid);
   for (int y = begin_y; y <= end_y; ++y) {
     for (int x = begin_x; x <= end_x; ++x) {
       const Eigen::Vector2d local =
@@ -68,10 +91,10 @@ void AddGrid(const PlacedGrid& placed, io::OccupancyMap* map) {
       if (ix < 0 || iy < 0 || ix >= grid.num_x() || iy >= grid.num_y()) {
         continue;
       }
-      const float occupancy = grid.Occupancy(ix, iy);
-      if (std::isnan(occupancy)) continue;
+      const float log_odds = values.At(ix, iy);
+      if (std::isnan(log_odds)) continue;
       float& cell = map->at(x, y);
-      cell = (std::isnan(cell) ? 0.f : cell) + LogOdds(occupancy);
+      cell = (std::isnan(cell) ? 0.f : cell) + log_odds;
     }
   }
 }

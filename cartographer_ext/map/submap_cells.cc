@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/map/submap_cells.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -22,6 +23,41 @@ double RoundedProbability(const float occupancy) {
              std::lround(255.f * (std::isnan(occupancy) ? kUnknownProbability
                                                         : occupancy))) /
          255.;
+}
+
+// How many moves follow that are as far from each other, and how many of them
+// make a cell (chessboard distance).
+struct EvenMoves {
+  size_t count = 0;
+  double per_cell = 0.;
+};
+
+// Of the number of moves in a distance.
+constexpr double kMoveRounding = 1e-3;
+// Steps that differ by less are even, cells.
+constexpr double kEvenStep = 1e-9;
+
+// For each move, those after it.
+std::vector<EvenMoves> EvenMovesFrom(
+    const std::vector<Eigen::Vector2d>& moves) {
+  std::vector<EvenMoves> result(moves.size());
+  double next = 0.;  // step from the move after this one
+  for (size_t i = moves.size(); i-- > 1;) {
+    const double step = (moves[i] - moves[i - 1]).cwiseAbs().maxCoeff();
+    EvenMoves& even = result[i - 1];
+    even.count = std::abs(step - next) < kEvenStep ? result[i].count + 1 : 1;
+    even.per_cell = 1. / std::max(step, kEvenStep);
+    next = step;
+  }
+  return result;
+}
+
+enum class CellKind : uint8_t { kNotSeen, kFree, kOccupied, kNeither };
+
+CellKind CellKindOf(const float occupancy) {
+  return occupancy >= kOccupiedFrom ? CellKind::kOccupied
+         : occupancy <= kFreeUpTo   ? CellKind::kFree
+                                    : CellKind::kNeither;
 }
 
 // The box of what is known and so many cells around it, within the grid.
@@ -52,23 +88,48 @@ class SubmapCells::BoxBytes {
   // Makes each cell its distance to the nearest that is 0, at most `far`, which
   // the others are.
   void MeasureDistances(const uint8_t far) {
-    const auto lower = [far](uint8_t* const cell, const ptrdiff_t row,
-                             const ptrdiff_t column) {
-      const int nearest = std::min(std::min(cell[column], cell[row]),
-                                   std::min(cell[row - 1], cell[row + 1]));
-      *cell = static_cast<uint8_t>(
-          std::min(std::min<int>(*cell, far), nearest + 1));
+    const ptrdiff_t width = box_.max_x - box_.min_x + 1;
+    // From the row before, which a machine does for many cells at once, then
+    // along the row.
+    const auto lower = [far, width](uint8_t* const row,
+                                    const uint8_t* const before) {
+      for (ptrdiff_t i = 0; i < width; ++i) {
+        const uint8_t nearest =
+            std::min(before[i], std::min(before[i - 1], before[i + 1]));
+        row[i] =
+            std::min(std::min(row[i], far), static_cast<uint8_t>(nearest + 1));
+      }
     };
     for (int iy = box_.min_y; iy <= box_.max_y; ++iy) {
-      uint8_t* cell = At(box_.min_x, iy);
-      for (int ix = box_.min_x; ix <= box_.max_x; ++ix) {
-        lower(cell++, -stride_, -1);
+      uint8_t* const row = At(box_.min_x, iy);
+      lower(row, row - stride_);
+      for (ptrdiff_t i = 0; i < width; ++i) {
+        row[i] = std::min(row[i], static_cast<uint8_t>(row[i - 1] + 1));
       }
     }
     for (int iy = box_.max_y; iy >= box_.min_y; --iy) {
-      uint8_t* cell = At(box_.max_x, iy);
-      for (int ix = box_.max_x; ix >= box_.min_x; --ix) {
-        lower(cell--, stride_, 1);
+      uint8_t* const row = At(box_.min_x, iy);
+      lower(row, row + stride_);
+      for (ptrdiff_t i = width; i-- > 0;) {
+        row[i] = std::min(row[i], static_cast<uint8_t>(row[i + 1] + 1));
+      }
+    }
+  }
+
+  // Makes each cell the least of those at most `radius` away.
+  void TakeLeastWithin(const int radius) {
+    std::vector<uint8_t> before;
+    for (const ptrdiff_t step : {ptrdiff_t{1}, stride_}) {
+      for (int k = 0; k < radius; ++k) {
+        before = bytes_;
+        for (int iy = box_.min_y; iy <= box_.max_y; ++iy) {
+          uint8_t* const row = At(box_.min_x, iy);
+          const uint8_t* const from = before.data() + (row - bytes_.data());
+          for (ptrdiff_t i = 0; i <= box_.max_x - box_.min_x; ++i) {
+            row[i] =
+                std::min(from[i], std::min(from[i - step], from[i + step]));
+          }
+        }
       }
     }
   }
@@ -88,20 +149,33 @@ SubmapCells::SubmapCells(SubmapGrid grid, const double margin)
   const int reach = std::max({1, radius_, InCells(kReach)});
   BoxBytes codes(AroundKnown(grid_, reach), kFar);
   const CellBox& box = codes.box();
-  BoxBytes to_not_free(box, kFar);
+  BoxBytes free(box, 1);  // and 0 where it is not, or unknown
+  std::vector<CellKind> kinds(SubmapGrid::kNumValues, CellKind::kNotSeen);
+  const TileLayout& tiles = grid_.tiles();
   for (int iy = box.min_y; iy <= box.max_y; ++iy) {
     for (int ix = box.min_x; ix <= box.max_x; ++ix) {
-      const float occupancy = grid_.Occupancy(ix, iy);
-      if (occupancy >= kOccupiedFrom) *codes.At(ix, iy) = 0;
-      // Also where it is unknown.
-      if (!(occupancy <= kFreeUpTo)) *to_not_free.At(ix, iy) = 0;
+      // Cells of a tile where nothing is known are passed over.
+      if (!grid_.HasTile(tiles.TileOf(ix, iy))) {
+        const int end = std::min(box.max_x, ix | (TileLayout::kSide - 1)) + 1;
+        std::fill_n(free.At(ix, iy), end - ix, uint8_t{0});
+        ix = end - 1;
+        continue;
+      }
+      const int value = grid_.Value(ix, iy);
+      CellKind& kind = kinds[value];
+      if (kind == CellKind::kNotSeen)
+        kind = CellKindOf(grid_.OccupancyOf(value));
+      if (kind == CellKind::kOccupied) *codes.At(ix, iy) = 0;
+      if (kind != CellKind::kFree) *free.At(ix, iy) = 0;
     }
   }
   codes.MeasureDistances(kFar);
-  to_not_free.MeasureDistances(kFar);
+  free.TakeLeastWithin(radius_);
   for (int iy = box.min_y; iy <= box.max_y; ++iy) {
-    for (int ix = box.min_x; ix <= box.max_x; ++ix) {
-      if (*to_not_free.At(ix, iy) > radius_) *codes.At(ix, iy) |= kFree;
+    uint8_t* const row = codes.At(box.min_x, iy);
+    const uint8_t* const is_free = free.At(box.min_x, iy);
+    for (int i = 0; i <= box.max_x - box.min_x; ++i) {
+      if (is_free[i] != 0) row[i] |= kFree;
     }
   }
   TakeTiles(&codes, reach);
@@ -146,19 +220,31 @@ std::vector<int> SubmapCells::CountNearOccupied(
     const std::vector<Eigen::Vector2d>& points,
     const std::vector<Eigen::Vector2d>& shifts, const double tolerance) const {
   CHECK_LE(tolerance, kReach);
-  std::vector<Eigen::Vector2d> cells;
-  for (const Eigen::Vector2d& point : points) cells.push_back(Cell(point));
   const Eigen::Vector2d origin = Cell(Eigen::Vector2d::Zero());
-  const double limit = tolerance / resolution();
-  std::vector<int> counts;
+  std::vector<Eigen::Vector2d> moves;
   for (const Eigen::Vector2d& shift : shifts) {
-    const Eigen::Vector2d moved = Cell(shift) - origin;
-    int count = 0;
-    for (const Eigen::Vector2d& cell : cells) {
-      const Eigen::Vector2d there = cell + moved;
-      count += IsInside(there) && (Code(there) & kFar) <= limit;
+    moves.push_back(Cell(shift) - origin);
+  }
+  const std::vector<EvenMoves> even = EvenMovesFrom(moves);
+  const double limit = tolerance / resolution();
+  std::vector<int> counts(shifts.size(), 0);
+  for (const Eigen::Vector2d& point : points) {
+    const Eigen::Vector2d cell = Cell(point);
+    for (size_t i = 0; i < moves.size(); ++i) {
+      const Eigen::Vector2d there = cell + moves[i];
+      if (!IsInside(there)) continue;
+      const int distance = Code(there) & kFar;
+      if (distance <= limit) {
+        ++counts[i];
+        continue;
+      }
+      // A move takes a cell's index at most one farther than its length.
+      const double skipped =
+          (distance - limit - 1.) * even[i].per_cell - kMoveRounding;
+      if (skipped >= 1.) {
+        i += std::min(even[i].count, static_cast<size_t>(skipped));
+      }
     }
-    counts.push_back(count);
   }
   return counts;
 }

@@ -34,6 +34,7 @@ constexpr int TileLayout::kBits;
 constexpr int TileLayout::kSide;
 constexpr int TileLayout::kArea;
 constexpr uint32_t SubmapGrid::kUnknown;
+constexpr int SubmapGrid::kNumValues;
 
 absl::StatusOr<SubmapGrid> SubmapGrid::Make(const Grid2D& grid) {
   const absl::Status status = io::CheckGridLayout(grid);
@@ -89,14 +90,12 @@ void SubmapGrid::TakeCells(const Grid2D& grid) {
   if (num_known_ > 0) known_box_ = known;
 }
 
-float SubmapGrid::Occupancy(const int ix, const int iy) const {
-  const int number =
-      values_[begins_[tiles_.TileOf(ix, iy)] + TileLayout::CellInTile(ix, iy)];
-  if (number == 0) return std::numeric_limits<float>::quiet_NaN();
-  const double value =
-      lower_ + (number - 1) * (upper_ - lower_) / (kMaxCellValue - 1);
-  if (is_tsdf_) return std::abs(value) <= 0.5 * resolution_ ? kSurface : kFree;
-  return static_cast<float>(1. - value);
+float SubmapGrid::OccupancyOf(const int value) const {
+  if (value == 0) return std::numeric_limits<float>::quiet_NaN();
+  const double cost =
+      lower_ + (value - 1) * (upper_ - lower_) / (kMaxCellValue - 1);
+  if (is_tsdf_) return std::abs(cost) <= 0.5 * resolution_ ? kSurface : kFree;
+  return static_cast<float>(1. - cost);
 }
 
 }  // namespace evaluation

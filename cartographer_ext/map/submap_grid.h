@@ -101,7 +101,16 @@ class SubmapGrid {
   // Probability of occupancy of a cell inside the grid, NaN where unknown. In
   // TSDF grids, a cell is occupied within half a cell of a surface and free
   // elsewhere.
-  float Occupancy(int ix, int iy) const;
+  float Occupancy(const int ix, const int iy) const {
+    return OccupancyOf(Value(ix, iy));
+  }
+  // The values that cells have, 0 if unknown, and what they stand for.
+  static constexpr int kNumValues = 32768;
+  int Value(const int ix, const int iy) const {
+    return values_[begins_[tiles_.TileOf(ix, iy)] +
+                   TileLayout::CellInTile(ix, iy)];
+  }
+  float OccupancyOf(int value) const;
 
  private:
   static constexpr uint32_t kUnknown = 0;  // the first tile is an unknown one

@@ -222,6 +222,49 @@ TEST(SubmapCellsTest, AnUnknownGridSaysNothing) {
   EXPECT_TRUE(cells.OccupiedCells().empty());
 }
 
+// What is passed over where no wall is near counts for nothing.
+TEST(SubmapCellsTest, CountsAreThoseOfEachShiftAlone) {
+  std::mt19937 random(11);
+  const auto uniform = [&](const double from, const double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  int64_t near = 0, far = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Grid2D grid = RandomGrid(&random);
+    const SubmapCells cells = CellsOf(grid, 0.1);
+    const Eigen::Vector2d middle =
+        0.5 * (cells.min_corner() + cells.max_corner());
+    std::vector<Eigen::Vector2d> points, shifts;
+    for (int i = 0; i < 20; ++i) {
+      points.push_back(middle +
+                       Eigen::Vector2d(uniform(-3., 3.), uniform(-3., 3.)));
+    }
+    // A turned lattice, then shifts at random and a repeated one.
+    const Pose2 turn(0., 0., uniform(-kPi, kPi));
+    for (int x = -8; x <= 8; ++x) {
+      for (int y = -8; y <= 8; ++y) {
+        shifts.push_back(turn * Eigen::Vector2d(0.1 * x, 0.1 * y));
+      }
+    }
+    for (int i = 0; i < 20; ++i) {
+      shifts.emplace_back(uniform(-2., 2.), uniform(-2., 2.));
+    }
+    shifts.push_back(shifts.back());
+    const double tolerance = uniform(0., 0.25);
+    const std::vector<int> counts =
+        cells.CountNearOccupied(points, shifts, tolerance);
+    ASSERT_EQ(counts.size(), shifts.size());
+    for (size_t i = 0; i < shifts.size(); ++i) {
+      EXPECT_EQ(counts[i],
+                cells.CountNearOccupied(points, {shifts[i]}, tolerance)[0]);
+      near += counts[i];
+      far += static_cast<int64_t>(points.size()) - counts[i];
+    }
+  }
+  EXPECT_GT(near, 5000);
+  EXPECT_GT(far, 5000);
+}
+
 }  // namespace
 }  // namespace evaluation
 }  // namespace cartographer_ext
