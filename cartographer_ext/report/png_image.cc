@@ -58,7 +58,7 @@ std::string EncodePng(const int width, const int height,
   std::string packed(size, '\0');
   CHECK_EQ(compress2(reinterpret_cast<Bytef*>(&packed[0]), &size,
                      reinterpret_cast<const Bytef*>(lines.data()),
-                     static_cast<uLong>(lines.size()), Z_BEST_COMPRESSION),
+                     static_cast<uLong>(lines.size()), Z_DEFAULT_COMPRESSION),
            Z_OK);
   packed.resize(size);
 

@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -35,12 +36,12 @@ class Inflater {
   // Appends up to a chunk to `data`; false when there is no more.
   bool AppendChunk(std::string* data) {
     if (result_ != Z_OK) return false;
-    const size_t old_size = data->size();
-    data->resize(old_size + kChunkSize);
-    stream_.next_out = reinterpret_cast<Bytef*>(&(*data)[old_size]);
+    // Most records are much shorter: enlarging `data` would clear it each time.
+    static thread_local std::vector<char> chunk(kChunkSize);
+    stream_.next_out = reinterpret_cast<Bytef*>(chunk.data());
     stream_.avail_out = kChunkSize;
     result_ = inflate(&stream_, Z_NO_FLUSH);
-    data->resize(old_size + kChunkSize - stream_.avail_out);
+    data->append(chunk.data(), kChunkSize - stream_.avail_out);
     return true;
   }
   bool complete() const { return result_ == Z_STREAM_END; }

@@ -36,7 +36,7 @@ void FastGzipPieces(
   CHECK_EQ(deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kGzipWindowBits, 8,
                         Z_DEFAULT_STRATEGY),
            Z_OK);
-  std::vector<char> buffer(size_t{1} << 16);
+  static thread_local std::vector<char> buffer(kChunkSize);
   const auto deflate_all = [&](const std::string& piece, const int flush) {
     // Sizes of zlib are 32 bits wide.
     CHECK_LT(piece.size(), size_t{1} << 31) << "message too large";
