@@ -211,11 +211,6 @@ void SubmapCells::TakeTiles(BoxBytes* const codes, const int reach) {
   codes_.shrink_to_fit();
 }
 
-bool SubmapCells::NearOccupied(const Eigen::Vector2d& point) const {
-  const Eigen::Vector2d cell = Cell(point);
-  return IsInside(cell) && (Code(cell) & kFar) <= radius_;
-}
-
 std::vector<int> SubmapCells::CountNearOccupied(
     const std::vector<Eigen::Vector2d>& points,
     const std::vector<Eigen::Vector2d>& shifts, const double tolerance) const {

@@ -33,6 +33,8 @@ struct CellView {
   // So many steps of one cell from the point, in any direction, do not end in
   // an occupied cell.
   int clear_steps = 0;
+  // Occupied, or within the margin of an occupied cell.
+  bool near_occupied = false;
 };
 
 class SubmapCells {
@@ -58,13 +60,22 @@ class SubmapCells {
   }
   // The same, and how far it is to the next wall.
   CellView View(const Eigen::Vector2d& point) const {
+    return ViewOfCell(Cell(point));
+  }
+  // Continuous indices of a point, which rise by one per cell.
+  Eigen::Vector2d Cell(const Eigen::Vector2d& point) const {
+    return Eigen::Vector2d(
+        (grid_.max_corner().y() - point.y()) / grid_.resolution(),
+        (grid_.max_corner().x() - point.x()) / grid_.resolution());
+  }
+  CellView ViewOfCell(const Eigen::Vector2d& cell) const {
     CellView view;
-    const Eigen::Vector2d cell = Cell(point);
     double distance = 0.;
     if (IsInside(cell)) {
       const uint8_t code = Code(cell);
       view.evidence = ToEvidence(code);
       distance = code & kFar;
+      view.near_occupied = distance <= radius_;
     } else if (cell.allFinite()) {
       distance = std::min((cell - Eigen::Vector2d(grid_.num_x(), grid_.num_y()))
                               .cwiseMax(-cell)
@@ -75,8 +86,9 @@ class SubmapCells {
     view.clear_steps = std::max(0, static_cast<int>(distance) - 2);
     return view;
   }
-  // Occupied, or within the margin of an occupied cell.
-  bool NearOccupied(const Eigen::Vector2d& point) const;
+  bool NearOccupied(const Eigen::Vector2d& point) const {
+    return View(point).near_occupied;
+  }
   // For each shift, how many of the points come to lie at most `tolerance`
   // (metres, in whole cells, each axis) from an occupied cell. `points` and
   // `shifts` in the local frame.
@@ -107,12 +119,6 @@ class SubmapCells {
   void TakeTiles(BoxBytes* codes, int reach);
   int InCells(double metres) const;
 
-  // Continuous indices of a point.
-  Eigen::Vector2d Cell(const Eigen::Vector2d& point) const {
-    return Eigen::Vector2d(
-        (grid_.max_corner().y() - point.y()) / grid_.resolution(),
-        (grid_.max_corner().x() - point.x()) / grid_.resolution());
-  }
   bool IsInside(const Eigen::Vector2d& cell) const {
     return cell.x() >= 0. && cell.y() >= 0. && cell.x() < grid_.num_x() &&
            cell.y() < grid_.num_y();

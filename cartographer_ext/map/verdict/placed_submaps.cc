@@ -36,13 +36,15 @@ Box ScanBox(const std::vector<Eigen::Vector2d>& scan, const Pose2& pose) {
 }  // namespace
 
 const Anchor& PlacedSubmap::NearestAnchor(const Eigen::Vector2d& place) const {
-  const auto distance = [&place](const Anchor& anchor) {
-    return (anchor.place - place).squaredNorm();
-  };
-  return *std::min_element(anchors.begin(), anchors.end(),
-                           [&distance](const Anchor& a, const Anchor& b) {
-                             return distance(a) < distance(b);
-                           });
+  const Anchor* nearest = nullptr;
+  double least = 0.;
+  for (const Anchor& anchor : anchors) {
+    const double distance = (anchor.place - place).squaredNorm();
+    if (nearest != nullptr && !(distance < least)) continue;
+    nearest = &anchor;
+    least = distance;
+  }
+  return *nearest;
 }
 
 bool PlacedSubmap::IsOfAnotherTime(const GraphId& node_id,

@@ -18,12 +18,15 @@ bool CrossesWall(const SubmapCells& cells, const Eigen::Vector2d& from,
   const double length = (to - from).norm() - margin;
   const double step = cells.resolution();
   if (!(length > step)) return false;
-  const Eigen::Vector2d direction = (to - from).normalized();
+  // In cells, of which each step is one long.
+  const Eigen::Vector2d start = cells.Cell(from);
+  const Eigen::Vector2d direction = (cells.Cell(to) - start).normalized();
+  const double num_steps = length / step;
   bool in_wall = false;
   for (int64_t i = 1;; ++i) {
-    const double travelled = static_cast<double>(i) * step;
-    if (!(travelled < length)) return false;
-    const CellView cell = cells.View(from + travelled * direction);
+    const double travelled = static_cast<double>(i);
+    if (!(travelled < num_steps)) return false;
+    const CellView cell = cells.ViewOfCell(start + travelled * direction);
     if (cell.evidence == CellEvidence::kOccupied) in_wall = true;
     // Free space behind it: not just a graze along the wall.
     if (in_wall && cell.evidence == CellEvidence::kFree) return true;
@@ -41,9 +44,12 @@ ScanConflict HoldAgainst(const std::vector<Eigen::Vector2d>& scan,
     if (CrossesWall(cells, origin, end, options.ray_margin)) {
       ++result.judged;
       ++result.crossings;
-    } else if (cells.NearOccupied(end)) {
+      continue;
+    }
+    const CellView view = cells.View(end);
+    if (view.near_occupied) {
       ++result.judged;
-    } else if (cells.At(end) == CellEvidence::kFree) {
+    } else if (view.evidence == CellEvidence::kFree) {
       ++result.judged;
       ++result.free_hits;
     }
