@@ -14,39 +14,12 @@ namespace {
 
 // In the subset, of a cluster about which next to nothing speaks.
 constexpr double kLeastClusterWeight = 0.1;
-// Of the sigmas of both predictions: a cycle that closes within it would hardly
-// do so by chance.
-constexpr double kFarOffShare = 0.1;
 // Of the best score of a cluster; rivals below are none.
 constexpr double kRivalScore = 0.5;
 // After a clique search that reached its limit, the next ones continue from its
 // subset, to which little has been added, and get this part of the limit.
 // Otherwise a building of equal places costs the whole limit for each revisit.
 constexpr int64_t kContinuedPart = 10;
-
-uncertainty::LoopEdge Reversed(const uncertainty::LoopEdge& edge) {
-  uncertainty::LoopEdge reversed;
-  reversed.a = edge.b;
-  reversed.b = edge.a;
-  reversed.pose = Invert(edge.pose);
-  return reversed;
-}
-
-// Seen from the first vertex of `u`. From that of the other loop it is the same
-// up to the first order only: errors of half a radian, which a path of a
-// kilometre explains, may look too large from one end of a long arm. Empty if
-// no path connects the loops.
-absl::optional<uncertainty::CycleResult> TestCycle(
-    const uncertainty::CycleConsistencyOptions& options,
-    const uncertainty::PathUncertainty& paths, const uncertainty::LoopEdge& u,
-    const uncertainty::LoopEdge& v) {
-  const absl::optional<uncertainty::UncertainPose> path_b =
-      paths.Between(u.b, v.b);
-  const absl::optional<uncertainty::UncertainPose> path_a =
-      paths.Between(v.a, u.a);
-  if (!path_a.has_value() || !path_b.has_value()) return absl::nullopt;
-  return uncertainty::TestCycle(options, u.pose, *path_b, v.pose, *path_a);
-}
 
 // Of the largest first, as many as `most` in all.
 double SumOfBest(std::vector<std::pair<double, double>> shares,
@@ -76,29 +49,6 @@ CompatibleSubset::CompatibleSubset(
     : options_(options), paths_(CHECK_NOTNULL(paths)) {
   CHECK_GT(options.max_clusters, 0);
   CHECK_GE(options.min_revisits, 1);
-}
-
-CompatibleSubset::Relation CompatibleSubset::Relate(
-    const LoopEvidence& u, const LoopEvidence& v) const {
-  uncertainty::LoopEdge other = v.edge;
-  if (!u.edge.a.InSequenceWith(other.a)) other = Reversed(other);
-  absl::optional<uncertainty::CycleResult> cycle =
-      TestCycle(options_.cycle, *paths_, u.edge, other);
-  if (!cycle.has_value()) return Relation::kUntestable;
-  if (!cycle->compatible) {
-    cycle = TestCycle(options_.cycle, *paths_, other, u.edge);
-    if (!cycle->compatible) return Relation::kContradicts;
-  }
-  const double sigma = uncertainty::WorstTranslationSigma(cycle->covariance);
-  if (sigma > InformativeSigma(std::min(u.linear_window, v.linear_window))) {
-    return Relation::kVague;
-  }
-  const double prior_sigma = std::min(u.prior_sigma, v.prior_sigma);
-  return u.is_within_trajectory() && v.is_within_trajectory() &&
-                 prior_sigma > options_.weak_prior_sigma &&
-                 sigma <= kFarOffShare * prior_sigma
-             ? Relation::kSupportsFarOff
-             : Relation::kSupports;
 }
 
 bool CompatibleSubset::SameRevisit(const LoopEvidence& u,
@@ -136,6 +86,7 @@ void CompatibleSubset::Add(const LoopEvidence& loop) {
   cluster.num_loops = 1;
   cluster.best_score = loop.score;
   cluster.least_sigma = loop.prior_sigma;
+  CompareWithPath(&cluster);
   clusters_.push_back(std::move(cluster));
   relations_.push_back(std::move(relations));
 }
@@ -169,15 +120,6 @@ void CompatibleSubset::SetShareWrong(const double share_wrong) {
   changed_ = true;
 }
 
-void CompatibleSubset::RelateAll() {
-  changed_ = true;
-  for (int i = 0; i < num_clusters(); ++i) {
-    for (int j = 0; j < i; ++j) {
-      relations_[i][j] = Relate(clusters_[j].leader, clusters_[i].leader);
-    }
-  }
-}
-
 double CompatibleSubset::Support(const int index, const bool of_subset,
                                  double* const log_odds) const {
   const uncertainty::LoopEdge& edge = clusters_[index].leader.edge;
@@ -187,8 +129,7 @@ double CompatibleSubset::Support(const int index, const bool of_subset,
   double sum = 0.;
   for (int j = 0; j < num_clusters(); ++j) {
     if (j == index || (of_subset && !clusters_[j].in_subset)) continue;
-    const Relation relation =
-        relations_[std::max(index, j)][std::min(index, j)];
+    const Relation relation = RelationOf(index, j);
     if (!IsSupport(relation)) continue;
     const double odds = OddsPerRevisit(relation);
     const double share = ShareOfSupport(clusters_[j], odds);
@@ -227,7 +168,7 @@ double CompatibleSubset::Support(const int index, const bool of_subset,
 double CompatibleSubset::Weight(const Cluster& cluster) const {
   const double by_score =
       options_.scores_are_probabilities
-          ? std::min(1., std::max(kLeastClusterWeight, cluster.best_score))
+          ? std::min(1., std::max(kLeastClusterWeight, Score(cluster)))
           : 1.;
   return cluster.accepted ? options_.accepted_weight * by_score : by_score;
 }
@@ -258,39 +199,51 @@ void CompatibleSubset::FindSubset() {
   for (const int v : clique.vertices) clusters_[v].in_subset = true;
 }
 
-void CompatibleSubset::Solve() {
-  FindSubset();
+void CompatibleSubset::FindSupport() {
   const int n = num_clusters();
-  const auto relation = [this](const int i, const int j) {
-    return relations_[std::max(i, j)][std::min(i, j)];
-  };
   num_overturned_ = 0;
-  std::vector<double> total_support(n, 0.);
   for (int i = 0; i < n; ++i) {
     Cluster& cluster = clusters_[i];
     cluster.support = Support(i, true, &cluster.log_odds);
-    total_support[i] = Support(i, false, nullptr);
+    cluster.total_support = Support(i, false, nullptr);
     cluster.contradictions = 0;
     for (int j = 0; j < n; ++j) {
       if (j == i || !clusters_[j].in_subset) continue;
-      cluster.contradictions += relation(i, j) == Relation::kContradicts;
+      cluster.contradictions += RelationOf(i, j) == Relation::kContradicts;
     }
     if (cluster.accepted && !cluster.in_subset) ++num_overturned_;
   }
+}
+
+void CompatibleSubset::FindRivals() {
+  const int n = num_clusters();
   for (int i = 0; i < n; ++i) {
-    clusters_[i].rival_support = -1.;
+    Cluster& cluster = clusters_[i];
+    cluster.rival_support = -1.;
     for (int j = 0; j < n; ++j) {
+      const Cluster& rival = clusters_[j];
       // A rival whose camp the subset outnumbers is beaten, and so is one that
       // scores far worse.
-      if (j != i && relation(i, j) == Relation::kContradicts &&
+      if (j != i && RelationOf(i, j) == Relation::kContradicts &&
           (!options_.scores_are_probabilities ||
-           clusters_[j].best_score >= kRivalScore * clusters_[i].best_score) &&
-          clusters_[j].contradictions <= total_support[j] + 1) {
-        clusters_[i].rival_support =
-            std::max(clusters_[i].rival_support, total_support[j]);
+           Score(rival) >= kRivalScore * Score(cluster)) &&
+          rival.contradictions <= rival.total_support + 1) {
+        cluster.rival_support =
+            std::max(cluster.rival_support,
+                     rival.total_support + RevisitsByPath(rival, cluster));
       }
     }
   }
+}
+
+void CompatibleSubset::Solve() {
+  FindSubset();
+  FindSupport();
+  if (LearnPaths()) {
+    FindSubset();
+    FindSupport();
+  }
+  FindRivals();
 }
 
 void CompatibleSubset::Emit(

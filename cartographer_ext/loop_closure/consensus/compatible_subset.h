@@ -24,6 +24,13 @@
 //              for it, less what its score says against it. Where both were
 //              predicted ten times worse than the cycle leaves open, r is one
 //              over the share of wrong places that look alike.
+//   paths      Where scores are probabilities, so does what the path says
+//              (path_agreement.h): a cluster with the odds d by its path, where a
+//              share w of the verified matches is wrong, counts by d / (d + w) at
+//              most, and the support of a rival changes by as many revisits as
+//              are worth the ratio of the odds of both. How much better than
+//              assumed long paths are is learnt from the clusters that others
+//              confirm, and holds for the relations, too.
 //   verdicts   A cluster is accepted when it is in the clique, has support from
 //              enough others, and no rival has as much. A rival is a cluster
 //              that contradicts it, unless more clusters of the subset
@@ -56,6 +63,7 @@
 #ifndef CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_COMPATIBLE_SUBSET_H_
 #define CARTOGRAPHER_EXT_LOOP_CLOSURE_CONSENSUS_COMPATIBLE_SUBSET_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -63,6 +71,7 @@
 
 #include "absl/types/optional.h"
 #include "cartographer_ext/loop_closure/consensus/max_clique.h"
+#include "cartographer_ext/loop_closure/consensus/path_agreement.h"
 #include "cartographer_ext/uncertainty/cycle_consistency.h"
 #include "cartographer_ext/uncertainty/loop_edge.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
@@ -92,6 +101,8 @@ struct LoopEvidence {
   bool was_accepted = false;  // and withdrawn since
   // Paths over other accepted loops contradict it; not to be accepted.
   bool is_refuted = false;
+  // Of matches evenly spread over the search, per m^2 rad; 0: unknown.
+  double search_density = 0.;
 
   bool is_within_trajectory() const {
     return edge.a.trajectory_id() == edge.b.trajectory_id();
@@ -257,6 +268,8 @@ class CompatibleSubset {
   bool exact() const { return exact_; }
   // Steps of all clique searches, MaxCliqueResult.
   int64_t num_clique_steps() const { return num_clique_steps_; }
+  // Factor on the variances of long paths, as learnt at the last `Decide`.
+  double path_factor() const { return path_factor_; }
 
  private:
   // That are kept in case they are withdrawn.
@@ -283,10 +296,13 @@ class CompatibleSubset {
     double best_score = 0.;
     double least_sigma = 0.;  // of its loops
     bool accepted = false;
+    PathAgreement path;     // of the leader
+    double path_odds = 1.;  // as odds, for the factor in force
     // Of the last `Solve`.
     bool in_subset = false;
     double support = 0.;
-    double log_odds = 0.;  // that the support adds
+    double total_support = 0.;  // by all clusters
+    double log_odds = 0.;       // that the support adds
     int contradictions = 0;
     double rival_support = -1.;  // of the strongest rival, -1 without one
   };
@@ -294,6 +310,9 @@ class CompatibleSubset {
   // A cycle supports only if the sigma of its translation is at most this, metres.
   double InformativeSigma(double linear_window) const;
   Relation Relate(const LoopEvidence& u, const LoopEvidence& v) const;
+  Relation RelationOf(const int i, const int j) const {
+    return relations_[std::max(i, j)][std::min(i, j)];
+  }
   bool SameRevisit(const LoopEvidence& u, const LoopEvidence& v) const;
   // Factor on the odds of a cluster that another one supports.
   double OddsPerRevisit(Relation relation) const;
@@ -302,9 +321,23 @@ class CompatibleSubset {
   // How many clusters support one of them, all or those of the subset.
   // `log_odds`, unless null, receives by how much they raise its odds.
   double Support(int index, bool of_subset, double* log_odds) const;
-  // Weight of a cluster in the clique, by the best score of its loops.
+  // The best score of the loops of a cluster, as far as its path admits.
+  double Score(const Cluster& cluster) const;
+  // Weight of a cluster in the clique, by this score.
   double Weight(const Cluster& cluster) const;
+  // How many revisits that agree are worth what the path says for `a` rather than
+  // for `b`.
+  double RevisitsByPath(const Cluster& a, const Cluster& b) const;
+  // Sets what the path says about the cluster, for the drift in force.
+  void CompareWithPath(Cluster* cluster) const;
+  // The share of its path that a cluster does not have in common with those that
+  // support it, of the paths of all of them: 1 / n where n have the same one.
+  double ShareOfPath(int index) const;
+  // Returns whether the factor, and all relations with it, has changed.
+  bool LearnPaths();
   void FindSubset();
+  void FindSupport();
+  void FindRivals();
   void Solve();
   bool MayAccept(const Cluster& cluster, SubsetReason* reason) const;
   // Whether a loop of an accepted cluster may be accepted itself.
@@ -348,6 +381,7 @@ class CompatibleSubset {
   std::vector<std::vector<Relation>> relations_;
   std::vector<SubsetDecision> overflow_;  // decided by MakeRoom
   double share_wrong_ = 0.;
+  double path_factor_ = 1.;
   double odds_per_far_revisit_ = kMostOddsPerFarRevisit;
   bool changed_ = false;
   bool exact_ = true;

@@ -116,6 +116,7 @@ LoopEvidence LoopConsensus::MakeEvidence(const LoopCandidate& candidate) const {
   }
   if (candidate.fusion.has_value()) {
     evidence.probability = candidate.fusion->probability;
+    evidence.search_density = candidate.fusion->search_density;
   }
   if (ScoresAreProbabilities(options_) && !candidate.is_inter_trajectory()) {
     const double most = MostProbable(candidate, share_wrong_);
