@@ -165,12 +165,19 @@ double CompatibleSubset::Support(const int index, const bool of_subset,
   return num_places;
 }
 
-double CompatibleSubset::Weight(const Cluster& cluster) const {
-  const double by_score =
-      options_.scores_are_probabilities
-          ? std::min(1., std::max(kLeastClusterWeight, Score(cluster)))
-          : 1.;
-  return cluster.accepted ? options_.accepted_weight * by_score : by_score;
+double CompatibleSubset::Weight(const int index) const {
+  const Cluster& cluster = clusters_[index];
+  double weight = 1.;
+  if (options_.scores_are_probabilities) {
+    weight = std::min(1., std::max(kLeastClusterWeight, cluster.best_score));
+  }
+  if (cluster.accepted) weight *= options_.accepted_weight;
+  if (!cluster.path.is_known()) return weight;
+  PathAgreement best = cluster.path;
+  best.chi_square = 0.;
+  const double against = OddsByPath(best, path_factor_) / cluster.path_odds;
+  return std::max(kLeastClusterWeight,
+                  weight - ShareOfPath(index) * AsRevisits(against));
 }
 
 void CompatibleSubset::FindSubset() {
@@ -178,7 +185,7 @@ void CompatibleSubset::FindSubset() {
   CompatibilityGraph graph(n);
   std::vector<double> weights(n);
   for (int i = 0; i < n; ++i) {
-    weights[i] = Weight(clusters_[i]);
+    weights[i] = Weight(i);
     for (int j = 0; j < i; ++j) {
       if (relations_[i][j] != Relation::kContradicts) graph.AddEdge(i, j);
     }
@@ -226,11 +233,12 @@ void CompatibleSubset::FindRivals() {
       // scores far worse.
       if (j != i && RelationOf(i, j) == Relation::kContradicts &&
           (!options_.scores_are_probabilities ||
-           Score(rival) >= kRivalScore * Score(cluster)) &&
+           rival.best_score >= kRivalScore * cluster.best_score) &&
           rival.contradictions <= rival.total_support + 1) {
         cluster.rival_support =
             std::max(cluster.rival_support,
-                     rival.total_support + RevisitsByPath(rival, cluster));
+                     rival.total_support +
+                         AsRevisits(rival.path_odds / cluster.path_odds));
       }
     }
   }

@@ -25,12 +25,13 @@
 //              predicted ten times worse than the cycle leaves open, r is one
 //              over the share of wrong places that look alike.
 //   paths      Where scores are probabilities, so does what the path says
-//              (path_agreement.h): a cluster with the odds d by its path, where a
-//              share w of the verified matches is wrong, counts by d / (d + w) at
-//              most, and the support of a rival changes by as many revisits as
-//              are worth the ratio of the odds of both. How much better than
-//              assumed long paths are is learnt from the clusters that others
-//              confirm, and holds for the relations, too.
+//              (path_agreement.h). Evidence is counted in revisits that agree: odds
+//              of the path are worth ln odds / ln r of them. A cluster loses in the
+//              clique what its path says against it, shared with those that have
+//              the same path and support it, as they have its error in common; and
+//              a rival has as many supporters more or less as the paths of both
+//              differ. How much better than assumed long paths are is learnt from
+//              the clusters that others confirm, and holds for the relations, too.
 //   verdicts   A cluster is accepted when it is in the clique, has support from
 //              enough others, and no rival has as much. A rival is a cluster
 //              that contradicts it, unless more clusters of the subset
@@ -321,13 +322,11 @@ class CompatibleSubset {
   // How many clusters support one of them, all or those of the subset.
   // `log_odds`, unless null, receives by how much they raise its odds.
   double Support(int index, bool of_subset, double* log_odds) const;
-  // The best score of the loops of a cluster, as far as its path admits.
-  double Score(const Cluster& cluster) const;
-  // Weight of a cluster in the clique, by this score.
-  double Weight(const Cluster& cluster) const;
-  // How many revisits that agree are worth what the path says for `a` rather than
-  // for `b`.
-  double RevisitsByPath(const Cluster& a, const Cluster& b) const;
+  // Weight of a cluster in the clique, by the best score of its loops and its
+  // path.
+  double Weight(int index) const;
+  // How many revisits that agree are worth these odds.
+  double AsRevisits(double odds) const;
   // Sets what the path says about the cluster, for the drift in force.
   void CompareWithPath(Cluster* cluster) const;
   // The share of its path that a cluster does not have in common with those that

@@ -108,17 +108,9 @@ void CompatibleSubset::CompareWithPath(Cluster* const cluster) const {
       cluster->path.is_known() ? OddsByPath(cluster->path, path_factor_) : 1.;
 }
 
-double CompatibleSubset::Score(const Cluster& cluster) const {
-  if (!cluster.path.is_known()) return cluster.best_score;
-  return std::min(cluster.best_score,
-                  cluster.path_odds / (cluster.path_odds + share_wrong_));
-}
-
-double CompatibleSubset::RevisitsByPath(const Cluster& a,
-                                        const Cluster& b) const {
+double CompatibleSubset::AsRevisits(const double odds) const {
   if (!options_.scores_are_probabilities) return 0.;
-  return std::log(a.path_odds / b.path_odds) /
-         std::log(OddsPerRevisit(Relation::kSupports));
+  return std::log(odds) / std::log(OddsPerRevisit(Relation::kSupports));
 }
 
 double CompatibleSubset::ShareOfPath(const int index) const {
