@@ -27,6 +27,10 @@ constexpr double kFirstLevel = -6.;
 constexpr double kLevelStep = 0.25;
 constexpr int kNumLevels = 33;
 
+// No loop is certain to be right: one that is impossible for a factor would rule
+// it out.
+constexpr double kMostProbable = 0.99;
+
 double LogOfLevel(const int level) { return kFirstLevel + kLevelStep * level; }
 
 }  // namespace
@@ -81,10 +85,10 @@ double LearnPathFactor(const std::vector<PathSample>& samples) {
     for (const PathSample& sample : samples) {
       const double density =
           DensityOfRight(sample.agreement, std::exp(LogOfLevel(level)));
-      mass[level] +=
-          sample.share *
-          std::log(sample.probability * density +
-                   (1. - sample.probability) * sample.agreement.wrong_density);
+      const double right = std::min(kMostProbable, sample.probability);
+      mass[level] += sample.share *
+                     std::log(right * density +
+                              (1. - right) * sample.agreement.wrong_density);
     }
   }
   const double most = *std::max_element(mass.begin(), mass.end());

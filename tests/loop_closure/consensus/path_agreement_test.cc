@@ -93,6 +93,11 @@ TEST(PathAgreementTest, LearnsHowGoodLongPathsAre) {
   EXPECT_GT(LearnPathFactor(std::vector<PathSample>(10, Sample(3.))), 0.8);
   EXPECT_DOUBLE_EQ(LearnPathFactor(std::vector<PathSample>(10, Sample(8.))),
                    1.);
+  // An impossible one does not hide it, nor a certain one rule it out.
+  std::vector<PathSample> impossible = good;
+  impossible.push_back(Sample(1e6));
+  impossible.back().probability = 1.;
+  EXPECT_LT(LearnPathFactor(impossible), 0.1);
   // Wrong loops, all of them one place off, do not hide it.
   std::vector<PathSample> mixed = good;
   mixed.insert(mixed.end(), 20, Sample(5.));
