@@ -175,7 +175,8 @@ double CompatibleSubset::Weight(const int index) const {
   if (!cluster.path.is_known()) return weight;
   PathAgreement best = cluster.path;
   best.chi_square = 0.;
-  const double against = OddsByPath(best, path_factor_) / cluster.path_odds;
+  const double factor = PathFactor(cluster.leader.edge.b.trajectory_id());
+  const double against = OddsByPath(best, factor) / cluster.path_odds;
   return std::max(kLeastClusterWeight,
                   weight - ShareOfPath(index) * AsRevisits(against));
 }

@@ -68,6 +68,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "absl/types/optional.h"
@@ -269,8 +270,9 @@ class CompatibleSubset {
   bool exact() const { return exact_; }
   // Steps of all clique searches, MaxCliqueResult.
   int64_t num_clique_steps() const { return num_clique_steps_; }
-  // Factor on the variances of long paths, as learnt at the last `Decide`.
-  double path_factor() const { return path_factor_; }
+  // Factor on the variances of long paths of a trajectory, as learnt at the last
+  // `Decide`.
+  double PathFactor(int trajectory_id) const;
 
  private:
   // That are kept in case they are withdrawn.
@@ -332,7 +334,7 @@ class CompatibleSubset {
   // The share of its path that a cluster does not have in common with those that
   // support it, of the paths of all of them: 1 / n where n have the same one.
   double ShareOfPath(int index) const;
-  // Returns whether the factor, and all relations with it, has changed.
+  // Returns whether a factor, and all relations with it, has changed.
   bool LearnPaths();
   void FindSubset();
   void FindSupport();
@@ -380,7 +382,7 @@ class CompatibleSubset {
   std::vector<std::vector<Relation>> relations_;
   std::vector<SubsetDecision> overflow_;  // decided by MakeRoom
   double share_wrong_ = 0.;
-  double path_factor_ = 1.;
+  std::map<int, double> path_factors_;  // by trajectory
   double odds_per_far_revisit_ = kMostOddsPerFarRevisit;
   bool changed_ = false;
   bool exact_ = true;

@@ -5,6 +5,7 @@
 // how well each of them agrees with its own path.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -68,7 +69,8 @@ CompatibleSubset::Relation CompatibleSubset::Relate(
   uncertainty::LoopEdge other = v.edge;
   if (!u.edge.a.InSequenceWith(other.a)) other = Reversed(other);
   const bool is_within = u.is_within_trajectory() && v.is_within_trajectory();
-  const double path_factor = is_within ? path_factor_ : 1.;
+  const double path_factor =
+      is_within ? PathFactor(u.edge.b.trajectory_id()) : 1.;
   absl::optional<uncertainty::CycleResult> cycle =
       TestCycle(options_.cycle, *paths_, path_factor, u.edge, other);
   if (!cycle.has_value()) return Relation::kUntestable;
@@ -105,7 +107,15 @@ void CompatibleSubset::CompareWithPath(Cluster* const cluster) const {
   cluster->path = AgreementWithPath(*paths_, cluster->leader.edge,
                                     cluster->leader.search_density);
   cluster->path_odds =
-      cluster->path.is_known() ? OddsByPath(cluster->path, path_factor_) : 1.;
+      cluster->path.is_known()
+          ? OddsByPath(cluster->path,
+                       PathFactor(cluster->leader.edge.b.trajectory_id()))
+          : 1.;
+}
+
+double CompatibleSubset::PathFactor(const int trajectory_id) const {
+  const auto found = path_factors_.find(trajectory_id);
+  return found == path_factors_.end() ? 1. : found->second;
 }
 
 double CompatibleSubset::AsRevisits(const double odds) const {
@@ -132,7 +142,7 @@ double CompatibleSubset::ShareOfPath(const int index) const {
 
 bool CompatibleSubset::LearnPaths() {
   if (!options_.scores_are_probabilities) return false;
-  std::vector<PathSample> samples;
+  std::map<int, std::vector<PathSample>> samples;  // by trajectory
   for (int i = 0; i < num_clusters(); ++i) {
     const Cluster& cluster = clusters_[i];
     if (!cluster.path.is_known() || cluster.path.length <= kLongPath ||
@@ -143,15 +153,20 @@ bool CompatibleSubset::LearnPaths() {
     sample.agreement = cluster.path;
     sample.probability = cluster.best_score * (1. - share_wrong_);
     sample.share = ShareOfPath(i);
-    samples.push_back(sample);
+    samples[cluster.leader.edge.b.trajectory_id()].push_back(sample);
   }
-  const double factor = LearnPathFactor(samples);
-  if (std::abs(std::log(factor / path_factor_)) < kNoticeableChange) {
-    return false;
+  bool any = false;
+  for (const auto& entry : samples) {
+    const double factor = LearnPathFactor(entry.second);
+    if (std::abs(std::log(factor / PathFactor(entry.first))) <
+        kNoticeableChange) {
+      continue;
+    }
+    path_factors_[entry.first] = factor;
+    any = true;
   }
-  path_factor_ = factor;
-  RelateAll();
-  return true;
+  if (any) RelateAll();
+  return any;
 }
 
 }  // namespace loop_closure

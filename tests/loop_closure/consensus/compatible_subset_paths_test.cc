@@ -77,16 +77,16 @@ TEST_F(CompatibleSubsetPathsTest, AgreementCountsForMoreThanASmallDrift) {
 
 TEST_F(CompatibleSubsetPathsTest, LongPathsTurnOutBetterThanAssumed) {
   CompatibleSubset subset(options_, &paths_);
-  EXPECT_DOUBLE_EQ(subset.path_factor(), 1.);
+  EXPECT_DOUBLE_EQ(subset.PathFactor(0), 1.);
   for (int i = 0; i < 6; ++i) subset.Add(Loop(1 + i, 5 + 11 * i, 0.));
   EXPECT_EQ(Accepted(subset.Decide()).size(), 6u);
-  EXPECT_LT(subset.path_factor(), 0.7);
+  EXPECT_LT(subset.PathFactor(0), 0.7);
   // As if there were no probabilities: the subset of the paper.
   options_.scores_are_probabilities = false;
   CompatibleSubset of_paper(options_, &paths_);
   for (int i = 0; i < 6; ++i) of_paper.Add(Loop(1 + i, 5 + 11 * i, 0.));
   EXPECT_EQ(Accepted(of_paper.Decide()).size(), 6u);
-  EXPECT_DOUBLE_EQ(of_paper.path_factor(), 1.);
+  EXPECT_DOUBLE_EQ(of_paper.PathFactor(0), 1.);
 }
 
 // 300 m forth and back. Two metres are nothing between loops that far apart, until
@@ -113,13 +113,32 @@ TEST(CompatibleSubsetLongPathsTest, ThenLoopsFarFromOthersContradictThem) {
     CompatibleSubset subset(options, &paths);
     for (int i = 0; i < 4; ++i) subset.Add(loop(1 + i, 10 + 20 * i, 0.));
     EXPECT_EQ(Accepted(subset.Decide()).size(), 4u);
-    EXPECT_EQ(subset.path_factor() < 1., learns);
+    EXPECT_EQ(subset.PathFactor(0) < 1., learns);
     subset.Add(loop(20, 250, 2.));
     EXPECT_THAT(Accepted(subset.Decide()), IsEmpty());
     const std::vector<SubsetDecision> undecided = subset.Undecided();
     ASSERT_EQ(undecided.size(), 1u);
     EXPECT_EQ(undecided[0].contradictions, learns ? 4 : 0);
   }
+}
+
+// Another robot may drift more.
+TEST_F(CompatibleSubsetPathsTest, EachTrajectoryHasItsOwnFactor) {
+  for (int i = 0; i <= 200; ++i) {
+    paths_.Add(uncertainty::NodeId{1, i}, ForthAndBack(i));
+  }
+  CompatibleSubset subset(options_, &paths_);
+  for (int i = 0; i < 6; ++i) {
+    subset.Add(Loop(1 + i, 5 + 11 * i, 0.));
+    LoopEvidence other = Loop(11 + i, 5 + 11 * i, 1.2);
+    other.edge.a = uncertainty::NodeId{1, 5 + 11 * i};
+    other.edge.b = uncertainty::NodeId{1, 195 - 11 * i};
+    subset.Add(other);
+  }
+  EXPECT_EQ(Accepted(subset.Decide()).size(), 12u);
+  EXPECT_LT(subset.PathFactor(0), 0.7);
+  EXPECT_DOUBLE_EQ(subset.PathFactor(1), 1.);
+  EXPECT_DOUBLE_EQ(subset.PathFactor(2), 1.);
 }
 
 }  // namespace
