@@ -15,7 +15,7 @@ namespace {
 
 using cartographer::mapping::proto::Grid2D;
 
-constexpr int kMaxCellValue = 32767;
+constexpr int kMaxCellValue = SubmapGrid::kNumValues - 1;
 // Marks a cell that was touched in the current update; never meant for files.
 constexpr int kUpdateMarker = 1 << 15;
 constexpr float kSurface = 0.9f;

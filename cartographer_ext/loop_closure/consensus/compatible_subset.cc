@@ -165,8 +165,7 @@ double CompatibleSubset::Support(const int index, const bool of_subset,
   return num_places;
 }
 
-double CompatibleSubset::Weight(const int index) const {
-  const Cluster& cluster = clusters_[index];
+double CompatibleSubset::Weight(const Cluster& cluster) const {
   double weight = 1.;
   if (options_.scores_are_probabilities) {
     weight = std::min(1., std::max(kLeastClusterWeight, cluster.best_score));
@@ -178,7 +177,7 @@ double CompatibleSubset::Weight(const int index) const {
   const double factor = PathFactor(cluster.leader.edge.b.trajectory_id());
   const double against = OddsByPath(best, factor) / cluster.path_odds;
   return std::max(kLeastClusterWeight,
-                  weight - ShareOfPath(index) * AsRevisits(against));
+                  weight - cluster.path_share * AsRevisits(against));
 }
 
 void CompatibleSubset::FindSubset() {
@@ -186,7 +185,8 @@ void CompatibleSubset::FindSubset() {
   CompatibilityGraph graph(n);
   std::vector<double> weights(n);
   for (int i = 0; i < n; ++i) {
-    weights[i] = Weight(i);
+    clusters_[i].path_share = ShareOfPath(i);
+    weights[i] = Weight(clusters_[i]);
     for (int j = 0; j < i; ++j) {
       if (relations_[i][j] != Relation::kContradicts) graph.AddEdge(i, j);
     }

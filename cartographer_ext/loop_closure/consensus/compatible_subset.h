@@ -303,6 +303,7 @@ class CompatibleSubset {
     double path_odds = 1.;  // as odds, for the factor in force
     // Of the last `Solve`.
     bool in_subset = false;
+    double path_share = 1.;  // ShareOfPath
     double support = 0.;
     double total_support = 0.;  // by all clusters
     double log_odds = 0.;       // that the support adds
@@ -326,7 +327,7 @@ class CompatibleSubset {
   double Support(int index, bool of_subset, double* log_odds) const;
   // Weight of a cluster in the clique, by the best score of its loops and its
   // path.
-  double Weight(int index) const;
+  double Weight(const Cluster& cluster) const;
   // How many revisits that agree are worth these odds.
   double AsRevisits(double odds) const;
   // Sets what the path says about the cluster, for the drift in force.

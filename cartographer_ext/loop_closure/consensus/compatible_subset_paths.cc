@@ -31,7 +31,7 @@ uncertainty::LoopEdge Reversed(const uncertainty::LoopEdge& edge) {
 }
 
 // With the factor of long paths.
-absl::optional<uncertainty::UncertainPose> PathBetween(
+absl::optional<uncertainty::UncertainPose> ScaledPath(
     const uncertainty::PathUncertainty& paths, const double path_factor,
     const uncertainty::VertexId& u, const uncertainty::VertexId& v) {
   absl::optional<uncertainty::UncertainPose> path = paths.Between(u, v);
@@ -50,9 +50,9 @@ absl::optional<uncertainty::CycleResult> TestCycle(
     const uncertainty::PathUncertainty& paths, const double path_factor,
     const uncertainty::LoopEdge& u, const uncertainty::LoopEdge& v) {
   const absl::optional<uncertainty::UncertainPose> path_b =
-      PathBetween(paths, path_factor, u.b, v.b);
+      ScaledPath(paths, path_factor, u.b, v.b);
   const absl::optional<uncertainty::UncertainPose> path_a =
-      PathBetween(paths, path_factor, v.a, u.a);
+      ScaledPath(paths, path_factor, v.a, u.a);
   if (!path_a.has_value() || !path_b.has_value()) return absl::nullopt;
   return uncertainty::TestCycle(options, u.pose, *path_b, v.pose, *path_a);
 }
@@ -124,6 +124,7 @@ double CompatibleSubset::AsRevisits(const double odds) const {
 }
 
 double CompatibleSubset::ShareOfPath(const int index) const {
+  if (!clusters_[index].path.is_known()) return 1.;
   const std::pair<int, int> nodes = NodesOf(clusters_[index].leader.edge);
   const int length = nodes.second - nodes.first;
   if (length == 0) return 1.;
@@ -143,8 +144,7 @@ double CompatibleSubset::ShareOfPath(const int index) const {
 bool CompatibleSubset::LearnPaths() {
   if (!options_.scores_are_probabilities) return false;
   std::map<int, std::vector<PathSample>> samples;  // by trajectory
-  for (int i = 0; i < num_clusters(); ++i) {
-    const Cluster& cluster = clusters_[i];
+  for (const Cluster& cluster : clusters_) {
     if (!cluster.path.is_known() || cluster.path.length <= kLongPath ||
         cluster.total_support < 1.) {
       continue;
@@ -152,7 +152,7 @@ bool CompatibleSubset::LearnPaths() {
     PathSample sample;
     sample.agreement = cluster.path;
     sample.probability = cluster.best_score * (1. - share_wrong_);
-    sample.share = ShareOfPath(i);
+    sample.share = cluster.path_share;
     samples[cluster.leader.edge.b.trajectory_id()].push_back(sample);
   }
   bool any = false;

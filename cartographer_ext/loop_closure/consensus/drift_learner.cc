@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cartographer_ext/common/squared.h"
+#include "cartographer_ext/loop_closure/consensus/path_agreement.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -28,9 +29,6 @@ using uncertainty::VertexId;
 // farther ones are no longer of one revisit. Metres along the path.
 constexpr double kNearestLoop = 3.;
 constexpr double kFarthestLoop = 15.;
-// Of a path that closes a cycle with a single loop. Beyond it the place may be
-// another one that looks alike.
-constexpr double kLongestPath = 30.;
 // Loops remembered of a trajectory, oldest forgotten first.
 constexpr size_t kMaxLoops = 500;
 // Over long paths, the oldest forgotten first.
@@ -103,7 +101,7 @@ absl::optional<DriftStretch> DriftLearner::Stretch(const VertexId& from,
 absl::optional<DriftCycle> DriftLearner::CycleWithPath(
     const LoopEdge& loop) const {
   const absl::optional<double> travelled = paths_->Travelled(loop.a, loop.b);
-  if (!travelled.has_value() || *travelled > kLongestPath) return absl::nullopt;
+  if (!travelled.has_value() || *travelled > kLongPath) return absl::nullopt;
   return CycleOfLoop(loop.pose, *Stretch(loop.b, loop.a));
 }
 
@@ -118,7 +116,7 @@ absl::optional<DriftCycle> DriftLearner::CycleWithLoop(
 void DriftLearner::AddLongLoop(const LoopEdge& loop,
                                Trajectory* const trajectory) {
   const absl::optional<double> travelled = paths_->Travelled(loop.a, loop.b);
-  if (!travelled.has_value() || *travelled <= kLongestPath) return;
+  if (!travelled.has_value() || *travelled <= kLongPath) return;
   for (const LongLoop& other : trajectory->long_loops) {
     const absl::optional<double> a = paths_->Travelled(other.edge.a, loop.a);
     const absl::optional<double> b = paths_->Travelled(other.edge.b, loop.b);

@@ -9,8 +9,8 @@
 #include "Eigen/LU"
 #include "absl/types/optional.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/loop_closure/consensus/innovation_veto.h"
 #include "cartographer_ext/loop_closure/verification/search_prior.h"
-#include "cartographer_ext/uncertainty/cycle_consistency.h"
 #include "cartographer_ext/uncertainty/drift_estimator.h"
 #include "cartographer_ext/uncertainty/uncertain_pose.h"
 
@@ -43,16 +43,13 @@ PathAgreement AgreementWithPath(const uncertainty::PathUncertainty& paths,
   const absl::optional<uncertainty::UncertainPose> path =
       paths.Between(loop.a, loop.b);
   if (!path.has_value()) return agreement;
-  // The cycle of the loop and the path.
-  const uncertainty::CycleResult cycle =
-      uncertainty::TestCycle(uncertainty::CycleConsistencyOptions(),
-                             Invert(*path), uncertainty::UncertainPose(),
-                             Invert(loop.pose), uncertainty::UncertainPose());
+  const InnovationResult innovation =
+      TestInnovation(InnovationOptions().chi_square_bound, *path, loop.pose);
   const double volume =
-      kWindow * std::sqrt(std::max(0., cycle.covariance.determinant()));
-  if (volume == 0. || !std::isfinite(cycle.chi_square)) return agreement;
+      kWindow * std::sqrt(std::max(0., innovation.covariance.determinant()));
+  if (volume == 0. || !std::isfinite(innovation.chi_square)) return agreement;
   agreement.length = *paths.Travelled(loop.a, loop.b);
-  agreement.chi_square = cycle.chi_square;
+  agreement.chi_square = innovation.chi_square;
   agreement.wrong_density = std::min(1., search_density * volume);
   return agreement;
 }

@@ -13,9 +13,9 @@
 //   q(f) = 6^3 / (2 pi f)^(3/2) exp(-chi^2 / (2 f)).
 //
 // The noise that is assumed for a path is an upper bound, so that f is below one
-// where local SLAM works. Loops over long paths tell it, the wrong ones included:
-// with p_i the probability by its scores that a loop is right, and w_i the density
-// of wrong ones,
+// where local SLAM works. It is estimated from all loops over long paths, the wrong
+// ones included: with p_i the probability by its scores that a loop is right, and
+// w_i the density of wrong ones,
 //
 //   p(loops | f) = prod_i (p_i q_i(f) + (1 - p_i) w_i)^b_i,
 //
@@ -38,7 +38,8 @@
 namespace cartographer_ext {
 namespace loop_closure {
 
-// Metres; shorter paths tell the drift itself.
+// Metres. A place at the end of a longer path may be another one that looks alike;
+// from shorter ones the drift is estimated (drift_learner.h).
 constexpr double kLongPath = 30.;
 
 // A loop and the path between its ends.
@@ -69,7 +70,7 @@ double DensityOfRight(const PathAgreement& agreement, double factor);
 // that are worse than they claim, over the density w.
 double OddsByPath(const PathAgreement& agreement, double factor);
 
-// A loop that tells f.
+// A loop over a long path, from which f is estimated.
 struct PathSample {
   PathAgreement agreement;  // known, over a long path
   double probability = 0.;  // p above

@@ -15,10 +15,11 @@ namespace cartographer_ext {
 namespace scan_matching {
 
 constexpr int kFewCells = 4;
-constexpr int kCellsAtOnce = 64;
-constexpr int kNumValues = 32768;
 
 namespace internal {
+
+constexpr int kCellsAtOnce = 64;
+constexpr int kNumValues = 32768;
 
 // The bundled host copies runs of cells at once; Cartographer does not.
 template <typename Grid>

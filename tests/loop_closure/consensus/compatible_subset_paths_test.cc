@@ -19,16 +19,8 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-class CompatibleSubsetPathsTest : public testing::Test {
+class CompatibleSubsetPathsTest : public ForthAndBackTest {
  protected:
-  CompatibleSubsetPathsTest() : paths_(uncertainty::RandomWalk(), 1000) {
-    options_.single_strong_enabled = false;
-    options_.scores_are_probabilities = true;
-    for (int i = 0; i <= 200; ++i) {
-      paths_.Add(uncertainty::NodeId{0, i}, ForthAndBack(i));
-    }
-  }
-
   LoopEvidence Loop(const int64_t id, const int i, const double offset) const {
     LoopEvidence loop = ForthAndBackLoop(id, i, offset, 0.9);
     loop.search_density = search_density_;
@@ -45,8 +37,6 @@ class CompatibleSubsetPathsTest : public testing::Test {
     for (int i = 0; i < 4; ++i) subset->Add(Loop(11 + i, 10 + 11 * i, 0.));
   }
 
-  CompatibleSubsetOptions options_;
-  uncertainty::PathUncertainty paths_;
   double search_density_ = 0.1;
 };
 
@@ -92,11 +82,12 @@ TEST_F(CompatibleSubsetPathsTest, LongPathsTurnOutBetterThanAssumed) {
 // 300 m forth and back. Two metres are nothing between loops that far apart, until
 // paths are known to be better.
 TEST(CompatibleSubsetLongPathsTest, ThenLoopsFarFromOthersContradictThem) {
-  const auto way = [](const int i) {
+  const auto pose_at = [](const int i) {
     return i <= 300 ? Pose2(i, 0., 0.) : Pose2(600. - i, 0., kPi);
   };
   uncertainty::PathUncertainty paths(uncertainty::RandomWalk(), 1000);
-  for (int i = 0; i <= 600; ++i) paths.Add(uncertainty::NodeId{0, i}, way(i));
+  for (int i = 0; i <= 600; ++i)
+    paths.Add(uncertainty::NodeId{0, i}, pose_at(i));
   CompatibleSubsetOptions options;
   options.single_strong_enabled = false;
   options.scores_are_probabilities = true;
@@ -106,7 +97,7 @@ TEST(CompatibleSubsetLongPathsTest, ThenLoopsFarFromOthersContradictThem) {
       loop.edge.a = uncertainty::NodeId{0, i};
       loop.edge.b = uncertainty::NodeId{0, 600 - i};
       loop.edge.pose.pose =
-          Pose2(offset, 0., 0.) * Between(way(i), way(600 - i));
+          Pose2(offset, 0., 0.) * Between(pose_at(i), pose_at(600 - i));
       loop.search_density = learns ? 0.1 : 0.;
       return loop;
     };

@@ -8,7 +8,6 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/loop_closure/consensus/forth_and_back.h"
-#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -25,16 +24,8 @@ std::vector<int64_t> Withdrawn(const std::vector<SubsetDecision>& decisions) {
   return ids;
 }
 
-class WithdrawalTest : public testing::Test {
+class WithdrawalTest : public ForthAndBackTest {
  protected:
-  WithdrawalTest() : paths_(uncertainty::RandomWalk(), 1000) {
-    options_.single_strong_enabled = false;
-    options_.scores_are_probabilities = true;
-    for (int i = 0; i <= 200; ++i) {
-      paths_.Add(uncertainty::NodeId{0, i}, ForthAndBack(i));
-    }
-  }
-
   // Two wrong loops that agree with each other.
   void AddWrong(CompatibleSubset* const subset) const {
     subset->Add(ForthAndBackLoop(1, 10, 3., 0.6));
@@ -46,9 +37,6 @@ class WithdrawalTest : public testing::Test {
       subset->Add(ForthAndBackLoop(3 + i, 20 + 20 * i, 0., 0.95));
     }
   }
-
-  CompatibleSubsetOptions options_;
-  uncertainty::PathUncertainty paths_;
 };
 
 TEST_F(WithdrawalTest, LoopsThatContradictTheSubsetAreWithdrawn) {

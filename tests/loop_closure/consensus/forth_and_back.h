@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "cartographer_ext/loop_closure/consensus/compatible_subset.h"
+#include "gtest/gtest.h"
+#include "tests/uncertainty/random_walk.h"
 
 namespace cartographer_ext {
 namespace loop_closure {
@@ -34,6 +36,22 @@ inline LoopEvidence ForthAndBackLoop(const int64_t id, const int i,
   loop.score = score;
   return loop;
 }
+
+// Options where scores are probabilities, without the rule for single strong loops,
+// and the path.
+class ForthAndBackTest : public testing::Test {
+ protected:
+  ForthAndBackTest() : paths_(uncertainty::RandomWalk(), 1000) {
+    options_.single_strong_enabled = false;
+    options_.scores_are_probabilities = true;
+    for (int i = 0; i <= 200; ++i) {
+      paths_.Add(uncertainty::NodeId{0, i}, ForthAndBack(i));
+    }
+  }
+
+  CompatibleSubsetOptions options_;
+  uncertainty::PathUncertainty paths_;
+};
 
 // Ids of the accepted loops.
 inline std::vector<int64_t> Accepted(
