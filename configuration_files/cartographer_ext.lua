@@ -281,4 +281,11 @@ CARTOGRAPHER_EXT.optimization_problem = {
   -- the map, those that it contradicts by more than half a metre are taken
   -- back.
   loops_in_force = true,
+  -- Optimisations of the whole graph during the run end when a step has moved
+  -- no node and no submap by more than this, which is enough for the search
+  -- of loops, and are done by our own solver. The final one is
+  -- Cartographer's, and so are those with landmarks, fixed frames, frozen
+  -- trajectories or odometry that counts beside local SLAM. 0: all are
+  -- Cartographer's. [>= 0 and <= 1, m and rad]
+  running_tolerance = 0,
 }

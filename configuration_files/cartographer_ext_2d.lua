@@ -14,8 +14,9 @@
 --                   odometry_translation_weight and odometry_rotation_weight
 --                   of POSE_GRAPH.optimization_problem 1e1 (local SLAM has
 --                   used the odometry already)
---   end of a run    POSE_GRAPH.optimization_problem.cartographer_ext on, without
---                   its selection of loops: loops are put in force
+--   optimisation    POSE_GRAPH.optimization_problem.cartographer_ext on, without
+--                   its selection of loops: during the run to a millimetre, and
+--                   at the end loops are put in force
 -- Everything else stays as in the robot's file. Our values can be changed in
 -- lines after the include.
 include "front_end_default.lua"
@@ -26,3 +27,5 @@ POSE_GRAPH.optimization_problem.cartographer_ext =
 -- The loops have been selected before.
 POSE_GRAPH.optimization_problem.cartographer_ext.robust_loops = false
 POSE_GRAPH.optimization_problem.cartographer_ext.odometry_check = false
+-- Searches for loops need no more.
+POSE_GRAPH.optimization_problem.cartographer_ext.running_tolerance = 0.001

@@ -17,6 +17,7 @@
 #include "cartographer_ext/optimization/dropin/loops_in_force.h"
 #include "cartographer_ext/optimization/dropin/recent_solve.h"
 #include "cartographer_ext/optimization/dropin/robust_optimization_problem_2d.h"
+#include "cartographer_ext/optimization/dropin/running_solve.h"
 #include "cartographer_ext/optimization/dropin/stock_solve.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
 #include "cartographer_ext/uncertainty/loop_ambiguity.h"
@@ -151,8 +152,15 @@ void RobustOptimizationProblem2D::SolveWhole(
   LOG_IF(INFO, !off.empty())
       << off.size() << " of " << loops << " loop constraints are switched off";
   const double selected = ThreadCpuSeconds();
-  StockSolve(kept, trajectories_state, landmark_nodes, context, nullptr,
-             &stock_);
+  const bool is_solved =
+      !is_final_ && extension_.running_tolerance() > 0. &&
+      landmark_nodes.empty() &&
+      SolveRunning(options_, kept, trajectories_state,
+                   extension_.running_tolerance(), context, &stock_);
+  if (!is_solved) {
+    StockSolve(kept, trajectories_state, landmark_nodes, context, nullptr,
+               &stock_);
+  }
   bool is_relaxed = false;
 #ifdef CARTOGRAPHER_EXT_SWAP_FULL_INFORMATION
   if (is_final_ && extension_.loops_in_force() && landmark_nodes.empty() &&

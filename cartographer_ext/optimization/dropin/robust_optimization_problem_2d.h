@@ -6,6 +6,9 @@
 // problem does everything else, so without wrong loops the result is that of
 // stock. Disabled loops are recorded in the current PoseGraphContext.
 //
+// With `running_tolerance`, the optimisations during a run end early
+// (running_solve.h); the final one is stock's.
+//
 // With `recent_nodes`, most optimisations during a long run are of its newest
 // part only (recent_solve.h). The whole graph is optimised when it has grown by
 // a tenth, when new loops move the newest part by much, and in the end; so the
