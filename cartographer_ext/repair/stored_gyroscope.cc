@@ -21,6 +21,11 @@ using cartographer::sensor::ImuData;
 constexpr double kLeastRotation = 0.01;
 // Readings are so far apart at most, seconds.
 constexpr double kReadingInterval = 0.05;
+// Unless a node follows after more than a minute: a robot that was switched off
+// for long, or a damaged stamp.
+constexpr int64_t kMaxReadings = 1200;
+// A file may hold any stamp; the difference of two of these can be represented.
+constexpr int64_t kMaxTicks = int64_t{1} << 61;
 
 // Rotation of the gravity alignment about the vertical axis, radians, by time.
 using Yaws = std::map<Time, double>;
@@ -44,12 +49,14 @@ std::vector<ImuData> Readings(const Yaws& yaws) {
     const double angle = NormalizeAngle(to->second - from->second);
     largest = std::max(largest, std::abs(angle));
     const Eigen::Vector3d rate = angle / seconds * Eigen::Vector3d::UnitZ();
-    const int steps = static_cast<int>(std::ceil(seconds / kReadingInterval));
-    for (int i = 0; i <= steps; ++i) {
+    const auto steps = static_cast<int64_t>(
+        std::min(std::ceil(seconds / kReadingInterval), 1. * kMaxReadings));
+    const Time::duration step = (to->first - from->first) / steps;
+    const Time::duration rest = (to->first - from->first) % steps;
+    for (int64_t i = 0; i <= steps; ++i) {
       // The rate changes at the node: a tick after it, the new one.
-      const Time time =
-          i == 0 ? from->first + Time::duration(1)
-                 : from->first + i * (to->first - from->first) / steps;
+      const Time time = i == 0 ? from->first + Time::duration(1)
+                               : from->first + i * step + i * rest / steps;
       if (!readings.empty() && time <= readings.back().time) continue;
       readings.push_back({time, io::kGravity * Eigen::Vector3d::UnitZ(), rate});
     }
@@ -70,9 +77,10 @@ std::map<int, std::vector<ImuData>> StoredGyroscopeReadings(
     const int trajectory_id = record.node_id().trajectory_id();
     if (!UsedImu(pbstream, trajectory_id)) continue;
     const auto& data = record.node_data();
-    yaws[trajectory_id][cartographer::common::FromUniversal(data.timestamp())] =
-        cartographer::transform::GetYaw(
-            cartographer::transform::ToEigen(data.gravity_alignment()));
+    const Time time = cartographer::common::FromUniversal(
+        std::clamp<int64_t>(data.timestamp(), -kMaxTicks, kMaxTicks));
+    yaws[trajectory_id][time] = cartographer::transform::GetYaw(
+        cartographer::transform::ToEigen(data.gravity_alignment()));
   }
   std::map<int, std::vector<ImuData>> result;
   for (const auto& entry : yaws) {

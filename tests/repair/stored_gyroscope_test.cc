@@ -3,6 +3,7 @@
 #include "cartographer_ext/repair/stored_gyroscope.h"
 
 #include <cmath>
+#include <limits>
 
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/pose2.h"
@@ -89,6 +90,28 @@ TEST_F(StoredGyroscopeTest, NodesInAnyOrder) {
   AddNode(1., 0.5);
   AddNode(0., 0.1);
   EXPECT_NEAR(Integral(StoredGyroscopeReadings(map_).at(0), 0., 1.), 0.4, 1e-6);
+}
+
+// A robot that was switched off between two nodes, and damaged stamps.
+TEST_F(StoredGyroscopeTest, NodesThatAreFarApartAreFewReadings) {
+  constexpr double kTenDays = 10. * 24. * 3600.;
+  AddNode(0., 0.1);
+  AddNode(1., 0.5);
+  AddNode(1. + kTenDays, 1.5);
+  const auto all = StoredGyroscopeReadings(map_);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_NEAR(Integral(all.at(0), 0., 1.), 0.4, 1e-6);
+  EXPECT_NEAR(Integral(all.at(0), 1., 1. + kTenDays), 1., 1e-6);
+  EXPECT_LE(all.at(0).size(), 2000u);
+  map_.nodes.front().mutable_node_data()->set_timestamp(
+      std::numeric_limits<int64_t>::min());
+  map_.nodes.back().mutable_node_data()->set_timestamp(
+      std::numeric_limits<int64_t>::max());
+  const auto damaged = StoredGyroscopeReadings(map_);
+  ASSERT_EQ(damaged.size(), 1u);
+  EXPECT_LE(damaged.at(0).size(), 3000u);
+  for (size_t i = 1; i < damaged.at(0).size(); ++i)
+    EXPECT_GE(damaged.at(0)[i].time, damaged.at(0)[i - 1].time);
 }
 
 // Without an IMU Cartographer integrates odometry or matches instead.
