@@ -53,13 +53,14 @@ class PointIndex {
   int64_t Cell(const double metres) const {
     return static_cast<int64_t>(std::floor(metres / radius_));
   }
-  static int64_t Key(const int64_t x, const int64_t y) {
-    return (x << 32) ^ (y & 0xffffffffLL);
+  // Unsigned: shifting a negative number is undefined.
+  static uint64_t Key(const int64_t x, const int64_t y) {
+    return static_cast<uint64_t>(x) << 32 ^ static_cast<uint32_t>(y);
   }
 
   const std::vector<Eigen::Vector2d>& points_;
   const double radius_;
-  std::unordered_map<int64_t, std::vector<int>> cells_;
+  std::unordered_map<uint64_t, std::vector<int>> cells_;
 };
 
 }  // namespace evaluation
