@@ -33,7 +33,7 @@ void DamageReport::AddDamage(const int64_t chunk, const uint64_t bytes,
 
 void DamageReport::AddMessage(const TimeNs time) {
   if (since_damage_ && any_message_) {
-    lost_time_ += std::max<TimeNs>(0, time - last_time_);
+    lost_seconds_ += std::max(0., ToSeconds(time - last_time_));
   }
   since_damage_ = false;
   any_message_ = true;
@@ -49,8 +49,8 @@ std::string DamageReport::Text(const uint64_t file_size) const {
                          first_chunk_, ")")
           : "",
       ", ", Megabytes(bytes_), " of ", Megabytes(file_size), " MB",
-      lost_time_ > 0
-          ? absl::StrFormat(" and %.1f s of messages", ToSeconds(lost_time_))
+      lost_seconds_ > 0.
+          ? absl::StrFormat(" and %.1f s of messages", lost_seconds_)
           : "",
       "; what is whole around ", one ? "it" : "them", " is read");
 }

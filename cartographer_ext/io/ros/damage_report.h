@@ -38,7 +38,7 @@ class DamageReport {
  private:
   int64_t num_damaged_ = 0;
   uint64_t bytes_ = 0;
-  TimeNs lost_time_ = 0;
+  double lost_seconds_ = 0.;
   int64_t first_chunk_ = 0;
   int64_t last_chunk_ = 0;
   absl::Status first_problem_;

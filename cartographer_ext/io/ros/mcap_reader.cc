@@ -337,13 +337,15 @@ class McapContainer : public RosContainer {
     const uint64_t logged = fields.Take<uint64_t>();
     fields.Take<uint64_t>();  // when it was published
     if (!fields.ok()) return Damaged("a damaged message");
-    damage_.AddMessage(static_cast<TimeNs>(logged));
+    const auto received =
+        static_cast<TimeNs>(std::min<uint64_t>(logged, kMaxRecorded));
+    damage_.AddMessage(received);
     const auto channel = channels_.find(id);
     if (channel == channels_.end())
       return Damaged(absl::StrCat("a message on the unknown channel ", id));
     if (wanted_.count(channel->second.topic) == 0) return false;
     message->topic = channel->second.topic;
-    message->received = static_cast<TimeNs>(logged);
+    message->received = received;
     message->data.assign(fields.rest().data(), fields.rest().size());
     return true;
   }

@@ -21,9 +21,14 @@
 namespace cartographer_ext {
 namespace io {
 
+// A container may hold any number for the time of recording: those farther from
+// 1970 (126 years) become this one or its negative, so that times can be added
+// and subtracted.
+constexpr TimeNs kMaxRecorded = 4000000000000000000;
+
 struct RosMessage {
   std::string topic;
-  TimeNs received = 0;  // when it was recorded
+  TimeNs received = 0;  // when it was recorded; at most kMaxRecorded from 0
   std::string data;     // serialized
 };
 

@@ -114,7 +114,9 @@ class Db3Container : public RosContainer {
         continue;
       }
       message->topic = name->second;
-      message->received = sqlite3_column_int64(messages_.get(), 1);
+      message->received =
+          std::clamp<TimeNs>(sqlite3_column_int64(messages_.get(), 1),
+                             -kMaxRecorded, kMaxRecorded);
       // Null for an empty message, and where the pages of a long one are
       // damaged.
       const void* data = sqlite3_column_blob(messages_.get(), 2);

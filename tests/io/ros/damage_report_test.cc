@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/ros/damage_report.h"
 
+#include "cartographer_ext/io/ros/ros_container.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -36,6 +37,19 @@ TEST(DamageReportTest, CountsParts) {
   EXPECT_EQ(report.Text(10000),
             "left out 2 damaged parts, 0.002 of 0.01 MB; what is whole around "
             "them is read");
+}
+
+TEST(DamageReportTest, AnyTimesAddUp) {
+  DamageReport report;
+  report.AddMessage(-kMaxRecorded);
+  for (int i = 0; i != 3; ++i) {
+    report.AddDamage(0, 1000, absl::DataLossError("gap"));
+    report.AddMessage(kMaxRecorded);
+    report.AddMessage(-kMaxRecorded);
+  }
+  EXPECT_EQ(report.Text(10000),
+            "left out 3 damaged parts, 0.003 of 0.01 MB and 24000000000.0 s of "
+            "messages; what is whole around them is read");
 }
 
 }  // namespace

@@ -3,10 +3,12 @@
 #include "cartographer_ext/io/ros/mcap_reader.h"
 
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include "cartographer_ext/io/expansion_budget.h"
 #include "cartographer_ext/io/ros/mcap_writer.h"
+#include "cartographer_ext/io/ros/ros2_messages.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/io/ros/ros2_sample.h"
@@ -108,6 +110,34 @@ TEST(McapReaderTest, BombsEnd) {
   SetMaxExpansion(10000);
   EXPECT_TRUE(OpenMcap(file.path()).ok());
   SetMaxExpansion(50);
+}
+
+// A scan without a stamp has the time at which it was recorded. That may be any
+// number, and a scan is later than its stamp by the time that it takes.
+TEST(McapReaderTest, TimesOfRecordingThatCannotBeAreLimited) {
+  test::TemporaryFile file(".mcap");
+  LaserScan scan = test::SampleScan(0, 8);
+  const TimeNs sweep = FromSeconds(SweepSeconds(scan));
+  ASSERT_GT(sweep, 0);
+  scan.time = sweep;
+  {
+    std::ofstream out(file.path(), std::ios::binary);
+    McapWriter writer(&out, "");
+    const uint16_t channel = writer.AddChannel("/scan", kRos2LaserScan, "");
+    for (const TimeNs time : {TimeNs{5}, std::numeric_limits<TimeNs>::max(),
+                              std::numeric_limits<TimeNs>::min()}) {
+      ASSERT_TRUE(
+          writer.Write(channel, time, EncodeLaserScan(scan, "base_link")).ok());
+    }
+    ASSERT_TRUE(writer.Finish().ok());
+  }
+  auto source = OpenSensorSource(file.path(), {});
+  ASSERT_TRUE(source.ok()) << source.status();
+  SensorEvent event;
+  for (const TimeNs time : {TimeNs{5}, kMaxRecorded, kMaxRecorded}) {
+    ASSERT_TRUE((*source)->Next(&event).value());
+    EXPECT_EQ(EventTime(event), time + sweep);
+  }
 }
 
 TEST(McapReaderTest, SurvivesDamagedFiles) {

@@ -102,6 +102,39 @@ TEST(Rosbag2ReaderTest, MessagesInAnotherEncodingAreNotTaken) {
               HasSubstr("no topic of type"));
 }
 
+// Messages without a stamp have the time at which they were recorded, which may
+// be any number.
+TEST(Rosbag2ReaderTest, TimesOfRecordingThatCannotBeAreLimited) {
+  const TimeNs sweep = FromSeconds(SweepSeconds(test::SampleScan(0, 8)));
+  ASSERT_GT(sweep, 0);
+  for (const bool late : {false, true}) {
+    test::TemporaryFile file(".db3");
+    test::WriteRos2Sample(file.path(), Rosbag2Storage::kDb3, "none");
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(file.path().c_str(), &database), SQLITE_OK);
+    const std::string time =
+        late ? "9223372036854775807" : "~9223372036854775807";
+    // The stamp follows the four bytes that say how messages are encoded.
+    const std::string change =
+        "UPDATE messages SET timestamp = " + time +
+        ", data = CAST(substr(data, 1, 4) || zeroblob(8) || substr(data, 13) "
+        "AS BLOB) WHERE topic_id IN (SELECT id FROM topics WHERE name <> "
+        "'/tf_static')";
+    EXPECT_EQ(sqlite3_exec(database, change.c_str(), nullptr, nullptr, nullptr),
+              SQLITE_OK);
+    sqlite3_close(database);
+    auto source = OpenSensorSource(file.path(), {});
+    ASSERT_TRUE(source.ok()) << source.status();
+    EXPECT_EQ((*source)->info().num_scans, 10);
+    const TimeNs limit = late ? kMaxRecorded : -kMaxRecorded;
+    SensorEvent event;
+    while ((*source)->Next(&event).value()) {
+      const bool is_scan = absl::holds_alternative<LaserScan>(event);
+      EXPECT_EQ(EventTime(event), limit + (is_scan ? sweep : 0));
+    }
+  }
+}
+
 TEST(Rosbag2ReaderTest, SurvivesDamagedDatabases) {
   test::TemporaryFile sample(".db3");
   test::WriteRos2Sample(sample.path(), Rosbag2Storage::kDb3, "none");
