@@ -23,13 +23,6 @@ constexpr double kMaxTimeSinceInsertion = 10.;
 // Changes of speed below this many standard deviations of the accelerometer's
 // bias count as zero, because they would add up to metres per second.
 constexpr double kAccelerationGate = 2.;
-// Matches of a laser with a narrow field of view are less accurate: a scan
-// overlaps with others over a shorter part of the path, so errors of the
-// submaps accumulate. Scaled by the square of the angle, a depth camera of 57
-// degrees leaves odometry a tenth of the variance, 3 mm and 3 %.
-constexpr double kWideFieldOfView = kPi;
-// Nothing is known of lasers that see less.
-constexpr double kNarrowFieldOfView = 1.;
 // A stationary robot's wheels move less between two scans, and its matches
 // scatter less: metres, radians.
 constexpr double kStationaryWheelMotion = 1e-3;
@@ -64,7 +57,7 @@ MotionPredictor::MotionPredictor(const MotionPredictorOptions& options)
       imu_(options.imu),
       reckoning_(options.odometry),
       monitor_(options.check),
-      noise_scale_(options.noise_scale),
+      odometry_noise_(options.odometry_noise),
       velocity_(options.constant_velocity, options.odometry.translation,
                 options.odometry.rotation) {}
 
@@ -173,6 +166,8 @@ void MotionPredictor::PredictByOdometry(
   prediction->source = PredictionSource::kOdometry;
   prediction->search_radius = prediction->search_angle = 0.;
   OdometryMotion turned = odometry;
+  prediction->heading_by_wheels =
+      !has_imu && !odometry.by_gyroscope && !odometry.is_late;
   if (has_imu && !odometry.by_gyroscope) {
     FuseRotation(without.theta, prediction->covariance(2, 2), &turned);
   }
@@ -234,6 +229,9 @@ bool MotionPredictor::IntegrateImu(const double from, const double to,
 bool MotionPredictor::IntegrateOdometry(const double from, const double to,
                                         OdometryMotion* const motion) const {
   if (!PredictByWheels(from, to, motion)) return false;
+  if (!motion->is_reckoned) {
+    motion->covariance = odometry_noise_.ScaleHeading(motion->covariance);
+  }
   motion->by_gyroscope =
       to - from > kReckonedInterval &&
       reckoning_.Predict(from, to, odometry_, imu_.gyroscope(), motion);
@@ -261,12 +259,10 @@ Eigen::Matrix3d MotionPredictor::WideCovariance(const double interval) const {
 
 Eigen::Matrix3d MotionPredictor::OdometryMotionCovariance(
     const OdometryMotion& odometry, const double interval) const {
-  // Of the motion between two scans.
-  const double scale =
-      odometry.is_reckoned ? 1. : std::sqrt(odometry_noise_scale());
-  const Eigen::Vector3d factors(scale, scale, 1.);
   Eigen::Matrix3d covariance =
-      factors.asDiagonal() * odometry.covariance * factors.asDiagonal();
+      odometry.is_reckoned
+          ? odometry.covariance
+          : odometry_noise_.ScaleTranslation(odometry.covariance);
   // The end of the interval is extrapolated.
   if (odometry.is_late) covariance += WideCovariance(interval);
   return covariance;
@@ -301,13 +297,11 @@ bool MotionPredictor::IsStationary(const double time,
 }
 
 void MotionPredictor::SetFieldOfView(const double angle) {
-  field_of_view_scale_ = std::min(
-      1., Squared(std::max(angle, kNarrowFieldOfView) / kWideFieldOfView));
+  odometry_noise_.SetFieldOfView(angle);
 }
 
 void MotionPredictor::AddInnovation(const MatchInnovation& innovation) {
-  noise_scale_.Add(innovation.squared, innovation.match_variance,
-                   innovation.prediction_variance / odometry_noise_scale());
+  odometry_noise_.Add(innovation);
 }
 
 OdometryState MotionPredictor::AddMatch(const double time,
@@ -321,6 +315,7 @@ OdometryState MotionPredictor::AddMatch(const double time,
   if (!(interval > 0.)) return monitor_.state();
 
   const OdometryState state = CheckOdometry(time, matched);
+  if (IsWrong(state)) odometry_noise_.AddFault();
   if (state == OdometryState::kOk && matched.rotation_observable) {
     odometry_.AddMatch(last_time_, time, matched.motion);
   }

@@ -40,9 +40,9 @@
 #include "cartographer_ext/front_end/dead_reckoning.h"
 #include "cartographer_ext/front_end/imu/gyroscope.h"
 #include "cartographer_ext/front_end/imu/imu_predictor.h"
+#include "cartographer_ext/front_end/odometry/learnt_odometry_noise.h"
 #include "cartographer_ext/front_end/odometry/odometry_calibration.h"
 #include "cartographer_ext/front_end/odometry/odometry_monitor.h"
-#include "cartographer_ext/front_end/odometry/odometry_noise_scale.h"
 #include "cartographer_ext/front_end/odometry/odometry_predictor.h"
 #include "cartographer_ext/front_end/velocity_filter.h"
 
@@ -55,7 +55,7 @@ struct MotionPredictorOptions {
   OdometryNoiseOptions odometry;
   TimeOffsetOptions time_offset;
   OdometryCalibrationOptions calibration;
-  OdometryNoiseScaleOptions noise_scale;
+  LearntOdometryNoiseOptions odometry_noise;
   ConstantVelocityOptions constant_velocity;
   OdometryCheckOptions check;
   ImuPredictorOptions imu;
@@ -77,6 +77,8 @@ struct MotionPrediction {
   // metres and radians, where no sensor measured the motion; otherwise zero.
   double search_radius = 0.;
   double search_angle = 0.;
+  // Of odometry alone, without a gyroscope.
+  bool heading_by_wheels = false;
   // By dead reckoning over metres without a scan; the covariance is the error of
   // that.
   bool bridges_gap = false;
@@ -116,14 +118,6 @@ struct MatchedMotion {
   std::function<double(const Pose2&)> evidence;
 };
 
-// A match against its prediction along one direction that the scan determines,
-// square metres.
-struct MatchInnovation {
-  double squared = 0.;
-  double match_variance = 0.;
-  double prediction_variance = 0.;
-};
-
 // Predicts the motion between scans, see above. Not thread-safe.
 class MotionPredictor {
  public:
@@ -152,10 +146,7 @@ class MotionPredictor {
   // known.
   void SetFieldOfView(double angle);
 
-  // Of the variance of odometry, see odometry_noise_scale.h.
-  double odometry_noise_scale() const {
-    return field_of_view_scale_ * noise_scale_.scale();
-  }
+  const LearntOdometryNoise& odometry_noise() const { return odometry_noise_; }
   double time_offset() const { return odometry_.time_offset(); }
   const OdometryCalibration& calibration() const {
     return odometry_.calibration();
@@ -210,8 +201,7 @@ class MotionPredictor {
   DeadReckoning reckoning_;
   OdometryMonitor monitor_;
   bool was_stale_ = false;  // odometry, at any time
-  OdometryNoiseScale noise_scale_;
-  double field_of_view_scale_ = 1.;
+  LearntOdometryNoise odometry_noise_;
   bool has_match_ = false;
   double last_time_ = 0.;
   VelocityFilter velocity_;

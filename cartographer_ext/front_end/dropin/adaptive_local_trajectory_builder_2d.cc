@@ -258,10 +258,9 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
                       evidence.Against(match.pose * error.Inverse()));
     };
   }
-  MatchInnovation innovation;
-  if (has_pose_ && InnovationOf(pose_, prediction, match,
-                                extension_.search.gate, &innovation)) {
-    predictor_.AddInnovation(innovation);
+  if (has_pose_) {
+    predictor_.AddInnovation(
+        InnovationOf(pose_, prediction, match, extension_.search.gate));
   }
   step_doubt_.Add(matched.motion, prediction.covariance, match.doubt,
                   prediction.bridges_gap);

@@ -159,6 +159,18 @@ LocalMatch AtPrediction(const LocalMatch& matched, const Prediction& predicted,
              : result;
 }
 
+// What a search has to beat: where the match contradicts the odometry, the pose of
+// that, or anything that agrees with it would be taken.
+LocalMatch BeforeSearch(const LocalMatch& matched,
+                        const MotionPrediction& prediction,
+                        const Prediction& predicted, const double gate,
+                        const PointCloud& cloud, const Grid2D& grid) {
+  return prediction.source == PredictionSource::kOdometry &&
+                 !prediction.is_uncertain && matched.report.mahalanobis > gate
+             ? AtPrediction(matched, predicted, gate, cloud, grid)
+             : matched;
+}
+
 struct SearchedMotion {
   Pose2 motion;
   bool is_hint;
@@ -333,7 +345,8 @@ LocalMatch LocalMatcher::MatchWithSearch(const Pose2& last_pose,
                                          const PointCloud& cloud,
                                          const Grid2D& grid,
                                          const LocalMatch& matched) {
-  LocalMatch best = matched;
+  LocalMatch best =
+      BeforeSearch(matched, prediction, predicted, options_.gate, cloud, grid);
   const size_t num_plain = matched.report.mahalanobis > options_.gate ? 1 : 0;
   std::vector<Rival> rivals(num_plain, Rival{matched, 0.});
   double to_beat = matched.score + options_.min_gain;

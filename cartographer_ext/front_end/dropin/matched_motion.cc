@@ -7,6 +7,7 @@
 #include "Eigen/Core"
 #include "Eigen/Dense"
 #include "cartographer_ext/common/planar_matrix.h"
+#include "cartographer_ext/common/squared.h"
 #include "cartographer_ext/scan_matching/match_report.h"
 
 namespace cartographer_ext {
@@ -82,27 +83,35 @@ MatchedMotion ToMatchedMotion(const Pose2& last_pose,
   return matched;
 }
 
-bool InnovationOf(const Pose2& last_pose, const MotionPrediction& prediction,
-                  const LocalMatch& match, const double gate,
-                  MatchInnovation* innovation) {
+MatchInnovation InnovationOf(const Pose2& last_pose,
+                             const MotionPrediction& prediction,
+                             const LocalMatch& match, const double gate) {
+  MatchInnovation innovation;
   const scan_matching::DegeneracyResult& degeneracy = match.report.degeneracy;
   if (prediction.source != PredictionSource::kOdometry ||
       prediction.is_uncertain ||
-      (match.searched && match.report.mahalanobis > gate) ||
-      degeneracy.translation_weights(1) < 1. ||
-      !(degeneracy.eigenvalues(1) > 0.)) {
-    return false;
+      (match.searched && match.report.mahalanobis > gate)) {
+    return innovation;
   }
   const scan_matching::Prediction predicted =
       ToPrediction(last_pose, prediction.motion, prediction.covariance);
-  const Eigen::Vector2d direction = degeneracy.eigenvectors.col(1);
-  const Eigen::Vector2d off(match.report.match.x - predicted.pose.x,
-                            match.report.match.y - predicted.pose.y);
-  innovation->squared = std::pow(direction.dot(off), 2);
-  innovation->match_variance = 1. / degeneracy.eigenvalues(1);
-  innovation->prediction_variance =
-      direction.dot(predicted.covariance.topLeftCorner<2, 2>() * direction);
-  return true;
+  const Pose2& by_scan = match.report.match;
+  if (degeneracy.translation_weights(1) >= 1. &&
+      degeneracy.eigenvalues(1) > 0.) {
+    const Eigen::Vector2d direction = degeneracy.eigenvectors.col(1);
+    innovation.along.squared = Squared(
+        direction.dot(by_scan.translation() - predicted.pose.translation()));
+    innovation.along.match_variance = 1. / degeneracy.eigenvalues(1);
+    innovation.along.prediction_variance =
+        direction.dot(predicted.covariance.topLeftCorner<2, 2>() * direction);
+  }
+  if (degeneracy.rotation_weight >= 1. && prediction.heading_by_wheels) {
+    innovation.heading.squared =
+        Squared(NormalizeAngle(by_scan.theta - predicted.pose.theta));
+    innovation.heading.match_variance = Squared(ScanHeadingSigma(match.report));
+    innovation.heading.prediction_variance = predicted.covariance(2, 2);
+  }
+  return innovation;
 }
 
 }  // namespace front_end

@@ -20,12 +20,13 @@ MatchedMotion ToMatchedMotion(const Pose2& last_pose,
                               const LocalMatch& match,
                               const cartographer::sensor::PointCloud& cloud);
 
-// Along the direction of translation that the scan determines best; false where
-// it determines none, or where a search (of which there is one for every scan
-// where they are far apart) was left with a match beyond `gate`.
-bool InnovationOf(const Pose2& last_pose, const MotionPrediction& prediction,
-                  const LocalMatch& match, double gate,
-                  MatchInnovation* innovation);
+// Along the direction of translation that the scan determines best, and of the
+// heading where only wheels predicted it; nothing where the scan determines none,
+// or where a search (of which there is one for every scan where they are far
+// apart) was left with a match beyond `gate`.
+MatchInnovation InnovationOf(const Pose2& last_pose,
+                             const MotionPrediction& prediction,
+                             const LocalMatch& match, double gate);
 
 }  // namespace front_end
 }  // namespace cartographer_ext

@@ -41,6 +41,12 @@ bool MissesMotion(const Pose2& odometry, const Pose2& motion) {
 
 }  // namespace
 
+bool IsWrong(const OdometryState state) {
+  return state == OdometryState::kJumping ||
+         state == OdometryState::kSlipping ||
+         state == OdometryState::kWrongSign;
+}
+
 OdometryMonitor::OdometryMonitor(const OdometryCheckOptions& options)
     : options_(options) {
   Restart(0.);
@@ -167,9 +173,8 @@ OdometryState OdometryMonitor::Add(const MotionComparison& given) {
   const OdometryState state = Judge(given);
   if (given.has_odometry) {
     metres_ += given.match.translation().norm();
-    num_faults_ += state == OdometryState::kJumping ||
-                   (was_trusted && (state == OdometryState::kSlipping ||
-                                    state == OdometryState::kWrongSign));
+    num_faults_ +=
+        state == OdometryState::kJumping || (was_trusted && IsWrong(state));
   }
   return state;
 }

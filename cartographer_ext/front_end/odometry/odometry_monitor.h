@@ -48,6 +48,9 @@ enum class OdometryState {
   kSlipSuspected,  // sudden speed where the translation is not observable
 };
 
+// Whether odometry moved otherwise than the robot.
+bool IsWrong(OdometryState state);
+
 // Log-likelihood by which a scan must contradict odometry before that is held
 // for wrong, which it is in about one scan of a thousand.
 constexpr double kLogOddsOfOdometryFault = 7.;

@@ -25,6 +25,14 @@
 namespace cartographer_ext {
 namespace front_end {
 
+// v^2, R and P of a match, square metres or square radians. One without P tells
+// nothing.
+struct SquaredInnovation {
+  double squared = 0.;
+  double match_variance = 0.;
+  double prediction_variance = 0.;
+};
+
 // Prior and memory of the estimate.
 struct OdometryNoiseScaleOptions {
   double prior_samples = 50.;
@@ -40,9 +48,11 @@ class OdometryNoiseScale {
   explicit OdometryNoiseScale(const OdometryNoiseScaleOptions& options)
       : options_(options) {}
 
-  // Square metres. `odometry_variance` is P, without the scale.
-  void Add(double squared_innovation, double match_variance,
-           double odometry_variance);
+  // The variance of the prediction is that without the scale.
+  void Add(const SquaredInnovation& innovation);
+
+  // Forgets all.
+  void Restart();
 
   // s, of the variance; 1 before the first innovation.
   double scale() const { return scale_; }

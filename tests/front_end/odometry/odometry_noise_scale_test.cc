@@ -27,7 +27,7 @@ double Estimate(const double truth, const double match_variance,
   for (int i = 0; i != count; ++i) {
     const double innovation =
         std::sqrt(truth * kAssumed + match_variance) * random.Normal();
-    scale.Add(innovation * innovation, match_variance, kAssumed);
+    scale.Add({innovation * innovation, match_variance, kAssumed});
   }
   return scale.scale();
 }
@@ -51,29 +51,29 @@ TEST(OdometryNoiseScaleTest, StaysInItsBounds) {
   OdometryNoiseScaleOptions options;
   options.least = 0.3;
   OdometryNoiseScale scale(options);
-  for (int i = 0; i != 2000; ++i) scale.Add(0., 1e-4, 1e-4);
+  for (int i = 0; i != 2000; ++i) scale.Add({0., 1e-4, 1e-4});
   EXPECT_EQ(scale.scale(), 0.3);
   OdometryNoiseScale usual((OdometryNoiseScaleOptions()));
-  for (int i = 0; i != 2000; ++i) usual.Add(0., 1e-4, 1e-4);
+  for (int i = 0; i != 2000; ++i) usual.Add({0., 1e-4, 1e-4});
   EXPECT_EQ(usual.scale(), 0.5);
 }
 
 TEST(OdometryNoiseScaleTest, IgnoresWhatIsNoInnovation) {
   OdometryNoiseScale scale((OdometryNoiseScaleOptions()));
   const double infinity = std::numeric_limits<double>::infinity();
-  scale.Add(infinity, 1., 1.);
-  scale.Add(1., infinity, 1.);
-  scale.Add(1., 1., 0.);
-  scale.Add(1., 1., infinity);
+  scale.Add({infinity, 1., 1.});
+  scale.Add({1., infinity, 1.});
+  scale.Add({1., 1., 0.});
+  scale.Add({1., 1., infinity});
   EXPECT_EQ(scale.scale(), 1.);
 }
 
 // What happened long ago counts less: wheels that begin to slip are found out.
 TEST(OdometryNoiseScaleTest, Forgets) {
   OdometryNoiseScale scale(AlmostUnbounded());
-  for (int i = 0; i != 3000; ++i) scale.Add(2e-5, 2e-5, 1e-4);
+  for (int i = 0; i != 3000; ++i) scale.Add({2e-5, 2e-5, 1e-4});
   EXPECT_LT(scale.scale(), 0.15);
-  for (int i = 0; i != 1000; ++i) scale.Add(1.2e-4, 2e-5, 1e-4);
+  for (int i = 0; i != 1000; ++i) scale.Add({1.2e-4, 2e-5, 1e-4});
   EXPECT_GT(scale.scale(), 0.8);
 }
 
