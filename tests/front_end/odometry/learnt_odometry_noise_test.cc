@@ -12,7 +12,7 @@ namespace {
 constexpr double kVariance = 1e-4;
 
 // Of lasers that see a radian or less.
-constexpr double kLeastHeadingScale = 0.297762;
+constexpr double kLeastHeadingScale = 0.297760;
 
 // As of a depth camera.
 LearntOdometryNoise WithNarrowView() {
