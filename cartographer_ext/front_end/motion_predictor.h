@@ -146,7 +146,6 @@ class MotionPredictor {
   // known.
   void SetFieldOfView(double angle);
 
-  const LearntOdometryNoise& odometry_noise() const { return odometry_noise_; }
   double time_offset() const { return odometry_.time_offset(); }
   const OdometryCalibration& calibration() const {
     return odometry_.calibration();

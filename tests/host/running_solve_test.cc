@@ -32,23 +32,33 @@ std::string WithTolerance(const double tolerance) {
 
 class RunningSolveTest : public SquareWalkTest {
  protected:
+  // Without and with tolerance.
+  struct Problems {
+    OptimizationProblem2D stock;
+    OptimizationProblem2D early;
+  };
+
+  Problems MakeProblems(const std::string& changes) const {
+    return {MakeProblem(WithTolerance(0.) + changes),
+            MakeProblem(WithTolerance(kTolerance) + changes)};
+  }
+
   // The difference between a problem with and one without tolerance after the
   // same optimisation.
   double Difference(
       const std::string& changes, const TrajectoryState state,
       const std::map<std::string, LandmarkNode>& landmarks = {},
       const std::vector<sensor::FixedFramePoseData>& fixed_frame = {}) const {
-    OptimizationProblem2D stock = MakeProblem(WithTolerance(0.) + changes),
-                          early =
-                              MakeProblem(WithTolerance(kTolerance) + changes);
-    for (OptimizationProblem2D* const problem : {&stock, &early}) {
+    Problems problems = MakeProblems(changes);
+    for (OptimizationProblem2D* const problem :
+         {&problems.stock, &problems.early}) {
       Fill(problem);
       for (const auto& data : fixed_frame) {
         problem->AddFixedFramePoseData(0, data);
       }
       problem->Solve(With(RightLoops()), {{0, state}}, landmarks);
     }
-    return LargestDifference(stock, early);
+    return LargestDifference(problems.stock, problems.early);
   }
 };
 
@@ -84,16 +94,14 @@ TEST_F(RunningSolveTest, CartographerHasNothingToAdd) {
 }
 
 TEST_F(RunningSolveTest, TheFinalOptimizationIsCartographers) {
-  OptimizationProblem2D stock =
-      MakeProblem(WithTolerance(0.) + kLittleOdometry);
-  OptimizationProblem2D early =
-      MakeProblem(WithTolerance(kTolerance) + kLittleOdometry);
-  for (OptimizationProblem2D* const problem : {&stock, &early}) {
+  Problems problems = MakeProblems(kLittleOdometry);
+  for (OptimizationProblem2D* const problem :
+       {&problems.stock, &problems.early}) {
     Fill(problem);
     problem->SetMaxNumIterations(200);
     problem->Solve(With(RightLoops()), active_, {});
   }
-  EXPECT_EQ(LargestDifference(stock, early), 0.);
+  EXPECT_EQ(LargestDifference(problems.stock, problems.early), 0.);
 }
 
 TEST_F(RunningSolveTest, WhatItDoesNotKnowIsLeftToCartographer) {
@@ -113,11 +121,9 @@ TEST_F(RunningSolveTest, WhatItDoesNotKnowIsLeftToCartographer) {
 }
 
 TEST_F(RunningSolveTest, NodesThatNothingHoldsAreLeftToCartographer) {
-  OptimizationProblem2D stock =
-      MakeProblem(WithTolerance(0.) + kLittleOdometry);
-  OptimizationProblem2D early =
-      MakeProblem(WithTolerance(kTolerance) + kLittleOdometry);
-  for (OptimizationProblem2D* const problem : {&stock, &early}) {
+  Problems problems = MakeProblems(kLittleOdometry);
+  for (OptimizationProblem2D* const problem :
+       {&problems.stock, &problems.early}) {
     Fill(problem);
     problem->AddTrajectoryNode(1, NodeSpec2D{test::At(0.),
                                              {},
@@ -125,25 +131,23 @@ TEST_F(RunningSolveTest, NodesThatNothingHoldsAreLeftToCartographer) {
                                              Eigen::Quaterniond::Identity()});
     problem->Solve(With(RightLoops()), active_, {});
   }
-  EXPECT_EQ(LargestDifference(stock, early), 0.);
+  EXPECT_EQ(LargestDifference(problems.stock, problems.early), 0.);
 }
 
 TEST_F(RunningSolveTest, TrimmedNodesLeaveAGap) {
-  OptimizationProblem2D stock =
-      MakeProblem(WithTolerance(0.) + kLittleOdometry);
-  OptimizationProblem2D early =
-      MakeProblem(WithTolerance(kTolerance) + kLittleOdometry);
+  Problems problems = MakeProblems(kLittleOdometry);
   std::vector<Constraint> constraints;
   for (const Constraint& constraint : With(RightLoops())) {
     if (constraint.node_id.node_index != 33) constraints.push_back(constraint);
   }
-  for (OptimizationProblem2D* const problem : {&stock, &early}) {
+  for (OptimizationProblem2D* const problem :
+       {&problems.stock, &problems.early}) {
     Fill(problem);
     problem->TrimTrajectoryNode(NodeId{0, 33});
     problem->Solve(constraints, active_, {});
   }
-  EXPECT_LT(LargestDifference(stock, early), 2. * kTolerance);
-  EXPECT_LT(LargestError(early), 0.5);
+  EXPECT_LT(LargestDifference(problems.stock, problems.early), 2. * kTolerance);
+  EXPECT_LT(LargestError(problems.early), 0.5);
 }
 
 }  // namespace

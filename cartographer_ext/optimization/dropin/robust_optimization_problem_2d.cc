@@ -154,7 +154,7 @@ void RobustOptimizationProblem2D::SolveWhole(
   const double selected = ThreadCpuSeconds();
   const bool is_solved =
       !is_final_ && extension_.running_tolerance() > 0. &&
-      landmark_nodes.empty() &&
+      landmark_nodes.empty() && !HasFixedFrames() &&
       SolveRunning(options_, kept, trajectories_state,
                    extension_.running_tolerance(), context, &stock_);
   if (!is_solved) {

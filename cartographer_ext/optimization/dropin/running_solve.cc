@@ -39,15 +39,6 @@ bool IsOdometryNegligible(const ProblemOptions& options) {
              kNegligibleOdometry * options.local_slam_pose_rotation_weight();
 }
 
-bool HasFixedFrames(const Problem& problem) {
-  for (const int trajectory_id : problem.node_data().trajectory_ids()) {
-    if (problem.fixed_frame_pose_data().HasTrajectory(trajectory_id)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 Eigen::Matrix3d SqrtOfWeights(const double translation_weight,
                               const double rotation_weight) {
   return Eigen::Vector3d(translation_weight, translation_weight,
@@ -165,7 +156,7 @@ bool SolveRunning(const ProblemOptions& options,
                   const std::map<int, TrajectoryState>& trajectories_state,
                   const double tolerance, PoseGraphContext* const context,
                   Problem* const problem) {
-  if (!IsOdometryNegligible(options) || HasFixedFrames(*problem)) return false;
+  if (!IsOdometryNegligible(options)) return false;
   for (const auto& state : trajectories_state) {
     if (state.second == TrajectoryState::FROZEN) return false;
   }

@@ -27,9 +27,9 @@ namespace optimization {
 
 // Moves the poses of `problem`; `tolerance` (metres and radians) bounds the last
 // step. Returns false and changes nothing where Cartographer has to solve it:
-// with frozen trajectories, with fixed frames, with odometry that counts beside
-// local SLAM, or if the graph does not determine all poses. The caller sees to
-// it that there are no landmarks. `context` may be null.
+// with frozen trajectories, with odometry that counts beside local SLAM, or if
+// the graph does not determine all poses. The caller sees to it that there are no
+// landmarks and no fixed frames. `context` may be null.
 bool SolveRunning(
     const cartographer::mapping::optimization::proto::
         OptimizationProblemOptions& options,
