@@ -419,7 +419,8 @@ void MotionPredictor::UpdateVelocity(const double time,
     velocity_.AddMatch(interval, motion, matched.covariance);
     velocity_.Accelerate(speed_change);
   } else if (interval >= kMinVelocityInterval) {
-    velocity_.Restart(interval, matched.motion);
+    velocity_.Restart(
+        interval, matched.ends_contest ? matched.rival_motion : matched.motion);
   }
 }
 

@@ -114,6 +114,8 @@ struct MatchedMotion {
   bool overrules_odometry = false;
   // It makes up for errors of several motions before.
   bool ends_contest = false;
+  // Then that of the last scan alone: what the velocity is.
+  Pose2 rival_motion;
   // See MotionComparison; used while it is added only.
   std::function<double(const Pose2&)> evidence;
 };

@@ -26,6 +26,8 @@ struct LocalMatch {
   bool overrules_odometry = false;
   // It makes up for several scans at contested poses.
   bool ends_contest = false;
+  // Then the motion of the rival since the last scan; (last robot <- robot).
+  Pose2 rival_motion;
   // The pose is that of the odometry, or agrees with it, but fits badly, and
   // another one that the odometry contradicts fits better: the scan should not
   // go into the map.

@@ -80,6 +80,7 @@ MatchedMotion ToMatchedMotion(const Pose2& last_pose,
       !match.relocated;
   matched.overrules_odometry = match.overrules_odometry;
   matched.ends_contest = match.ends_contest;
+  matched.rival_motion = match.rival_motion;
   return matched;
 }
 

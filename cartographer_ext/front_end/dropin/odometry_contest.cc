@@ -119,6 +119,7 @@ LocalMatch OdometryContest::Decide(
       Overrule(SeeTheSame(prediction.motion));
       result = best->match;
       result.ends_contest = was_open;
+      if (was_open) result.rival_motion = Between(rival_, result.pose);
       return result;
     }
     evidence_ = std::max(0., evidence);

@@ -39,7 +39,8 @@ double FaultCost(const Pose2& error, const Pose2& motion) {
       (kLeastFaultTranslation + motion.translation().norm());
   const double rotation = NormalizeAngle(error.theta) /
                           (kLeastFaultRotation + std::abs(motion.theta));
-  return std::log1p(translation * translation + rotation * rotation);
+  // (1 + q)^-((3 + 1) / 2)
+  return 2. * std::log1p(translation * translation + rotation * rotation);
 }
 
 Pose2 Beyond(const Pose2& a, const Pose2& b) {

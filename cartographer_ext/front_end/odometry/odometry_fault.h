@@ -24,8 +24,8 @@ bool SeeTheSame(const Pose2& motion);
 bool IsOnePlace(const Pose2& found, const Pose2& expected);
 
 // Minus the logarithm of the prior density of a fault of odometry over `motion`,
-// relative to that of no error: Cauchy, of the size of the motion, which the
-// fault has where wheels slip, and 5 cm and 0.05 rad.
+// relative to that of no error: Cauchy in three dimensions, of the size of the
+// motion, which the fault has where wheels slip, and 5 cm and 0.05 rad.
 double FaultCost(const Pose2& error, const Pose2& motion);
 
 // The pose on the other side of `b` from `a`, as far from it, but at least as far

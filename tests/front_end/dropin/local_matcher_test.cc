@@ -336,10 +336,15 @@ TEST_F(LocalMatcherTest, ARivalIsFollowedFromScanToScan) {
   int contested = 0;
   bool is_over = false;
   for (int i = 0; i < 8 && !is_over; ++i) {
-    const LocalMatch found = match(last, Pose2(0.03, 0., DegToRad(4.)), 25.);
+    const LocalMatch found = match(last, Pose2(0.03, 0., DegToRad(4.)), 35.);
     contested += found.contested ? 1 : 0;
     is_over = found.ends_contest;
     EXPECT_EQ(found.overrules_odometry, is_over);
+    if (is_over) {  // the robot stands
+      EXPECT_GT(Between(last, found.pose).translation().norm(), 0.03);
+      EXPECT_LT(found.rival_motion.translation().norm(), 0.03);
+      EXPECT_NEAR(found.rival_motion.theta, 0., 0.01);
+    }
     last = found.pose;
   }
   EXPECT_GT(contested, 0);
