@@ -13,12 +13,23 @@
 
 namespace cartographer_ext {
 
+constexpr int64_t kHostTicksPerSecond = 10000000;
+constexpr int64_t kUnixEpochSeconds = INT64_C(719162) * 86400;
+constexpr int64_t kUnixEpochTicks = kUnixEpochSeconds * kHostTicksPerSecond;
+// In the year 2116, 146 years after 1970: the difference of any two times that
+// are so far from 1970 is still a number of nanoseconds of 64 bits.
+constexpr int64_t kMaxHostTicks = kUnixEpochTicks + (INT64_C(1) << 62) / 100;
+
+// Whether a file may hold these. A clock may begin with the count of the host.
+constexpr bool AreHostTicks(const int64_t ticks) {
+  return ticks >= 0 && ticks <= kMaxHostTicks;
+}
+
 // Unix seconds with seven decimals, exact, of ticks >= 0.
 inline std::string UnixSecondsOfTicks(const int64_t ticks) {
-  constexpr int64_t kTicksPerSecond = 10000000;
-  constexpr int64_t kUnixEpochSeconds = INT64_C(719162) * 86400;
-  return absl::StrFormat("%d.%07d", ticks / kTicksPerSecond - kUnixEpochSeconds,
-                         ticks % kTicksPerSecond);
+  return absl::StrFormat("%d.%07d",
+                         ticks / kHostTicksPerSecond - kUnixEpochSeconds,
+                         ticks % kHostTicksPerSecond);
 }
 
 }  // namespace cartographer_ext

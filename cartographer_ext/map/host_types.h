@@ -13,6 +13,7 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
+#include "cartographer_ext/common/host_ticks.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/io/sensor_source.h"
 
@@ -24,21 +25,14 @@ namespace evaluation {
 inline cartographer::common::Time ToHostTime(const io::TimeNs time) {
   // Rounds to the nearest tick, also below zero.
   const io::TimeNs ticks = (time + (time >= 0 ? 50 : -50)) / 100;
-  return cartographer::common::FromUniversal(
-      ticks +
-      cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000LL);
+  return cartographer::common::FromUniversal(ticks + kUnixEpochTicks);
 }
 
-// A file may hold any number: those more than 146 years from 1970 become the
-// nearest that is not, so that the difference of two can be represented.
+// Readers of files let no other ticks pass than AreHostTicks. Nanoseconds do
+// not reach back to the year 1: what is before 1824 becomes 1824.
 inline io::TimeNs FromHostTicks(const int64_t universal_ticks) {
-  constexpr int64_t kMaxTicks = (int64_t{1} << 62) / 100;
-  constexpr int64_t kUnixEpoch =
-      cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000LL;
-  return (std::clamp(universal_ticks, kUnixEpoch - kMaxTicks,
-                     kUnixEpoch + kMaxTicks) -
-          kUnixEpoch) *
-         100;
+  constexpr int64_t kEarliest = 2 * kUnixEpochTicks - kMaxHostTicks;
+  return (std::max(universal_ticks, kEarliest) - kUnixEpochTicks) * 100;
 }
 
 inline io::TimeNs FromHostTime(const cartographer::common::Time time) {

@@ -24,8 +24,6 @@ constexpr double kReadingInterval = 0.05;
 // Unless a node follows after more than a minute: a robot that was switched off
 // for long, or a damaged stamp.
 constexpr int64_t kMaxReadings = 1200;
-// A file may hold any stamp; the difference of two of these can be represented.
-constexpr int64_t kMaxTicks = int64_t{1} << 61;
 
 // Rotation of the gravity alignment about the vertical axis, radians, by time.
 using Yaws = std::map<Time, double>;
@@ -77,8 +75,7 @@ std::map<int, std::vector<ImuData>> StoredGyroscopeReadings(
     const int trajectory_id = record.node_id().trajectory_id();
     if (!UsedImu(pbstream, trajectory_id)) continue;
     const auto& data = record.node_data();
-    const Time time = cartographer::common::FromUniversal(
-        std::clamp<int64_t>(data.timestamp(), -kMaxTicks, kMaxTicks));
+    const Time time = cartographer::common::FromUniversal(data.timestamp());
     yaws[trajectory_id][time] = cartographer::transform::GetYaw(
         cartographer::transform::ToEigen(data.gravity_alignment()));
   }

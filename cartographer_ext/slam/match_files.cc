@@ -5,7 +5,9 @@
 #include <iterator>
 #include <map>
 
+#include "absl/strings/str_cat.h"
 #include "cartographer/common/time.h"
+#include "cartographer_ext/common/host_ticks.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/slam/side_files.h"
@@ -59,7 +61,16 @@ absl::Status WriteMatchesBeside(const std::string& pbstream_filename,
 
 absl::StatusOr<std::vector<MatchRecord>> ReadMatches(
     const std::string& records_filename) {
-  return ReadSideFile(records_filename, front_end::ParseRecords);
+  auto records = ReadSideFile(records_filename, front_end::ParseRecords);
+  if (!records.ok()) return records.status();
+  for (const MatchRecord& record : *records) {
+    if (AreHostTicks(record.time())) continue;
+    return absl::DataLossError(
+        absl::StrCat(records_filename, ": match record ",
+                     &record - records->data(), " is at ", record.time(),
+                     ", which is before the year 1 or after 2116"));
+  }
+  return records;
 }
 
 void MarkMatches(const std::vector<MatchRecord>& records,

@@ -3,9 +3,9 @@
 #include "cartographer_ext/repair/stored_gyroscope.h"
 
 #include <cmath>
-#include <limits>
 
 #include "cartographer/transform/transform.h"
+#include "cartographer_ext/common/host_ticks.h"
 #include "cartographer_ext/common/pose2.h"
 #include "gtest/gtest.h"
 
@@ -92,7 +92,8 @@ TEST_F(StoredGyroscopeTest, NodesInAnyOrder) {
   EXPECT_NEAR(Integral(StoredGyroscopeReadings(map_).at(0), 0., 1.), 0.4, 1e-6);
 }
 
-// A robot that was switched off between two nodes, and damaged stamps.
+// A robot that was switched off between two nodes, and damaged stamps as far
+// apart as the reader allows.
 TEST_F(StoredGyroscopeTest, NodesThatAreFarApartAreFewReadings) {
   constexpr double kTenDays = 10. * 24. * 3600.;
   AddNode(0., 0.1);
@@ -103,10 +104,8 @@ TEST_F(StoredGyroscopeTest, NodesThatAreFarApartAreFewReadings) {
   EXPECT_NEAR(Integral(all.at(0), 0., 1.), 0.4, 1e-6);
   EXPECT_NEAR(Integral(all.at(0), 1., 1. + kTenDays), 1., 1e-6);
   EXPECT_LE(all.at(0).size(), 2000u);
-  map_.nodes.front().mutable_node_data()->set_timestamp(
-      std::numeric_limits<int64_t>::min());
-  map_.nodes.back().mutable_node_data()->set_timestamp(
-      std::numeric_limits<int64_t>::max());
+  map_.nodes.front().mutable_node_data()->set_timestamp(0);
+  map_.nodes.back().mutable_node_data()->set_timestamp(kMaxHostTicks);
   const auto damaged = StoredGyroscopeReadings(map_);
   ASSERT_EQ(damaged.size(), 1u);
   EXPECT_LE(damaged.at(0).size(), 3000u);

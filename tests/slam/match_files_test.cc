@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/match_files.h"
 
+#include <cstdint>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "cartographer/common/time.h"
+#include "cartographer_ext/common/host_ticks.h"
 #include "cartographer_ext/map/host_types.h"
 #include "gtest/gtest.h"
 
@@ -52,6 +56,24 @@ TEST(MatchFilesTest, DamageNamesTheFile) {
   const auto read = ReadMatches(name);
   EXPECT_EQ(read.status().code(), absl::StatusCode::kDataLoss);
   EXPECT_NE(read.status().message().find(name), absl::string_view::npos);
+}
+
+TEST(MatchFilesTest, TimesThatNoClockHasAreRefused) {
+  const std::string map = testing::TempDir() + "/match_times.pbstream";
+  for (const int64_t time :
+       {std::numeric_limits<int64_t>::min(), int64_t{-1}, kMaxHostTicks + 1,
+        std::numeric_limits<int64_t>::max()}) {
+    std::vector<MatchRecord> records = {RecordAt(1000000000), MatchRecord()};
+    records[1].set_time(time);
+    ASSERT_TRUE(WriteMatchesBeside(map, records).ok());
+    const auto read = ReadMatches(MatchRecordsFilename(map));
+    EXPECT_EQ(read.status().code(), absl::StatusCode::kDataLoss);
+    EXPECT_EQ(read.status().message(),
+              absl::StrCat(MatchRecordsFilename(map), ": match record 1 is at ",
+                           time, ", which is before the year 1 or after 2116"));
+  }
+  ASSERT_TRUE(WriteMatchesBeside(map, {MatchRecord()}).ok());
+  EXPECT_TRUE(ReadMatches(MatchRecordsFilename(map)).ok());
 }
 
 TEST(MatchFilesTest, MarksTheNodes) {

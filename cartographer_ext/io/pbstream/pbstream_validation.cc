@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
+#include "cartographer_ext/common/host_ticks.h"
 #include "cartographer_ext/io/pbstream/grid_validation.h"
 
 namespace cartographer_ext {
@@ -117,6 +119,14 @@ class Checker {
     Expect(graph.trajectory_size() == num_options, "the pose graph has ",
            graph.trajectory_size(), " trajectories, but there are options for ",
            num_options);
+    for (int i = 0; i != num_options; ++i) {
+      const int64_t time = pbstream_.options.options_with_sensor_ids(i)
+                               .trajectory_builder_options()
+                               .initial_trajectory_pose()
+                               .timestamp();
+      ExpectTime(absl::StrCat("options ", i, " have an initial pose at ", time),
+                 time);
+    }
     for (const mapping::Trajectory& trajectory : graph.trajectory()) {
       const int id = trajectory.trajectory_id();
       Expect(id >= 0, "a trajectory has the negative id ", id);
@@ -133,7 +143,7 @@ class Checker {
         submap_poses_.insert(submap_id);
       }
       last_index = -1;
-      int64_t last_time = INT64_MIN;
+      int64_t last_time = std::numeric_limits<int64_t>::min();
       for (const auto& node : trajectory.node()) {
         const Id node_id(id, node.node_index());
         Expect(node_id.second > last_index, Name("node", node_id),
@@ -142,6 +152,8 @@ class Checker {
         Expect(node.timestamp() >= last_time, Name("node", node_id),
                " is older than the node before it");
         last_time = node.timestamp();
+        ExpectTime(absl::StrCat(Name("node", node_id), " is at ", last_time),
+                   last_time);
         Expect(IsPose(node.pose()), Name("node", node_id),
                " has no valid global pose");
         node_times_.emplace(node_id, node.timestamp());
@@ -271,6 +283,7 @@ class Checker {
           absl::StrFormat("the landmark reading of trajectory %d at %d",
                           reading.trajectory_id(), data.timestamp());
       ExpectTrajectory(name, reading.trajectory_id());
+      ExpectTime(name, data.timestamp());
       for (const auto& seen : data.landmark_observations()) {
         Expect(IsPose(seen.landmark_to_tracking_transform()) &&
                    IsWeight(seen.translation_weight()) &&
@@ -285,6 +298,12 @@ class Checker {
            " is of a trajectory that does not exist");
   }
 
+  // `what` ends with "at" and the time.
+  void ExpectTime(absl::string_view what, const int64_t time) {
+    Expect(AreHostTicks(time), what,
+           ", which is before the year 1 or after 2116");
+  }
+
   template <typename Reading>
   std::string CheckReading(absl::string_view kind, const Reading& reading,
                            const int64_t time,
@@ -293,6 +312,7 @@ class Checker {
         absl::StrFormat("the %s reading of trajectory %d at %d", kind,
                         reading.trajectory_id(), time);
     ExpectTrajectory(name, reading.trajectory_id());
+    ExpectTime(name, time);
     const auto last = last_times->emplace(reading.trajectory_id(), time);
     if (!last.second) {
       Expect(last.first->second < time, name, " is out of order");

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/io/pbstream/pbstream_validation.h"
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
 
+#include "absl/strings/str_cat.h"
+#include "cartographer_ext/common/host_ticks.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/io/pbstream/pbstream_example.h"
@@ -257,6 +260,67 @@ TEST(PbstreamValidationTest, ProblemsOfReadings) {
       },
       "the landmark reading of trajectory 0 at 96 has no valid pose or "
       "weights");
+}
+
+void SetNodeTime(const int index, const int64_t time, Pbstream* const p) {
+  FirstTrajectory(p)->mutable_node(index)->set_timestamp(time);
+  p->nodes[index].mutable_node_data()->set_timestamp(time);
+}
+
+TEST(PbstreamValidationTest, StampsThatNoClockHas) {
+  constexpr int64_t kMin = std::numeric_limits<int64_t>::min();
+  constexpr int64_t kMax = std::numeric_limits<int64_t>::max();
+  const std::string problem = ", which is before the year 1 or after 2116";
+  for (const int64_t time : {kMin, int64_t{-1}}) {
+    ExpectProblem([time](Pbstream* p) { SetNodeTime(0, time, p); },
+                  absl::StrCat("node (0, 0) is at ", time, problem));
+    ExpectProblem(
+        [time](Pbstream* p) {
+          p->odometry_data[0].mutable_odometry_data()->set_timestamp(time);
+        },
+        absl::StrCat("the odometry reading of trajectory 0 at ", time,
+                     problem));
+  }
+  for (const int64_t time : {kMaxHostTicks + 1, kMax}) {
+    ExpectProblem([time](Pbstream* p) { SetNodeTime(2, time, p); },
+                  absl::StrCat("node (0, 2) is at ", time, problem));
+    ExpectProblem(
+        [time](Pbstream* p) {
+          p->imu_data[1].mutable_imu_data()->set_timestamp(time);
+        },
+        absl::StrCat("the IMU reading of trajectory 0 at ", time, problem));
+    ExpectProblem(
+        [time](Pbstream* p) {
+          p->fixed_frame_pose_data[0]
+              .mutable_fixed_frame_pose_data()
+              ->set_timestamp(time);
+        },
+        absl::StrCat("the fixed frame reading of trajectory 0 at ", time,
+                     problem));
+    ExpectProblem(
+        [time](Pbstream* p) {
+          p->landmark_data[0].mutable_landmark_data()->set_timestamp(time);
+        },
+        absl::StrCat("the landmark reading of trajectory 0 at ", time,
+                     problem));
+    ExpectProblem(
+        [time](Pbstream* p) {
+          p->options.mutable_options_with_sensor_ids(0)
+              ->mutable_trajectory_builder_options()
+              ->mutable_initial_trajectory_pose()
+              ->set_timestamp(time);
+        },
+        absl::StrCat("options 0 have an initial pose at ", time, problem));
+  }
+}
+
+TEST(PbstreamValidationTest, ClocksMayBeginInTheYear1) {
+  Pbstream example = ExamplePbstream();
+  SetNodeTime(0, 0, &example);
+  SetNodeTime(1, 1, &example);
+  SetNodeTime(2, kMaxHostTicks, &example);
+  example.odometry_data[0].mutable_odometry_data()->set_timestamp(0);
+  EXPECT_THAT(FindPbstreamProblems(example), ElementsAre());
 }
 
 }  // namespace
