@@ -16,13 +16,16 @@ namespace cartographer_ext {
 constexpr int64_t kHostTicksPerSecond = 10000000;
 constexpr int64_t kUnixEpochSeconds = INT64_C(719162) * 86400;
 constexpr int64_t kUnixEpochTicks = kUnixEpochSeconds * kHostTicksPerSecond;
-// In the year 2116, 146 years after 1970: the difference of any two times that
-// are so far from 1970 is still a number of nanoseconds of 64 bits.
-constexpr int64_t kMaxHostTicks = kUnixEpochTicks + (INT64_C(1) << 62) / 100;
+// 146 years: the difference of any two times that are so far from 1970 is still
+// a number of nanoseconds of 64 bits.
+constexpr int64_t kEraTicks = (INT64_C(1) << 62) / 100;
+constexpr int64_t kMaxHostTicks = kUnixEpochTicks + kEraTicks;
 
-// Whether a file may hold these. A clock may begin with the count of the host.
+// Whether a file may hold these: a clock shows the date, or it began at the
+// start of the count, in the year 1.
 constexpr bool AreHostTicks(const int64_t ticks) {
-  return ticks >= 0 && ticks <= kMaxHostTicks;
+  return ticks >= 0 && ticks <= kMaxHostTicks &&
+         (ticks <= kEraTicks || ticks >= kUnixEpochTicks - kEraTicks);
 }
 
 // Unix seconds with seven decimals, exact, of ticks >= 0.

@@ -5,7 +5,6 @@
 #ifndef CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_
 #define CARTOGRAPHER_EXT_MAP_HOST_TYPES_H_
 
-#include <algorithm>
 #include <cstdint>
 
 #include "Eigen/Geometry"
@@ -28,11 +27,12 @@ inline cartographer::common::Time ToHostTime(const io::TimeNs time) {
   return cartographer::common::FromUniversal(ticks + kUnixEpochTicks);
 }
 
-// Readers of files let no other ticks pass than AreHostTicks. Nanoseconds do
-// not reach back to the year 1: what is before 1824 becomes 1824.
+// Of AreHostTicks, as all are that readers of files let pass. Clocks that began
+// in the year 1 are relative, too, to whatever they began with.
 inline io::TimeNs FromHostTicks(const int64_t universal_ticks) {
-  constexpr int64_t kEarliest = 2 * kUnixEpochTicks - kMaxHostTicks;
-  return (std::max(universal_ticks, kEarliest) - kUnixEpochTicks) * 100;
+  return (universal_ticks <= kEraTicks ? universal_ticks
+                                       : universal_ticks - kUnixEpochTicks) *
+         100;
 }
 
 inline io::TimeNs FromHostTime(const cartographer::common::Time time) {

@@ -65,10 +65,9 @@ absl::StatusOr<std::vector<MatchRecord>> ReadMatches(
   if (!records.ok()) return records.status();
   for (const MatchRecord& record : *records) {
     if (AreHostTicks(record.time())) continue;
-    return absl::DataLossError(
-        absl::StrCat(records_filename, ": match record ",
-                     &record - records->data(), " is at ", record.time(),
-                     ", which is before the year 1 or after 2116"));
+    return absl::DataLossError(absl::StrCat(
+        records_filename, ": match record ", &record - records->data(),
+        " is at ", record.time(), ", which no clock can show"));
   }
   return records;
 }

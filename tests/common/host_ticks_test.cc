@@ -19,20 +19,23 @@ TEST(HostTicksTest, ConvertsToUnixSecondsWithoutRounding) {
             "1600000000.0000001");
 }
 
-TEST(HostTicksTest, TheYears1To2116) {
+TEST(HostTicksTest, ThoseNear1And1970) {
   constexpr int64_t kMin = std::numeric_limits<int64_t>::min();
   constexpr int64_t kMax = std::numeric_limits<int64_t>::max();
-  for (const int64_t ticks : {kMin, int64_t{-1}, kMaxHostTicks + 1, kMax}) {
+  for (const int64_t ticks :
+       {kMin, int64_t{-1}, kEraTicks + 1, kUnixEpochTicks - kEraTicks - 1,
+        kMaxHostTicks + 1, kMax}) {
     EXPECT_FALSE(AreHostTicks(ticks)) << ticks;
   }
-  for (const int64_t ticks : {int64_t{0}, int64_t{1}, kUnixEpochTicks - 1,
-                              INT64_C(637355968000000001), kMaxHostTicks}) {
+  for (const int64_t ticks :
+       {int64_t{0}, int64_t{1}, kEraTicks, kUnixEpochTicks - kEraTicks,
+        INT64_C(637355968000000001), kMaxHostTicks}) {
     EXPECT_TRUE(AreHostTicks(ticks)) << ticks;
   }
   // 2116-02-20 23:53:38.4 UTC.
   EXPECT_EQ(UnixSecondsOfTicks(kMaxHostTicks), "4611686018.4273879");
   // Two that are so far before and after 1970, in nanoseconds.
-  EXPECT_GT(2 * ((kMaxHostTicks - kUnixEpochTicks) * 100), 0);
+  EXPECT_GT(2 * (kEraTicks * 100), 0);
 }
 
 }  // namespace

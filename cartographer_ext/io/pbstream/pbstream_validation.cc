@@ -300,8 +300,7 @@ class Checker {
 
   // `what` ends with "at" and the time.
   void ExpectTime(absl::string_view what, const int64_t time) {
-    Expect(AreHostTicks(time), what,
-           ", which is before the year 1 or after 2116");
+    Expect(AreHostTicks(time), what, ", which no clock can show");
   }
 
   template <typename Reading>

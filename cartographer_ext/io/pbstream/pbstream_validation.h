@@ -23,8 +23,8 @@ namespace io {
 // to existing submaps and nodes; poses are finite with unit quaternions;
 // weights are finite and not negative; grids have limits that fit their cells
 // and cells of 15 bits; point clouds can be unpacked; readings of a sensor are
-// in order of time; no stamp is before the year 1, when the count begins, or
-// after 2116, so that whoever adds and subtracts them need not ask.
+// in order of time; stamps are AreHostTicks (common/host_ticks.h), so that
+// whoever adds and subtracts them need not ask.
 std::vector<std::string> FindPbstreamProblems(const Pbstream& pbstream,
                                               size_t max_problems = 100);
 
