@@ -14,6 +14,12 @@ extern "C" const char* __lsan_default_suppressions() {
   return "leak:libfontconfig";
 }
 
+// Memory that does not exist is asked for, too, and must be refused as usual.
+extern "C" const char* __asan_default_options();
+extern "C" const char* __asan_default_options() {
+  return "allocator_may_return_null=1";
+}
+
 namespace {
 
 // The filter that selects the tests defined in `source`, a file name without folders: of a folder's tests, which are one
