@@ -114,6 +114,6 @@ function(cartographer_ext_tests)
     add_test(NAME ${prefix}/${stem} COMMAND ${target} --test_source=${stem}.cc WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
     # The suppressions are for commands that a test starts; tests have them built in.
     set_tests_properties(${prefix}/${stem} PROPERTIES TIMEOUT 600
-      ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan_suppressions.txt")
+      ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan_suppressions.txt:print_suppressions=0")
   endforeach()
 endfunction()
