@@ -16,7 +16,9 @@
 #include <string>
 #include <vector>
 
+#include "cartographer_ext/common/host_ticks.h"
 #include "cartographer_ext/configuration/lua_value.h"
+#include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/io/g2o.h"
 #include "cartographer_ext/io/occupancy_map.h"
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
@@ -25,9 +27,11 @@
 #include "cartographer_ext/io/sensor_source.h"
 #include "cartographer_ext/io/trajectory_file.h"
 #include "cartographer_ext/loop_closure/decision_log.h"
+#include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/simulation/world_source.h"
+#include "cartographer_ext/slam/match_files.h"
 #include "glog/logging.h"
 #include "tests/mutation.h"
 
@@ -74,6 +78,18 @@ bool ReadDecisions(const std::string& name) {
   const auto decisions = loop_closure::ParseDecisions(test::ReadBytes(name));
   if (!decisions.ok()) return false;
   return !loop_closure::DecisionCsv(*decisions).empty();
+}
+
+// Written as a table, and marked in a map with nodes before and after all.
+bool ReadMatchRecords(const std::string& name) {
+  const auto matches = evaluation::ReadMatches(name);
+  if (!matches.ok()) return false;
+  evaluation::MapGraph graph;
+  graph.nodes[{0, 0}].time = evaluation::FromHostTicks(kUnixEpochTicks);
+  graph.nodes[{0, 1}].time = evaluation::FromHostTicks(kMaxHostTicks);
+  evaluation::MarkMatches(*matches, &graph);
+  evaluation::CountMatches(*matches);
+  return !front_end::RecordCsv(*matches).empty();
 }
 
 bool ReadLua(const std::string& name) {
@@ -125,6 +141,9 @@ int Run(const std::string& kind, const std::string& sample_name,
        {"lua", ReadLua},
        {"pgm", ReadPicture},
        {"decisions", ReadDecisions},
+       {"matches", ReadMatchRecords},
+       {"poses",
+        [](const std::string& name) { return io::ReadPosesById(name).ok(); }},
        {"yaml",
         [](const std::string& name) {
           return io::ReadOccupancyMap(name).ok();
