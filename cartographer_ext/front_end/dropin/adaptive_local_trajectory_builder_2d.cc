@@ -252,8 +252,9 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
   if (submap != nullptr && !match.overrules_odometry) {
     matched.evidence = [&](const Pose2& error) {
       // Along a corridor it fits as well on the other side.
-      const scan_matching::PoseEvidence evidence(match.pose, cloud,
-                                                 *submap->grid());
+      const scan_matching::PoseEvidence evidence(
+          match.pose, cloud, *submap->grid(),
+          scan_matching::PosePrecision::kCell);
       return std::min(evidence.Against(match.pose * error),
                       evidence.Against(match.pose * error.Inverse()));
     };

@@ -126,9 +126,10 @@ bool IsLikelier(const LocalMatch& a, const LocalMatch& b,
                 const Prediction& predicted, const PointCloud& cloud,
                 const Grid2D& grid) {
   return a.score > b.score &&
-         scan_matching::ScanEvidence(a.pose, b.pose, cloud, grid) >
-             0.5 *
-                 (ChiSquare(predicted, a.pose) - ChiSquare(predicted, b.pose));
+         scan_matching::PoseEvidence(a.pose, cloud, grid,
+                                     scan_matching::PosePrecision::kExact)
+                 .Against(b.pose) > 0.5 * (ChiSquare(predicted, a.pose) -
+                                           ChiSquare(predicted, b.pose));
 }
 
 std::vector<float> Ranges(const PointCloud& cloud) {

@@ -72,18 +72,18 @@ double OdometryContest::BestEvidence(const MotionPrediction& prediction,
                                      const Rival** const best) const {
   *best = nullptr;
   if (rivals.empty()) return 0.;
-  const scan_matching::PoseEvidence base(consistent.pose, cloud, grid);
   const Pose2 expected =
       has_rival_ ? Expected(prediction.motion) : predicted.pose;
   double most = 0.;
   for (const Rival& rival : rivals) {
     const Pose2& pose = rival.match.pose;
     if (rival.match.score <= consistent.score) continue;
-    double evidence = -base.Against(pose);
+    const scan_matching::PoseEvidence of_scan(
+        pose, cloud, grid, scan_matching::PosePrecision::kCell);
+    double evidence = of_scan.Against(consistent.pose);
     if (SeeTheSame(prediction.motion)) {
       const Pose2 beyond = Beyond(consistent.pose, pose);
-      evidence = std::min(
-          evidence, scan_matching::ScanEvidence(pose, beyond, cloud, grid));
+      evidence = std::min(evidence, of_scan.Against(beyond));
       evidence -= rival.log_places +
                   FaultCost(Between(expected, pose), prediction.motion);
     }

@@ -35,7 +35,8 @@ double SlideOdds(const Pose2& pose, const Eigen::Matrix3d& information,
     return odds;
   }
   const Eigen::Vector2d direction = translation.eigenvectors().col(0);
-  const scan_matching::PoseEvidence evidence(pose, cloud, grid);
+  const scan_matching::PoseEvidence evidence(
+      pose, cloud, grid, scan_matching::PosePrecision::kExact);
   for (const double slide : kSlides) {
     const Eigen::Vector2d moved = pose.translation() + slide * direction;
     double against = evidence.Against(Pose2(moved.x(), moved.y(), pose.theta));

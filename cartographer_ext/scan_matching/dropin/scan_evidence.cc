@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/scan_matching/dropin/scan_evidence.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -49,6 +50,44 @@ class Likelihood {
   const double c_, s_, x_, y_;
 };
 
+// What the beams to both sides of one leave between them belongs to the same
+// surface, half of it to each, up to this distance: metres.
+constexpr double kLargestGap = 2.;
+
+// The nearest of `points` to the one with this index, on the other side than
+// `beside`, a difference to the point, if that is not zero; as a difference.
+Eigen::Vector2d NearestBeside(const std::vector<Eigen::Vector2d>& points,
+                              const size_t index,
+                              const Eigen::Vector2d& beside) {
+  Eigen::Vector2d nearest = Eigen::Vector2d::Zero();
+  double least = kLargestGap * kLargestGap;
+  for (size_t k = 0; k < points.size(); ++k) {
+    const Eigen::Vector2d off = points[k] - points[index];
+    const double distance = off.squaredNorm();
+    if (distance == 0. || distance >= least || off.dot(beside) > 0.) continue;
+    least = distance;
+    nearest = off;
+  }
+  return nearest;
+}
+
+// Points a cell apart from one of `points` to the middle between it and those on
+// its sides.
+std::vector<Eigen::Vector2d> SurfaceAround(
+    const std::vector<Eigen::Vector2d>& points, const size_t index,
+    const double cell) {
+  std::vector<Eigen::Vector2d> surface = {points[index]};
+  Eigen::Vector2d beside = Eigen::Vector2d::Zero();
+  for (int side = 0; side < 2; ++side) {
+    beside = NearestBeside(points, index, beside);
+    const double length = beside.norm();
+    for (double along = cell; along <= 0.5 * length; along += cell) {
+      surface.push_back(points[index] + along / length * beside);
+    }
+  }
+  return surface;
+}
+
 }  // namespace
 
 int NumPatches(const cartographer::sensor::PointCloud& cloud) {
@@ -62,41 +101,63 @@ int NumPatches(const cartographer::sensor::PointCloud& cloud) {
 
 PoseEvidence::PoseEvidence(const Pose2& pose,
                            const cartographer::sensor::PointCloud& cloud,
-                           const Grid2D& grid)
-    : grid_(grid) {
+                           const Grid2D& grid, const PosePrecision precision)
+    : grid_(grid), tolerance_(precision == PosePrecision::kCell ? 1 : 0) {
   if (grid.GetGridType() == cartographer::mapping::GridType::TSDF) return;
-  const Likelihood likelihood(grid, pose);
-  std::map<std::pair<int, int>, std::vector<Point>> patches;
+  std::vector<Eigen::Vector2d> points;
+  std::map<std::pair<int, int>, int> patches;
   for (const auto& point : cloud) {
-    const Eigen::Vector2d p = point.position.head<2>().cast<double>();
+    const Eigen::Vector2f p = point.position.head<2>();
     if (!p.allFinite()) continue;
-    patches[PatchOf(point.position.head<2>())].push_back(
-        {p, likelihood.Log(p)});
+    points.push_back(p.cast<double>());
+    ++patches[PatchOf(p)];
   }
-  patches_.reserve(patches.size());
-  for (auto& patch : patches) patches_.push_back(std::move(patch.second));
+  for (size_t i = 0; i < points.size(); ++i) {
+    Point point;
+    point.weight = 1. / patches.at(PatchOf(points[i].cast<float>()));
+    if (precision == PosePrecision::kCell) {
+      point.surface = SurfaceAround(points, i, grid.limits().resolution());
+    } else {
+      point.surface = {points[i]};
+    }
+    points_.push_back(std::move(point));
+  }
+  log_likelihood_ = LogLikelihood(pose, 0);
+}
+
+double PoseEvidence::LogLikelihood(const Pose2& pose,
+                                   const int tolerance) const {
+  double best = -std::numeric_limits<double>::infinity();
+  for (int ix = -tolerance; ix <= tolerance; ++ix) {
+    for (int iy = -tolerance; iy <= tolerance; ++iy) {
+      const double cell = grid_.limits().resolution();
+      const Likelihood likelihood(
+          grid_, Pose2(pose.x + ix * cell, pose.y + iy * cell, pose.theta));
+      double sum = 0.;
+      for (const Point& point : points_) {
+        double most = -std::numeric_limits<double>::infinity();
+        for (const Eigen::Vector2d& place : point.surface) {
+          most = std::max(most, likelihood.Log(place));
+        }
+        sum += point.weight * most;
+      }
+      best = std::max(best, sum);
+    }
+  }
+  return best;
 }
 
 double PoseEvidence::Against(const Pose2& other) const {
   if (grid_.GetGridType() == cartographer::mapping::GridType::TSDF) {
     return std::numeric_limits<double>::infinity();
   }
-  const Likelihood likelihood(grid_, other);
-  double evidence = 0.;
-  for (const std::vector<Point>& patch : patches_) {
-    double sum = 0.;
-    for (const Point& point : patch) {
-      sum += point.log_probability - likelihood.Log(point.position);
-    }
-    evidence += sum / static_cast<double>(patch.size());
-  }
-  return evidence;
+  return log_likelihood_ - LogLikelihood(other, tolerance_);
 }
 
 double ScanEvidence(const Pose2& pose, const Pose2& other,
                     const cartographer::sensor::PointCloud& cloud,
                     const Grid2D& grid) {
-  return PoseEvidence(pose, cloud, grid).Against(other);
+  return PoseEvidence(pose, cloud, grid, PosePrecision::kCell).Against(other);
 }
 
 }  // namespace scan_matching

@@ -28,13 +28,27 @@ namespace scan_matching {
 // none.
 int NumPatches(const cartographer::sensor::PointCloud& cloud);
 
-// For one pose of a scan, against any other. Poses are (frame of the grid <-
-// cloud).
+// How the poses are compared.
+enum class PosePrecision {
+  // As given: both are matches of the scan.
+  kExact,
+  // Only the first one is a match, the others are predictions. Walls are often
+  // one cell thick with unknown space behind, so that a pose that is wrong by a
+  // cell sideways would be as unlikely as one in another room: the others have
+  // the largest L of the poses up to a cell off in each axis. And where beams
+  // hit a wall far from each other, it is known only where they did when the
+  // robot stood: a point stands for the surface up to the middle between it and
+  // the points beside it, with the largest p on it.
+  kCell,
+};
+
+// For one pose of a scan against others. Poses are (frame of the grid <- cloud).
 class PoseEvidence {
  public:
   // The grid must outlive it.
   PoseEvidence(const Pose2& pose, const cartographer::sensor::PointCloud& cloud,
-               const cartographer::mapping::Grid2D& grid);
+               const cartographer::mapping::Grid2D& grid,
+               PosePrecision precision);
 
   // L(pose) - L(`other`). Zero without points. Infinite in a TSDF, whose
   // distances are not probabilities: there the match is always trusted.
@@ -42,15 +56,21 @@ class PoseEvidence {
 
  private:
   struct Point {
-    Eigen::Vector2d position;
-    double log_probability;  // at the pose
+    // The point first, then the surface around it.
+    std::vector<Eigen::Vector2d> surface;
+    double weight;  // those of a patch add up to one
   };
 
+  // The largest of the poses up to so many cells off.
+  double LogLikelihood(const Pose2& pose, int tolerance) const;
+
   const cartographer::mapping::Grid2D& grid_;
-  std::vector<std::vector<Point>> patches_;
+  const int tolerance_;  // of the others, cells
+  std::vector<Point> points_;
+  double log_likelihood_ = 0.;  // at the pose
 };
 
-// The same for one other pose.
+// The same for one other pose, with PosePrecision::kCell.
 double ScanEvidence(const Pose2& pose, const Pose2& other,
                     const cartographer::sensor::PointCloud& cloud,
                     const cartographer::mapping::Grid2D& grid);

@@ -281,7 +281,7 @@ TEST_F(LocalMatcherTest, ContradictionsInSuccessionOverruleOdometry) {
     return match.report.scan_information.norm() > 0.;
   };
   const Pose2 slip(0.08, 0.08, DegToRad(3.));
-  constexpr double kFew = 25.;
+  constexpr double kFew = 35.;
   ASSERT_TRUE(is_overruled(Pose2(), 360.));
   for (int i = 0; i < 5; ++i) {
     EXPECT_FALSE(is_overruled(slip, kFew));
@@ -305,7 +305,7 @@ TEST_F(LocalMatcherTest, ARivalOfTheOdometryEndsWithTheOdometry) {
     return matcher.Match(Pose2(), prediction_, Cloud(),
                          *submaps_->submaps().front());
   };
-  constexpr double kFew = 25.;
+  constexpr double kFew = 35.;
   const Pose2 slip(0.08, 0.08, DegToRad(3.));
   match(PredictionSource::kOdometry, Pose2(), 360.);  // what is usual
   bool is_overruled = false;
@@ -335,8 +335,8 @@ TEST_F(LocalMatcherTest, ARivalIsFollowedFromScanToScan) {
   Pose2 last;
   int contested = 0;
   bool is_over = false;
-  for (int i = 0; i < 8 && !is_over; ++i) {
-    const LocalMatch found = match(last, Pose2(0.03, 0., DegToRad(4.)), 35.);
+  for (int i = 0; i < 12 && !is_over; ++i) {
+    const LocalMatch found = match(last, Pose2(0.03, 0., DegToRad(2.)), 33.);
     contested += found.contested ? 1 : 0;
     is_over = found.ends_contest;
     EXPECT_EQ(found.overrules_odometry, is_over);

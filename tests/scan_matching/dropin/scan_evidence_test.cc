@@ -63,6 +63,47 @@ TEST_F(ScanEvidenceTest, CountsPatches) {
               1e-6);
 }
 
+// A cell behind the wall nothing was seen.
+TEST_F(ScanEvidenceTest, APoseIsNotKnownBetterThanToACell) {
+  const PointCloud cloud = Wall(0.5, 1.5);
+  const Pose2 behind(0.05, 0., 0.);
+  EXPECT_NEAR(PoseEvidence(Pose2(), cloud, grid_, PosePrecision::kExact)
+                  .Against(behind),
+              4. * std::log(1.6), 1e-3);
+  EXPECT_NEAR(
+      PoseEvidence(Pose2(), cloud, grid_, PosePrecision::kCell).Against(behind),
+      0., 1e-6);
+  EXPECT_NEAR(
+      PoseEvidence(behind, cloud, grid_, PosePrecision::kCell).Against(Pose2()),
+      -4. * std::log(1.6), 1e-3);
+  EXPECT_NEAR(ScanEvidence(Pose2(), behind, cloud, grid_), 0., 1e-6);
+  // Two cells are more than one.
+  EXPECT_NEAR(PoseEvidence(Pose2(), cloud, grid_, PosePrecision::kCell)
+                  .Against(Pose2(0.1, 0., 0.)),
+              4. * std::log(1.6), 1e-3);
+}
+
+// Few beams hit a wall far along a corridor. While the robot stood, the wall
+// became known where they did, and free between, where others graze it.
+TEST_F(ScanEvidenceTest, AWallGoesOnBetweenItsBeams) {
+  PointCloud cloud;
+  for (int i = 0; i < 40; ++i) {
+    const double y = 0.025 + 0.05 * i;
+    const bool is_hit = i % 10 == 5;
+    Set(1.525, y, is_hit ? 0.8f : 0.2f);
+    if (is_hit) cloud.push_back({Eigen::Vector3f(1.525f, y, 0.f)});
+  }
+  // The last one leaves the grid.
+  const Pose2 moved(0., 0.25, 0.);
+  EXPECT_NEAR(
+      PoseEvidence(Pose2(), cloud, grid_, PosePrecision::kExact).Against(moved),
+      3. * std::log(4.) + std::log(1.6), 1e-3);
+  EXPECT_NEAR(ScanEvidence(Pose2(), moved, cloud, grid_), std::log(1.6), 1e-3);
+  // Away from the wall it is another place.
+  EXPECT_NEAR(ScanEvidence(Pose2(), Pose2(-0.2, 0.25, 0.), cloud, grid_),
+              4. * std::log(1.6), 1e-3);
+}
+
 TEST_F(ScanEvidenceTest, BeamsOfOnePatchCountOnce) {
   PointCloud dense = Wall(0.5, 1.);
   const int size = static_cast<int>(dense.size());
