@@ -9,18 +9,13 @@ namespace cartographer_ext {
 namespace front_end {
 namespace {
 
-MatchedMotion Matched(const Pose2& motion) {
-  MatchedMotion matched;
-  matched.motion = motion;
-  return matched;
-}
-
 // Of a scan that also makes up for those before, only its own part counts.
 TEST(MotionPredictorContestTest, TheVelocityIsThatOfTheRival) {
   for (const bool ends_contest : {false, true}) {
     MotionPredictor predictor((MotionPredictorOptions()));
-    predictor.AddMatch(0., Matched(Pose2()));
-    MatchedMotion matched = Matched(Pose2(-0.3, 0., 0.));
+    predictor.AddMatch(0., MatchedMotion());
+    MatchedMotion matched;
+    matched.motion = Pose2(-0.3, 0., 0.);
     matched.ends_contest = ends_contest;
     matched.rival_motion = Pose2(0.05, 0.01, 0.);
     predictor.AddMatch(0.1, matched);

@@ -74,12 +74,13 @@ double OdometryContest::BestEvidence(const MotionPrediction& prediction,
   if (rivals.empty()) return 0.;
   const Pose2 expected =
       has_rival_ ? Expected(prediction.motion) : predicted.pose;
+  scan_matching::PoseEvidence of_scan(predicted.pose, cloud, grid,
+                                      scan_matching::PosePrecision::kCell);
   double most = 0.;
   for (const Rival& rival : rivals) {
     const Pose2& pose = rival.match.pose;
     if (rival.match.score <= consistent.score) continue;
-    const scan_matching::PoseEvidence of_scan(
-        pose, cloud, grid, scan_matching::PosePrecision::kCell);
+    of_scan.SetPose(pose);
     double evidence = of_scan.Against(consistent.pose);
     if (SeeTheSame(prediction.motion)) {
       const Pose2 beyond = Beyond(consistent.pose, pose);

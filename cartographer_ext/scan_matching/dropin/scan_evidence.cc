@@ -122,7 +122,7 @@ PoseEvidence::PoseEvidence(const Pose2& pose,
     }
     points_.push_back(std::move(point));
   }
-  log_likelihood_ = LogLikelihood(pose, 0);
+  SetPose(pose);
 }
 
 double PoseEvidence::LogLikelihood(const Pose2& pose,

@@ -50,6 +50,9 @@ class PoseEvidence {
                const cartographer::mapping::Grid2D& grid,
                PosePrecision precision);
 
+  // The same scan at another pose.
+  void SetPose(const Pose2& pose) { log_likelihood_ = LogLikelihood(pose, 0); }
+
   // L(pose) - L(`other`). Zero without points. Infinite in a TSDF, whose
   // distances are not probabilities: there the match is always trusted.
   double Against(const Pose2& other) const;
