@@ -41,6 +41,15 @@ std::vector<int> FillReducingOrder(
 // The factorisation, see above. Not thread-safe.
 class BlockLdlt {
  public:
+  // The lower triangle of a symmetric block.
+  struct SymmetricBlock {
+    double m00, m10, m20, m11, m21, m22;
+  };
+  // Any block, by columns.
+  struct Block {
+    double m00, m10, m20, m01, m11, m21, m02, m12, m22;
+  };
+
   void Analyze(int size, const std::vector<std::pair<int, int>>& pairs,
                const std::vector<int>& groups);
   // The same for different pairs with the same number of variables and the
@@ -54,6 +63,13 @@ class BlockLdlt {
   void AddDiagonal(const int variable, const Eigen::Matrix3d& block) {
     diagonal_[position_[variable]] += block;
   }
+  // The same by value.
+  void AddDiagonal(const int variable, const SymmetricBlock& block) {
+    double* const sum = diagonal_[position_[variable]].data();
+    sum[0] += block.m00, sum[1] += block.m10, sum[2] += block.m20;
+    sum[3] += block.m10, sum[4] += block.m11, sum[5] += block.m21;
+    sum[6] += block.m20, sum[7] += block.m21, sum[8] += block.m22;
+  }
   // `block` is H(pairs[pair].first, pairs[pair].second).
   void AddOffDiagonal(const int pair, const Eigen::Matrix3d& block) {
     Eigen::Matrix3d& sum = matrix_[matrix_of_pair_[pair]];
@@ -61,6 +77,19 @@ class BlockLdlt {
       sum += block.transpose();
     } else {
       sum += block;
+    }
+  }
+  // The same by value.
+  void AddOffDiagonal(const int pair, const Block& block) {
+    double* const sum = matrix_[matrix_of_pair_[pair]].data();
+    if (slots_[pair].transpose) {
+      sum[0] += block.m00, sum[1] += block.m01, sum[2] += block.m02;
+      sum[3] += block.m10, sum[4] += block.m11, sum[5] += block.m12;
+      sum[6] += block.m20, sum[7] += block.m21, sum[8] += block.m22;
+    } else {
+      sum[0] += block.m00, sum[1] += block.m10, sum[2] += block.m20;
+      sum[3] += block.m01, sum[4] += block.m11, sum[5] += block.m21;
+      sum[6] += block.m02, sum[7] += block.m12, sum[8] += block.m22;
     }
   }
 

@@ -264,12 +264,14 @@ bool RobustSolver::Factorize(const double lambda) {
 }
 
 void RobustSolver::SetPoses(const std::vector<Pose2>& poses) {
-  poses_ = poses;
+  const size_t known = std::min(poses.size(), rotations_.size());
   rotations_.resize(poses.size());
   for (size_t i = 0; i != poses.size(); ++i) {
     const double theta = poses[i].theta;
+    if (i < known && poses_[i].theta == theta) continue;
     rotations_[i] = Eigen::Vector2d(std::cos(theta), std::sin(theta));
   }
+  poses_ = poses;
 }
 
 void RobustSolver::Evaluate(const std::vector<double>* const held_shapes,

@@ -17,6 +17,15 @@ constexpr double kRoom = 1e-2;
 constexpr size_t kFewChanges = 5;
 constexpr double kMaxGrowth = 1.1;
 
+// Adds to the three values of a variable.
+void AddToVector(const int variable, const double x, const double y,
+                 const double theta, Eigen::VectorXd* const sum) {
+  double* const values = sum->data() + 3 * variable;
+  values[0] += x;
+  values[1] += y;
+  values[2] += theta;
+}
+
 }  // namespace
 
 // Chooses the edges of the linear systems; true when they were analysed anew.
@@ -112,6 +121,7 @@ void RobustSolver::Assemble(const std::vector<double>& weights) {
 // With the error e in the frame of `from`, whose rotation is R, the whitened
 // residual is A e and its Jacobian J_to = A diag(R', 1): J_to' J_to is the
 // information A'A turned by R. J_from = -J_to T with T = [1 0 -dy; 0 1 dx; 0 0 1].
+// Value by value: a block that is written by values and read by pairs waits.
 void RobustSolver::AddToSystem(const WhitenedEdge& edge, const double weight,
                                const int pair) {
   const Pose2 &from = poses_[edge.from], &to = poses_[edge.to];
@@ -126,37 +136,35 @@ void RobustSolver::AddToSystem(const WhitenedEdge& edge, const double weight,
   const double ex = error.x(), ey = error.y(), et = error.z();
   const double px = xx * ex + xy * ey + xt * et;
   const double py = xy * ex + yy * ey + yt * et;
-  const Eigen::Vector3d gradient(c * px - s * py, s * px + c * py,
-                                 xt * ex + yt * ey + tt * et);
+  const double gx = c * px - s * py, gy = s * px + c * py;
+  const double gt = xt * ex + yt * ey + tt * et;
   const double cc = c * c, cs = c * s, ss = s * s, mixed = 2. * cs * xy;
-  Eigen::Matrix3d to_to;
-  to_to(0, 0) = cc * xx - mixed + ss * yy;
-  to_to(1, 1) = ss * xx + mixed + cc * yy;
-  to_to(2, 2) = tt;
-  to_to(1, 0) = to_to(0, 1) = cs * (xx - yy) + (cc - ss) * xy;
-  to_to(2, 0) = to_to(0, 2) = c * xt - s * yt;
-  to_to(2, 1) = to_to(1, 2) = s * xt + c * yt;
+  // J_to' J_to.
+  const double h00 = cc * xx - mixed + ss * yy;
+  const double h11 = ss * xx + mixed + cc * yy;
+  const double h10 = cs * (xx - yy) + (cc - ss) * xy;
+  const double h20 = c * xt - s * yt, h21 = s * xt + c * yt;
   const int a = edge.from - 1, b = edge.to - 1;
   if (b >= 0) {
-    factor_.AddDiagonal(b, to_to);
-    diagonal_.segment<3>(3 * b) += to_to.diagonal();
-    gradient_.segment<3>(3 * b) += gradient;
+    factor_.AddDiagonal(b,
+                        BlockLdlt::SymmetricBlock{h00, h10, h20, h11, h21, tt});
+    AddToVector(b, h00, h11, tt, &diagonal_);
+    AddToVector(b, gx, gy, gt, &gradient_);
   }
   if (a < 0) return;
-  Eigen::Matrix3d from_to = to_to;  // T' J_to' J_to, of the other sign
-  for (int k = 0; k != 3; ++k) {
-    from_to(2, k) += dx * to_to(1, k) - dy * to_to(0, k);
+  // The last row of T' J_to' J_to, whose others are those of J_to' J_to.
+  const double t0 = h20 + (dx * h10 - dy * h00);
+  const double t1 = h21 + (dx * h11 - dy * h10);
+  const double t2 = tt + (dx * h21 - dy * h20);
+  const double last = t2 + (dx * t1 - dy * t0);
+  factor_.AddDiagonal(a,
+                      BlockLdlt::SymmetricBlock{h00, h10, t0, h11, t1, last});
+  AddToVector(a, h00, h11, last, &diagonal_);
+  AddToVector(a, -gx, -gy, -(gt + dx * gy - dy * gx), &gradient_);
+  if (pair >= 0) {
+    factor_.AddOffDiagonal(pair, BlockLdlt::Block{-h00, -h10, -t0, -h10, -h11,
+                                                  -t1, -h20, -h21, -t2});
   }
-  Eigen::Matrix3d from_from = from_to;
-  for (int k = 0; k != 3; ++k) {
-    from_from(k, 2) += dx * from_to(k, 1) - dy * from_to(k, 0);
-  }
-  factor_.AddDiagonal(a, from_from);
-  diagonal_.segment<3>(3 * a) += from_from.diagonal();
-  gradient_.segment<3>(3 * a) -=
-      Eigen::Vector3d(gradient.x(), gradient.y(),
-                      gradient.z() + dx * gradient.y() - dy * gradient.x());
-  if (pair >= 0) factor_.AddOffDiagonal(pair, -from_to);
 }
 
 // Decrease of the quadratic model; costs are sums of squares without 1/2.
