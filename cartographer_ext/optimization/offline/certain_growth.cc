@@ -75,17 +75,28 @@ class CertainGrowth {
         weights_(*weights),
         covariances_(PredictAlongChain(graph, edges_, *poses)) {}
 
+  // From odometry alone.
   int Run() {
     weights_.assign(edges_.size(), 1.);
     for (size_t i = 0; i != edges_.size(); ++i) {
       if (edges_[i].is_loop) weights_[i] = 0.;
     }
+    return Continue();
+  }
+
+  // With the loops that have weight in force.
+  int Continue() {
     if (covariances_.empty()) return 0;
     given_up_.assign(edges_.size(), 0);
     touched_.assign(poses_.size(), false);
     int in_force = 0;
+    for (size_t i = 0; i != edges_.size(); ++i) {
+      if (!edges_[i].is_loop || weights_[i] == 0.) continue;
+      TakeIn(i);
+      ++in_force;
+    }
     double log_odds = kFirstLogOdds;
-    bool predicted = true;
+    bool predicted = in_force == 0;
     for (int round = 0; round != options_.max_rounds; ++round) {
       const int before = in_force;
       const bool knows_all = predicted;
@@ -307,6 +318,14 @@ int GrowCertainLoops(const PoseGraph& graph,
                      std::vector<Pose2>* const poses,
                      std::vector<double>* const weights) {
   return CertainGrowth(graph, options, solver, poses, weights).Run();
+}
+
+int GrowMoreCertainLoops(const PoseGraph& graph,
+                         const CertainGrowthOptions& options,
+                         RobustSolver* const solver,
+                         std::vector<Pose2>* const poses,
+                         std::vector<double>* const weights) {
+  return CertainGrowth(graph, options, solver, poses, weights).Continue();
 }
 
 }  // namespace optimization

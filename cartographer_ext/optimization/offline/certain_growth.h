@@ -66,6 +66,12 @@ std::vector<Eigen::Matrix3d> PredictAlongChain(
 int GrowCertainLoops(const PoseGraph& graph,
                      const CertainGrowthOptions& options, RobustSolver* solver,
                      std::vector<Pose2>* poses, std::vector<double>* weights);
+// The same from a map that is nearer to the right one, with the loops that have
+// weight in force; they may be given up.
+int GrowMoreCertainLoops(const PoseGraph& graph,
+                         const CertainGrowthOptions& options,
+                         RobustSolver* solver, std::vector<Pose2>* poses,
+                         std::vector<double>* weights);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

@@ -11,11 +11,9 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/common/thinned.h"
-#include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
-#include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/edges_in_force.h"
 
 namespace cartographer_ext {
@@ -34,9 +32,8 @@ constexpr double kFewByChance = 1.;
 constexpr size_t kMaxInnovations = 200;
 // Kernels that have to agree.
 constexpr size_t kQuickKernels = 3;
-// Groups that are forced in: of a large graph, and where the kernels agree on a
-// map that these contradict, which may be folded.
-constexpr int kMaxTrialsOnLargeGraph = 4;
+// Groups that are forced in where the kernels agree on a map that these
+// contradict, which may be folded.
 constexpr int kMaxTrialsOfSettled = 3;
 // A graph of fewer poses times loops is searched from all starts in any case.
 constexpr double kSmallGraph = 2.5e5;
@@ -320,24 +317,6 @@ bool Portfolio::RejectedContradict() {
   const std::vector<Innovation> innovations = PredictLoops(
       Thinned(rejected, kMaxInnovations), weights, poses, &solver_);
   return !innovations.empty() && !MorePossibleThanByChance(innovations);
-}
-
-bool Portfolio::AddCertain() {
-  std::vector<Pose2> poses = ChainOdometry(graph_);
-  std::vector<double> weights;
-  if (GrowCertainLoops(graph_, CertainGrowthOptions(), &solver_, &poses,
-                       &weights) == 0) {
-    return false;
-  }
-  Add("certain", std::move(poses));
-  if (RejectedContradict()) return true;
-  // Right groups may be kept out by one wrong loop.
-  ForceOptions force;
-  force.max_trials = kMaxTrialsOnLargeGraph;
-  force.min_members = kSupported + 1;
-  force.relax = false;  // two more factorisations a trial
-  AddForced("certain", force);
-  return true;
 }
 
 void Portfolio::Run() {

@@ -33,6 +33,12 @@ constexpr double kMaxRepeatedWork = 2e6;
 constexpr int kShortEpoch = 50;
 // Poses times loops of a graph on which a move costs next to nothing.
 constexpr double kCheapMoves = 5e5;
+// Groups that are forced into a large graph, and the work after which no other one
+// is: each may take ten seconds.
+constexpr int kMaxTrialsOnLargeGraph = 4;
+constexpr double kMaxWorkOfTrials = 5e9;
+// How often growth by certain loops goes on where softer kernels open a fold.
+constexpr int kMaxCertainRounds = 3;
 // Rounds of the search by groups, as long as each finds a loop.
 constexpr int kMaxGroupRounds = 4;
 
@@ -182,6 +188,37 @@ void Portfolio::AddReplays() {
   } else if (JoinTrajectories(graph_, options_.smoother, &replay.poses)) {
     Add("joined", replay.poses);
   }
+}
+
+bool Portfolio::AddCertain() {
+  std::vector<Pose2> poses = ChainOdometry(graph_);
+  std::vector<double> weights;
+  if (GrowCertainLoops(graph_, CertainGrowthOptions(), &solver_, &poses,
+                       &weights) == 0) {
+    return false;
+  }
+  Add("certain", std::move(poses));
+  for (int round = 0; round != kMaxCertainRounds; ++round) {
+    if (RejectedContradict()) return true;
+    // Softer kernels open what it has left folded, and then other loops are
+    // certain.
+    const double before = best().cost;
+    Soften();
+    if (best().cost > before - kFolded * kChi2Gate) break;
+    poses = best().poses;
+    weights = DecideLoops(edges_, poses, kChi2Gate);
+    GrowMoreCertainLoops(graph_, CertainGrowthOptions(), &solver_, &poses,
+                         &weights);
+    Add("certain", std::move(poses));
+  }
+  // Right groups may be kept out by one wrong loop.
+  ForceOptions force;
+  force.max_trials = kMaxTrialsOnLargeGraph;
+  force.min_members = kSupported + 1;
+  force.relax = false;  // two more factorisations a trial
+  force.max_work = kMaxWorkOfTrials;
+  AddForced("certain", force);
+  return true;
 }
 
 void Portfolio::AddGrowth(const std::vector<Pose2>& start) {

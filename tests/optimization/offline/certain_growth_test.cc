@@ -91,6 +91,36 @@ TEST(CertainGrowthTest, PredictsOnAsLongAsLoopsBecomeCertain) {
   for (const uint64_t seed : {1, 2, 3}) ExpectFindsTheRightLoops(seed, options);
 }
 
+TEST(CertainGrowthTest, GoesOnFromAMapWithLoopsInForce) {
+  const size_t clean = test::MakeGridWorld(1500, 14, 1).graph.edges.size();
+  const test::GridWorld world = GridWithOutliers(1, clean - 1499);
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  std::vector<Pose2> poses = world.truth;
+  // One right loop in four and ten wrong ones.
+  std::vector<double> weights(edges.size(), 0.);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    weights[i] = !edges[i].is_loop || (i < clean ? i % 4 == 0 : i < clean + 10);
+  }
+  const test::LoopCounts before = test::CountLoops(edges, clean, weights);
+  ASSERT_LT(before.right_in_force, 0.4 * before.right);
+  ASSERT_EQ(before.wrong_in_force, 10);
+  CertainGrowthOptions options;
+  options.max_rounds = 4;  // from odometry that brings hardly any loop in
+  const int in_force =
+      GrowMoreCertainLoops(world.graph, options, &solver, &poses, &weights);
+  const test::LoopCounts counts = test::CountLoops(edges, clean, weights);
+  EXPECT_EQ(in_force, counts.right_in_force + counts.wrong_in_force);
+  EXPECT_GE(counts.right_in_force, 0.95 * counts.right);
+  EXPECT_LE(counts.wrong_in_force, 0.01 * in_force);
+  EXPECT_LT(AbsoluteTrajectoryError(poses, world.truth), 0.3);
+
+  poses = DeadReckoning(world.graph);
+  GrowCertainLoops(world.graph, options, &solver, &poses, &weights);
+  EXPECT_LT(test::CountLoops(edges, clean, weights).right_in_force,
+            0.9 * counts.right_in_force);
+}
+
 TEST(CertainGrowthTest, NeedsAChain) {
   test::GridWorld world = GridWithOutliers(1, 0);
   world.graph.edges.erase(world.graph.edges.begin() +
