@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "absl/memory/memory.h"
+#include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"
@@ -208,6 +209,24 @@ void WidenGate(const double gate, const std::vector<int>& near,
   result->gate = gate;
 }
 
+// Decisions by the evidence of each loop are not yet those of the lowest cost: loops
+// may be right together, or one once others are in force. Of hardly any that are out.
+void LowerCostOfGate(RobustSolver* const solver, AutoResult* const result) {
+  double lowest = TruncatedCost(solver->edges(), result->poses, result->gate);
+  Portfolio::Member with_all;
+  with_all.name = result->member;
+  with_all.poses = result->poses;
+  SolverOptions options;
+  options.edge_weights.assign(solver->edges().size(), 1.);
+  Count(solver->Solve(options, &with_all.poses), result);
+  PolishMember(result->gate, with_all, solver, &lowest, result);
+  FlipOptions flip;
+  flip.gate = result->gate;
+  if (FlipLoops(flip, solver, &result->poses) > 0) {
+    result->weights = DecideLoops(solver->edges(), result->poses, result->gate);
+  }
+}
+
 // Step 5 where many loops are rejected: nothing where the right ones among them
 // are not told from wrong ones, or where the map of the gate that these pass is
 // another one.
@@ -332,6 +351,7 @@ bool AcceptNearLoops(const std::vector<Portfolio::Member>& members,
   // them will be near, too.
   if (near.empty() || 2 * near.size() < rejected.size()) return false;
   WidenGate(gate, near, members, solver, result);
+  LowerCostOfGate(solver, result);
   return true;
 }
 

@@ -172,6 +172,37 @@ TEST(AutoSearchTest, TheWorstOfManyRightLoopsIsKept) {
   }
 }
 
+// A right loop beyond the gate that all right loops pass may be within it once
+// others are in force, or both of two.
+TEST(AutoSearchTest, TheLowestCostOfAWiderGateIsFound) {
+  const test::GridWorld world = test::MakeGridWorld(250, 5, 1);
+  std::vector<int> loops;
+  for (size_t i = 0; i != world.graph.edges.size(); ++i) {
+    if (world.graph.edges[i].is_loop) loops.push_back(i);
+  }
+  struct Errors {
+    int from_last;
+    double first, second;  // metres
+  };
+  for (const Errors& errors :
+       {Errors{25, 0.205, 0.185}, Errors{26, 0.155, 0.135},
+        Errors{29, 0.14, 0.12}, Errors{33, 0.135, 0.115}}) {
+    PoseGraph graph = world.graph;
+    const size_t first = loops.size() - errors.from_last;
+    graph.edges[loops[first]].measurement.x += errors.first;
+    graph.edges[loops[first - 1]].measurement.x += errors.second;
+    const AutoResult result = SearchAutomatically(graph, AutoOptions());
+    EXPECT_GT(result.gate, kChi2Gate);
+    const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+    std::vector<Pose2> with_all = result.poses;
+    SolveRobust(edges, SolverOptions(), &with_all);
+    EXPECT_LE(TruncatedCost(edges, result.poses, result.gate),
+              TruncatedCost(edges, with_all, result.gate) * (1. + 1e-6))
+        << errors.from_last;
+    EXPECT_EQ(result.weights, DecideLoops(edges, result.poses, result.gate));
+  }
+}
+
 // Where kernels that agree end the search, the map of the narrower gate, which
 // careful matrices ask for, may cost more than that of a solver left out.
 TEST(AutoSearchTest, IsNotAboveSolversThatTookNoPart) {
