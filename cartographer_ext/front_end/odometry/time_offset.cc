@@ -5,11 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <deque>
+#include <limits>
+#include <vector>
 
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/common/squared.h"
 
 namespace cartographer_ext {
 namespace front_end {
+namespace {
+
+// The noise is that of so many scans, and is found anew after so many.
+constexpr size_t kMostErrors = 200;
+constexpr int kErrorsBetweenUpdates = 20;
+constexpr double kSigmaPerMedian = 1.4826;  // of the absolute value, normal
+
+}  // namespace
 
 TimeOffsetEstimator::TimeOffsetEstimator(const TimeOffsetOptions& options)
     : options_(options), offset_(options.initial) {
@@ -21,6 +33,7 @@ TimeOffsetEstimator::TimeOffsetEstimator(const TimeOffsetOptions& options)
   }
   if (candidates_.size() < 3) candidates_.clear();
   sums_.assign(candidates_.size(), 0.);
+  products_ = Eigen::MatrixXd::Zero(candidates_.size(), candidates_.size());
 }
 
 void TimeOffsetEstimator::Add(const double matched_turn,
@@ -29,22 +42,46 @@ void TimeOffsetEstimator::Add(const double matched_turn,
       !std::isfinite(matched_turn)) {
     return;
   }
+  std::vector<double> errors(candidates_.size());
+  for (size_t i = 0; i < errors.size(); ++i) {
+    errors[i] = std::abs(NormalizeAngle(matched_turn - odometry_turns[i]));
+  }
+  AddErrors(errors);
   const auto bounds =
       std::minmax_element(odometry_turns.begin(), odometry_turns.end());
-  if (!(*bounds.second - *bounds.first >= options_.min_spread)) return;
+  const double least_spread =
+      std::max(options_.min_spread, options_.noise_spread * noise_);
+  if (!(*bounds.second - *bounds.first >= least_spread)) return;
   // Odometry must be able to explain the match at some offset.
   if (matched_turn < *bounds.first - options_.clip ||
       matched_turn > *bounds.second + options_.clip) {
     return;
   }
+  Eigen::VectorXd squares(sums_.size());
   for (size_t i = 0; i < sums_.size(); ++i) {
-    const double error =
-        std::min(options_.clip,
-                 std::abs(NormalizeAngle(matched_turn - odometry_turns[i])));
-    sums_[i] = options_.forgetting * sums_[i] + error * error;
+    squares[i] = Squared(std::min(options_.clip, errors[i]));
+    sums_[i] = options_.forgetting * sums_[i] + squares[i];
   }
+  products_ *= Squared(options_.forgetting);
+  products_ += squares * squares.transpose();
   weight_ = options_.forgetting * weight_ + 1.;
   if (weight_ >= options_.min_weight) Update();
+}
+
+void TimeOffsetEstimator::AddErrors(const std::vector<double>& errors) {
+  errors_.push_back(errors);
+  if (errors_.size() > kMostErrors) errors_.pop_front();
+  if (++num_errors_ % kErrorsBetweenUpdates != 0) return;
+  noise_ = std::numeric_limits<double>::infinity();
+  std::vector<double> of_candidate(errors_.size());
+  for (size_t i = 0; i < errors.size(); ++i) {
+    for (size_t k = 0; k < errors_.size(); ++k) {
+      of_candidate[k] = errors_[k][i];
+    }
+    const auto median = of_candidate.begin() + of_candidate.size() / 2;
+    std::nth_element(of_candidate.begin(), median, of_candidate.end());
+    noise_ = std::min(noise_, kSigmaPerMedian * *median);
+  }
 }
 
 void TimeOffsetEstimator::Update() {
@@ -58,20 +95,31 @@ void TimeOffsetEstimator::Update() {
       estimate += options_.step * 0.5 * (before - after) / curvature;
     }
   }
-  // The sum at the value in force, between the candidates around it.
-  const double place =
-      std::min(std::max((offset_ - options_.minimum) / options_.step, 0.),
-               static_cast<double>(sums_.size() - 1));
-  const size_t low = std::min(static_cast<size_t>(place), sums_.size() - 2);
-  const double ratio = place - static_cast<double>(low);
-  const double current = (1. - ratio) * sums_[low] + ratio * sums_[low + 1];
-  // How much likelier it is, for errors of unknown variance: n / 2 times the
-  // logarithm of the ratio of the sums.
-  if (*best > 0. &&
-      0.5 * weight_ * std::log(current / *best) <= options_.evidence) {
+  const double gain = Significance(index, offset_);
+  if (gain < options_.least_gain ||
+      std::max(gain, Significance(index, options_.initial)) <
+          options_.significance) {
     return;
   }
   offset_ = estimate;
+}
+
+double TimeOffsetEstimator::Significance(const size_t candidate,
+                                         const double offset) const {
+  // Between the candidates around it.
+  const double place =
+      std::min(std::max((offset - options_.minimum) / options_.step, 0.),
+               static_cast<double>(sums_.size() - 1));
+  const size_t low = std::min(static_cast<size_t>(place), sums_.size() - 2);
+  const double ratio = place - static_cast<double>(low);
+  Eigen::VectorXd worse = Eigen::VectorXd::Zero(sums_.size());
+  worse[low] = 1. - ratio;
+  worse[low + 1] = ratio;
+  worse[candidate] -= 1.;
+  const double difference =
+      worse.dot(Eigen::Map<const Eigen::VectorXd>(sums_.data(), sums_.size()));
+  const double variance = worse.dot(products_ * worse);
+  return variance > 0. ? difference / std::sqrt(variance) : 0.;
 }
 
 }  // namespace front_end
