@@ -186,6 +186,7 @@ class Mutator {
                                            "1e-999",
                                            "2147483648",
                                            "-2147483649",
+                                           "-9223372036854775808",
                                            "9223372036854775807",
                                            "18446744073709551616",
                                            "99999999999999999999999999",
@@ -201,7 +202,7 @@ class Mutator {
     if (first == std::string::npos) return;
     size_t end = data->find_first_not_of("0123456789.-+e", first);
     if (end == std::string::npos) end = data->size();
-    data->replace(first, end - first, kNumbers[random_.UniformInt(0, 21)]);
+    data->replace(first, end - first, kNumbers[random_.UniformInt(0, 22)]);
   }
 
   Random random_;

@@ -2,34 +2,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/collection/baseline.h"
 
-#include <cerrno>
-#include <fstream>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "cartographer_ext/io/bounded_json.h"
+#include "cartographer_ext/io/line_reader.h"
 
 namespace cartographer_ext {
 namespace collection {
+namespace {
+
+// A record holds numbers, texts and lists of them.
+constexpr int kMaxDepth = 3;
+
+}  // namespace
 
 absl::StatusOr<std::map<std::string, MapRecord>> ReadBaseline(
     const std::string& filename) {
-  std::ifstream stream(filename);
-  if (!stream) {
-    return absl::ErrnoToStatus(errno, absl::StrCat("cannot open ", filename));
-  }
+  auto reader = io::LineReader::Open(filename);
+  if (!reader.ok()) return reader.status();
   std::map<std::string, MapRecord> baseline;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
+  absl::string_view line;
+  while (true) {
+    const absl::StatusOr<bool> more = (*reader)->Next(&line);
+    if (!more.ok()) return more.status();
+    if (!*more) return baseline;
     if (line.empty()) continue;
-    auto record = RecordFromJson(nlohmann::json::parse(line, nullptr, false));
+    auto record = RecordFromJson(io::ParseBoundedJson(line, kMaxDepth));
     if (!record.ok()) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          filename, ": line ", number, ": ", record.status().message()));
+      return absl::InvalidArgumentError(
+          absl::StrCat((*reader)->Location(), ": ", record.status().message()));
     }
     const std::string name = record->filename;
     baseline[name] = *std::move(record);
   }
-  return baseline;
 }
 
 std::vector<MapChange> Compare(const std::map<std::string, MapRecord>& baseline,

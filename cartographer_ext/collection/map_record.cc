@@ -10,6 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/io/bounded_json.h"
 #include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/report/map_report.h"
 #include "cartographer_ext/report/png_image.h"
@@ -77,19 +78,6 @@ MapRecord MakeRecord(const report::JudgedMap& map) {
   return record;
 }
 
-double NumberOr(const nlohmann::json& json, const char* const key,
-                const double otherwise) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? found->get<double>()
-                                                   : otherwise;
-}
-
-std::string TextOf(const nlohmann::json& json, const char* const key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>()
-                                                   : std::string();
-}
-
 std::string Quoted(const std::string& text) {
   return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\"", "\"\""}}), "\"");
 }
@@ -121,8 +109,8 @@ ordered_json ToJson(const MapRecord& record) {
 absl::StatusOr<MapRecord> RecordFromJson(const nlohmann::json& json) {
   MapRecord record;
   if (json.is_object()) {
-    record.filename = TextOf(json, "filename");
-    record.verdict = TextOf(json, "verdict");
+    record.filename = io::TextIn(json, "filename");
+    record.verdict = io::TextIn(json, "verdict");
   }
   if (record.filename.empty() || record.verdict.empty()) {
     return absl::InvalidArgumentError("not a record of a map");
@@ -133,19 +121,16 @@ absl::StatusOr<MapRecord> RecordFromJson(const nlohmann::json& json) {
       if (reason.is_string()) record.reasons.push_back(reason);
     }
   }
-  const auto count = [&json](const char* const key) {
-    return static_cast<int64_t>(NumberOr(json, key, 0.));
-  };
-  record.nodes = count("nodes");
-  record.submaps = count("submaps");
-  record.loops = count("loops");
-  record.path = NumberOr(json, "trajectory_metres", 0.);
-  record.severe_share = NumberOr(json, "severe_share", 0.);
-  record.open_cycles = NumberOr(json, "open_cycles", 0.);
-  record.wall_doubling = NumberOr(json, "wall_doubling", 1.);
-  record.wrong_turns = count("wrong_turns");
-  record.report = TextOf(json, "report");
-  record.picture = TextOf(json, "picture");
+  record.nodes = io::CountIn(json, "nodes", 0);
+  record.submaps = io::CountIn(json, "submaps", 0);
+  record.loops = io::CountIn(json, "loops", 0);
+  record.path = io::NumberIn(json, "trajectory_metres", 0.);
+  record.severe_share = io::NumberIn(json, "severe_share", 0.);
+  record.open_cycles = io::NumberIn(json, "open_cycles", 0.);
+  record.wall_doubling = io::NumberIn(json, "wall_doubling", 1.);
+  record.wrong_turns = io::CountIn(json, "wrong_turns", 0);
+  record.report = io::TextIn(json, "report");
+  record.picture = io::TextIn(json, "picture");
   return record;
 }
 
@@ -178,8 +163,8 @@ std::string ToCsv(const std::vector<MapRecord>& records) {
 }
 
 nlohmann::json AnswerMapRequest(const nlohmann::json& request) {
-  const std::string filename = TextOf(request, "filename");
-  const std::string page_filename = TextOf(request, "report");
+  const std::string filename = io::TextIn(request, "filename");
+  const std::string page_filename = io::TextIn(request, "report");
   const auto map = report::JudgeMap(filename);
   if (!map.ok()) return tuning::Failure(std::string(map.status().message()));
   MapRecord record = MakeRecord(**map);

@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_ext/common/progress.h"
+#include "cartographer_ext/io/bounded_json.h"
 #include "cartographer_ext/io/keyed_journal.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/edges_in_force.h"
@@ -141,17 +142,19 @@ bool FromJson(const nlohmann::json& json, CostComparison* const comparison) {
        {"dataset", "type", "requested_count", "member", "rival"}) {
     if (!json.contains(key) || !json[key].is_string()) return false;
   }
-  for (const char* key : {"count", "seed", "poses", "loops", "cpu_seconds",
-                          "cost", "rival_cost", "excess", "estimated_excess"}) {
+  for (const char* key :
+       {"cpu_seconds", "cost", "rival_cost", "excess", "estimated_excess"}) {
     if (!json.contains(key) || !json[key].is_number()) return false;
+  }
+  if (!io::TakeInt(json, "count", &comparison->count) ||
+      !io::TakeInt(json, "seed", &comparison->seed) ||
+      !io::TakeInt(json, "poses", &comparison->poses) ||
+      !io::TakeInt(json, "loops", &comparison->loops)) {
+    return false;
   }
   comparison->dataset = json["dataset"].get<std::string>();
   comparison->type = json["type"].get<std::string>();
   comparison->requested_count = json["requested_count"].get<std::string>();
-  comparison->count = json["count"].get<int>();
-  comparison->seed = json["seed"].get<int>();
-  comparison->poses = json["poses"].get<int>();
-  comparison->loops = json["loops"].get<int>();
   comparison->cpu_seconds = json["cpu_seconds"].get<double>();
   comparison->cost = json["cost"].get<double>();
   comparison->member = json["member"].get<std::string>();

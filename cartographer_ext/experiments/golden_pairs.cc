@@ -55,8 +55,11 @@ class Line {
   }
   int Integer(const std::string& column) {
     int64_t value = 0;
-    if (!io::ParseInt(Text(column), &value) || std::abs(value) > 1 << 30) {
+    constexpr int64_t kMost = int64_t{1} << 30;
+    if (!io::ParseInt(Text(column), &value) || value < -kMost ||
+        value > kMost) {
       Complain(column);
+      return 0;
     }
     return static_cast<int>(value);
   }

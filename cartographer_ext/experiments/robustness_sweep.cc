@@ -11,6 +11,7 @@
 #include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/experiments/sweep_graphs.h"
+#include "cartographer_ext/io/bounded_json.h"
 #include "cartographer_ext/io/keyed_journal.h"
 #include "cartographer_ext/map/pose_graph_files.h"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
@@ -160,20 +161,22 @@ bool FromJson(const nlohmann::json& json, SweepRun* const run) {
   for (const char* key : {"dataset", "kernel", "type", "requested_count"}) {
     if (!json.contains(key) || !json[key].is_string()) return false;
   }
-  for (const char* key :
-       {"count", "seed", "cpu_seconds", "ate", "ate_truth", "rpe", "precision",
-        "recall", "truncated", "selected_truncated", "iterations"}) {
+  for (const char* key : {"cpu_seconds", "ate", "ate_truth", "rpe", "precision",
+                          "recall", "truncated", "selected_truncated"}) {
     if (!json.contains(key) || !json[key].is_number()) return false;
   }
   for (const char* key : {"converged", "success"}) {
     if (!json.contains(key) || !json[key].is_boolean()) return false;
   }
+  if (!io::TakeInt(json, "count", &run->count) ||
+      !io::TakeInt(json, "seed", &run->seed) ||
+      !io::TakeInt(json, "iterations", &run->iterations)) {
+    return false;
+  }
   run->dataset = json["dataset"].get<std::string>();
   run->kernel = json["kernel"].get<std::string>();
   run->type = json["type"].get<std::string>();
   run->requested_count = json["requested_count"].get<std::string>();
-  run->count = json["count"].get<int>();
-  run->seed = json["seed"].get<int>();
   run->cpu_seconds = json["cpu_seconds"].get<double>();
   run->ate = json["ate"].get<double>();
   run->ate_truth = json["ate_truth"].get<double>();
@@ -182,16 +185,15 @@ bool FromJson(const nlohmann::json& json, SweepRun* const run) {
   run->recall = json["recall"].get<double>();
   run->truncated = json["truncated"].get<double>();
   run->selected_truncated = json["selected_truncated"].get<double>();
-  run->iterations = json["iterations"].get<int>();
   run->converged = json["converged"].get<bool>();
   run->success = json["success"].get<bool>();
   // Missing from journals of earlier versions.
-  run->deviation = json.value("deviation", -1.);
-  run->success_by_ate = json.value("success_by_ate", run->success);
-  run->right_truncated = json.value("right_truncated", 0.);
-  run->undecidable = json.value("undecidable", false);
+  run->deviation = io::NumberIn(json, "deviation", -1.);
+  run->success_by_ate = io::TruthIn(json, "success_by_ate", run->success);
+  run->right_truncated = io::NumberIn(json, "right_truncated", 0.);
+  run->undecidable = io::TruthIn(json, "undecidable", false);
   run->is_family = json.contains("family");
-  run->inherent_ate = json.value("inherent_ate", -1.);
+  run->inherent_ate = io::NumberIn(json, "inherent_ate", -1.);
   if (json.contains("step_milliseconds")) {
     const nlohmann::json& steps = json["step_milliseconds"];
     for (const char* key : {"mean", "p99", "max"}) {

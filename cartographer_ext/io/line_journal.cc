@@ -13,12 +13,16 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "cartographer_ext/io/bounded_json.h"
 
 namespace cartographer_ext {
 namespace io {
 namespace {
 
 constexpr int kJournalVersion = 1;
+// A line holds a record with fields that are scalars or lists of them.
+constexpr int kMaxDepth = 3;
 
 absl::Status JournalError(const std::string& filename,
                           const std::string& what) {
@@ -33,25 +37,6 @@ std::string JournalLine(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false,
                    nlohmann::ordered_json::error_handler_t::replace) +
          "\n";
-}
-
-// A line holds a record with fields that are scalars or lists of them. Deeper
-// structures are refused while parsing, because the library destroys them
-// recursively.
-nlohmann::json ParseJournalLine(const std::string& content, const size_t begin,
-                                const size_t end) {
-  constexpr int kMaxDepth = 3;
-  bool is_too_deep = false;
-  auto json = nlohmann::json::parse(
-      content.begin() + static_cast<ptrdiff_t>(begin),
-      content.begin() + static_cast<ptrdiff_t>(end),
-      [&is_too_deep](const int depth, nlohmann::json::parse_event_t,
-                     nlohmann::json&) {
-        if (depth > kMaxDepth) is_too_deep = true;
-        return !is_too_deep;
-      },
-      false);
-  return is_too_deep ? nlohmann::json() : json;
 }
 
 }  // namespace
@@ -112,7 +97,8 @@ absl::Status LineJournal::ReadAll(const JournalKind& kind,
   int line_number = 0;
   for (size_t begin = 0; begin < whole;) {
     const size_t end = content.find('\n', begin);
-    const auto json = ParseJournalLine(content, begin, end);
+    const auto json = ParseBoundedJson(
+        absl::string_view(content).substr(begin, end - begin), kMaxDepth);
     ++line_number;
     begin = end + 1;
     if (line_number == 1) {

@@ -6,27 +6,21 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/io/bounded_json.h"
 
 namespace cartographer_ext {
 namespace tuning {
-namespace {
-
-double Number(const nlohmann::json& json, const char* const key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? found->get<double>() : 0.;
-}
-
-}  // namespace
-
 void TakeAnswer(const nlohmann::json& answer, RunRecord* const record) {
-  record->ok = answer.value("ok", false);
-  record->killed = answer.value("killed", false);
-  record->message = answer.value("message", "");
-  record->wall_seconds = answer.value("wall_seconds", 0.);
-  record->cpu_seconds = answer.value("cpu_seconds", 0.);
+  record->ok = io::TruthIn(answer, "ok", false);
+  record->killed = io::TruthIn(answer, "killed", false);
+  record->message = io::TextIn(answer, "message");
+  record->wall_seconds = io::NumberIn(answer, "wall_seconds", 0.);
+  record->cpu_seconds = io::NumberIn(answer, "cpu_seconds", 0.);
   record->metrics.clear();
   if (!record->ok) return;
-  for (const auto& item : answer["metrics"].items()) {
+  const auto metrics = answer.find("metrics");
+  if (metrics == answer.end() || !metrics->is_object()) return;
+  for (const auto& item : metrics->items()) {
     if (item.value().is_number()) {
       record->metrics[item.key()] = item.value().get<double>();
     }
@@ -80,8 +74,8 @@ absl::StatusOr<RunRecord> RunFromJson(const nlohmann::json& json) {
     if (!item.value().is_number()) continue;  // null: it was not finite
     record.metrics[item.key()] = item.value().get<double>();
   }
-  record.wall_seconds = Number(json, "wall_seconds");
-  record.cpu_seconds = Number(json, "cpu_seconds");
+  record.wall_seconds = io::NumberIn(json, "wall_seconds", 0.);
+  record.cpu_seconds = io::NumberIn(json, "cpu_seconds", 0.);
   return record;
 }
 

@@ -54,9 +54,28 @@ TEST(BaselineTest, ReadsTheLinesOfASurvey) {
 
   std::ofstream(filename, std::ios::app) << "{\"filename\":\n";
   EXPECT_THAT(std::string(ReadBaseline(filename).status().message()),
-              HasSubstr("baseline_test.jsonl: line 3"));
+              HasSubstr("baseline_test.jsonl:3: not a record"));
   unlink(filename.c_str());
   EXPECT_FALSE(ReadBaseline(filename).ok());
+}
+
+TEST(BaselineTest, HostileLinesAreRefused) {
+  const std::string filename = testing::TempDir() + "baseline_deep.jsonl";
+  std::ofstream(filename) << ToJsonLines({Record("a", "sound")})
+                          << "{\"filename\": " << std::string(1000000, '[')
+                          << "\n";
+  EXPECT_THAT(std::string(ReadBaseline(filename).status().message()),
+              HasSubstr("baseline_deep.jsonl:2: not a record"));
+  // Counts that no map has.
+  std::ofstream(filename) << R"({"filename": "a", "verdict": "sound",)"
+                          << R"("nodes": 1e300, "loops": -1, "submaps": 3})"
+                          << "\n";
+  const auto baseline = ReadBaseline(filename);
+  ASSERT_TRUE(baseline.ok()) << baseline.status();
+  EXPECT_EQ(baseline->at("a").nodes, 0);
+  EXPECT_EQ(baseline->at("a").loops, 0);
+  EXPECT_EQ(baseline->at("a").submaps, 3);
+  unlink(filename.c_str());
 }
 
 }  // namespace

@@ -53,6 +53,19 @@ TEST(RobustnessSweepTest, RunsAreWrittenAndReadUnchanged) {
   damaged = json;
   damaged.erase("seed");
   EXPECT_FALSE(FromJson(damaged, &again));
+  damaged = json;
+  damaged["count"] = 1e300;
+  EXPECT_FALSE(FromJson(damaged, &again));
+  // A number that is not finite is written as null; earlier versions lack some.
+  damaged = json;
+  for (const char* const key : {"deviation", "right_truncated"}) {
+    damaged[key] = nullptr;
+  }
+  damaged["undecidable"] = "yes";
+  ASSERT_TRUE(FromJson(damaged, &again));
+  EXPECT_EQ(again.deviation, -1.);
+  EXPECT_EQ(again.right_truncated, 0.);
+  EXPECT_FALSE(again.undecidable);
 }
 
 TEST(RobustnessSweepTest, RunsEveryCombinationInOrder) {

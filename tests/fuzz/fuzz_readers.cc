@@ -31,8 +31,10 @@
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/pbstream_map.h"
 #include "cartographer_ext/simulation/world_source.h"
+#include "cartographer_ext/slam/decision_files.h"
 #include "cartographer_ext/slam/match_files.h"
 #include "glog/logging.h"
+#include "tests/fuzz/table_readers.h"
 #include "tests/mutation.h"
 
 namespace cartographer_ext {
@@ -75,7 +77,7 @@ bool ReadMap(const std::string& name) {
 }
 
 bool ReadDecisions(const std::string& name) {
-  const auto decisions = loop_closure::ParseDecisions(test::ReadBytes(name));
+  const auto decisions = evaluation::ReadDecisions(name);
   if (!decisions.ok()) return false;
   return !loop_closure::DecisionCsv(*decisions).empty();
 }
@@ -134,27 +136,26 @@ std::string DamageOneRecord(const std::string& sample,
 
 int Run(const std::string& kind, const std::string& sample_name,
         const std::string& work_name, const int count, const int first) {
-  const std::map<std::string, std::function<bool(const std::string&)>> readers =
-      {{"pbstream", ReadMap},
-       {"recording", ReadRecording},
-       {"world", ReadWorld},
-       {"lua", ReadLua},
-       {"pgm", ReadPicture},
-       {"decisions", ReadDecisions},
-       {"matches", ReadMatchRecords},
-       {"poses",
-        [](const std::string& name) { return io::ReadPosesById(name).ok(); }},
-       {"yaml",
-        [](const std::string& name) {
-          return io::ReadOccupancyMap(name).ok();
-        }},
-       {"g2o", [](const std::string& name) { return io::ReadG2o(name).ok(); }},
-       {"tum",
-        [](const std::string& name) {
-          return io::ReadTumTrajectory(name).ok();
-        }},
-       {"relations",
-        [](const std::string& name) { return io::ReadRelations(name).ok(); }}};
+  std::map<std::string, std::function<bool(const std::string&)>> readers = {
+      {"pbstream", ReadMap},
+      {"recording", ReadRecording},
+      {"world", ReadWorld},
+      {"lua", ReadLua},
+      {"pgm", ReadPicture},
+      {"decisions", ReadDecisions},
+      {"matches", ReadMatchRecords},
+      {"poses",
+       [](const std::string& name) { return io::ReadPosesById(name).ok(); }},
+      {"yaml",
+       [](const std::string& name) { return io::ReadOccupancyMap(name).ok(); }},
+      {"g2o", [](const std::string& name) { return io::ReadG2o(name).ok(); }},
+      {"tum",
+       [](const std::string& name) {
+         return io::ReadTumTrajectory(name).ok();
+       }},
+      {"relations",
+       [](const std::string& name) { return io::ReadRelations(name).ok(); }}};
+  for (const auto& entry : test::TableReaders()) readers.insert(entry);
   const auto reader = readers.find(kind);
   const std::string sample = test::ReadBytes(sample_name);
   if (reader == readers.end() || sample.empty()) {

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/decision_files.h"
 
+#include <cstdint>
 #include <fstream>
+#include <limits>
 
+#include "absl/strings/str_cat.h"
+#include "cartographer_ext/common/host_ticks.h"
 #include "gtest/gtest.h"
 
 namespace cartographer_ext {
@@ -60,6 +64,30 @@ TEST(DecisionFilesTest, DamagedRecordsAreAnError) {
   const auto read = ReadDecisions(name);
   EXPECT_EQ(read.status().code(), absl::StatusCode::kDataLoss);
   EXPECT_NE(std::string(read.status().message()).find(name), std::string::npos);
+}
+
+TEST(DecisionFilesTest, TimesThatNoClockHasAreRefused) {
+  const std::string map = testing::TempDir() + "/decision_times.pbstream";
+  const auto write = [&map](const int64_t time) {
+    std::vector<LoopDecision> decisions = Some();
+    decisions[3].set_node_time(time);
+    loop_closure::DecisionRecords records;
+    for (const LoopDecision& decision : decisions) records.Add(decision);
+    return WriteDecisionsBeside(map, records);
+  };
+  const std::string name = DecisionRecordsFilename(map);
+  for (const int64_t time :
+       {std::numeric_limits<int64_t>::min(), int64_t{-1}, kMaxHostTicks + 1,
+        std::numeric_limits<int64_t>::max()}) {
+    ASSERT_TRUE(write(time).ok());
+    const auto read = ReadDecisions(name);
+    EXPECT_EQ(read.status().code(), absl::StatusCode::kDataLoss);
+    EXPECT_EQ(read.status().message(),
+              absl::StrCat(name, ": decision record 3 is at ", time,
+                           ", which no clock can show"));
+  }
+  ASSERT_TRUE(write(kUnixEpochTicks).ok());
+  EXPECT_TRUE(ReadDecisions(name).ok());
 }
 
 TEST(DecisionFilesTest, CountsKinds) {

@@ -29,6 +29,28 @@ RunRecord MakeRecord(const double value) {
   return record;
 }
 
+TEST(JournalTest, AnswersOfAnotherFormAreFailures) {
+  RunRecord record = MakeRecord(1.);
+  TakeAnswer({{"ok", true}, {"metrics", {{"ate", 0.5}, {"text", "t"}}}},
+             &record);
+  EXPECT_TRUE(record.ok);
+  EXPECT_EQ(record.metrics, (std::map<std::string, double>{{"ate", 0.5}}));
+  for (const nlohmann::json& metrics :
+       {nlohmann::json(), nlohmann::json(3), nlohmann::json({1, 2})}) {
+    TakeAnswer({{"ok", true}, {"metrics", metrics}}, &record);
+    EXPECT_THAT(record.metrics, IsEmpty());
+  }
+  TakeAnswer({{"ok", true}}, &record);
+  EXPECT_THAT(record.metrics, IsEmpty());
+  TakeAnswer({{"ok", "true"}, {"message", 3}, {"cpu_seconds", "long"}},
+             &record);
+  EXPECT_FALSE(record.ok);
+  EXPECT_EQ(record.message, "");
+  EXPECT_EQ(record.cpu_seconds, 0.);
+  TakeAnswer(3, &record);
+  EXPECT_FALSE(record.ok);
+}
+
 TEST(JournalTest, KeepsWhatWasAppended) {
   const test::Folder folder;
   const std::string name = folder.path() + "/journal";

@@ -16,6 +16,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_ext/common/bounded_read.h"
+#include "cartographer_ext/io/bounded_json.h"
 
 namespace cartographer_ext {
 namespace tuning {
@@ -23,6 +24,7 @@ namespace {
 
 constexpr char kAnswerEnding[] = ".answer.json";
 constexpr size_t kMaxFileSize = 64 << 20;  // of a file that is not damaged
+constexpr int kMaxDepth = 16;              // more than a request has
 
 }  // namespace
 
@@ -61,7 +63,7 @@ nlohmann::json SharedFolder::Read(const std::string& name) const {
   if (!ReadUpTo(kMaxFileSize, &stream, &text) || text.size() > kMaxFileSize) {
     return nullptr;
   }
-  auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  auto json = io::ParseBoundedJson(text, kMaxDepth);
   if (!json.is_object()) return nullptr;
   return json;
 }
@@ -116,19 +118,6 @@ std::string MakeToken() {
   std::random_device random;
   return absl::StrCat(host, "-", getpid(), "-", absl::Hex(random()),
                       absl::Hex(random()));
-}
-
-std::string TextOf(const nlohmann::json& json, const char* const key) {
-  if (!json.is_object()) return "";
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>()
-                                                   : "";
-}
-
-double NumberOf(const nlohmann::json& json, const char* const key) {
-  if (!json.is_object()) return -1.;
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? found->get<double>() : -1.;
 }
 
 }  // namespace tuning

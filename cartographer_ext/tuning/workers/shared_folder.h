@@ -89,10 +89,6 @@ bool IsAnswer(const std::string& name);
 // Differs from that of every other process.
 std::string MakeToken();
 
-// Of a value that is missing or has another type: "" and -1.
-std::string TextOf(const nlohmann::json& json, const char* key);
-double NumberOf(const nlohmann::json& json, const char* key);
-
 }  // namespace tuning
 }  // namespace cartographer_ext
 

@@ -9,6 +9,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
+#include "cartographer_ext/io/bounded_json.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -39,7 +40,7 @@ absl::StatusOr<std::unique_ptr<SharedFolderPool>> SharedFolderPool::Create(
   const absl::Status found = folder.Check();
   if (!found.ok()) return found;
   const nlohmann::json other = folder.Read(SharedFolder::kCoordinator);
-  if (TextOf(other, "state") == SharedFolder::kRunning) {
+  if (io::TextIn(other, "state") == SharedFolder::kRunning) {
     // The other process was killed, or it is alive and its beat will change.
     SleepFor(3. * options.poll_seconds);
     if (folder.Read(SharedFolder::kCoordinator) != other) {
@@ -134,10 +135,10 @@ void SharedFolderPool::FindTasks() {
       continue;
     }
     const nlohmann::json json = folder_.Read(name);
-    const double beat = NumberOf(json, "beat");
-    const double slots = NumberOf(json, "slots");
+    const double beat = io::NumberIn(json, "beat", -1.);
+    const double slots = io::NumberIn(json, "slots", -1.);
     Task task;
-    task.token = TextOf(json, "token");
+    task.token = io::TextIn(json, "token");
     if (task.token.empty() || !(slots >= 1.) || !(slots <= kMaxSlots)) continue;
     const auto known = tasks_.find(stem);
     task.beat = beat;
@@ -174,9 +175,10 @@ absl::optional<WorkerResult> SharedFolderPool::TakeRemoteResult() {
     const auto task = tasks_.find(TaskOfSlot(slot));
     WorkerResult result;
     result.id = run.id;
-    if (TextOf(json, "session") == session_ &&
-        TextOf(json, "token") == run.token &&
-        NumberOf(json, "serial") == run.serial && json.contains("answer")) {
+    if (io::TextIn(json, "session") == session_ &&
+        io::TextIn(json, "token") == run.token &&
+        io::NumberIn(json, "serial", -1.) == run.serial &&
+        json.contains("answer")) {
       result.answer = json["answer"];
     } else if (task == tasks_.end() || task->second.token != run.token) {
       result.answer = KilledAnswer(slot, SteadySeconds() - run.start);

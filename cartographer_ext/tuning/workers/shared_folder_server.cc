@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/types/optional.h"
+#include "cartographer_ext/io/bounded_json.h"
 #include "glog/logging.h"
 
 namespace cartographer_ext {
@@ -65,7 +66,7 @@ class Server {
   }
 
   absl::Status Beat() {
-    const std::string owner = TextOf(folder_.Read(OwnName()), "token");
+    const std::string owner = io::TextIn(folder_.Read(OwnName()), "token");
     if (has_written_ && !owner.empty() && owner != token_) {
       return absl::AlreadyExistsError(
           absl::StrCat(options_.folder, ": another process is task ",
@@ -86,8 +87,8 @@ class Server {
 
   absl::Status Poll() {
     const nlohmann::json coordinator = folder_.Read(SharedFolder::kCoordinator);
-    const std::string session = TextOf(coordinator, "session");
-    const double beat = NumberOf(coordinator, "beat");
+    const std::string session = io::TextIn(coordinator, "session");
+    const double beat = io::NumberIn(coordinator, "beat", -1.);
     if (session != session_ || beat != last_beat_)
       last_heard_ = SteadySeconds();
     last_beat_ = beat;
@@ -99,7 +100,7 @@ class Server {
       }
     }
     if (!first_session_.has_value()) first_session_ = session;
-    const bool ended = TextOf(coordinator, "state") == SharedFolder::kEnded;
+    const bool ended = io::TextIn(coordinator, "state") == SharedFolder::kEnded;
     const double silence = SteadySeconds() - last_heard_;
     if (ended && (has_served_ || session != *first_session_ ||
                   silence > options_.wait_after_end_seconds)) {
@@ -120,11 +121,11 @@ class Server {
 
   void TakeRequest(Slot* const slot) {
     const nlohmann::json request = folder_.Read(RequestName(slot->name));
-    const bool is_mine = TextOf(request, "session") == session_ &&
-                         TextOf(request, "token") == token_ &&
+    const bool is_mine = io::TextIn(request, "session") == session_ &&
+                         io::TextIn(request, "token") == token_ &&
                          request.contains("request");
     const int serial =
-        is_mine ? static_cast<int>(NumberOf(request, "serial")) : -1;
+        is_mine ? static_cast<int>(io::CountIn(request, "serial", -1)) : -1;
     if (serial == slot->serial) return;
     slot->pool->StopAll();
     slot->serial = serial;
