@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -61,6 +62,52 @@ class LogOddsOfValues {
   std::vector<float> log_odds_;
 };
 
+// Most of the box around what is known of a grid is not known: whether runs of
+// cells of the map can be passed over.
+class KnownNearby {
+ public:
+  // Cells of the map in a run.
+  static constexpr int kRun = TileLayout::kSide;
+
+  // Cells of the map, which has the resolution given, are placed in `grid`.
+  KnownNearby(const SubmapGrid& grid, const double map_resolution)
+      : grid_(grid),
+        is_near_(grid.tiles().size(),
+                 // Where a run is longer than two tiles, none is passed over.
+                 map_resolution > 2. * grid.resolution()) {
+    const TileLayout& tiles = grid.tiles();
+    for (size_t tile = 0; tile != tiles.size(); ++tile) {
+      if (!grid.HasTile(tile)) continue;
+      const CellBox cells = tiles.CellsOf(tile);
+      for (const int iy : {cells.min_y - 1, cells.min_y, cells.max_y + 1}) {
+        for (const int ix : {cells.min_x - 1, cells.min_x, cells.max_x + 1}) {
+          if (ix < 0 || iy < 0 || ix >= grid.num_x() || iy >= grid.num_y()) {
+            continue;
+          }
+          is_near_[tiles.TileOf(ix, iy)] = 1;
+        }
+      }
+    }
+  }
+
+  // Whether a cell may be known in a run whose middle lies here, in the local
+  // frame: no cell of it is more than four cells of the map away, which is no
+  // farther than the next tile.
+  bool MayKnow(const Eigen::Vector2d& middle) const {
+    const auto index = [this](const double offset, const int size) {
+      return static_cast<int>(
+          std::clamp(offset / grid_.resolution(), 0., size - 1.));
+    };
+    return is_near_[grid_.tiles().TileOf(
+               index(grid_.max_corner().y() - middle.y(), grid_.num_x()),
+               index(grid_.max_corner().x() - middle.x(), grid_.num_y()))] != 0;
+  }
+
+ private:
+  const SubmapGrid& grid_;
+  std::vector<uint8_t> is_near_;  // of each tile: it or one beside it is known
+};
+
 // Adds the log odds of one grid to the cells of the map that it covers.
 void AddGrid(const PlacedGrid& placed, io::OccupancyMap* map) {
   const SubmapGrid& grid = *placed.grid;
@@ -73,28 +120,35 @@ void AddGrid(const PlacedGrid& placed, io::OccupancyMap* map) {
         std::clamp((value - origin) / map->resolution, 0., size - 1.));
   };
   const int begin_x = index(bounds.min_x, map->origin.x, map->width);
-  const int end_x = index(bounds.max_x, map->origin.x, map->width);
+  const int end_x = index(bounds.max_x, map->origin.x, map->width) + 1;
   const int begin_y = index(bounds.min_y, map->origin.y, map->height);
-  const int end_y = index(bounds.max_y, map->origin.y, map->height);
+  const int end_y = index(bounds.max_y, map->origin.y, map->height) + 1;
   const Pose2 local_from_map = placed.map_from_local.Inverse();
+  // `x` and `y` in cells of the map, whose middles are at halves.
+  const auto local = [&](const double x, const double y) -> Eigen::Vector2d {
+    return local_from_map *
+           Eigen::Vector2d(map->origin.x + x * map->resolution,
+                           map->origin.y + y * map->resolution);
+  };
   LogOddsOfValues values(grid);
-  for (int y = begin_y; y <= end_y; ++y) {
-    for (int x = begin_x; x <= end_x; ++x) {
-      const Eigen::Vector2d local =
-          local_from_map *
-          Eigen::Vector2d(map->origin.x + (x + 0.5) * map->resolution,
-                          map->origin.y + (y + 0.5) * map->resolution);
-      const int iy = static_cast<int>(
-          std::floor((grid.max_corner().x() - local.x()) / grid.resolution()));
-      const int ix = static_cast<int>(
-          std::floor((grid.max_corner().y() - local.y()) / grid.resolution()));
-      if (ix < 0 || iy < 0 || ix >= grid.num_x() || iy >= grid.num_y()) {
-        continue;
-      }
-      const float log_odds = values.At(ix, iy);
-      if (std::isnan(log_odds)) continue;
-      float& cell = map->at(x, y);
-      cell = (std::isnan(cell) ? 0.f : cell) + log_odds;
+  const KnownNearby nearby(grid, map->resolution);
+  const auto add = [&](const int x, const int y) {
+    const Eigen::Vector2d place = local(x + 0.5, y + 0.5);
+    const int iy = static_cast<int>(
+        std::floor((grid.max_corner().x() - place.x()) / grid.resolution()));
+    const int ix = static_cast<int>(
+        std::floor((grid.max_corner().y() - place.y()) / grid.resolution()));
+    if (ix < 0 || iy < 0 || ix >= grid.num_x() || iy >= grid.num_y()) return;
+    const float log_odds = values.At(ix, iy);
+    if (std::isnan(log_odds)) return;
+    float& cell = map->at(x, y);
+    cell = (std::isnan(cell) ? 0.f : cell) + log_odds;
+  };
+  constexpr int kRun = KnownNearby::kRun;
+  for (int y = begin_y; y != end_y; ++y) {
+    for (int run = begin_x; run < end_x; run += kRun) {
+      if (!nearby.MayKnow(local(run + 0.5 * kRun, y + 0.5))) continue;
+      for (int x = run; x < std::min(end_x, run + kRun); ++x) add(x, y);
     }
   }
 }

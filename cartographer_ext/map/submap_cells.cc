@@ -25,33 +25,6 @@ double RoundedProbability(const float occupancy) {
          255.;
 }
 
-// How many moves follow that are as far from each other, and how many of them
-// make a cell (chessboard distance).
-struct EvenMoves {
-  size_t count = 0;
-  double per_cell = 0.;
-};
-
-// Of the number of moves in a distance.
-constexpr double kMoveRounding = 1e-3;
-// Steps that differ by less are even, cells.
-constexpr double kEvenStep = 1e-9;
-
-// For each move, those after it.
-std::vector<EvenMoves> EvenMovesFrom(
-    const std::vector<Eigen::Vector2d>& moves) {
-  std::vector<EvenMoves> result(moves.size());
-  double next = 0.;  // step from the move after this one
-  for (size_t i = moves.size(); i-- > 1;) {
-    const double step = (moves[i] - moves[i - 1]).cwiseAbs().maxCoeff();
-    EvenMoves& even = result[i - 1];
-    even.count = std::abs(step - next) < kEvenStep ? result[i].count + 1 : 1;
-    even.per_cell = 1. / std::max(step, kEvenStep);
-    next = step;
-  }
-  return result;
-}
-
 enum class CellKind : uint8_t { kNotSeen, kFree, kOccupied, kNeither };
 
 CellKind CellKindOf(const float occupancy) {
@@ -143,6 +116,7 @@ class SubmapCells::BoxBytes {
 constexpr double SubmapCells::kReach;
 constexpr uint8_t SubmapCells::kFar;
 constexpr uint8_t SubmapCells::kFree;
+constexpr double SubmapCells::kRounding;
 
 SubmapCells::SubmapCells(SubmapGrid grid, const double margin)
     : grid_(std::move(grid)), radius_(InCells(margin)) {
@@ -208,6 +182,7 @@ void SubmapCells::TakeTiles(BoxBytes* const codes, const int reach) {
       begins_.push_back(-nearest);
     }
   }
+  codes_.insert(codes_.end(), 4, kFar);
   codes_.shrink_to_fit();
 }
 
@@ -215,31 +190,28 @@ std::vector<int> SubmapCells::CountNearOccupied(
     const std::vector<Eigen::Vector2d>& points,
     const std::vector<Eigen::Vector2d>& shifts, const double tolerance) const {
   CHECK_LE(tolerance, kReach);
+  const size_t num = shifts.size();
   const Eigen::Vector2d origin = Cell(Eigen::Vector2d::Zero());
-  std::vector<Eigen::Vector2d> moves;
+  std::vector<Eigen::Vector2d> moves;  // in cells
+  double farthest = 0.;                // of them, along an axis
   for (const Eigen::Vector2d& shift : shifts) {
     moves.push_back(Cell(shift) - origin);
+    farthest = std::max(farthest, moves.back().cwiseAbs().maxCoeff());
   }
-  const std::vector<EvenMoves> even = EvenMovesFrom(moves);
   const double limit = tolerance / resolution();
-  std::vector<int> counts(shifts.size(), 0);
+  const int most = static_cast<int>(std::floor(limit));
+  std::vector<double> x(num + 3, 0.), y(num + 3, 0.);
+  std::vector<int32_t> codes(num + 3);
+  std::vector<int> counts(num, 0);
   for (const Eigen::Vector2d& point : points) {
     const Eigen::Vector2d cell = Cell(point);
-    for (size_t i = 0; i < moves.size(); ++i) {
-      const Eigen::Vector2d there = cell + moves[i];
-      if (!IsInside(there)) continue;
-      const int distance = Code(there) & kFar;
-      if (distance <= limit) {
-        ++counts[i];
-        continue;
-      }
-      // A move takes a cell's index at most one farther than its length.
-      const double skipped =
-          (distance - limit - 1.) * even[i].per_cell - kMoveRounding;
-      if (skipped >= 1.) {
-        i += std::min(even[i].count, static_cast<size_t>(skipped));
-      }
+    if (ViewOfCell(cell).reach > farthest + limit) continue;
+    for (size_t i = 0; i != num; ++i) {
+      x[i] = cell.x() + moves[i].x();
+      y[i] = cell.y() + moves[i].y();
     }
+    FindCodes(x, y, num, &codes);
+    for (size_t i = 0; i != num; ++i) counts[i] += (codes[i] & kFar) <= most;
   }
   return counts;
 }

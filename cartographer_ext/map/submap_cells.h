@@ -30,11 +30,12 @@ enum class CellEvidence : uint8_t { kUnsure, kFree, kOccupied };
 // A cell on a ray.
 struct CellView {
   CellEvidence evidence = CellEvidence::kUnsure;
-  // So many steps of one cell from the point, in any direction, do not end in
-  // an occupied cell.
-  int clear_steps = 0;
+  // No point that is at most so far away along each axis, in cells, lies in an
+  // occupied cell; negative if this cannot be said of any.
+  double reach = 0.;
   // Occupied, or within the margin of an occupied cell.
   bool near_occupied = false;
+  bool is_outside = false;  // of the grid
 };
 
 class SubmapCells {
@@ -70,20 +71,22 @@ class SubmapCells {
   }
   CellView ViewOfCell(const Eigen::Vector2d& cell) const {
     CellView view;
-    double distance = 0.;
     if (IsInside(cell)) {
       const uint8_t code = Code(cell);
+      const int distance = code & kFar;
       view.evidence = ToEvidence(code);
-      distance = code & kFar;
       view.near_occupied = distance <= radius_;
+      // The point may lie at the edge of its cell.
+      view.reach = distance - 1 - kRounding;
     } else if (cell.allFinite()) {
-      distance = std::min((cell - Eigen::Vector2d(grid_.num_x(), grid_.num_y()))
-                              .cwiseMax(-cell)
-                              .maxCoeff(),
-                          1e6);
+      view.is_outside = true;
+      view.reach =
+          std::min((cell - Eigen::Vector2d(grid_.num_x(), grid_.num_y()))
+                       .cwiseMax(-cell)
+                       .maxCoeff(),
+                   1e6) -
+          kRounding;
     }
-    // Rounding may move a cell by one.
-    view.clear_steps = std::max(0, static_cast<int>(distance) - 2);
     return view;
   }
   bool NearOccupied(const Eigen::Vector2d& point) const {
@@ -108,6 +111,8 @@ class SubmapCells {
   // whether the cell is free.
   static constexpr uint8_t kFar = 127;
   static constexpr uint8_t kFree = 128;
+  // More than rounding moves a point, cells.
+  static constexpr double kRounding = 1e-3;
 
   static CellEvidence ToEvidence(const uint8_t code) {
     return code == 0      ? CellEvidence::kOccupied
@@ -123,6 +128,10 @@ class SubmapCells {
     return cell.x() >= 0. && cell.y() >= 0. && cell.x() < grid_.num_x() &&
            cell.y() < grid_.num_y();
   }
+  // The codes of the first `num` of many cells, by their continuous indices; kFar
+  // outside. The vectors have room for so many, rounded up to a multiple of four.
+  void FindCodes(const std::vector<double>& x, const std::vector<double>& y,
+                 size_t num, std::vector<int32_t>* codes) const;
   // Of a cell inside.
   uint8_t Code(const Eigen::Vector2d& cell) const {
     return Code(static_cast<int>(cell.x()), static_cast<int>(cell.y()));
@@ -138,6 +147,7 @@ class SubmapCells {
   // Where in `codes_` each tile begins; negative: less the distance of all its
   // cells, which are unsure.
   std::vector<int32_t> begins_;
+  // With four bytes more, so that four can be read from any.
   std::vector<uint8_t> codes_;
 };
 

@@ -64,6 +64,7 @@ class TileLayout {
   static int CellInTile(const int ix, const int iy) {
     return (iy & (kSide - 1)) << kBits | (ix & (kSide - 1));
   }
+  int per_row() const { return per_row_; }
   // The cells of a tile that are in the grid.
   CellBox CellsOf(const size_t tile) const {
     const int x = kSide * static_cast<int>(tile % per_row_);

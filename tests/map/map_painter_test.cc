@@ -3,7 +3,9 @@
 #include "cartographer_ext/map/map_painter.h"
 
 #include <cmath>
+#include <cstdint>
 #include <deque>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -89,6 +91,51 @@ TEST(MapPainterTest, OverlappingGridsAddTheirEvidence) {
   const auto mixed = Paint({{occupied, Pose2()}, {free, Pose2()}}, 1.);
   ASSERT_TRUE(mixed.ok());
   EXPECT_NEAR(mixed->at(0, 0), 0.5, 1e-5);
+}
+
+// Grids of many tiles of which few are known, at any pose and resolution.
+TEST(MapPainterTest, NoKnownCellIsPassedOver) {
+  std::mt19937 random(3);
+  const auto uniform = [&random](const double from, const double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  int64_t painted = 0, all = 0;
+  for (int round = 0; round < 120; ++round) {
+    Grid2D grid = SmallGrid();
+    const int num_x = static_cast<int>(uniform(1., 120.));
+    const int num_y = static_cast<int>(uniform(1., 120.));
+    grid.mutable_limits()->mutable_cell_limits()->set_num_x_cells(num_x);
+    grid.mutable_limits()->mutable_cell_limits()->set_num_y_cells(num_y);
+    grid.mutable_cells()->Clear();
+    grid.mutable_cells()->Resize(num_x * num_y, 0);
+    for (int known = static_cast<int>(uniform(1., 30.)); known > 0; --known) {
+      grid.set_cells(static_cast<int>(uniform(0., num_x * num_y)), 1 + known);
+    }
+    const Pose2 pose(uniform(-9., 9.), uniform(-9., 9.), uniform(-4., 4.));
+    const double resolution = uniform(0.3, 2.5);
+    const auto map = Paint({{grid, pose}}, resolution);
+    ASSERT_TRUE(map.ok()) << map.status();
+    const auto submap = SubmapGrid::Make(grid);
+    const Pose2 local_from_map = pose.Inverse();
+    for (int y = 0; y < map->height; ++y) {
+      for (int x = 0; x < map->width; ++x) {
+        const Eigen::Vector2d place =
+            local_from_map *
+            Eigen::Vector2d(map->origin.x + (x + 0.5) * resolution,
+                            map->origin.y + (y + 0.5) * resolution);
+        const double iy = std::floor(submap->max_corner().x() - place.x());
+        const double ix = std::floor(submap->max_corner().y() - place.y());
+        const bool is_known =
+            ix >= 0. && iy >= 0. && ix < num_x && iy < num_y &&
+            submap->Value(static_cast<int>(ix), static_cast<int>(iy)) != 0;
+        ASSERT_EQ(std::isnan(map->at(x, y)), !is_known);
+        painted += is_known;
+        ++all;
+      }
+    }
+  }
+  EXPECT_GT(painted, 1000);
+  EXPECT_LT(painted, all / 10);
 }
 
 TEST(MapPainterTest, RefusesNonsense) {

@@ -80,9 +80,9 @@ TEST(SubmapCellsTest, WithoutMarginEveryCellStandsForItself) {
   EXPECT_FALSE(cells.NearOccupied({1.75, 2.75}));
 }
 
-// In grids with some occupied cells, a walk of clear steps from anywhere never
-// ends in one of them, and most steps are clear in the middle of an empty grid.
-TEST(SubmapCellsTest, ClearStepsMeetNoWall) {
+// In grids with some occupied cells, no point within reach of another lies in
+// one of them, and in the middle of an empty grid most points are within reach.
+TEST(SubmapCellsTest, NoWallIsWithinReach) {
   std::mt19937 random(7);
   const auto uniform = [&](const double from, const double to) {
     return std::uniform_real_distribution<double>(from, to)(random);
@@ -96,18 +96,24 @@ TEST(SubmapCellsTest, ClearStepsMeetNoWall) {
     }
     const SubmapCells cells = CellsOf(grid, 0.1);
     const Eigen::Vector2d from(uniform(0., 3.), uniform(1.5, 4.));
-    const double angle = uniform(-kPi, kPi);
-    const Eigen::Vector2d step(0.1 * std::cos(angle), 0.1 * std::sin(angle));
     const CellView view = cells.View(from);
     EXPECT_EQ(view.evidence, cells.At(from));
-    for (int i = 1; i <= std::min(view.clear_steps, 100); ++i) {
-      EXPECT_NE(cells.At(from + i * step), CellEvidence::kOccupied);
+    EXPECT_TRUE(view.reach < 0. || view.evidence != CellEvidence::kOccupied);
+    const double reach = 0.1 * std::min(view.reach, 30.);
+    for (int i = 0; i < 20 && reach > 0.; ++i) {
+      // Some of them at the corners and edges.
+      const Eigen::Vector2d point =
+          from +
+          Eigen::Vector2d(std::max(-1., std::min(1., uniform(-2., 2.))),
+                          std::max(-1., std::min(1., uniform(-2., 2.)))) *
+              reach;
+      EXPECT_NE(cells.At(point), CellEvidence::kOccupied);
       ++skipped;
     }
   }
   EXPECT_GT(skipped, 1000);
   const SubmapCells cells = CellsOf(FreeGrid(), 0.1);
-  EXPECT_EQ(cells.View({std::nan(""), 2.5}).clear_steps, 0);
+  EXPECT_EQ(cells.View({std::nan(""), 2.5}).reach, 0.);
 }
 
 TEST(SubmapCellsTest, ScoresAreMeansOfProbabilities) {
@@ -203,7 +209,7 @@ TEST(SubmapCellsTest, TilesSayWhatEveryCellWouldSay) {
                                             0.05 * (tolerance + 0.5))[0],
                     distance <= tolerance ? 1 : 0);
         }
-        ASSERT_LE(cells.View(center).clear_steps, std::max(0, distance - 2));
+        ASSERT_LT(cells.View(center).reach, distance - 1);
         free += is_free;
         near += distance > 3 && distance <= 4;
       }

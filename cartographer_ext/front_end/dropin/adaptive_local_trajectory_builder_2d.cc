@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/memory/memory.h"
+#include "absl/types/optional.h"
 #include "cartographer/mapping/trajectory_node.h"
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/transform/transform.h"
@@ -249,14 +250,17 @@ OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(
   if (submap != nullptr) {
     matched.scans_in_map = submap->num_range_data();
   }
+  // Of all questions about this match; found when the first one is asked.
+  absl::optional<scan_matching::PoseEvidence> evidence;
   if (submap != nullptr && !match.overrules_odometry) {
     matched.evidence = [&](const Pose2& error) {
+      if (!evidence.has_value()) {
+        evidence.emplace(match.pose, cloud, *submap->grid(),
+                         scan_matching::PosePrecision::kCell);
+      }
       // Along a corridor it fits as well on the other side.
-      const scan_matching::PoseEvidence evidence(
-          match.pose, cloud, *submap->grid(),
-          scan_matching::PosePrecision::kCell);
-      return std::min(evidence.Against(match.pose * error),
-                      evidence.Against(match.pose * error.Inverse()));
+      return std::min(evidence->Against(match.pose * error),
+                      evidence->Against(match.pose * error.Inverse()));
     };
   }
   if (has_pose_) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 
 #include "cartographer_ext/map/verdict/placed_submaps.h"
 
@@ -12,56 +12,142 @@ namespace cartographer_ext {
 namespace evaluation {
 namespace {
 
-// True where the ray goes through a wall and on, well before its end.
-bool CrossesWall(const SubmapCells& cells, const Eigen::Vector2d& from,
-                 const Eigen::Vector2d& to, const double margin) {
-  const double length = (to - from).norm() - margin;
-  const double step = cells.resolution();
-  if (!(length > step)) return false;
-  // In cells, of which each step is one long.
-  const Eigen::Vector2d start = cells.Cell(from);
-  const Eigen::Vector2d direction = (cells.Cell(to) - start).normalized();
-  const double num_steps = length / step;
-  bool in_wall = false;
-  for (int64_t i = 1;; ++i) {
-    const double travelled = static_cast<double>(i);
-    if (!(travelled < num_steps)) return false;
-    const CellView cell = cells.ViewOfCell(start + travelled * direction);
-    if (cell.evidence == CellEvidence::kOccupied) in_wall = true;
-    // Free space behind it: not just a graze along the wall.
-    if (in_wall && cell.evidence == CellEvidence::kFree) return true;
-    if (!in_wall) i += cell.clear_steps;
-  }
-}
+// A ray on its way through a submap, looked at in steps of one cell.
+struct Ray {
+  size_t point;
+  Eigen::Vector2d direction;  // of length 1, cells
+  double num_steps;
+  // Steps after which it is a cell farther along the axis of its larger
+  // advance, 1 to sqrt(2).
+  double steps_per_cell;
+  double step;  // the next, a whole number
+  bool in_wall;
+};
 
-ScanConflict HoldAgainst(const std::vector<Eigen::Vector2d>& scan,
-                         const Pose2& local_from_node, const SubmapCells& cells,
-                         const ContradictionOptions& options) {
-  ScanConflict result;
-  const Eigen::Vector2d origin = local_from_node.translation();
-  for (const Eigen::Vector2d& point : scan) {
-    const Eigen::Vector2d end = local_from_node * point;
-    if (CrossesWall(cells, origin, end, options.ray_margin)) {
-      ++result.judged;
-      ++result.crossings;
-      continue;
+// Holds scans against submaps. All rays of a scan are taken one step farther in
+// turn: a processor then works on many of them at a time, where along one ray
+// each step must wait for what the submap says about the one before.
+class ScanHolder {
+ public:
+  explicit ScanHolder(const ContradictionOptions& options)
+      : options_(options) {}
+
+  ScanConflict Hold(const std::vector<Eigen::Vector2d>& scan,
+                    const Pose2& local_from_node, const SubmapCells& cells) {
+    ScanConflict result;
+    origin_ = local_from_node.translation();
+    start_ = cells.Cell(origin_);
+    start_reach_ = cells.ViewOfCell(start_).reach;
+    LookAtEnds(scan, local_from_node, cells, &result);
+    // Of the others none goes through a wall.
+    if (result.judged + static_cast<int>(num_rays_) < options_.min_judged) {
+      return result;
     }
-    const CellView view = cells.View(end);
-    if (view.near_occupied) {
-      ++result.judged;
-    } else if (view.evidence == CellEvidence::kFree) {
-      ++result.judged;
-      ++result.free_hits;
+    StartRays(scan, local_from_node, cells);
+    while (num_rays_ > 0) AdvanceRays(cells, &result);
+    return result;
+  }
+
+ private:
+  // Counts what the submap says about the ends, and collects the rays that it
+  // takes more to tell of whether they meet a wall.
+  void LookAtEnds(const std::vector<Eigen::Vector2d>& scan,
+                  const Pose2& local_from_node, const SubmapCells& cells,
+                  ScanConflict* const result) {
+    // Along the axis of the larger advance, cells.
+    const double margin =
+        options_.ray_margin / cells.resolution() * kLeastAdvance;
+    if (rays_.size() < scan.size()) {
+      ends_.resize(scan.size());
+      rays_.resize(scan.size());
+    }
+    num_rays_ = 0;
+    for (size_t i = 0; i != scan.size(); ++i) {
+      const Eigen::Vector2d end = cells.Cell(local_from_node * scan[i]);
+      const CellView view = cells.ViewOfCell(end);
+      ends_[i].is_free_hit =
+          view.evidence == CellEvidence::kFree && !view.near_occupied;
+      ends_[i].is_judged = view.near_occupied || ends_[i].is_free_hit;
+      result->judged += ends_[i].is_judged;
+      result->free_hits += ends_[i].is_free_hit;
+      const double length = (end - start_).cwiseAbs().maxCoeff();
+      rays_[num_rays_].point = i;
+      num_rays_ += !(start_reach_ >= length - std::max(margin, view.reach));
     }
   }
-  return result;
-}
+
+  void StartRays(const std::vector<Eigen::Vector2d>& scan,
+                 const Pose2& local_from_node, const SubmapCells& cells) {
+    const double step = cells.resolution();
+    size_t kept = 0;
+    for (size_t i = 0; i != num_rays_; ++i) {
+      Ray ray = rays_[i];
+      const Eigen::Vector2d end = local_from_node * scan[ray.point];
+      const double length = (end - origin_).norm() - options_.ray_margin;
+      ray.direction = (cells.Cell(end) - start_).normalized();
+      ray.num_steps = length / step;
+      ray.steps_per_cell = 1. / ray.direction.cwiseAbs().maxCoeff();
+      ray.step =
+          1. + std::floor(std::max(0., start_reach_) * ray.steps_per_cell);
+      ray.in_wall = false;
+      if (!(length > step) || !std::isfinite(ray.num_steps)) continue;
+      if (ray.step < ray.num_steps) rays_[kept++] = ray;
+    }
+    num_rays_ = kept;
+  }
+
+  // Takes out rays at their ends, and those that go through a wall and on, well
+  // before their ends: these count as such, and not for what is at their ends.
+  void AdvanceRays(const SubmapCells& cells, ScanConflict* const result) {
+    size_t kept = 0;
+    for (size_t i = 0; i != num_rays_; ++i) {
+      Ray ray = rays_[i];
+      const CellView cell = cells.ViewOfCell(start_ + ray.step * ray.direction);
+      ray.in_wall |= cell.evidence == CellEvidence::kOccupied;
+      // Free space behind it: not just a graze along the wall.
+      const bool crosses = ray.in_wall && cell.evidence == CellEvidence::kFree;
+      if (crosses) {
+        const End& end = ends_[ray.point];
+        result->judged += !end.is_judged;
+        result->free_hits -= end.is_free_hit;
+        ++result->crossings;
+      }
+      // Nor is there free space outside.
+      const int clear_steps =
+          ray.in_wall && !cell.is_outside
+              ? 0
+              : static_cast<int>(cell.reach * ray.steps_per_cell);
+      ray.step += 1 + clear_steps;
+      rays_[kept] = ray;
+      kept += !crosses && ray.step < ray.num_steps;
+    }
+    num_rays_ = kept;
+  }
+
+  // What a submap says about the end of a ray.
+  struct End {
+    bool is_judged;
+    bool is_free_hit;
+  };
+  static constexpr double kLeastAdvance = 0.7071;  // a little under sqrt(0.5)
+
+  const ContradictionOptions options_;
+  Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();  // in the local frame
+  Eigen::Vector2d start_ = Eigen::Vector2d::Zero();   // in cells
+  double start_reach_ = 0.;
+  std::vector<End> ends_;  // by point; of what was held last
+  // Of which it is not known yet whether they go through a wall: the first
+  // `num_rays_`. The memory is kept for the next scan.
+  std::vector<Ray> rays_;
+  size_t num_rays_ = 0;
+};
 
 // Judges one node against all submaps of other times; appends the conflicts.
 NodeContradiction Judge(const std::vector<PlacedSubmap>& submaps,
                         const MapContents& contents, const GraphId& node_id,
                         const GraphNode& graph_node,
                         const ContradictionOptions& options,
+                        ScanHolder* const holder,
                         std::vector<ScanConflict>* const conflicts) {
   NodeContradiction node;
   node.node_id = node_id;
@@ -70,10 +156,9 @@ NodeContradiction Judge(const std::vector<PlacedSubmap>& submaps,
   ForEachSubmapOfAnotherTime(
       submaps, contents, node_id, pose, options.min_node_gap,
       [&](const PlacedSubmap& submap) {
-        ScanConflict conflict =
-            HoldAgainst(contents.scans.at(node_id),
-                        submap.LocalFromMap(pose.translation()) * pose,
-                        *submap.cells, options);
+        ScanConflict conflict = holder->Hold(
+            contents.scans.at(node_id),
+            submap.LocalFromMap(pose.translation()) * pose, *submap.cells);
         if (conflict.judged < options.min_judged) return;
         conflict.node_id = node_id;
         conflict.submap_id = submap.id;
@@ -100,15 +185,22 @@ NodeContradiction Judge(const std::vector<PlacedSubmap>& submaps,
 
 }  // namespace
 
+ScanConflict HoldAgainst(const std::vector<Eigen::Vector2d>& scan,
+                         const Pose2& local_from_node, const SubmapCells& cells,
+                         const ContradictionOptions& options) {
+  return ScanHolder(options).Hold(scan, local_from_node, cells);
+}
+
 Contradictions FindContradictions(const MapGraph& graph,
                                   const MapContents& contents,
                                   const ContradictionOptions& options) {
   const std::vector<PlacedSubmap> submaps = PlaceSubmaps(graph, contents);
   Contradictions result;
   std::vector<PieceNode> in_conflict;
+  ScanHolder holder(options);
   for (const auto& entry : graph.nodes) {
     const NodeContradiction node =
-        Judge(submaps, contents, entry.first, entry.second, options,
+        Judge(submaps, contents, entry.first, entry.second, options, &holder,
               &result.conflicts);
     if (node.judged > 0) ++result.judged_nodes;
     result.judged_rays += node.judged;

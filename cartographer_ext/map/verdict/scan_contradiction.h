@@ -16,6 +16,7 @@
 
 #include <vector>
 
+#include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/map/verdict/path_piece.h"
@@ -83,6 +84,13 @@ struct Contradictions {
                                    static_cast<double>(judged_nodes);
   }
 };
+
+// Holds a scan (in the frame of its node, metres) against a submap in whose
+// local frame the pose of the node is given. Where it turns out that fewer than
+// `min_judged` rays can be judged, only the ends of the rays are counted.
+ScanConflict HoldAgainst(const std::vector<Eigen::Vector2d>& scan,
+                         const Pose2& local_from_node, const SubmapCells& cells,
+                         const ContradictionOptions& options);
 
 Contradictions FindContradictions(const MapGraph& graph,
                                   const MapContents& contents,

@@ -2,6 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/map/verdict/scan_contradiction.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/map/verdict/box_world.h"
@@ -117,6 +124,133 @@ TEST(ScanContradictionTest, OwnAndNeighbouringSubmapsDoNotCount) {
   options.min_node_gap = 200;
   EXPECT_EQ(
       FindContradictions(world.graph, world.contents, options).judged_nodes, 0);
+}
+
+// The definition: along each ray every cell is looked at, one by one.
+bool PlainlyCrossesWall(const SubmapCells& cells, const Eigen::Vector2d& from,
+                        const Eigen::Vector2d& to, const double margin) {
+  const double length = (to - from).norm() - margin;
+  const double step = cells.resolution();
+  if (!(length > step)) return false;
+  const Eigen::Vector2d start = cells.Cell(from);
+  const Eigen::Vector2d direction = (cells.Cell(to) - start).normalized();
+  bool in_wall = false;
+  for (int i = 1; i < length / step; ++i) {
+    const CellEvidence evidence =
+        cells.ViewOfCell(start + i * direction).evidence;
+    if (evidence == CellEvidence::kOccupied) in_wall = true;
+    if (in_wall && evidence == CellEvidence::kFree) return true;
+  }
+  return false;
+}
+
+ScanConflict PlainlyHold(const std::vector<Eigen::Vector2d>& scan,
+                         const Pose2& pose, const SubmapCells& cells,
+                         const ContradictionOptions& options) {
+  ScanConflict result;
+  for (const Eigen::Vector2d& point : scan) {
+    const Eigen::Vector2d end = pose * point;
+    if (PlainlyCrossesWall(cells, pose.translation(), end,
+                           options.ray_margin)) {
+      ++result.judged;
+      ++result.crossings;
+    } else if (cells.NearOccupied(end)) {
+      ++result.judged;
+    } else if (cells.At(end) == CellEvidence::kFree) {
+      ++result.judged;
+      ++result.free_hits;
+    }
+  }
+  return result;
+}
+
+// Rooms, pillars and patches of what is not known, cells of 0.1 m.
+cartographer::mapping::proto::Grid2D RandomGrid(std::mt19937* const random) {
+  const auto uniform = [random](const int from, const int to) {
+    return std::uniform_int_distribution<int>(from, to)(*random);
+  };
+  cartographer::mapping::proto::Grid2D grid = test::BoxGrid();
+  const bool is_small = uniform(0, 5) == 0;
+  const int num_x = is_small ? uniform(1, 20) : uniform(60, 160);
+  const int num_y = is_small ? uniform(1, 20) : uniform(60, 160);
+  auto& limits = *grid.mutable_limits()->mutable_cell_limits();
+  limits.set_num_x_cells(num_x);
+  limits.set_num_y_cells(num_y);
+  grid.clear_cells();
+  grid.mutable_cells()->Resize(num_x * num_y, uniform(0, 3) == 0 ? 0 : 30000);
+  for (int patch = uniform(0, 16); patch > 0; --patch) {
+    const int values[] = {0, 1000, 1000, 16384, 30000, 30000, 30000};
+    const int value = values[uniform(0, 6)];
+    const bool is_wall = value == 1000;
+    const int x = uniform(0, num_x - 1), y = uniform(0, num_y - 1);
+    const int length = uniform(1, 90), width = uniform(1, is_wall ? 3 : 60);
+    const bool along_x = uniform(0, 1) == 0;
+    for (int iy = y; iy < std::min(num_y, y + (along_x ? width : length));
+         ++iy) {
+      for (int ix = x; ix < std::min(num_x, x + (along_x ? length : width));
+           ++ix) {
+        grid.set_cells(iy * num_x + ix, value);
+      }
+    }
+  }
+  return grid;
+}
+
+TEST(ScanContradictionTest, RaysMeetWhatAPlainWalkMeets) {
+  std::mt19937 random(5);
+  const auto uniform = [&random](const double from, const double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  int64_t crossings = 0, free_hits = 0, judged = 0, dropped = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const SubmapCells cells(*SubmapGrid::Make(RandomGrid(&random)),
+                            uniform(0., 0.3));
+    // In the grid or beside it, also at its corners, and along its axes.
+    Pose2 pose(uniform(-9., 6.), uniform(-9., 6.), uniform(-kPi, kPi));
+    if (round % 7 == 0) pose = Pose2(5. - 0.1 * (round % 50), 5., 0.5 * kPi);
+    std::vector<Eigen::Vector2d> scan;
+    for (int i = 0; i < 120; ++i) {
+      const double angle = i * kPi / 60.;
+      const double range = std::pow(uniform(0., 1.), 2.) * 15.;
+      scan.emplace_back(range * std::cos(angle), range * std::sin(angle));
+    }
+    scan.emplace_back(0., 0.);
+    ContradictionOptions options;
+    options.ray_margin = round % 3 == 0 ? 0. : uniform(0., 1.);
+    options.min_judged = round % 2 == 0 ? 0 : 25;
+    const ScanConflict result = HoldAgainst(scan, pose, cells, options);
+    const ScanConflict expected = PlainlyHold(scan, pose, cells, options);
+    if (expected.judged < options.min_judged) {
+      EXPECT_LT(result.judged, options.min_judged) << round;
+      ++dropped;
+      continue;
+    }
+    EXPECT_EQ(result.judged, expected.judged) << round;
+    EXPECT_EQ(result.crossings, expected.crossings) << round;
+    EXPECT_EQ(result.free_hits, expected.free_hits) << round;
+    crossings += result.crossings;
+    free_hits += result.free_hits;
+    judged += result.judged;
+  }
+  EXPECT_GT(crossings, 2000);
+  EXPECT_GT(free_hits, 20000);
+  EXPECT_GT(judged - crossings - free_hits, 2000);
+  EXPECT_GT(dropped, 30);
+}
+
+TEST(ScanContradictionTest, ARayOfAnyLengthIsSoonAtItsEnd) {
+  const SubmapCells cells(*SubmapGrid::Make(test::BoxGrid()), 0.15);
+  ContradictionOptions options;
+  options.min_judged = 0;
+  // Out of the box without free space behind its wall, and into it from afar.
+  EXPECT_EQ(HoldAgainst({{9e8, -2e8}}, Pose2(), cells, options).judged, 0);
+  EXPECT_EQ(
+      HoldAgainst({{9e6, 0.}}, Pose2(-9e6, 0., 0.), cells, options).crossings,
+      1);
+  EXPECT_EQ(HoldAgainst({{std::numeric_limits<double>::infinity(), 0.}},
+                        Pose2(), cells, options)
+                .judged,
+            0);
 }
 
 TEST(ScanContradictionTest, EmptyMap) {
