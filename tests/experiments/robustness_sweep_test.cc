@@ -165,6 +165,21 @@ TEST(RobustnessSweepTest, KernelsThatAgreeOnNothingDoNotEndTheSearch) {
   EXPECT_LE(runs->front().truncated, runs->front().right_truncated);
 }
 
+// So many wrong loops that groups are not searched where kernels find some map; here
+// they find none with any loop.
+TEST(RobustnessSweepTest, GroupsAreSearchedWhereNothingElseExplainsALoop) {
+  SweepOptions options;
+  options.families = {"ring"};
+  options.kernels = {"auto"};
+  options.types = {"RG"};
+  options.counts = {"80%"};
+  options.first_seed = 36001;
+  const auto runs = RunSweep(options);
+  ASSERT_TRUE(runs.ok()) << runs.status();
+  EXPECT_TRUE(runs->front().success);
+  EXPECT_LE(runs->front().truncated, runs->front().right_truncated);
+}
+
 }  // namespace
 }  // namespace experiments
 }  // namespace cartographer_ext

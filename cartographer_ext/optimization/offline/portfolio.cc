@@ -236,6 +236,10 @@ double Portfolio::FitsByChance() const {
   return result;
 }
 
+bool Portfolio::ExplainsNothing() const {
+  return num_loops_ - CountRejected() <= FitsByChance();
+}
+
 bool Portfolio::FindsLostGroup() {
   ForceOptions force;
   force.max_trials = kMaxTrialsOfSettled;
@@ -312,8 +316,7 @@ bool Portfolio::RejectedContradict() {
     if (weights[i] == 0.) rejected.push_back(i);
   }
   if (rejected.empty()) return true;
-  // A map without loops explains nothing.
-  if (rejected.size() == num_loops_) return false;
+  if (ExplainsNothing()) return false;
   const std::vector<Innovation> innovations = PredictLoops(
       Thinned(rejected, kMaxInnovations), weights, poses, &solver_);
   return !innovations.empty() && !MorePossibleThanByChance(innovations);
@@ -350,7 +353,7 @@ void Portfolio::Run() {
   RunStarts(!continued_ && CanKeepAllLoops() &&
             ((!settled && size <= kMaxGrowthWork) ||
              CountRejected() <= 0.25 * num_loops_));
-  if (!settled && size <= kMaxGrowthWork) {
+  if (!settled && (size <= kMaxGrowthWork || ExplainsNothing())) {
     RunGroups();
   } else {
     if (!settled) AddCertain();

@@ -158,6 +158,8 @@ class Portfolio {
   // How many of the rejected loops would fit into the best map if they led
   // anywhere in it: where that are many, so may other maps fit them.
   double FitsByChance() const;
+  // Whether the best map keeps no more loops than would fit by chance.
+  bool ExplainsNothing() const;
   // Whether one of the largest groups of rejected loops that agree with each
   // other, forced in, leads to a map that costs less.
   bool FindsLostGroup();
