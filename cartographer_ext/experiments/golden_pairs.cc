@@ -112,7 +112,10 @@ absl::StatusOr<std::map<std::string, int>> ReadHeader(
   std::map<std::string, int> columns;
   int index = 0;
   for (const absl::string_view name : absl::StrSplit(header, ',')) {
-    columns.emplace(std::string(name), index++);
+    if (!columns.emplace(std::string(name), index++).second) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          reader->filename(), ": the first line has two columns '", name, "'"));
+    }
   }
   for (const char* const name : kColumns) {
     if (columns.count(name) == 0) {

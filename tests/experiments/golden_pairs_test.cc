@@ -56,6 +56,12 @@ TEST(ReadGoldenPairsTest, NamesWhatIsWrong) {
   EXPECT_NE(no_header.status().message().find("no column 'kind'"),
             std::string::npos)
       << no_header.status();
+  // The line has as many values as there are names.
+  const auto twice = ReadGoldenPairs(
+      WriteFile(std::string("x,y,") + kHeader +
+                "local,0,1,0,2,3,0,0,0,0.5,1,0.6,0,0,0,1,0,0,0,1,1,1\n"));
+  EXPECT_NE(twice.status().message().find("two columns 'x'"), std::string::npos)
+      << twice.status();
   const auto empty = ReadGoldenPairs(WriteFile(""));
   EXPECT_FALSE(empty.ok());
   const auto short_line =
