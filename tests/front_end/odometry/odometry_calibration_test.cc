@@ -226,6 +226,17 @@ TEST(OdometryCalibrationTest, ScansThatAreAlwaysFarApartAreNoGaps) {
   EXPECT_NEAR(calibration.translation_scale(), 1.03, 0.004);
 }
 
+// A driver that was given the wheels and the wheel base of another robot.
+TEST(OdometryCalibrationTest, WheelsOfAnotherSize) {
+  for (const double scale : {0.8, 0.87, 1.15, 1.25}) {
+    Robot robot(5, scale, 1. / scale, 0.01);
+    OdometryCalibration calibration(TranslationAndRotation());
+    for (int i = 0; i < 4000; ++i) calibration.Add(robot.Step());
+    EXPECT_NEAR(calibration.translation_scale(), scale, 0.005 * scale);
+    EXPECT_NEAR(calibration.rotation_scale(), 1. / scale, 0.02 / scale);
+  }
+}
+
 TEST(OdometryCalibrationTest, NothingIsAppliedBeyondTheLimit) {
   OdometryCalibrationOptions options = TranslationAndRotation();
   options.max_deviation = 0.02;
