@@ -32,8 +32,8 @@ void Feed(const double offset, const double noise, const int scans,
   }
 }
 
-TEST(TimeOffsetTest, FindsOffsetsFromNothingToAFifthOfASecond) {
-  for (const double offset : {-0.05, 0., 0.043, 0.08, 0.12, 0.2}) {
+TEST(TimeOffsetTest, FindsOffsetsFromNothingToSevenTenthsOfASecond) {
+  for (const double offset : {-0.05, 0., 0.043, 0.08, 0.12, 0.2, 0.45, 0.7}) {
     TimeOffsetEstimator estimator((TimeOffsetOptions()));
     Feed(offset, 0.002, 2000, &estimator);
     EXPECT_NEAR(estimator.offset(), offset, 0.01) << offset;
