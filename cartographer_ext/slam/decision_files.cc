@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/decision_files.h"
 
-#include "absl/strings/str_cat.h"
-#include "cartographer_ext/common/host_ticks.h"
 #include "cartographer_ext/loop_closure/decision_log.h"
 #include "cartographer_ext/slam/side_files.h"
 
@@ -36,15 +34,9 @@ absl::Status WriteDecisionsBeside(
 
 absl::StatusOr<std::vector<LoopDecision>> ReadDecisions(
     const std::string& records_filename) {
-  auto decisions = ReadSideFile(records_filename, loop_closure::ParseDecisions);
-  if (!decisions.ok()) return decisions.status();
-  for (const LoopDecision& decision : *decisions) {
-    if (AreHostTicks(decision.node_time())) continue;
-    return absl::DataLossError(absl::StrCat(
-        records_filename, ": decision record ", &decision - decisions->data(),
-        " is at ", decision.node_time(), ", which no clock can show"));
-  }
-  return decisions;
+  return ReadTimedSideFile<LoopDecision>(
+      records_filename, "decision", loop_closure::ParseDecisions,
+      [](const LoopDecision& record) { return record.node_time(); });
 }
 
 DecisionCounts CountDecisions(const std::vector<LoopDecision>& decisions) {

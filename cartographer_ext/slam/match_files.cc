@@ -5,9 +5,7 @@
 #include <iterator>
 #include <map>
 
-#include "absl/strings/str_cat.h"
 #include "cartographer/common/time.h"
-#include "cartographer_ext/common/host_ticks.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/map/host_types.h"
 #include "cartographer_ext/slam/side_files.h"
@@ -61,15 +59,9 @@ absl::Status WriteMatchesBeside(const std::string& pbstream_filename,
 
 absl::StatusOr<std::vector<MatchRecord>> ReadMatches(
     const std::string& records_filename) {
-  auto records = ReadSideFile(records_filename, front_end::ParseRecords);
-  if (!records.ok()) return records.status();
-  for (const MatchRecord& record : *records) {
-    if (AreHostTicks(record.time())) continue;
-    return absl::DataLossError(absl::StrCat(
-        records_filename, ": match record ", &record - records->data(),
-        " is at ", record.time(), ", which no clock can show"));
-  }
-  return records;
+  return ReadTimedSideFile<MatchRecord>(
+      records_filename, "match", front_end::ParseRecords,
+      [](const MatchRecord& record) { return record.time(); });
 }
 
 void MarkMatches(const std::vector<MatchRecord>& records,

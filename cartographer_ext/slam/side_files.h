@@ -6,14 +6,19 @@
 #ifndef CARTOGRAPHER_EXT_SLAM_SIDE_FILES_H_
 #define CARTOGRAPHER_EXT_SLAM_SIDE_FILES_H_
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "cartographer_ext/common/atomic_file.h"
+#include "cartographer_ext/common/host_ticks.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -52,6 +57,25 @@ absl::StatusOr<Records> ReadSideFile(
   if (records.ok()) return records;
   return absl::Status(records.status().code(),
                       absl::StrCat(filename, ": ", records.status().message()));
+}
+
+// The same for records with a time in host ticks; an error names the first record,
+// a `name`, at a time that is none.
+template <typename Record>
+absl::StatusOr<std::vector<Record>> ReadTimedSideFile(
+    const std::string& filename, const absl::string_view name,
+    absl::StatusOr<std::vector<Record>> (*const parse)(absl::string_view),
+    const std::function<int64_t(const Record&)>& time) {
+  auto records = ReadSideFile(filename, parse);
+  if (!records.ok()) return records;
+  for (size_t i = 0; i != records->size(); ++i) {
+    const int64_t ticks = time((*records)[i]);
+    if (AreHostTicks(ticks)) continue;
+    return absl::DataLossError(absl::StrCat(filename, ": ", name, " record ", i,
+                                            " is at ", ticks,
+                                            ", which no clock can show"));
+  }
+  return records;
 }
 
 }  // namespace evaluation

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <deque>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/squared.h"
 
@@ -73,14 +75,14 @@ void TimeOffsetEstimator::AddErrors(const std::vector<double>& errors) {
   if (errors_.size() > kMostErrors) errors_.pop_front();
   if (++num_errors_ % kErrorsBetweenUpdates != 0) return;
   noise_ = std::numeric_limits<double>::infinity();
-  std::vector<double> of_candidate(errors_.size());
-  for (size_t i = 0; i < errors.size(); ++i) {
-    for (size_t k = 0; k < errors_.size(); ++k) {
-      of_candidate[k] = errors_[k][i];
+  for (size_t i = 0; i < candidates_.size(); ++i) {
+    std::vector<double> of_candidate;
+    of_candidate.reserve(errors_.size());
+    for (const std::vector<double>& of_scan : errors_) {
+      of_candidate.push_back(of_scan[i]);
     }
-    const auto median = of_candidate.begin() + of_candidate.size() / 2;
-    std::nth_element(of_candidate.begin(), median, of_candidate.end());
-    noise_ = std::min(noise_, kSigmaPerMedian * *median);
+    noise_ = std::min(noise_,
+                      kSigmaPerMedian * UpperMedian(std::move(of_candidate)));
   }
 }
 

@@ -49,8 +49,8 @@ class ScanHolder {
   }
 
  private:
-  // Counts what the submap says about the ends, and collects the rays that it
-  // takes more to tell of whether they meet a wall.
+  // Counts what the submap says about the ends, and collects the rays of which
+  // that does not yet say whether they meet a wall.
   void LookAtEnds(const std::vector<Eigen::Vector2d>& scan,
                   const Pose2& local_from_node, const SubmapCells& cells,
                   ScanConflict* const result) {
