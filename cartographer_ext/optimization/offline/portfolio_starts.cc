@@ -187,6 +187,10 @@ void Portfolio::AddReplays() {
     if (Replay(graph_, softer, &replay).ok()) Add("r_isam, soft", replay.poses);
   } else if (JoinTrajectories(graph_, options_.smoother, &replay.poses)) {
     Add("joined", replay.poses);
+    if (Size() <= kMaxGrowthWork &&
+        GrowTrajectories(graph_, options_.smoother, support(), &replay.poses)) {
+      Add("grown", replay.poses);
+    }
   }
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/loop_support.h"
 #include "cartographer_ext/optimization/solvers/incremental_smoother.h"
 
 namespace cartographer_ext {
@@ -26,6 +27,14 @@ namespace optimization {
 // without effect, if odometry connects all poses.
 bool JoinTrajectories(const PoseGraph& graph, const SmootherOptions& options,
                       std::vector<Pose2>* poses);
+
+// The same for graphs most of whose loops are wrong: where a trajectory has few
+// loops of its own, what places it by itself is too uncertain, and kernels that are
+// wide enough for its drift take in wrong loops. In step 2 a map of what is placed
+// so far is grown (loop_growth.h) from each of the least contradicted places, and the
+// one with the lowest truncated cost taken. False with more than ten trajectories, too.
+bool GrowTrajectories(const PoseGraph& graph, const SmootherOptions& options,
+                      const LoopSupport& support, std::vector<Pose2>* poses);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

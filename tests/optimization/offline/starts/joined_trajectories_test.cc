@@ -85,6 +85,47 @@ TEST(JoinedTrajectoriesTest, OneTrajectoryIsLeftAlone) {
   EXPECT_EQ(poses[0].x, 7.);
 }
 
+// Sixteen right loops against six groups of six wrong ones that agree with each
+// other, by which kernels that are wide enough fold the map.
+struct RobotsWithGroups : TwoRobots {
+  RobotsWithGroups() {
+    for (int i = 0; i != 20; ++i) {
+      if (i % 5 == 0) continue;
+      graph.edges.push_back(
+          Edge(i, 39 - i, Between(truth[i], truth[39 - i]), true));
+    }
+    for (int group = 0; group != 6; ++group) {
+      for (int k = 0; k != 6; ++k) {
+        graph.edges.push_back(Edge(2 * group + k, 20 + (5 * group) % 14 + k,
+                                   Pose2(0.1 * group, -0.1, 0.), true));
+      }
+    }
+  }
+};
+
+TEST(JoinedTrajectoriesTest, GrowthPlacesTheSecondTrajectoryAmongWrongGroups) {
+  const RobotsWithGroups robots;
+  const LoopSupport support =
+      FindLoopSupport(robots.graph, LoopSupportOptions());
+  std::vector<Pose2> poses;
+  ASSERT_TRUE(
+      GrowTrajectories(robots.graph, SmootherOptions(), support, &poses));
+  EXPECT_LT(robots.Error(poses), 0.01);
+}
+
+TEST(JoinedTrajectoriesTest, GrowthLeavesOneTrajectoryAlone) {
+  TwoRobots robots;
+  robots.graph.edges.push_back(
+      Edge(19, 20, Between(robots.truth[19], robots.truth[20]), false));
+  const LoopSupport support =
+      FindLoopSupport(robots.graph, LoopSupportOptions());
+  std::vector<Pose2> poses = {Pose2(7., 0., 0.)};
+  EXPECT_FALSE(
+      GrowTrajectories(robots.graph, SmootherOptions(), support, &poses));
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses[0].x, 7.);
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext
