@@ -183,6 +183,12 @@ void MotionPredictor::PredictByOdometry(
     prediction->alternatives.push_back(since_anchor_.Inverse() *
                                        since_anchor.motion);
   }
+  if (monitor_.state() == OdometryState::kJumping) {
+    // Or the scan before was late: measured long before its stamp.
+    prediction->is_uncertain = true;
+    prediction->alternatives.push_back(monitor_.MissedMotion() *
+                                       odometry.motion);
+  }
   if (has_expectation || (interval < kLongestStop && HasJump(time))) {
     prediction->alternatives.push_back(without);
   } else if (interval < kLongestStop) {

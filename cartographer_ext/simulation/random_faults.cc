@@ -16,19 +16,28 @@ namespace {
 
 using Kind = OdometryFault::Kind;
 
-constexpr double kApart = 10.;      // seconds between two random faults
-constexpr double kMinSpeed = 0.15;  // a stale burst shows only while driving
+constexpr double kApart = 10.;        // seconds between two random faults
+constexpr double kMinSpeed = 0.15;    // a stale burst shows only while driving
+constexpr double kMinTurnRate = 0.3;  // rad/s; a stall shows while turning, too
 constexpr int kMaxAttempts = 1000;
 constexpr int kMaxCount = 1000;
 
-// A time at which the robot drives, away from the times already taken; negative
-// when the drive has no room left.
+bool Drives(const MotionState& state) {
+  return std::abs(state.speed) >= kMinSpeed;
+}
+
+bool Moves(const MotionState& state) {
+  return Drives(state) || std::abs(state.turn_rate) >= kMinTurnRate;
+}
+
+// A time at which the robot is in motion, and a second later, away from the times
+// already taken; negative when the drive has no room left.
 double FreeTime(const Drive& drive, const std::vector<double>& taken,
-                Random* random) {
+                bool (*is_in_motion)(const MotionState&), Random* random) {
   for (int attempt = 0; attempt != kMaxAttempts; ++attempt) {
     const double time = random->Uniform(kApart, drive.duration() - kApart);
-    if (time < kApart || std::abs(drive.At(time).speed) < kMinSpeed ||
-        std::abs(drive.At(time + 1.).speed) < kMinSpeed) {
+    if (time < kApart || !is_in_motion(drive.At(time)) ||
+        !is_in_motion(drive.At(time + 1.))) {
       continue;
     }
     bool is_free = true;
@@ -119,7 +128,7 @@ absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
   Random random = MakeRandom(seed, RandomStream::kFaults);
   for (OdometryFault& fault : *faults) {
     if (fault.kind == Kind::kReverse || fault.kind == Kind::kOffset) continue;
-    fault.start = FreeTime(drive, taken, &random);
+    fault.start = FreeTime(drive, taken, Drives, &random);
     if (fault.start < 0.) {
       return absl::InvalidArgumentError(
           absl::StrCat("odometry faults '", description, "': a drive of ",
@@ -129,6 +138,29 @@ absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
     Randomise(&fault, &random);
   }
   return faults;
+}
+
+absl::StatusOr<std::vector<ScanStall>> RandomStalls(const int count,
+                                                    const Drive& drive,
+                                                    const uint64_t seed) {
+  if (count < 0 || count > kMaxCount) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the number of stalls must be in [0, ", kMaxCount, "]"));
+  }
+  std::vector<ScanStall> stalls;
+  std::vector<double> taken;
+  Random random = MakeRandom(seed, RandomStream::kStalls);
+  for (int i = 0; i != count; ++i) {
+    const double start = FreeTime(drive, taken, Moves, &random);
+    if (start < 0.) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("a drive of ", drive.duration(),
+                       " s is too short for so many stalls: ", count));
+    }
+    taken.push_back(start);
+    stalls.push_back({start, random.Uniform(0.4, 1.)});
+  }
+  return stalls;
 }
 
 }  // namespace simulation

@@ -24,6 +24,7 @@ enum class RandomStream : uint64_t {
   kFaults,
   kBuilding,
   kOdometryLateral,
+  kStalls,
 };
 
 // The finaliser of SplitMix64 (Steele, Lea and Flood 2014) spreads neighbouring

@@ -32,6 +32,7 @@ World PerfectWorld(World world) {
   imu.accel_noise = imu.accel_bias_sigma = imu.accel_bias_walk = 0.;
   world.robot.jitter = 0.;
   world.faults.clear();
+  world.stalls.clear();
   return world;
 }
 
@@ -49,20 +50,23 @@ absl::StatusOr<std::unique_ptr<const Simulation>> Simulation::Create(
   absl::StatusOr<Drive> drive = Drive::Plan(world, options.seed);
   if (!drive.ok()) return drive.status();
   std::vector<OdometryFault> faults = world.faults;
+  std::vector<ScanStall> stalls = world.stalls;
   if (!options.perfect) {
     const absl::StatusOr<std::vector<OdometryFault>> more =
         RandomFaults(options.odometry_faults, *drive, options.seed);
     if (!more.ok()) return more.status();
     faults.insert(faults.end(), more->begin(), more->end());
+    const absl::StatusOr<std::vector<ScanStall>> more_stalls =
+        RandomStalls(options.scan_stalls, *drive, options.seed);
+    if (!more_stalls.ok()) return more_stalls.status();
+    stalls.insert(stalls.end(), more_stalls->begin(), more_stalls->end());
   }
   std::unique_ptr<Simulation> simulation(
       new Simulation(std::move(world), options, *std::move(drive)));
   const absl::Status status = simulation->CheckCollisions();
   if (!status.ok()) return status;
+  simulation->PlanScans(std::move(stalls));
   const double duration = simulation->drive_.duration() + kRounding;
-  const LaserSettings& laser = simulation->world_.laser;
-  simulation->num_scans_ = std::max<int64_t>(
-      0, static_cast<int64_t>((duration - laser.sweep) * laser.rate) + 1);
   if (simulation->world_.imu.present) {
     simulation->num_imu_ =
         static_cast<int64_t>(duration * simulation->world_.imu.rate) + 1;
@@ -72,8 +76,30 @@ absl::StatusOr<std::unique_ptr<const Simulation>> Simulation::Create(
   return std::unique_ptr<const Simulation>(std::move(simulation));
 }
 
-double Simulation::ScanTime(const int64_t i) const {
-  return world_.laser.sweep + i / world_.laser.rate;
+void Simulation::PlanScans(std::vector<ScanStall> stalls) {
+  const LaserSettings& laser = world_.laser;
+  const double duration = drive_.duration() + kRounding;
+  const auto num_measured = std::max<int64_t>(
+      0, static_cast<int64_t>((duration - laser.sweep) * laser.rate) + 1);
+  std::sort(
+      stalls.begin(), stalls.end(),
+      [](const ScanStall& a, const ScanStall& b) { return a.start < b.start; });
+  auto next = stalls.begin();
+  double stalled_until = 0.;
+  bool has_stalled = false;  // at the scan before
+  for (int64_t i = 0; i != num_measured; ++i) {
+    const double time = laser.sweep + i / laser.rate;
+    for (; next != stalls.end() && next->start <= time; ++next) {
+      stalled_until = std::max(stalled_until, next->start + next->duration);
+    }
+    const bool is_stalled = time < stalled_until;
+    if (is_stalled && has_stalled) {
+      scans_.back().stamp = time;
+    } else {
+      scans_.push_back({time, time});
+    }
+    has_stalled = is_stalled;
+  }
 }
 
 double Simulation::ImuTime(const int64_t i) const {

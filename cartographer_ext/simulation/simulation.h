@@ -26,6 +26,7 @@ struct SimulationOptions {
   uint64_t seed = 0;
   // Added to the world's own faults; see RandomFaults.
   std::string odometry_faults;
+  int scan_stalls = 0;  // likewise; see RandomStalls
   // No noise, bias, dropout, outlier, fault or waypoint jitter at all.
   bool perfect = false;
 };
@@ -47,17 +48,24 @@ class Simulation {
   const ObstacleMotion& obstacles() const { return obstacles_; }
   const OdometryRun& odometry() const { return odometry_; }
 
-  // Scan i is stamped ScanTime(i) seconds after the start of the drive.
-  int64_t num_scans() const { return num_scans_; }
-  double ScanTime(int64_t i) const;
+  // Scan i is stamped ScanTime(i) seconds after the start of the drive, and was
+  // measured then, or before if the laser had stalled.
+  int64_t num_scans() const { return static_cast<int64_t>(scans_.size()); }
+  double ScanTime(const int64_t i) const { return scans_[i].stamp; }
+  double MeasuredTime(const int64_t i) const { return scans_[i].measured; }
   int64_t num_imu() const { return num_imu_; }
   double ImuTime(int64_t i) const;
   // Nanoseconds of a time counted from the start of the drive.
   io::TimeNs Stamp(double time) const;
 
  private:
+  struct ScanTimes {
+    double stamp, measured;  // seconds
+  };
+
   Simulation(World world, const SimulationOptions& options, Drive drive);
   absl::Status CheckCollisions() const;
+  void PlanScans(std::vector<ScanStall> stalls);
 
   const World world_;
   const SimulationOptions options_;
@@ -65,7 +73,7 @@ class Simulation {
   const RayCaster plan_;
   const ObstacleMotion obstacles_;
   OdometryRun odometry_;
-  int64_t num_scans_ = 0;
+  std::vector<ScanTimes> scans_;
   int64_t num_imu_ = 0;
 };
 

@@ -130,6 +130,14 @@ struct OdometryFault {
   double seconds = 0.;                     // offset
 };
 
+// The driver of the laser stalls: the scan measured at `start`, seconds after the
+// start of the drive, is delivered `duration` later with the stamp of that time,
+// and those between are lost.
+struct ScanStall {
+  double start = 0.;
+  double duration = 0.;  // seconds
+};
+
 // A distance between two opposite walls, to be measured on the finished map.
 struct KeyDistance {
   std::string name;
@@ -158,6 +166,7 @@ struct World {
   Pose2 start;  // (world <- robot)
   std::vector<DriveCommand> drive;
   std::vector<OdometryFault> faults;
+  std::vector<ScanStall> stalls;
   std::vector<KeyDistance> key_distances;
   std::vector<RevisitPlace> places;
 };

@@ -151,6 +151,12 @@ void ReadFault(Statement* s, World* world) {
   OdometryFault fault;
   const std::string kind = s->Word("kind of fault");
   fault.start = s->Option("start", 0., 0., kMaxSeconds);
+  if (kind == "stall") {
+    world->stalls.push_back(
+        {fault.start, s->Option("duration", 0.6, 0., kMaxSeconds)});
+    if (world->stalls.size() > kMaxMarks) s->Fail("too many stalls");
+    return;
+  }
   if (kind == "slip") {
     fault.kind = Kind::kSlip;
     fault.in_place = s->Has("radius");
@@ -180,7 +186,7 @@ void ReadFault(Statement* s, World* world) {
     fault.duration = s->Option("duration", 0., 0., kMaxSeconds);
     fault.seconds = s->Option("seconds", 0.1, -10., 10.);
   } else {
-    s->Fail("kinds are slip, stale, jump, reverse, offset");
+    s->Fail("kinds are slip, stale, jump, reverse, offset, stall");
   }
   world->faults.push_back(fault);
   if (world->faults.size() > kMaxMarks) s->Fail("too many faults");

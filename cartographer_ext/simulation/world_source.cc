@@ -52,7 +52,7 @@ absl::StatusOr<bool> WorldSource::Next(io::SensorEvent* event) {
     ++next_imu_;
   } else {
     io::LaserScan scan =
-        laser_.Scan(simulation.drive(), simulation.ScanTime(next_scan_));
+        laser_.Scan(simulation.drive(), simulation.MeasuredTime(next_scan_));
     scan.time = scan_time;
     *event = std::move(scan);
     ++next_scan_;

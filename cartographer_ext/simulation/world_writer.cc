@@ -207,6 +207,10 @@ std::string FormatWorld(const World& world) {
   for (const DriveCommand& command : world.drive) AddCommand(command, &text);
   text += "\n";
   for (const OdometryFault& fault : world.faults) AddFault(fault, &text);
+  for (const ScanStall& stall : world.stalls) {
+    absl::StrAppend(&text, "fault     stall", Option("start", stall.start),
+                    Option("duration", stall.duration), "\n");
+  }
   for (const KeyDistance& distance : world.key_distances) {
     absl::StrAppend(&text, "key_distance ", distance.name, " ",
                     Point(distance.a), " ", Point(distance.b), "\n");

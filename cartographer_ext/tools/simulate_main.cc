@@ -73,6 +73,11 @@ DEFINE_int32(picture_pixels, 1600, "Longer side of the picture, pixels.");
 DEFINE_string(odometry_faults, "",
               "Faults at random times in addition to those of the world, comma "
               "separated: stale:N, jump:N, slip:N, reverse, offset:SECONDS.");
+DEFINE_int32(
+    scan_stalls, 0,
+    "Times, in addition to those of the world, at which the laser's "
+    "driver holds a scan back for 0.4 to 1 s: its stamp is that of the "
+    "delivery, and the scans between are lost.");
 DEFINE_bool(perfect, false,
             "Simulate sensors without noise, bias, dropouts or faults.");
 DEFINE_string(json, "", "Output: summary as JSON; - is standard output.");
@@ -237,6 +242,7 @@ absl::Status Run() {
   simulation::SimulationOptions options;
   options.seed = FLAGS_seed;
   options.odometry_faults = FLAGS_odometry_faults;
+  options.scan_stalls = FLAGS_scan_stalls;
   options.perfect = FLAGS_perfect;
   absl::StatusOr<std::unique_ptr<const simulation::Simulation>> created =
       simulation::Simulation::Create(*std::move(world), options);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a match that ends a contest with the odometry tells of the velocity.
+// What a match that ends a contest with the odometry tells of the velocity, and
+// what follows a jump.
 #include "cartographer_ext/front_end/motion_predictor.h"
 #include "gtest/gtest.h"
 
@@ -24,6 +25,26 @@ TEST(MotionPredictorContestTest, TheVelocityIsThatOfTheRival) {
     EXPECT_NEAR(prediction.motion.x, ends_contest ? 0.05 : -0.3, 1e-9);
     EXPECT_NEAR(prediction.motion.y, ends_contest ? 0.01 : 0., 1e-9);
   }
+}
+
+// The driver of the laser held a scan back for 0.7 s: while the robot turned by 0.7
+// rad, the scan shows 0.1. What the next one shows is known by the odometry since
+// the scan before.
+TEST(MotionPredictorContestTest, AJumpMayBeALateScan) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  for (int i = 0; i <= 19; ++i) {
+    predictor.AddOdometry(0.1 * i, Pose2(0., 0., 0.1 * i));
+    if (i > 10 && i < 18) continue;
+    MatchedMotion matched;
+    matched.motion = Pose2(0., 0., i == 0 ? 0. : 0.1);
+    if (i <= 18) predictor.AddMatch(0.1 * i, matched);
+  }
+  EXPECT_EQ(predictor.odometry_state(), OdometryState::kJumping);
+  const MotionPrediction prediction = predictor.Predict(1.9);
+  EXPECT_TRUE(prediction.is_uncertain);
+  EXPECT_NEAR(prediction.motion.theta, 0.1, 1e-9);
+  ASSERT_FALSE(prediction.alternatives.empty());
+  EXPECT_NEAR(prediction.alternatives[0].theta, 0.8, 1e-9);
 }
 
 }  // namespace

@@ -67,6 +67,25 @@ TEST(RandomFaultsTest, ComeWhileTheRobotDrivesAndApart) {
   }
 }
 
+TEST(RandomStallsTest, ComeInMotionAndApart) {
+  const Drive drive = Straight();
+  const auto stalls = RandomStalls(8, drive, 3);
+  ASSERT_TRUE(stalls.ok()) << stalls.status();
+  ASSERT_EQ(stalls->size(), 8u);
+  for (size_t i = 0; i != stalls->size(); ++i) {
+    const ScanStall& stall = (*stalls)[i];
+    EXPECT_GE(std::abs(drive.At(stall.start).speed), 0.15);
+    EXPECT_GE(stall.duration, 0.4);
+    EXPECT_LE(stall.duration, 1.);
+    for (size_t k = 0; k != i; ++k) {
+      EXPECT_GE(std::abs(stall.start - (*stalls)[k].start), 10.);
+    }
+  }
+  EXPECT_FALSE(RandomStalls(-1, drive, 3).ok());
+  EXPECT_FALSE(RandomStalls(1001, drive, 3).ok());
+  EXPECT_FALSE(RandomStalls(99, drive, 3).ok());  // no room for so many
+}
+
 TEST(RandomFaultsTest, TheSeedDecides) {
   EXPECT_EQ(Draw("jump:2", 4)[1].start, Draw("jump:2", 4)[1].start);
   EXPECT_NE(Draw("jump:2", 4)[1].start, Draw("jump:2", 5)[1].start);

@@ -129,6 +129,29 @@ TEST(WorldSourceTest, OneSensorDoesNotDisturbAnother) {
   }
 }
 
+// The scan is the first one of the stall, its stamp that of the last.
+TEST(WorldSourceTest, AStallHoldsAScanBack) {
+  auto plain = Create(kWorld, SimulationOptions());
+  auto stalled =
+      Create(std::string(kWorld) + "fault stall start=0.95 duration=0.6\n",
+             SimulationOptions());
+  ASSERT_TRUE(plain.ok() && stalled.ok());
+  // 1.0 to 1.5 s after the start, one scan instead of six.
+  EXPECT_EQ((*stalled)->num_scans(), (*plain)->num_scans() - 5);
+  for (const int64_t i : {9, 11, 20}) {
+    const double time = (*stalled)->ScanTime(i);
+    EXPECT_DOUBLE_EQ((*stalled)->MeasuredTime(i), time);
+    EXPECT_DOUBLE_EQ((*plain)->ScanTime(i < 10 ? i : i + 5), time);
+  }
+  EXPECT_DOUBLE_EQ((*stalled)->MeasuredTime(10), (*plain)->ScanTime(10));
+  EXPECT_DOUBLE_EQ((*stalled)->ScanTime(10), (*plain)->ScanTime(15));
+  SimulationOptions options;
+  options.scan_stalls = 99;
+  EXPECT_FALSE(Create(kWorld, options).ok());
+  options.perfect = true;
+  EXPECT_TRUE(Create(kWorld, options).ok());
+}
+
 TEST(WorldSourceTest, PerfectHasNoErrors) {
   SimulationOptions options;
   options.perfect = true;

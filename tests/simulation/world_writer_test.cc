@@ -81,6 +81,7 @@ TEST(WorldWriterTest, EveryStatement) {
       "fault     jump start=2 distance=0.7 angle=10\n"
       "fault     reverse start=3 duration=4\n"
       "fault     offset start=4 duration=5 seconds=0.1\n"
+      "fault     stall start=6 duration=0.4\n"
       "key_distance width 0 1 5 1\n"
       "revisit   here 1 1 radius=0.5\n";
   const auto world = ParseWorld(text, "all");

@@ -220,6 +220,7 @@ OdometryState OdometryMonitor::Judge(const MotionComparison& given) {
                   Between(last_agreed_.match, entry.match)) <= options_.gate;
     state_ = caught_up ? OdometryState::kStale : OdometryState::kJumping;
     const OdometryState result = state_;
+    jump_ = MissedBy(entry);
     Restart(comparison.time);
     return result;
   }
@@ -242,9 +243,12 @@ OdometryState OdometryMonitor::Judge(const MotionComparison& given) {
 }
 
 Pose2 OdometryMonitor::MissedMotion() const {
-  const Entry& now = window_.back();
-  return Between(now.match, last_agreed_.match) *
-         Between(last_agreed_.odometry, now.odometry);
+  return state_ == OdometryState::kJumping ? jump_ : MissedBy(window_.back());
+}
+
+Pose2 OdometryMonitor::MissedBy(const Entry& entry) const {
+  return Between(entry.match, last_agreed_.match) *
+         Between(last_agreed_.odometry, entry.odometry);
 }
 
 }  // namespace front_end

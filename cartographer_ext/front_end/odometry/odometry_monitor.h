@@ -129,7 +129,8 @@ class OdometryMonitor {
 
   // The difference of the motions by odometry and by the matches since they
   // last agreed: (robot now <- robot according to odometry). Identity while
-  // they agree.
+  // they agree. After a jump that of the jump: it may be the scan that is wrong,
+  // by a stamp long after it was measured.
   Pose2 MissedMotion() const;
 
  private:
@@ -152,6 +153,8 @@ class OdometryMonitor {
                         const Pose2& odometry, const Pose2& match,
                         double min_evidence);
   bool SuspectSlip(const MotionComparison& comparison);
+  // Since the last agreement up to `entry`, see MissedMotion.
+  Pose2 MissedBy(const Entry& entry) const;
   void Restart(double time);
 
   const OdometryCheckOptions options_;
@@ -159,6 +162,7 @@ class OdometryMonitor {
   // Never empty: the first entry is the start of both.
   std::deque<Entry> window_;
   Entry last_agreed_;
+  Pose2 jump_;  // the motion that was missed in a jump
   int num_faults_ = 0;
   double metres_ = 0.;  // driven by the matches
   // For the suspicion of slip.

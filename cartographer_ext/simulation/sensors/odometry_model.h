@@ -61,6 +61,12 @@ OdometryRun SimulateOdometry(const World& world, const Drive& drive,
 absl::StatusOr<std::vector<OdometryFault>> RandomFaults(
     const std::string& description, const Drive& drive, uint64_t seed);
 
+// So many stalls of 0.4 to 1 s while driving or turning, as far apart, depending on
+// the seed.
+absl::StatusOr<std::vector<ScanStall>> RandomStalls(int count,
+                                                    const Drive& drive,
+                                                    uint64_t seed);
+
 // An error where the description has another form.
 absl::Status CheckRandomFaults(const std::string& description);
 

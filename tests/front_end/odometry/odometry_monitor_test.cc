@@ -91,7 +91,13 @@ TEST(OdometryMonitorTest, AJumpIsOverAtOnce) {
   for (int i = 0; i < 20; ++i) drive.Step(kForward, kForward);
   EXPECT_EQ(drive.Step(Pose2(0.8, 0.1, 0.2), kForward),
             OdometryState::kJumping);
+  // Where the odometry would be right if the scan had come late.
+  const Pose2 missed = drive.monitor()->MissedMotion();
+  EXPECT_NEAR(missed.x, 0.75, 1e-9);
+  EXPECT_NEAR(missed.y, 0.1, 1e-9);
+  EXPECT_NEAR(missed.theta, 0.2, 1e-9);
   EXPECT_EQ(drive.Step(kForward, kForward), OdometryState::kOk);
+  EXPECT_NEAR(drive.monitor()->MissedMotion().x, 0., 1e-9);
 }
 
 TEST(OdometryMonitorTest, TheWrongSignInReverse) {
