@@ -96,6 +96,32 @@ ExplainedMap Explain(const std::vector<Pose2>& poses,
   return result;
 }
 
+// What the logarithm of the density may gain where the noise is changed to the one
+// that the residuals show.
+double GainOf(const ScaleEstimate& scale) {
+  const double variance = scale.factor * scale.factor;
+  return 0.5 * scale.degrees_of_freedom * (variance - 1. - std::log(variance));
+}
+
+// Whether a map with the noise of a `likelier` one is that much less likely, by odds
+// of 1000 beside what is asked for, that no other noise makes up for it: a folded map,
+// which need not be explained. What differs in a few loops may become one with that.
+bool IsHopeless(const std::vector<Pose2>& map, const ExplainedMap& likelier,
+                const double log_area, Portfolio* const portfolio) {
+  const std::vector<WhitenedEdge> edges = WithNoiseScale(
+      portfolio->edges(), likelier.metric.odometry, likelier.metric.loops);
+  RobustSolver solver(edges);
+  std::vector<Pose2> poses = map;
+  std::vector<double> decisions;
+  PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &poses, &decisions);
+  const double evidence =
+      LogEvidenceOfMap({poses, decisions}, portfolio->support(),
+                       portfolio->edges(), log_area, &solver);
+  const NoiseScale noise = EstimateNoiseScale(poses, decisions, &solver);
+  return evidence + GainOf(noise.odometry) + GainOf(noise.loops) <
+         likelier.evidence - 2. * kMuchLikelier;
+}
+
 // Whether cycles of loops show less noise than is claimed, by odds of a thousand, and
 // how much, not more than claimed. Not asked where all solvers agree on a map, but in
 // a small graph, where it costs nothing.
@@ -209,6 +235,7 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
   likeliest.evidence += kMuchLikelier;
   found->valid = false;
   for (const std::vector<Pose2>& other : others) {
+    if (IsHopeless(other, likeliest, log_area, portfolio)) continue;
     ExplainedMap explained = Explain(other, {}, log_area, portfolio);
     if (explained.evidence <= likeliest.evidence ||
         explained.accepted < kMinLoops ||
