@@ -3,8 +3,11 @@
 #include "cartographer_ext/map/verdict/placed_submaps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
+
+#include "cartographer_ext/common/squared.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -31,6 +34,18 @@ Box ScanBox(const std::vector<Eigen::Vector2d>& scan, const Pose2& pose) {
   std::vector<Eigen::Vector2d> points = {pose.translation()};
   for (const Eigen::Vector2d& point : scan) points.push_back(pose * point);
   return BoxOf(points);
+}
+
+double HeadingSigma(const std::vector<Anchor>& anchors) {
+  const auto count = static_cast<double>(anchors.size());
+  double sum = 0., squares = 0.;
+  for (const Anchor& anchor : anchors) {
+    const double turn = NormalizeAngle(anchor.local_from_map.theta -
+                                       anchors.front().local_from_map.theta);
+    sum += turn;
+    squares += Squared(turn);
+  }
+  return std::sqrt(std::max(0., squares / count - Squared(sum / count)));
 }
 
 }  // namespace
@@ -75,7 +90,9 @@ std::vector<PlacedSubmap> PlaceSubmaps(const MapGraph& graph,
     std::sort(
         entry.second.begin(), entry.second.end(),
         [](const Anchor& a, const Anchor& b) { return a.node_id < b.node_id; });
+    const double heading_sigma = HeadingSigma(entry.second);
     placed.push_back({entry.first, &cells->second, std::move(entry.second),
+                      heading_sigma,
                       SubmapBox(cells->second,
                                 MapFromLocal(graph.submaps.at(entry.first)))});
   }

@@ -38,7 +38,9 @@ struct PlacedSubmap {
   GraphId id;
   const SubmapCells* cells;
   std::vector<Anchor> anchors;  // at least one, by node
-  Box box;                      // by the pose of the submap
+  // Standard deviation of the headings that they give it, radians.
+  double heading_sigma;
+  Box box;  // by the pose of the submap
 
   const Anchor& NearestAnchor(const Eigen::Vector2d& place) const;
   // As the inserted node nearest to a place saw it.

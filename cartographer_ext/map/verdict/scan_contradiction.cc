@@ -142,6 +142,46 @@ class ScanHolder {
   size_t num_rays_ = 0;
 };
 
+double MeanRange(const std::vector<Eigen::Vector2d>& scan) {
+  double sum = 0.;
+  for (const Eigen::Vector2d& point : scan) sum += point.norm();
+  return sum / static_cast<double>(std::max<size_t>(1, scan.size()));
+}
+
+// The result that contradicts least of those that errors of the headings of the
+// node and of the node that places the submap explain (scan_contradiction.h).
+ScanConflict HoldAsPlaced(const std::vector<Eigen::Vector2d>& scan,
+                          const Pose2& pose, const PlacedSubmap& submap,
+                          const ContradictionOptions& options,
+                          ScanHolder* const holder) {
+  const Anchor& anchor = submap.NearestAnchor(pose.translation());
+  ScanConflict least =
+      holder->Hold(scan, anchor.local_from_map * pose, *submap.cells);
+  const int min_judged = std::max(options.min_judged, least.judged / 2);
+  const double lever =
+      (pose.translation() - anchor.place).norm() + MeanRange(scan);
+  const double reach =
+      std::min(options.heading_sigmas * submap.heading_sigma * lever,
+               options.max_displacement);
+  if (least.judged < options.min_judged || reach <= options.precision) {
+    return least;
+  }
+  const Pose2 about(anchor.place.x(), anchor.place.y(), 0.);
+  for (const double share : {0.5, -0.5, 1., -1.}) {
+    const Pose2 turn(0., 0., share * reach / lever);
+    for (const Pose2& turned :
+         {about * turn * about.Inverse() * pose, pose * turn}) {
+      if (least.fraction() <= options.conflict_fraction) return least;
+      const ScanConflict held =
+          holder->Hold(scan, anchor.local_from_map * turned, *submap.cells);
+      if (held.judged >= min_judged && held.fraction() < least.fraction()) {
+        least = held;
+      }
+    }
+  }
+  return least;
+}
+
 // Judges one node against all submaps of other times; appends the conflicts.
 NodeContradiction Judge(const std::vector<PlacedSubmap>& submaps,
                         const MapContents& contents, const GraphId& node_id,
@@ -156,9 +196,8 @@ NodeContradiction Judge(const std::vector<PlacedSubmap>& submaps,
   ForEachSubmapOfAnotherTime(
       submaps, contents, node_id, pose, options.min_node_gap,
       [&](const PlacedSubmap& submap) {
-        ScanConflict conflict = holder->Hold(
-            contents.scans.at(node_id),
-            submap.LocalFromMap(pose.translation()) * pose, *submap.cells);
+        ScanConflict conflict = HoldAsPlaced(contents.scans.at(node_id), pose,
+                                             submap, options, holder);
         if (conflict.judged < options.min_judged) return;
         conflict.node_id = node_id;
         conflict.submap_id = submap.id;

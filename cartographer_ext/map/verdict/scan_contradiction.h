@@ -2,12 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Contradictions within a map, without ground truth. Each scan, at the pose of
-// its node in the map, is compared with the submaps of other times, each placed
-// by its inserted node nearest to the scan: a return in space that such a
-// submap holds free, or a ray through a wall of such a submap, indicates that
-// one of the two is misplaced. (Moved furniture has the same effect, but on a
-// few rays, not on most of the scan.) A folded map has path pieces whose scans
-// contradict most of the submaps they overlap.
+// its node in the map, is compared with the submaps of other times: a return in
+// space that such a submap holds free, or a ray through a wall of such a submap,
+// indicates that one of the two is misplaced. (Moved furniture has the same
+// effect, but on a few rays, not on most of the scan.) A folded map has path
+// pieces whose scans contradict most of the submaps they overlap.
+//
+// A submap is placed by its inserted node nearest to the scan: where the
+// optimisation has bent a submap, it lies elsewhere as drawn than the scans it
+// was drawn from. But 20 m away from that node an error of its heading of one
+// degree moves what the scan sees by 0.35 m, and so does an error of the heading
+// of the scan itself. How well headings are known, the map tells: by those that
+// the inserted nodes of a submap give it, with standard deviation sigma. A scan
+// is in conflict only if it is at all turns of the scan or of the submap about
+// its nearest node within two sigma, as far as these move what the scan sees by
+// no more than half a metre, beyond which a map is wrong in any case.
 //
 // Scans are not compared with the submaps they were inserted into, nor with
 // those built just before or after, which local SLAM has aligned.
@@ -33,6 +42,13 @@ struct ContradictionOptions {
   int min_judged = 25;
   // A pair of scan and submap is in conflict above this share of rays.
   double conflict_fraction = 0.35;
+  // Turns that headings are taken to be off by, at most, in standard deviations.
+  double heading_sigmas = 2.;
+  // Displacements of what a scan sees by such turns, metres: these are tried up
+  // to the second, and not at all up to the first (cells count as occupied that
+  // far from a wall, see MapContentsOptions).
+  double precision = 0.15;
+  double max_displacement = 0.5;
   PathPieceOptions pieces;
 };
 

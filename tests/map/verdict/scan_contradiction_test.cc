@@ -69,6 +69,33 @@ TEST(ScanContradictionTest, ARightMapHasNone) {
   EXPECT_EQ(result.nodes.size(), 100u);
 }
 
+// Nodes from 60 on are displaced; the inserted nodes of both submaps have
+// headings off by `heading_error`, in turn to either side.
+test::BoxWorld WorldOfHeadings(const double heading_error, const Pose2& wrong) {
+  test::BoxWorld world = test::MakeBoxWorld(60, wrong);
+  for (int i = 0; i < 100; ++i) {
+    if (10 <= i && i < 90) continue;
+    world.graph.nodes.at({0, i}).global_pose.theta +=
+        i % 2 == 0 ? heading_error : -heading_error;
+  }
+  return world;
+}
+
+int64_t NodesInConflict(const test::BoxWorld& world) {
+  return FindContradictions(world.graph, world.contents, {}).conflict_nodes;
+}
+
+TEST(ScanContradictionTest, HeadingsThatAreNotKnownExplainATurnButNoShift) {
+  const Pose2 turned(0., 0., DegToRad(-16.));
+  EXPECT_GT(NodesInConflict(WorldOfHeadings(0., turned)), 20);
+  EXPECT_EQ(NodesInConflict(WorldOfHeadings(DegToRad(4.), turned)), 0);
+  const Pose2 moved(1.5, 1.2, 0.);
+  EXPECT_GT(NodesInConflict(WorldOfHeadings(DegToRad(4.), moved)), 20);
+  // More than half a metre at the walls is a conflict in any case.
+  const Pose2 far_turned(0., 0., DegToRad(20.));
+  EXPECT_GT(NodesInConflict(WorldOfHeadings(DegToRad(10.), far_turned)), 20);
+}
+
 TEST(ScanContradictionTest, NodesMovedAwayContradictTheFirstSubmap) {
   const test::BoxWorld world =
       test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
