@@ -22,7 +22,8 @@ namespace {
 
 // Relative difference of truncated costs of one and the same optimum.
 constexpr double kSame = 1e-6;
-// Of a solution that is polished anyway.
+// Of a solution that is polished anyway, where the rest does not search to the last
+// loop either.
 constexpr double kRoughly = 1e-4;
 // Loops by which solvers differ that decide only what is near the gate
 // differently.
@@ -389,7 +390,7 @@ void Portfolio::Soften() {
     SolverOptions options;
     options.kernel = DefaultKernel(type);
     options.kernel.parameter = kChi2Gate;
-    options.cost_tolerance = kRoughly;
+    if (Size() > kMaxGrowthWork) options.cost_tolerance = kRoughly;
     std::vector<Pose2> poses = best().poses;
     Count(solver_.Solve(options, &poses));
     Add(Suffixed(best().name, ", softened"), std::move(poses));
