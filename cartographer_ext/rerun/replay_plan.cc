@@ -171,11 +171,15 @@ class SubmapChain {
     return found == stored.size();
   }
 
-  // The first submap is alone for half of its nodes only.
+  // The first submap is alone for half of its nodes only. If a later node is in
+  // it and in another, that is the second: nodes whose scans were not inserted
+  // are more than the scans of a submap.
   bool IsSecondMissing() const {
     if (active_.size() != 1) return false;
     const ReplaySubmap& first = plan_->submaps[active_[0]];
-    if (!first.finished) return false;
+    if (!first.finished || uses_.at(first.stored_index).has_successor) {
+      return false;
+    }
     int nodes = 0;
     for (size_t i = first.first_step; i < plan_->steps.size(); ++i) {
       if (plan_->steps[i].node_id.trajectory_id == trajectory_id_) ++nodes;

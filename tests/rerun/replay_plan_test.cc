@@ -89,6 +89,17 @@ TEST(ReplayPlanTest, OneFinishedSubmapHasASuccessorInTime) {
   EXPECT_THAT(plan->steps[4].submaps, ElementsAre(1, 2));
 }
 
+TEST(ReplayPlanTest, NodesThatWereNotInsertedDoNotBringASuccessorForward) {
+  MapGraph graph = Chain(7, 4);
+  // Half of the nodes that count as inserted are not in the grid.
+  graph.submaps.at({0, 0}).num_range_data = 2;
+  const auto plan = MakeReplayPlan(graph);
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  EXPECT_EQ(plan->num_placeholders, 0);
+  EXPECT_THAT(plan->steps[1].submaps, ElementsAre(0));
+  EXPECT_THAT(plan->steps[2].submaps, ElementsAre(0, 1));
+}
+
 TEST(ReplayPlanTest, ParallelTrajectoriesAreInterleaved) {
   MapGraph graph = Chain(4, 4, 0, 0);
   const MapGraph second = Chain(4, 4, 1, 2);
