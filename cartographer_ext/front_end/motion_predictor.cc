@@ -129,8 +129,7 @@ void MotionPredictor::PredictByImu(const double interval, const ImuMotion& imu,
     // The integration starts with the speed of a match.
     const double sigma =
         kRelativeSpeedError * options_.constant_velocity.speed_noise * interval;
-    prediction->covariance(0, 0) += Squared(sigma);
-    prediction->covariance(1, 1) += Squared(sigma);
+    prediction->covariance.diagonal().head<2>().array() += Squared(sigma);
     return;
   }
   prediction->motion = velocity_.Motion(interval);
@@ -295,8 +294,7 @@ bool MotionPredictor::IsStationary(const double time,
   OdometryMotion odometry;
   return monitor_.IsTrusted() && !IsOdometryDead() &&
          IntegrateOdometry(last_time_, time, &odometry) && !odometry.is_late &&
-         std::hypot(odometry.motion.x, odometry.motion.y) <
-             kStationaryWheelMotion &&
+         odometry.motion.translation().norm() < kStationaryWheelMotion &&
          std::abs(odometry.motion.theta) < kStationaryWheelMotion &&
          std::hypot(match.x, match.y) < kStationaryMatchTranslation &&
          std::abs(match.theta) < kStationaryMatchRotation;
