@@ -42,13 +42,6 @@ constexpr double kMinSpeed = 0.1;  // m/s, for the age of the map that is seen
 // repeats: no evidence of a bias of the gyroscope.
 constexpr int kMinScansInMap = 10;
 
-// The second moment of an error that is the difference of two motions.
-Eigen::Matrix3d Spread(const Pose2& a, const Pose2& b) {
-  const Eigen::Vector3d d(b.x - a.x, b.y - a.y,
-                          NormalizeAngle(b.theta - a.theta));
-  return d.cwiseAbs2().asDiagonal();
-}
-
 }  // namespace
 
 MotionPredictor::MotionPredictor(const MotionPredictorOptions& options)
@@ -81,6 +74,11 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   const bool has_imu = IntegrateImu(last_time_, time, &imu);
   if (has_imu) PredictByImu(interval, imu, &prediction);
 
+  if (has_imu && velocity_.may_be_late() &&
+      monitor_.state() == OdometryState::kAbsent) {
+    prediction.is_uncertain = true;
+    prediction.alternatives.push_back(velocity_.MotionAfterLateScan(interval));
+  }
   OdometryMotion odometry;
   if (IsOdometryDead()) return prediction;
   if (IntegrateOdometry(last_time_, time, &odometry)) {

@@ -16,6 +16,29 @@ namespace {
 // while they turn fast.
 constexpr double kInitialTurnRateSigma = 0.2;
 
+// A scan is late after a gap of this many intervals, up to this long, if the motion
+// that it shows falls short of that by the velocity by so much.
+constexpr double kGapRatio = 1.5;
+constexpr double kLongestStall = 2.;      // seconds
+constexpr double kMissedDistance = 0.15;  // metres
+constexpr double kMissedAngle = 0.15;     // radians
+
+// Along an arc.
+Pose2 AtVelocity(const Pose2& velocity, const double interval) {
+  const double half = 0.5 * velocity.theta * interval;
+  const double chord =
+      std::abs(half) > 1e-9 ? std::sin(half) / half * interval : interval;
+  const Pose2 heading(0., 0., half);
+  return heading * Pose2(velocity.x * chord, velocity.y * chord, 0.) * heading;
+}
+
+// How far apart two motions are, in what makes a scan late.
+double Missed(const Pose2& a, const Pose2& b) {
+  const Pose2 off = Between(a, b);
+  return off.translation().norm() / kMissedDistance +
+         std::abs(NormalizeAngle(off.theta)) / kMissedAngle;
+}
+
 // Covariance of the change of the velocity over `interval`, per second squared.
 Eigen::Matrix3d Change(const ConstantVelocityOptions& options,
                        const double interval) {
@@ -64,8 +87,32 @@ Eigen::Matrix3d VelocityFilter::MotionCovariance(const double interval) const {
   return interval * interval * VelocityCovariance(interval) + pose_covariance_;
 }
 
+void VelocityFilter::Judge(const double interval, const Pose2& motion) {
+  const Pose2 expected = AtVelocity(velocity_, interval);
+  const bool is_gap =
+      interval > kGapRatio * last_interval_ && interval < kLongestStall;
+  const bool is_short =
+      expected.translation().norm() - motion.translation().norm() >
+          kMissedDistance ||
+      std::abs(expected.theta) - std::abs(motion.theta) > kMissedAngle;
+  may_be_late_ = last_interval_ > 0. && is_gap && is_short;
+  velocity_before_ = velocity_;
+  late_motion_ = motion;
+  last_interval_ = late_interval_ = interval;
+}
+
+Pose2 VelocityFilter::MotionAfterLateScan(const double interval) const {
+  return Between(late_motion_,
+                 AtVelocity(velocity_before_, late_interval_ + interval));
+}
+
 void VelocityFilter::AddMatch(const double interval, const Pose2& motion,
                               const Eigen::Matrix3d& covariance) {
+  if (may_be_late_) {
+    Restart(interval, motion);
+    return;
+  }
+  Judge(interval, motion);
   const Pose2 predicted = Motion(interval);
   const Eigen::Vector3d off(motion.x - predicted.x, motion.y - predicted.y,
                             NormalizeAngle(motion.theta - predicted.theta));
@@ -76,7 +123,7 @@ void VelocityFilter::AddMatch(const double interval, const Pose2& motion,
   const Eigen::Matrix3d after =
       Symmetric(before - gain * (p - covariance) * gain.transpose());
   if (!change.allFinite() || !after.allFinite()) {
-    Restart(interval, motion);
+    Reset(interval, motion);
     return;
   }
   velocity_.x += change.x();
@@ -95,6 +142,17 @@ void VelocityFilter::AddMatch(const double interval, const Pose2& motion,
 }
 
 void VelocityFilter::Restart(const double interval, const Pose2& motion) {
+  Pose2 own = motion;
+  if (may_be_late_ && Missed(motion, MotionAfterLateScan(interval)) <
+                          Missed(motion, AtVelocity(velocity_, interval))) {
+    // It was late: of the motion only the last part belongs to the interval.
+    own = Between(MotionAfterLateScan(0.), motion);
+  }
+  Judge(interval, own);
+  Reset(interval, own);
+}
+
+void VelocityFilter::Reset(const double interval, const Pose2& motion) {
   velocity_ =
       Pose2(motion.x / interval, motion.y / interval, motion.theta / interval);
   covariance_ = 2. / (interval * interval) * pose_covariance_;

@@ -67,7 +67,17 @@ class VelocityFilter {
   // difference of the poses.
   void Restart(double interval, const Pose2& motion);
 
+  // The last scan came after a gap and shows much less motion than the velocity
+  // before: the robot has slowed down, or the scan is late, measured at the
+  // beginning of the gap, and the robot is far ahead of it.
+  bool may_be_late() const { return may_be_late_; }
+  // Then (robot at the last scan <- robot now), by the velocity before the gap.
+  Pose2 MotionAfterLateScan(double interval) const;
+
  private:
+  // Whether the match at the end of `interval` may be that of a late scan.
+  void Judge(double interval, const Pose2& motion);
+  void Reset(double interval, const Pose2& motion);
   // V at the end of `interval`.
   Eigen::Matrix3d VelocityCovariance(double interval) const;
 
@@ -75,6 +85,12 @@ class VelocityFilter {
   const Eigen::Matrix3d pose_covariance_;  // S
   Pose2 velocity_;
   Eigen::Matrix3d covariance_;  // V after the last scan
+  double last_interval_ = 0.;   // between the last two scans, seconds
+  bool may_be_late_ = false;
+  // Of the late scan: the velocity before, what it shows, and when it came.
+  Pose2 velocity_before_;
+  Pose2 late_motion_;
+  double late_interval_ = 0.;
 };
 
 }  // namespace front_end

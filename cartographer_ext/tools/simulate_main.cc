@@ -227,6 +227,15 @@ absl::StatusOr<simulation::World> MakeWorld() {
   return simulation::ParseWorld(text, world->name);
 }
 
+simulation::SimulationOptions OptionsByFlags() {
+  simulation::SimulationOptions options;
+  options.seed = FLAGS_seed;
+  options.odometry_faults = FLAGS_odometry_faults;
+  options.scan_stalls = FLAGS_scan_stalls;
+  options.perfect = FLAGS_perfect;
+  return options;
+}
+
 absl::Status Run() {
   const std::clock_t begin = std::clock();
   std::vector<std::string> outputs = {FLAGS_picture_filename, FLAGS_json,
@@ -239,13 +248,8 @@ absl::Status Run() {
   AtomicFileSet files;
   absl::StatusOr<simulation::World> world = MakeWorld();
   if (!world.ok()) return world.status();
-  simulation::SimulationOptions options;
-  options.seed = FLAGS_seed;
-  options.odometry_faults = FLAGS_odometry_faults;
-  options.scan_stalls = FLAGS_scan_stalls;
-  options.perfect = FLAGS_perfect;
   absl::StatusOr<std::unique_ptr<const simulation::Simulation>> created =
-      simulation::Simulation::Create(*std::move(world), options);
+      simulation::Simulation::Create(*std::move(world), OptionsByFlags());
   if (!created.ok()) {
     return absl::Status(
         created.status().code(),

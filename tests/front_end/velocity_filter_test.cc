@@ -121,6 +121,44 @@ TEST(VelocityFilterTest, NumbersThatAreNoneAreSurvived) {
   EXPECT_NEAR(covariance(0, 0), 0.01 * (0.25 + 0.01) + 1e-4, 1e-12);
 }
 
+// 0.5 m/s and 0.8 rad/s; a scan comes 0.7 s after the one before and shows 0.1 s of
+// that.
+TEST(VelocityFilterTest, AScanAfterAGapMayBeLate) {
+  VelocityFilter filter(ConstantVelocityOptions(), 0.01, 0.01);
+  const Pose2 step = Pose2(0., 0., 0.04) * Pose2(0.05, 0., 0.04);
+  filter.Restart(0.1, step);
+  EXPECT_FALSE(filter.may_be_late());  // there was no interval before
+  filter.Restart(0.1, step);
+  EXPECT_FALSE(filter.may_be_late());
+  filter.Restart(0.7, step);
+  ASSERT_TRUE(filter.may_be_late());
+  const Pose2 motion = filter.MotionAfterLateScan(0.1);
+  EXPECT_NEAR(motion.theta, 0.56, 1e-9);
+  EXPECT_NEAR(motion.translation().norm(), 0.35, 0.01);
+  // It was: what the scan after it shows beyond the gap is the velocity.
+  filter.Restart(0.1, motion);
+  EXPECT_FALSE(filter.may_be_late());
+  EXPECT_NEAR(filter.velocity().theta, 0.8, 1e-9);
+  EXPECT_NEAR(filter.velocity().x, 0.5, 5e-3);
+}
+
+TEST(VelocityFilterTest, ARobotThatStopsInAGapHasStopped) {
+  VelocityFilter filter(ConstantVelocityOptions(), 0.01, 0.01);
+  for (int i = 0; i < 2; ++i) filter.Restart(0.1, Pose2(0.05, 0., 0.));
+  filter.Restart(0.7, Pose2(0.06, 0., 0.));
+  EXPECT_TRUE(filter.may_be_late());
+  filter.Restart(0.1, Pose2(0.001, 0., 0.));
+  EXPECT_FALSE(filter.may_be_late());
+  EXPECT_NEAR(filter.velocity().x, 0.01, 1e-9);
+  // A little less motion is no sign, nor is a gap of many seconds.
+  for (int i = 0; i < 2; ++i) filter.Restart(0.1, Pose2(0.05, 0., 0.));
+  filter.Restart(0.7, Pose2(0.25, 0., 0.));
+  EXPECT_FALSE(filter.may_be_late());
+  for (int i = 0; i < 2; ++i) filter.Restart(0.1, Pose2(0.05, 0., 0.));
+  filter.Restart(3., Pose2(0.25, 0., 0.));
+  EXPECT_FALSE(filter.may_be_late());
+}
+
 }  // namespace
 }  // namespace front_end
 }  // namespace cartographer_ext

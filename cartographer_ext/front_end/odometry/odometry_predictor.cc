@@ -40,6 +40,12 @@ Eigen::Matrix3d TravelCovariance(const OdometryNoiseOptions& options,
   return covariance;
 }
 
+Eigen::Matrix3d Spread(const Pose2& a, const Pose2& b) {
+  const Eigen::Vector3d d(b.x - a.x, b.y - a.y,
+                          NormalizeAngle(b.theta - a.theta));
+  return d.cwiseAbs2().asDiagonal();
+}
+
 Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
                                    const Pose2& motion) {
   const double rotation =

@@ -65,6 +65,9 @@ struct OdometryMotion {
   bool is_reckoned = false;
 };
 
+// The second moment of an error that is the difference of two motions.
+Eigen::Matrix3d Spread(const Pose2& a, const Pose2& b);
+
 // The covariance above for a motion.
 Eigen::Matrix3d OdometryCovariance(const OdometryNoiseOptions& options,
                                    const Pose2& motion);
