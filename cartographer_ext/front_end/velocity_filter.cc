@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "Eigen/Cholesky"
+#include "cartographer_ext/common/arc.h"
 #include "cartographer_ext/common/planar_matrix.h"
 
 namespace cartographer_ext {
@@ -23,13 +24,12 @@ constexpr double kLongestStall = 2.;      // seconds
 constexpr double kMissedDistance = 0.15;  // metres
 constexpr double kMissedAngle = 0.15;     // radians
 
-// Along an arc.
 Pose2 AtVelocity(const Pose2& velocity, const double interval) {
-  const double half = 0.5 * velocity.theta * interval;
-  const double chord =
-      std::abs(half) > 1e-9 ? std::sin(half) / half * interval : interval;
-  const Pose2 heading(0., 0., half);
-  return heading * Pose2(velocity.x * chord, velocity.y * chord, 0.) * heading;
+  const Pose2 direction(0., 0., std::atan2(velocity.y, velocity.x));
+  return direction *
+         ArcPose(velocity.translation().norm() * interval,
+                 velocity.theta * interval) *
+         direction.Inverse();
 }
 
 // How far apart two motions are, in what makes a scan late.
@@ -97,13 +97,13 @@ void VelocityFilter::Judge(const double interval, const Pose2& motion) {
       std::abs(expected.theta) - std::abs(motion.theta) > kMissedAngle;
   may_be_late_ = last_interval_ > 0. && is_gap && is_short;
   velocity_before_ = velocity_;
-  late_motion_ = motion;
-  last_interval_ = late_interval_ = interval;
+  last_motion_ = motion;
+  last_interval_ = interval;
 }
 
 Pose2 VelocityFilter::MotionAfterLateScan(const double interval) const {
-  return Between(late_motion_,
-                 AtVelocity(velocity_before_, late_interval_ + interval));
+  return Between(last_motion_,
+                 AtVelocity(velocity_before_, last_interval_ + interval));
 }
 
 void VelocityFilter::AddMatch(const double interval, const Pose2& motion,

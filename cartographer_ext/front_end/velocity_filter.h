@@ -77,6 +77,7 @@ class VelocityFilter {
  private:
   // Whether the match at the end of `interval` may be that of a late scan.
   void Judge(double interval, const Pose2& motion);
+  // As Restart, where nothing is late.
   void Reset(double interval, const Pose2& motion);
   // V at the end of `interval`.
   Eigen::Matrix3d VelocityCovariance(double interval) const;
@@ -85,12 +86,11 @@ class VelocityFilter {
   const Eigen::Matrix3d pose_covariance_;  // S
   Pose2 velocity_;
   Eigen::Matrix3d covariance_;  // V after the last scan
-  double last_interval_ = 0.;   // between the last two scans, seconds
-  bool may_be_late_ = false;
-  // Of the late scan: the velocity before, what it shows, and when it came.
+  // Between the last two scans: seconds, what they show, and the velocity before.
+  double last_interval_ = 0.;
+  Pose2 last_motion_;
   Pose2 velocity_before_;
-  Pose2 late_motion_;
-  double late_interval_ = 0.;
+  bool may_be_late_ = false;
 };
 
 }  // namespace front_end

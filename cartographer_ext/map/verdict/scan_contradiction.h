@@ -12,7 +12,7 @@
 // optimisation has bent a submap, it lies elsewhere as drawn than the scans it
 // was drawn from. But 20 m away from that node an error of its heading of one
 // degree moves what the scan sees by 0.35 m, and so does an error of the heading
-// of the scan itself. How well headings are known, the map tells: by those that
+// of the scan itself. The map itself shows how well headings are known: by those that
 // the inserted nodes of a submap give it, with standard deviation sigma. A scan
 // is in conflict only if it is at all turns of the scan or of the submap about
 // its nearest node within two sigma, as far as these move what the scan sees by

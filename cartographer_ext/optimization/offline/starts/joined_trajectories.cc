@@ -92,7 +92,7 @@ class Joiner {
   }
 
  private:
-  // A way to place a trajectory.
+  // Where a loop places a trajectory.
   struct Place {
     double contradiction = 0.;
     int loop = 0;
