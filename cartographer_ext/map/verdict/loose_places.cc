@@ -132,10 +132,10 @@ class PathTies {
   // Whether the robot has not come back in between.
   bool IsOneVisit(const int i, const int k) const {
     return ids_[i].trajectory_id == ids_[k].trajectory_id &&
-           std::abs(travelled_[i] - travelled_[k]) <
-               2. *
-                   ((poses_[i].translation() - poses_[k].translation()).norm() +
-                    options_.visit_distance);
+           evaluation::IsOneVisit(
+               std::abs(travelled_[i] - travelled_[k]),
+               (poses_[i].translation() - poses_[k].translation()).norm(),
+               options_.visit_distance);
   }
 
   bool Factorize(BlockLdlt* const solver) const {

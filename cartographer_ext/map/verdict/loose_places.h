@@ -34,6 +34,7 @@
 
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/map/map_graph.h"
+#include "cartographer_ext/map/verdict/placed_submaps.h"
 #include "cartographer_ext/map/verdict/revisit_displacement.h"
 #include "cartographer_ext/uncertainty/path_uncertainty.h"
 
@@ -47,7 +48,7 @@ struct LoosePlaceOptions {
   double limit = 0.25;  // metres
   double sigmas = 2.;
   // Two places this close are visits of one.
-  double visit_distance = 2.;  // metres
+  double visit_distance = kVisitDistance;  // metres
   // Indices of nodes; places closer in the sequence are one visit.
   int min_node_gap = 40;
   // Evenly along the path, but no closer than `min_spacing` metres.

@@ -50,6 +50,33 @@ double HeadingSigma(const std::vector<Anchor>& anchors) {
 
 }  // namespace
 
+TravelledWay::TravelledWay(const MapGraph& graph) {
+  const std::pair<const GraphId, GraphNode>* last = nullptr;
+  double metres = 0.;
+  for (const auto& node : graph.nodes) {
+    const bool continues = last != nullptr && last->first.trajectory_id ==
+                                                  node.first.trajectory_id;
+    metres = continues ? metres + (node.second.local_pose.translation() -
+                                   last->second.local_pose.translation())
+                                      .norm()
+                       : 0.;
+    metres_[node.first] = metres;
+    last = &node;
+  }
+}
+
+bool TravelledWay::AreOneVisit(const GraphId& a, const GraphId& b,
+                               const double distance,
+                               const double visit_distance) const {
+  const auto first = metres_.find(a), second = metres_.find(b);
+  if (a.trajectory_id != b.trajectory_id || first == metres_.end() ||
+      second == metres_.end()) {
+    return false;
+  }
+  return IsOneVisit(std::abs(first->second - second->second), distance,
+                    visit_distance);
+}
+
 const Anchor& PlacedSubmap::NearestAnchor(const Eigen::Vector2d& place) const {
   const Anchor* nearest = nullptr;
   double least = 0.;

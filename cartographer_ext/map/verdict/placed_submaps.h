@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The submaps of a map as the scans inserted in them saw them, and which of them
-// a scan meets at another time.
+// The submaps of a map as the scans inserted in them saw them, which of them a
+// scan meets at another time, and whether that is on another visit.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_PLACED_SUBMAPS_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_PLACED_SUBMAPS_H_
 
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "Eigen/Core"
@@ -15,6 +16,34 @@
 
 namespace cartographer_ext {
 namespace evaluation {
+
+// Two places this close, in metres, are one.
+constexpr double kVisitDistance = 2.;
+
+// True if the robot has not come back between two poses, but is still on its way
+// through: what it has travelled is less than twice their distance, allowing for
+// `visit_distance`. All in metres. What it sees on one way through is aligned by
+// local SLAM alone: it tells how local SLAM fares (or that the ground is not
+// level and things have no clear outline), not whether the parts of the map are
+// in place.
+inline bool IsOneVisit(const double travelled, const double distance,
+                       const double visit_distance) {
+  return travelled < 2. * (distance + visit_distance);
+}
+
+// Way that local SLAM has gone up to each node of a map.
+class TravelledWay {
+ public:
+  explicit TravelledWay(const MapGraph& graph);
+
+  // Whether two nodes, `distance` metres apart in the map, are of one visit;
+  // false if they are of different trajectories or unknown.
+  bool AreOneVisit(const GraphId& a, const GraphId& b, double distance,
+                   double visit_distance) const;
+
+ private:
+  std::map<GraphId, double> metres_;  // from the start of the trajectory
+};
 
 // Axis-aligned box in the map frame.
 struct Box {

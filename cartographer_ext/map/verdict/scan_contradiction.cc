@@ -182,44 +182,92 @@ ScanConflict HoldAsPlaced(const std::vector<Eigen::Vector2d>& scan,
   return least;
 }
 
-// Judges one node against all submaps of other times; appends the conflicts.
-NodeContradiction Judge(const std::vector<PlacedSubmap>& submaps,
-                        const MapContents& contents, const GraphId& node_id,
-                        const GraphNode& graph_node,
-                        const ContradictionOptions& options,
-                        ScanHolder* const holder,
-                        std::vector<ScanConflict>* const conflicts) {
-  NodeContradiction node;
-  node.node_id = node_id;
-  node.time = graph_node.time;
-  const Pose2& pose = graph_node.global_pose;
-  ForEachSubmapOfAnotherTime(
-      submaps, contents, node_id, pose, options.min_node_gap,
-      [&](const PlacedSubmap& submap) {
-        ScanConflict conflict = HoldAsPlaced(contents.scans.at(node_id), pose,
-                                             submap, options, holder);
-        if (conflict.judged < options.min_judged) return;
-        conflict.node_id = node_id;
-        conflict.submap_id = submap.id;
-        node.judged += conflict.judged;
-        node.contradicted += conflict.free_hits + conflict.crossings;
-        if (conflict.judged > node.widest_judged) {
-          node.widest_judged = conflict.judged;
-          node.widest_submap_id = submap.id;
-        }
-        if (conflict.fraction() > node.worst_fraction) {
-          node.worst_fraction = conflict.fraction();
-          node.worst_submap_id = submap.id;
-        }
-        if (conflict.fraction() > options.conflict_fraction) {
-          conflicts->push_back(conflict);
-        }
-      });
-  if (node.judged > 0) {
-    node.fraction = static_cast<double>(node.contradicted) / node.judged;
-    node.in_conflict = node.worst_fraction > options.conflict_fraction;
+// Holds nodes against the submaps of other times.
+class Judge {
+ public:
+  Judge(const MapGraph& graph, const MapContents& contents,
+        const ContradictionOptions& options)
+      : contents_(contents),
+        options_(options),
+        submaps_(PlaceSubmaps(graph, contents)),
+        way_(graph),
+        holder_(options) {}
+
+  // Appends the conflicts.
+  NodeContradiction Look(const GraphId& node_id, const GraphNode& graph_node,
+                         std::vector<ScanConflict>* const conflicts) {
+    NodeContradiction node;
+    node.node_id = node_id;
+    node.time = graph_node.time;
+    const Pose2& pose = graph_node.global_pose;
+    ForEachSubmapOfAnotherTime(
+        submaps_, contents_, node_id, pose, options_.min_node_gap,
+        [&](const PlacedSubmap& submap) {
+          ScanConflict conflict = HoldAsPlaced(
+              contents_.scans.at(node_id), pose, submap, options_, &holder_);
+          if (conflict.judged < options_.min_judged) return;
+          conflict.node_id = node_id;
+          conflict.submap_id = submap.id;
+          conflict.is_one_visit = IsOneVisit(node_id, pose, submap);
+          Add(conflict, &node);
+          if (conflict.fraction() > options_.conflict_fraction) {
+            conflicts->push_back(conflict);
+          }
+        });
+    if (node.judged > 0) {
+      node.fraction = static_cast<double>(node.contradicted) / node.judged;
+      node.in_conflict = node.worst_fraction > options_.conflict_fraction;
+    }
+    return node;
   }
-  return node;
+
+ private:
+  bool IsOneVisit(const GraphId& node_id, const Pose2& pose,
+                  const PlacedSubmap& submap) const {
+    const Anchor& anchor = submap.NearestAnchor(pose.translation());
+    return way_.AreOneVisit(node_id, anchor.node_id,
+                            (anchor.place - pose.translation()).norm(),
+                            options_.visit_distance);
+  }
+
+  static void Add(const ScanConflict& conflict, NodeContradiction* const node) {
+    node->is_revisit |= !conflict.is_one_visit;
+    node->judged += conflict.judged;
+    node->contradicted += conflict.free_hits + conflict.crossings;
+    if (conflict.judged > node->widest_judged) {
+      node->widest_judged = conflict.judged;
+      node->widest_submap_id = conflict.submap_id;
+    }
+    if (conflict.fraction() > node->worst_fraction) {
+      node->worst_fraction = conflict.fraction();
+      node->worst_submap_id = conflict.submap_id;
+    }
+  }
+
+  const MapContents& contents_;
+  const ContradictionOptions options_;
+  const std::vector<PlacedSubmap> submaps_;
+  const TravelledWay way_;
+  ScanHolder holder_;
+};
+
+// Of conflicts by node, each node with the worst of its submaps.
+std::vector<PathPiece> PiecesOf(const MapGraph& graph,
+                                const std::vector<ScanConflict>& conflicts,
+                                const bool one_visit,
+                                const PathPieceOptions& options) {
+  std::vector<PieceNode> nodes;
+  for (const ScanConflict& conflict : conflicts) {
+    if (conflict.is_one_visit != one_visit) continue;
+    if (nodes.empty() || nodes.back().node_id != conflict.node_id) {
+      nodes.push_back({conflict.node_id, {}, 0., 0.});
+    }
+    if (conflict.fraction() > nodes.back().fraction) {
+      nodes.back().submap_id = conflict.submap_id;
+      nodes.back().fraction = conflict.fraction();
+    }
+  }
+  return JoinToPieces(graph, nodes, options);
 }
 
 }  // namespace
@@ -233,24 +281,20 @@ ScanConflict HoldAgainst(const std::vector<Eigen::Vector2d>& scan,
 Contradictions FindContradictions(const MapGraph& graph,
                                   const MapContents& contents,
                                   const ContradictionOptions& options) {
-  const std::vector<PlacedSubmap> submaps = PlaceSubmaps(graph, contents);
   Contradictions result;
-  std::vector<PieceNode> in_conflict;
-  ScanHolder holder(options);
+  Judge judge(graph, contents, options);
   for (const auto& entry : graph.nodes) {
     const NodeContradiction node =
-        Judge(submaps, contents, entry.first, entry.second, options, &holder,
-              &result.conflicts);
+        judge.Look(entry.first, entry.second, &result.conflicts);
     if (node.judged > 0) ++result.judged_nodes;
+    if (node.is_revisit) ++result.revisit_nodes;
     result.judged_rays += node.judged;
     result.contradicted_rays += node.contradicted;
-    if (node.in_conflict) {
-      in_conflict.push_back(
-          {node.node_id, node.worst_submap_id, node.worst_fraction, 0.});
-    }
     result.nodes.push_back(node);
   }
-  result.pieces = JoinToPieces(graph, in_conflict, options.pieces);
+  result.pieces = PiecesOf(graph, result.conflicts, false, options.pieces);
+  result.passing_pieces =
+      PiecesOf(graph, result.conflicts, true, options.pieces);
   for (const PathPiece& piece : result.pieces) {
     result.conflict_nodes += piece.num_nodes;
   }

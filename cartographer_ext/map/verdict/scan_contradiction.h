@@ -19,7 +19,11 @@
 // no more than half a metre, beyond which a map is wrong in any case.
 //
 // Scans are not compared with the submaps they were inserted into, nor with
-// those built just before or after, which local SLAM has aligned.
+// those built just before or after, which local SLAM has aligned. What a scan
+// contradicts though the robot has not come back since (IsOneVisit) is told apart:
+// on one way through, local SLAM has aligned both with what lies between. A car
+// that pitches, and sees crowns here and trunks there, contradicts what is 15 m
+// ahead in a map that is right.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_SCAN_CONTRADICTION_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_SCAN_CONTRADICTION_H_
 
@@ -29,6 +33,7 @@
 #include "cartographer_ext/map/map_contents.h"
 #include "cartographer_ext/map/map_graph.h"
 #include "cartographer_ext/map/verdict/path_piece.h"
+#include "cartographer_ext/map/verdict/placed_submaps.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -49,6 +54,7 @@ struct ContradictionOptions {
   // far from a wall, see MapContentsOptions).
   double precision = 0.15;
   double max_displacement = 0.5;
+  double visit_distance = kVisitDistance;  // metres
   PathPieceOptions pieces;
 };
 
@@ -59,6 +65,7 @@ struct ScanConflict {
   int judged = 0;     // rays for which the submap has data
   int free_hits = 0;  // returns in free space
   int crossings = 0;  // rays through walls
+  bool is_one_visit = false;
   double fraction() const {
     return judged == 0 ? 0.
                        : static_cast<double>(free_hits + crossings) / judged;
@@ -79,14 +86,19 @@ struct NodeContradiction {
   GraphId worst_submap_id;
   double worst_fraction = 0.;
   bool in_conflict = false;
+  // At least one of the submaps is of another visit.
+  bool is_revisit = false;
 };
 
 struct Contradictions {
   std::vector<NodeContradiction> nodes;  // by id
   std::vector<ScanConflict> conflicts;   // pairs above the share, by node
-  std::vector<PathPiece> pieces;
+  std::vector<PathPiece> pieces;  // in conflict with submaps of other visits
+  // In conflict with submaps of the same visit.
+  std::vector<PathPiece> passing_pieces;
   int64_t judged_nodes = 0;    // nodes that see a place mapped at another time
-  int64_t conflict_nodes = 0;  // in path pieces
+  int64_t revisit_nodes = 0;   // of these, on another visit
+  int64_t conflict_nodes = 0;  // in path pieces of another visit
   int64_t judged_rays = 0;
   int64_t contradicted_rays = 0;
   double ray_fraction() const {

@@ -154,7 +154,13 @@ void Explain(const MapGraph& graph, const SelfConsistencyOptions& options,
     result->reasons.push_back(absl::StrFormat(
         "%.1f %% of the %d nodes that revisit a place have most of their scan "
         "in free space or behind walls mapped there at another time",
-        100. * result->severe_share, contradictions.judged_nodes));
+        100. * result->severe_share, contradictions.revisit_nodes));
+  }
+  if (result->severe_passing_share >= options.doubtful_share) {
+    result->reasons.push_back(absl::StrFormat(
+        "%.1f %% of the nodes contradict what was mapped on the same way "
+        "through, before the robot came back",
+        100. * result->severe_passing_share));
   }
   if (IsDisplaced(*result, options)) {
     result->reasons.push_back(
@@ -212,7 +218,9 @@ void Explain(const MapGraph& graph, const SelfConsistencyOptions& options,
 std::string WordOf(const SelfConsistency& result, const size_t num_nodes,
                    const SelfConsistencyOptions& options) {
   const bool turned = !result.wrong_turns.empty();
-  const bool contradicts = result.severe_share >= options.doubtful_share;
+  const bool contradicts =
+      std::max(result.severe_share, result.severe_passing_share) >=
+      options.doubtful_share;
   if (result.severe_share >= options.broken_share || (contradicts && turned)) {
     return "broken";
   }
@@ -242,6 +250,27 @@ void KeepWorstOfEach(const io::TimeNs span, std::vector<MotionStep>* steps) {
   steps->swap(kept);
 }
 
+// Appends the severe ones, worst first; returns the number of their nodes.
+int TakeSeverePieces(std::vector<PathPiece> pieces,
+                     const SelfConsistencyOptions& options,
+                     std::vector<PathPiece>* const places) {
+  SortWorstFirst(&pieces);
+  int num_nodes = 0;
+  for (const PathPiece& piece : pieces) {
+    if (piece.fraction < options.severe_fraction ||
+        piece.num_nodes < options.min_severe_nodes) {
+      continue;
+    }
+    num_nodes += piece.num_nodes;
+    places->push_back(piece);
+  }
+  return num_nodes;
+}
+
+double ShareOf(const int num_nodes, const double of) {
+  return of > 0. ? num_nodes / of : 0.;
+}
+
 SelfConsistency Assess(const MapGraph& graph, const MapContents& contents,
                        const std::map<int, Trajectory>& odometry,
                        const SelfConsistencyOptions& options) {
@@ -255,16 +284,15 @@ SelfConsistency Assess(const MapGraph& graph, const MapContents& contents,
   result.sharpness = ComputeSharpness(graph, contents, options.sharpness);
   result.motion = CompareMotions(graph, odometry);
   result.cycles = ComputeLoopCycles(graph, options.cycles);
-  int64_t severe_nodes = 0;
-  for (const PathPiece& piece : result.contradictions.pieces) {
-    if (piece.fraction < options.severe_fraction ||
-        piece.num_nodes < options.min_severe_nodes) {
-      continue;
-    }
-    severe_nodes += piece.num_nodes;
-    result.places.push_back(piece);
-  }
-  SortWorstFirst(&result.places);
+  const Contradictions& found = result.contradictions;
+  const double num_nodes = static_cast<double>(graph.nodes.size());
+  result.severe_share =
+      ShareOf(TakeSeverePieces(found.pieces, options, &result.places),
+              std::max(static_cast<double>(found.revisit_nodes),
+                       options.judged_share * num_nodes));
+  result.severe_passing_share =
+      ShareOf(TakeSeverePieces(found.passing_pieces, options, &result.places),
+              static_cast<double>(found.judged_nodes));
   if (IsDisplaced(result, options)) {
     std::vector<PathPiece> displaced = result.displacements.pieces;
     SortWorstFirst(&displaced);
@@ -282,11 +310,6 @@ SelfConsistency Assess(const MapGraph& graph, const MapContents& contents,
                    [](const MotionStep& a, const MotionStep& b) {
                      return a.odometry_rotation > b.odometry_rotation;
                    });
-  const int64_t judged = result.contradictions.judged_nodes;
-  if (judged > 0) {
-    result.severe_share =
-        static_cast<double>(severe_nodes) / static_cast<double>(judged);
-  }
   result.word = WordOf(result, graph.nodes.size(), options);
   Explain(graph, options, &result);
   return result;
@@ -332,6 +355,7 @@ ordered_json ToJson(const SelfConsistency& consistency) {
   json["verdict"] = consistency.word;
   json["reasons"] = consistency.reasons;
   json["severe_share"] = consistency.severe_share;
+  json["severe_passing_share"] = consistency.severe_passing_share;
   json["judged_nodes"] = contradictions.judged_nodes;
   json["conflict_nodes"] = contradictions.conflict_nodes;
   json["contradicted_rays"] = contradictions.ray_fraction();
@@ -392,7 +416,7 @@ std::string ToText(const SelfConsistency& consistency) {
       "        walls %.1f cm (one visit %.1f cm, all %.1f cm), open cycles "
       "%.1f %% of %d,\n",
       100. * consistency.contradictions.ray_fraction(),
-      100. * consistency.severe_share, consistency.contradictions.judged_nodes,
+      100. * consistency.severe_share, consistency.contradictions.revisit_nodes,
       sharpness.mean_entropy, 100. * sharpness.wall_thickness.mean,
       100. * sharpness.single_visit_thickness.mean,
       100. * sharpness.revisited_thickness.mean,

@@ -11,8 +11,9 @@
 // Criteria:
 // * contradicted path pieces: at least `min_severe_nodes` consecutive nodes
 //   whose scans have a share of `severe_fraction` in the free space or behind
-//   the walls of a submap of another time. People, doors and furniture do not
-//   reach that.
+//   the walls of a submap of another visit. People, doors and furniture do not
+//   reach that. Where the submap is of the same visit (IsOneVisit), this alone
+//   means doubtful: it is what local SLAM has aligned.
 // * wrong turns: from one node to the next local SLAM and odometry differ by
 //   more than `wrong_turn`, and at least half of it is left some seconds later
 //   (lasting_rotation). Either may be wrong, so this alone means doubtful.
@@ -22,8 +23,8 @@
 //   beside other parts of the map, without anything showing it (loose_places.h).
 //   Doubtful: the map may be right, but it cannot vouch for itself.
 // A map is broken if contradicted path pieces make up `broken_share` of the
-// nodes that revisit a place, or `doubtful_share` of them together with a wrong
-// turn. Without any of this it is sound if `judged_share` of the nodes revisit a
+// nodes that come back to a place (of at least `judged_share` of all nodes), or
+// `doubtful_share` of them together with a wrong turn. Without any of this it is sound if `judged_share` of the nodes revisit a
 // place and `tied_share` of the path is tied together; otherwise unknown, for a
 // map torn apart has hardly any overlap, and so no contradictions.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_SELF_CONSISTENCY_H_
@@ -71,9 +72,11 @@ struct SelfConsistency {
   MotionDisagreement motion;
   LoopCycles cycles;
   // What decides the verdict: the severe path pieces, worst (most nodes) first;
-  // then, if there are enough, the displaced ones, which contradict no rays.
+  // those that contradict the same visit; then, if there are enough, the
+  // displaced ones, which contradict no rays.
   std::vector<PathPiece> places;
-  double severe_share = 0.;  // of the nodes that revisit a place
+  double severe_share = 0.;          // of the nodes that come back to a place
+  double severe_passing_share = 0.;  // of those that see the same visit again
   std::vector<MotionStep> wrong_turns;
 
   // "sound", "doubtful", "broken" or "unknown".

@@ -19,6 +19,7 @@ namespace test {
 
 constexpr double kHalfSide = 4.;  // metres
 constexpr double kCell = 0.1;     // metres
+constexpr double kSway = 0.15;    // metres
 
 // Walls are two cells thick, free inside, unknown outside.
 inline cartographer::mapping::proto::Grid2D BoxGrid() {
@@ -69,14 +70,17 @@ struct BoxWorld {
   evaluation::MapContents contents;
 };
 
-// Nodes 0 to 99 drive on a line in the room; submap 0 has nodes 0 to 9, submap
-// 1 nodes 90 to 99. From node `first_wrong` on, the map has everything moved by
-// `wrong`.
-inline BoxWorld MakeBoxWorld(const int first_wrong, const Pose2& wrong) {
+// Nodes 0 to 99 drive on a line in the room, swaying to either side, so that the
+// last are on another visit than the first (IsOneVisit); submap 0 has nodes 0 to
+// 9, submap 1 nodes 90 to 99. From node `first_wrong` on, the map has everything
+// moved by `wrong`.
+inline BoxWorld MakeBoxWorld(const int first_wrong, const Pose2& wrong,
+                             const double sway = kSway) {
   using evaluation::GraphId;
   BoxWorld world;
   for (int i = 0; i < 100; ++i) {
-    const Pose2 pose(-1. + 0.02 * i, 0.3, 0.01 * i);
+    const Pose2 pose(-1. + 0.02 * i, 0.3 + (i % 2 == 0 ? sway : -sway),
+                     0.01 * i);
     evaluation::GraphNode node;
     node.time = i * 1000000000LL;
     node.local_pose = pose;

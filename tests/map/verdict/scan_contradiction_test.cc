@@ -72,7 +72,7 @@ TEST(ScanContradictionTest, ARightMapHasNone) {
 // Nodes from 60 on are displaced; the inserted nodes of both submaps have
 // headings off by `heading_error`, in turn to either side.
 test::BoxWorld WorldOfHeadings(const double heading_error, const Pose2& wrong) {
-  test::BoxWorld world = test::MakeBoxWorld(60, wrong);
+  test::BoxWorld world = test::MakeBoxWorld(60, wrong, 0.);
   for (int i = 0; i < 100; ++i) {
     if (10 <= i && i < 90) continue;
     world.graph.nodes.at({0, i}).global_pose.theta +=
@@ -82,7 +82,10 @@ test::BoxWorld WorldOfHeadings(const double heading_error, const Pose2& wrong) {
 }
 
 int64_t NodesInConflict(const test::BoxWorld& world) {
-  return FindContradictions(world.graph, world.contents, {}).conflict_nodes;
+  ContradictionOptions options;
+  options.visit_distance = -10.;  // no two places are of one visit
+  return FindContradictions(world.graph, world.contents, options)
+      .conflict_nodes;
 }
 
 TEST(ScanContradictionTest, HeadingsThatAreNotKnownExplainATurnButNoShift) {
@@ -109,9 +112,30 @@ TEST(ScanContradictionTest, NodesMovedAwayContradictTheFirstSubmap) {
   EXPECT_EQ(last.num_nodes, 40);
   EXPECT_THAT(last.submaps, ElementsAre(GraphId{0, 0}));
   EXPECT_GT(last.fraction, 0.6);
-  EXPECT_NEAR(last.metres, 39 * 0.02, 1e-9);
+  EXPECT_NEAR(last.metres, 39 * std::hypot(0.02, 2. * test::kSway), 1e-9);
   EXPECT_NEAR(io::ToSeconds(last.begin), 60., 1e-9);
   EXPECT_GT(result.node_fraction(), 0.5);
+}
+
+// On one way through local SLAM has aligned scans and submaps.
+TEST(ScanContradictionTest, OneWayThroughIsToldApart) {
+  const Pose2 wrong(1.5, 1.2, DegToRad(20.));
+  const Contradictions passing =
+      FindContradictions(test::MakeBoxWorld(60, wrong, 0.).graph,
+                         test::MakeBoxWorld(60, wrong, 0.).contents, {});
+  const test::BoxWorld world = test::MakeBoxWorld(60, wrong);
+  const Contradictions revisit =
+      FindContradictions(world.graph, world.contents, {});
+  EXPECT_EQ(passing.revisit_nodes, 0);
+  EXPECT_EQ(passing.conflict_nodes, 0);
+  EXPECT_TRUE(passing.pieces.empty());
+  ASSERT_GE(passing.passing_pieces.size(), 1u);
+  EXPECT_EQ(passing.passing_pieces.back().num_nodes, 40);
+  EXPECT_TRUE(passing.conflicts.front().is_one_visit);
+  EXPECT_GT(revisit.conflict_nodes, 50);
+  EXPECT_EQ(revisit.revisit_nodes, revisit.judged_nodes);
+  EXPECT_TRUE(revisit.passing_pieces.empty());
+  EXPECT_FALSE(revisit.conflicts.front().is_one_visit);
 }
 
 // What is judged are the poses of the nodes, not where the submap, which may be

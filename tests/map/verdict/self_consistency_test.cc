@@ -62,6 +62,47 @@ TEST(SelfConsistencyTest, FoldedMapIsBrokenAndNamesThePlace) {
   EXPECT_THAT(ToText(result), HasSubstr("Self-consistency"));
 }
 
+// The same where the robot has not come back: local SLAM, or what the robot saw,
+// is at fault, and nothing says that parts of the map are out of place.
+TEST(SelfConsistencyTest, ContradictionsOnOneWayThroughAreDoubt) {
+  const test::BoxWorld world =
+      test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)), 0.);
+  const SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents, {}, {});
+  EXPECT_EQ(result.word, "doubtful");
+  EXPECT_EQ(result.severe_share, 0.);
+  EXPECT_GT(result.severe_passing_share, 0.3);
+  EXPECT_GE(result.places.size(), 1u);
+  EXPECT_THAT(result.reasons.front(),
+              HasSubstr("parts of the map overlap inconsistently at"));
+  EXPECT_THAT(
+      result.reasons,
+      Contains(HasSubstr("contradict what was mapped on the same way")));
+  // With a wrong turn the map is broken nevertheless.
+  EXPECT_EQ(AssessSelfConsistency(world.graph, world.contents,
+                                  Odometry(world.graph, 40, DegToRad(70.)), {})
+                .word,
+            "broken");
+}
+
+// A few nodes that come back say little about a large map.
+TEST(SelfConsistencyTest, SevereNodesAreAShareOfEnoughNodes) {
+  const test::BoxWorld world =
+      test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
+  SelfConsistencyOptions options;
+  const double share =
+      AssessSelfConsistency(world.graph, world.contents, {}, options)
+          .severe_share;
+  options.judged_share = 10.;
+  EXPECT_NEAR(
+      AssessSelfConsistency(world.graph, world.contents, {}, options)
+          .severe_share,
+      share *
+          FindContradictions(world.graph, world.contents, {}).revisit_nodes /
+          1000.,
+      1e-9);
+}
+
 // Cartographer stores the nodes of a trajectory whose submaps were deleted or
 // are not finished.
 TEST(SelfConsistencyTest, TrajectoriesWithoutSubmapsAreNotJudged) {
