@@ -16,6 +16,9 @@ namespace {
 
 // Evidence of a contradicted node, in agreeing nodes (map_quality.h).
 constexpr double kContradictedWeight = 3.;
+// Nodes in a map of which nothing is known, neither for nor against it: as many as
+// the shortest severe piece has (self_consistency.h).
+constexpr double kNeutralNodes = 8.;
 // Evidence that differs by less than this share of the nodes that are judged is
 // alike.
 constexpr double kSameEvidence = 0.01;
@@ -27,6 +30,13 @@ constexpr double kSameRays = 0.01;
 constexpr double kSameCycles = 0.05;
 constexpr double kSameResidual = 0.02;  // metres
 constexpr double kSameEntropy = 0.02;
+
+// Evidence of a node of this map, on average; nothing tells of a map without any.
+double EvidencePerNode(const MapQuality& quality) {
+  return (quality.num_agreeing() -
+          kContradictedWeight * quality.num_contradicted()) /
+         (static_cast<double>(quality.is_contradicted.size()) + kNeutralNodes);
+}
 
 int Rank(const std::string& verdict) {
   if (verdict == "sound") return 0;
@@ -80,9 +90,14 @@ double GainOfEvidence(const MapQuality& current, const MapQuality& candidate) {
       ++lost;
     }
   }
+  int found = 0;  // not judged before
+  for (const auto& node : candidate.is_contradicted) {
+    if (current.is_contradicted.count(node.first) == 0) ++found;
+  }
   const double contradicted = candidate.num_contradicted() + lost;
   return candidate.num_agreeing() - current.num_agreeing() -
-         kContradictedWeight * (contradicted - current.num_contradicted());
+         kContradictedWeight * (contradicted - current.num_contradicted()) -
+         std::min(0., EvidencePerNode(current)) * found;
 }
 
 std::string WhyNotBetter(const MapQuality& current,

@@ -16,6 +16,12 @@
 // visit is not resolved: it counts as contradicted in both versions. A map is
 // better by agreement, not by absence of evidence.
 //
+// Nodes that are judged only in the new version are held against what the old one
+// is worth where it is judged. Above one contradicted node in 1 + w each further
+// place speaks against a map on average, so of two folded maps the one that is
+// judged at fewer places would win, although the other is right more often. Such
+// places count by how much better they do than those of the old version.
+//
 // A version of which more may lie elsewhere without contradicting anything
 // (loose_places.h) is not better either if it rests on fewer nodes that see a
 // place of another time: what it no longer compares is not known to lie apart.

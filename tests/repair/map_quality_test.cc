@@ -77,9 +77,44 @@ TEST(MapQualityTest, PlacesThatComeToAgreeAreEvidence) {
   // Places seen twice only now.
   better = Broken();
   Judge(200, 210, false, &better);
-  EXPECT_EQ(GainOfEvidence(Broken(), better), 10.);
+  // A node of the broken map is worth that much.
+  const double worth = (100. - 3. * 50.) / (150. + 8.);
+  EXPECT_NEAR(GainOfEvidence(Broken(), better), 10. - 10. * worth, 1e-9);
   Judge(210, 220, true, &better);
-  EXPECT_EQ(GainOfEvidence(Broken(), better), 10. - 3. * 10.);
+  EXPECT_NEAR(GainOfEvidence(Broken(), better), 10. - 3. * 10. - 20. * worth,
+              1e-9);
+  // Places of a map that agrees are taken as they are.
+  MapQuality right;
+  Judge(0, 100, false, &right);
+  better = right;
+  Judge(100, 110, false, &better);
+  EXPECT_EQ(GainOfEvidence(right, better), 10.);
+  Judge(110, 120, true, &better);
+  EXPECT_EQ(GainOfEvidence(right, better), 10. - 3. * 10.);
+}
+
+// Each place more would speak against a folded map.
+TEST(MapQualityTest, ToBeJudgedAtMorePlacesIsNoFault) {
+  MapQuality few;
+  few.verdict = "doubtful";
+  Judge(0, 57, false, &few);
+  Judge(57, 84, true, &few);
+  MapQuality many = few;
+  Judge(100, 386, false, &many);
+  Judge(386, 500, true, &many);  // 28 % of the new ones, before 32 %
+  EXPECT_GT(GainOfEvidence(few, many), 0.);
+  EXPECT_THAT(WhyNotBetter(few, many), testing::Not(HasSubstr("fewer places")));
+  EXPECT_LT(GainOfEvidence(many, few), 0.);
+  // Not so if they contradict more often.
+  MapQuality worse = few;
+  Judge(100, 300, false, &worse);
+  Judge(300, 500, true, &worse);
+  EXPECT_LT(GainOfEvidence(few, worse), 0.);
+  EXPECT_THAT(WhyNotBetter(few, worse), HasSubstr("fewer places agree"));
+  // What one node says is no measure for hundreds.
+  MapQuality one;
+  Judge(0, 1, true, &one);
+  EXPECT_LT(GainOfEvidence(one, worse), 0.);
 }
 
 // All contradictions are gone because nothing overlaps there any more.
