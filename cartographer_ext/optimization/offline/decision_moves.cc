@@ -108,6 +108,34 @@ bool SolveForced(const std::vector<int>& group, const ForceOptions& options,
   return true;
 }
 
+// The largest group with most of its loops rejected that is not in `tried`, -1 where
+// there is none, and how many these are.
+int LargestRejected(const LoopSupport& support, const ForceOptions& options,
+                    const std::vector<WhitenedEdge>& edges,
+                    const std::vector<Pose2>& poses,
+                    const std::vector<bool>& tried, size_t* const most) {
+  const std::vector<double> chi2 = Chi2OfEdges(edges, poses);
+  int result = -1;
+  *most = 0;
+  for (size_t g = 0; g != support.groups.size(); ++g) {
+    if (tried[g]) continue;
+    size_t members = 0, rejected = 0;
+    for (const int i : support.groups[g]) {
+      if (options.part.has_value() && !options.part->IsLeftBy(edges[i])) {
+        continue;
+      }
+      ++members;
+      rejected += chi2[i] >= options.gate;
+    }
+    if (rejected > *most && 2 * rejected >= members &&
+        static_cast<int>(rejected) >= options.min_members) {
+      *most = rejected;
+      result = g;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 bool DifferNearGateOnly(const std::vector<WhitenedEdge>& edges,
@@ -189,22 +217,9 @@ int ForceGroups(const LoopSupport& support, const ForceOptions& options,
   std::vector<bool> tried(support.groups.size(), false);
   const double most_work = solver->work() + options.max_work;
   while (trials < options.max_trials && solver->work() < most_work) {
-    // The largest group with most of its loops rejected.
-    const std::vector<double> chi2 = Chi2OfEdges(*edges, *poses);
-    int best = -1;
-    size_t most = 0;
-    for (size_t g = 0; g != support.groups.size(); ++g) {
-      if (tried[g]) continue;
-      size_t rejected = 0;
-      for (const int i : support.groups[g]) {
-        rejected += chi2[i] >= options.gate;
-      }
-      if (rejected > most && 2 * rejected >= support.groups[g].size() &&
-          static_cast<int>(rejected) >= options.min_members) {
-        most = rejected;
-        best = g;
-      }
-    }
+    size_t most;
+    const int best =
+        LargestRejected(support, options, *edges, *poses, tried, &most);
     if (best < 0) break;
     tried[best] = true;
     ++trials;

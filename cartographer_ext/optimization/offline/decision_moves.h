@@ -39,8 +39,10 @@
 
 #include <vector>
 
+#include "absl/types/optional.h"
 #include "cartographer_ext/optimization/graph/pose_graph.h"
 #include "cartographer_ext/optimization/offline/loop_support.h"
+#include "cartographer_ext/optimization/offline/lost_part.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
@@ -75,7 +77,9 @@ struct ForceOptions {
   double gate = kChi2Gate;
   int max_trials = 30;
   int min_members = 1;  // of a group
-  bool relax = true;    // try from a chordal relaxation, too
+  // Only those of its loops count that lead out of this part of the path.
+  absl::optional<PartOfPath> part;
+  bool relax = true;  // try from a chordal relaxation, too
   double max_work = kMaxMoveWork;
   // Gates per rejected loop of the group by which the cost may rise while the
   // group is in force; a map that costs more is given up before the group is

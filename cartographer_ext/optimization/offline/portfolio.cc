@@ -33,8 +33,6 @@ constexpr double kNearlySame = 3.;
 constexpr double kFewByChance = 1.;
 // Rejected loops whose innovation is looked at.
 constexpr size_t kMaxInnovations = 200;
-// Kernels that have to agree.
-constexpr size_t kQuickKernels = 3;
 // Groups that are forced in where the kernels agree on a map that these
 // contradict, which may be folded.
 constexpr int kMaxTrialsOfSettled = 3;
@@ -217,7 +215,11 @@ bool Portfolio::IsSettled(const size_t first) {
        (most_were_rejected && WrongByChance() >= kFewByChance))) {
     return false;
   }
-  return RejectedContradict();
+  if (!RejectedContradict()) return false;
+  // Of a smaller graph other starts show whether that is another map.
+  if (continued_ || Size() <= options_.large_search) return true;
+  const double before = best().cost;
+  return RecoversParts() || best().cost >= before - kNearlySame * kChi2Gate;
 }
 
 double Portfolio::WrongByChance() {
@@ -243,8 +245,9 @@ bool Portfolio::ExplainsNothing() const {
   return num_loops_ - CountRejected() <= FitsByChance();
 }
 
-bool Portfolio::FindsLostGroup() {
+bool Portfolio::FindsLostGroup(const absl::optional<PartOfPath>& part) {
   ForceOptions force;
+  force.part = part;
   force.max_trials = kMaxTrialsOfSettled;
   force.min_members = kSupported + 1;
   force.relax = false;  // the price of a graph that is settled
@@ -341,8 +344,9 @@ void Portfolio::Run() {
   }
   bool settled = IsSettled(RunQuick());
   if (settled) {
-    settled = size > kMaxGrowthWork ? !OtherStartIsLower()
-                                    : !FindsLostGroup() && !GncFindsAnother();
+    settled = size > kMaxGrowthWork
+                  ? !OtherStartIsLower()
+                  : !FindsLostGroup(absl::nullopt) && !GncFindsAnother();
   }
   if (settled && (continued_ || size > kMaxGrowthWork ||
                   (size > kSmallGraph && FitsByChance() < kFewByChance))) {

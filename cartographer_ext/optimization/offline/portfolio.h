@@ -40,11 +40,13 @@
 // spoil that, with a short replay (of epochs alone, each of a tenth of the poses
 // so far), and where that does not lead there, with a whole one: where the quick
 // solvers agree but reject loops that agree with each other, and where they do
-// not agree. The search ends where the
-// kernels agree from there, with each other or each with what it has found from
-// the given poses. Otherwise starts that lead to a folded map are given up after
-// one kernel. With other information matrices the quick solvers alone are added
-// to what is known.
+// not agree. The search ends where the kernels agree from there, with each other
+// or each with what it has found from the given poses. Where a replay has lost a
+// part of the path (lost_part.h), kernels, a narrower gate and groups forced in
+// are tried one after the other until a map has lost none, and from that the
+// kernels have to agree. Otherwise starts that lead to a folded map are given up
+// after one kernel. With other information matrices the quick solvers alone are
+// added to what is known.
 //
 // A graph of tens of thousands of poses is grown by the loops that are certain
 // (certain_growth.h) and polished, and that is all. Where a smaller one has too
@@ -139,6 +141,8 @@ class Portfolio {
   static constexpr double kMostlyWrong = 0.6;
   // Gates that a folded map costs more than the best: the loops that it loses.
   static constexpr double kFolded = 20.;
+  // Kernels that have to agree.
+  static constexpr size_t kQuickKernels = 3;
   // Multiplications of one factorisation that are worth it while the search is
   // open.
   static constexpr double kAffordableWork = 6e7;
@@ -161,8 +165,14 @@ class Portfolio {
   // Whether the best map keeps no more loops than would fit by chance.
   bool ExplainsNothing() const;
   // Whether one of the largest groups of rejected loops that agree with each
-  // other, forced in, leads to a map that costs less.
-  bool FindsLostGroup();
+  // other, forced in, leads to a map that costs less; of all, or of those that lead
+  // out of a part of the path.
+  bool FindsLostGroup(const absl::optional<PartOfPath>& part);
+  // The part of the path that the best map has lost.
+  absl::optional<PartOfPath> LostPart() const;
+  // Brings parts back that the best map has lost, as long as groups of rejected
+  // loops that lead out of them lower the cost. Whether none is lost then.
+  bool RecoversParts();
   // Whether graduated non-convexity, where it costs little, ends on another map
   // that costs less.
   bool GncFindsAnother();
@@ -229,6 +239,13 @@ class Portfolio {
   bool SettleBySupport();
   // The same for the incremental replay: a short one, or else a whole one.
   bool SettleByReplay();
+  // Whether kernels from a start settle the search. If the best map has lost a part
+  // of the path, from the first map that has lost none, of what these kernels, a
+  // narrower gate and groups forced in lead to.
+  bool SettlesFrom(const std::string& start_name, std::vector<Pose2> start);
+  // Adds what a narrower gate leads to from the quick members, from `first` on, up to
+  // the first map that has lost no part of the path.
+  void Tighten(size_t first);
   void AddGrowth(const std::vector<Pose2>& start);
   // Work of one factorisation with these edges and with all, in
   // multiplications.

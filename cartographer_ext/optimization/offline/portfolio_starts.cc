@@ -11,6 +11,7 @@
 #include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/offline/lost_part.h"
 #include "cartographer_ext/optimization/offline/portfolio.h"
 #include "cartographer_ext/optimization/offline/readmission.h"
 #include "cartographer_ext/optimization/offline/starts/joined_trajectories.h"
@@ -168,11 +169,57 @@ bool Portfolio::SettleBySupport() {
 bool Portfolio::SettleByReplay() {
   ReplayResult replay;
   if (!shortly_replayed_ && !replayed_ && AddShortReplay(&replay) &&
-      IsSettled(AddKernels("r_isam, short, ", replay.poses, false))) {
+      SettlesFrom("r_isam, short, ", replay.poses)) {
     return true;
   }
   return !replayed_ && AddReplay(&replay) &&
-         IsSettled(AddKernels("r_isam, ", replay.poses, false));
+         SettlesFrom("r_isam, ", replay.poses);
+}
+
+void Portfolio::Tighten(const size_t first) {
+  for (size_t m = first; m != first + kQuickKernels; ++m) {
+    std::vector<Pose2> poses = members_[m].poses;
+    Count(PolishAdapted(kFullPolishRounds, &solver_, &poses, nullptr));
+    Add(absl::StrCat(members_[m].name, ", tightened"), std::move(poses));
+    if (!LostPart().has_value()) return;
+  }
+}
+
+bool Portfolio::SettlesFrom(const std::string& start_name,
+                            std::vector<Pose2> start) {
+  std::string name = start_name;
+  if (LostPart().has_value()) {
+    const size_t first = members_.size();
+    bool lost = true;
+    for (const KernelType type :
+         {KernelType::kDcs, KernelType::kGemanMcClure, KernelType::kAcs}) {
+      AddKernel(name, type, start);
+      lost = LostPart().has_value();
+      if (!lost) break;
+    }
+    if (lost) {
+      if (IsSettled(first)) return true;
+      Tighten(first);
+      Soften();
+      if (!RecoversParts()) return false;
+    }
+    start = best().poses;
+    name = absl::StrCat(best().name, ", ");
+  }
+  return IsSettled(AddKernels(name, start, false));
+}
+
+absl::optional<PartOfPath> Portfolio::LostPart() const {
+  return FindLostPart(edges_, DecideLoops(edges_, best().poses, kChi2Gate));
+}
+
+bool Portfolio::RecoversParts() {
+  absl::optional<PartOfPath> part = LostPart();
+  while (part.has_value() && FindsLostGroup(part)) {
+    Improve();
+    part = LostPart();
+  }
+  return !part.has_value();
 }
 
 void Portfolio::AddReplays() {

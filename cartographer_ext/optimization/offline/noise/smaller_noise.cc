@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/offline/lost_part.h"
 #include "cartographer_ext/optimization/offline/noise/cycle_noise.h"
 #include "cartographer_ext/optimization/offline/noise/map_evidence.h"
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"
@@ -152,14 +153,21 @@ void AddIfAnother(const Portfolio& portfolio, std::vector<Pose2> poses,
 }
 
 // One of each map of the portfolio other than the best, in the order of their costs
-// with a noise.
-std::vector<std::vector<Pose2>> OtherMaps(const Portfolio& portfolio,
-                                          const NoiseMetric& metric) {
-  const std::vector<WhitenedEdge>& given = portfolio.edges();
+// with a noise. Where to explain one takes long, none that has lost a part of the path
+// if the best has not.
+std::vector<std::vector<Pose2>> OtherMaps(const NoiseMetric& metric,
+                                          Portfolio* const portfolio) {
+  const std::vector<WhitenedEdge>& given = portfolio->edges();
+  const auto has_lost_a_part = [&](const std::vector<Pose2>& poses) {
+    return FindLostPart(given, DecideLoops(given, poses, kChi2Gate))
+        .has_value();
+  };
+  const bool lost_count = portfolio->Size() <= kMaxGrowthWork ||
+                          has_lost_a_part(portfolio->best().poses);
   const std::vector<WhitenedEdge> edges =
       WithNoiseScale(given, metric.odometry, metric.loops);
   std::vector<std::pair<double, const Portfolio::Member*>> order;
-  for (const Portfolio::Member& member : portfolio.members()) {
+  for (const Portfolio::Member& member : portfolio->members()) {
     order.push_back({TruncatedCost(edges, member.poses), &member});
   }
   std::stable_sort(
@@ -168,7 +176,8 @@ std::vector<std::vector<Pose2>> OtherMaps(const Portfolio& portfolio,
   std::vector<std::vector<Pose2>> result;
   for (const auto& entry : order) {
     if (result.size() == kMaxMaps) break;
-    AddIfAnother(portfolio, entry.second->poses, &result);
+    if (!lost_count && has_lost_a_part(entry.second->poses)) continue;
+    AddIfAnother(*portfolio, entry.second->poses, &result);
   }
   return result;
 }
@@ -222,8 +231,9 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
   const std::vector<WhitenedEdge>& edges = portfolio->edges();
   const std::vector<Pose2>& best = portfolio->best().poses;
   std::vector<std::vector<Pose2>> others =
-      OtherMaps(*portfolio, {std::min(1., map.scale.odometry.factor),
-                             std::min(1., map.scale.loops.factor)});
+      OtherMaps({std::min(1., map.scale.odometry.factor),
+                 std::min(1., map.scale.loops.factor)},
+                portfolio);
   if (others.empty()) return false;
   if (portfolio->searched_groups()) {
     for (const double factor : kLessNoise) {
@@ -260,7 +270,7 @@ bool FindNoiseOfCycles(const NoiseMetric& applied, const NoiseOfMap& map,
   }
   const std::vector<Pose2>& best = portfolio->best().poses;
   std::vector<std::vector<Pose2>> maps =
-      OtherMaps(*portfolio, explanation.first);
+      OtherMaps(explanation.first, portfolio);
   AddMapsOfLessNoise(*portfolio, explanation.first, &maps);
   maps.push_back(best);
   const double log_area = LogArea(best);
