@@ -3,6 +3,7 @@
 #include "cartographer_ext/scan_matching/correlative_search/prepared_grid.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace cartographer_ext {
 namespace scan_matching {
@@ -19,13 +20,22 @@ PreparedGrid::PreparedGrid(const SearchGrid2D& grid, const int depth_in,
   geometry.max_x = grid.max_x;
   geometry.max_y = grid.max_y;
   blocks = CellMaxima(grid.values, grid.num_x, grid.num_y);
+  // The memory of these two serves all steps.
+  RectangleMaxima wide;
+  const Reach& widest = kReaches[kNumReaches - 1];
+  const size_t largest =
+      static_cast<size_t>(grid.num_x + kBlockSize + 2 * widest.x) *
+      (grid.num_y + kBlockSize + 2 * widest.y);
+  blocks.values.reserve(largest);
+  wide.values.reserve(largest);
   for (int width = 1; width != kBlockSize; width *= 2) {
-    blocks = Widen(blocks, width, width);
+    WidenInto(blocks, width, width, &wide);
+    std::swap(blocks, wide);
   }
   const RectangleMaxima coarse_blocks = ToCoarse(blocks);
   for (int i = 0; i != kNumReaches; ++i) {
-    coarse[i] = CoarseMaxima(
-        Widen(coarse_blocks, 2 * kReaches[i].x, 2 * kReaches[i].y), kernels);
+    WidenInto(coarse_blocks, 2 * kReaches[i].x, 2 * kReaches[i].y, &wide);
+    coarse[i] = CoarseMaxima(wide, kernels);
   }
   // The instructions that gather bytes read three more.
   blocks.values.reserve(blocks.values.size() + 3);
