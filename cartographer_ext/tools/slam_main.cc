@@ -354,7 +354,7 @@ int main(int argc, char** argv) {
   // This saves a fifth of the memory at no measurable cost.
   mallopt(M_ARENA_MAX, 1);
   // What grids and search structures free is given back at once. Otherwise
-  // glibc raises this limit to 32 MB, and they leave holes in the heap: a fifth
+  // glibc raises this limit to 32 MB, and they leave holes in the heap: a sixth
   // of the memory on ACES.
   mallopt(M_MMAP_THRESHOLD, 512 << 10);
 #endif
