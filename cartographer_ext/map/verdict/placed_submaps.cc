@@ -50,7 +50,7 @@ double HeadingSigma(const std::vector<Anchor>& anchors) {
 
 }  // namespace
 
-TravelledWay::TravelledWay(const MapGraph& graph) {
+TravelledPath::TravelledPath(const MapGraph& graph) {
   const std::pair<const GraphId, GraphNode>* last = nullptr;
   double metres = 0.;
   for (const auto& node : graph.nodes) {
@@ -65,9 +65,9 @@ TravelledWay::TravelledWay(const MapGraph& graph) {
   }
 }
 
-bool TravelledWay::AreOneVisit(const GraphId& a, const GraphId& b,
-                               const double distance,
-                               const double visit_distance) const {
+bool TravelledPath::AreOneVisit(const GraphId& a, const GraphId& b,
+                                const double distance,
+                                const double visit_distance) const {
   const auto first = metres_.find(a), second = metres_.find(b);
   if (a.trajectory_id != b.trajectory_id || first == metres_.end() ||
       second == metres_.end()) {

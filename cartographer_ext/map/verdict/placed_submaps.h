@@ -31,10 +31,10 @@ inline bool IsOneVisit(const double travelled, const double distance,
   return travelled < 2. * (distance + visit_distance);
 }
 
-// Way that local SLAM has gone up to each node of a map.
-class TravelledWay {
+// Length of the path of local SLAM up to each node of a map.
+class TravelledPath {
  public:
-  explicit TravelledWay(const MapGraph& graph);
+  explicit TravelledPath(const MapGraph& graph);
 
   // Whether two nodes, `distance` metres apart in the map, are of one visit;
   // false if they are of different trajectories or unknown.

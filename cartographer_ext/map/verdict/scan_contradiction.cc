@@ -190,7 +190,7 @@ class Judge {
       : contents_(contents),
         options_(options),
         submaps_(PlaceSubmaps(graph, contents)),
-        way_(graph),
+        path_(graph),
         holder_(options) {}
 
   // Appends the conflicts.
@@ -225,9 +225,9 @@ class Judge {
   bool IsOneVisit(const GraphId& node_id, const Pose2& pose,
                   const PlacedSubmap& submap) const {
     const Anchor& anchor = submap.NearestAnchor(pose.translation());
-    return way_.AreOneVisit(node_id, anchor.node_id,
-                            (anchor.place - pose.translation()).norm(),
-                            options_.visit_distance);
+    return path_.AreOneVisit(node_id, anchor.node_id,
+                             (anchor.place - pose.translation()).norm(),
+                             options_.visit_distance);
   }
 
   static void Add(const ScanConflict& conflict, NodeContradiction* const node) {
@@ -247,7 +247,7 @@ class Judge {
   const MapContents& contents_;
   const ContradictionOptions options_;
   const std::vector<PlacedSubmap> submaps_;
-  const TravelledWay way_;
+  const TravelledPath path_;
   ScanHolder holder_;
 };
 

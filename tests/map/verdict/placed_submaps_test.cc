@@ -16,7 +16,7 @@ TEST(PlacedSubmapsTest, OneVisitEndsWhereTheRobotHasComeBack) {
 }
 
 // Ten metres out and back.
-TEST(PlacedSubmapsTest, TheWayIsThatOfLocalSlam) {
+TEST(PlacedSubmapsTest, ThePathIsThatOfLocalSlam) {
   MapGraph graph;
   for (int i = 0; i <= 20; ++i) {
     for (const int trajectory_id : {0, 1}) {
@@ -25,13 +25,13 @@ TEST(PlacedSubmapsTest, TheWayIsThatOfLocalSlam) {
       graph.nodes[{trajectory_id, i}] = node;
     }
   }
-  const TravelledWay way(graph);
-  EXPECT_TRUE(way.AreOneVisit({0, 0}, {0, 10}, 10., 2.));
-  EXPECT_TRUE(way.AreOneVisit({0, 10}, {0, 0}, 10., 2.));
-  EXPECT_FALSE(way.AreOneVisit({0, 0}, {0, 20}, 0., 2.));
-  EXPECT_TRUE(way.AreOneVisit({1, 0}, {1, 10}, 10., 2.));
-  EXPECT_FALSE(way.AreOneVisit({0, 0}, {1, 0}, 0., 2.));
-  EXPECT_FALSE(way.AreOneVisit({0, 0}, {0, 30}, 0., 2.));
+  const TravelledPath path(graph);
+  EXPECT_TRUE(path.AreOneVisit({0, 0}, {0, 10}, 10., 2.));
+  EXPECT_TRUE(path.AreOneVisit({0, 10}, {0, 0}, 10., 2.));
+  EXPECT_FALSE(path.AreOneVisit({0, 0}, {0, 20}, 0., 2.));
+  EXPECT_TRUE(path.AreOneVisit({1, 0}, {1, 10}, 10., 2.));
+  EXPECT_FALSE(path.AreOneVisit({0, 0}, {1, 0}, 0., 2.));
+  EXPECT_FALSE(path.AreOneVisit({0, 0}, {0, 30}, 0., 2.));
 }
 
 }  // namespace
