@@ -42,7 +42,7 @@
 #include "absl/types/optional.h"
 #include "cartographer_ext/optimization/graph/pose_graph.h"
 #include "cartographer_ext/optimization/offline/loop_support.h"
-#include "cartographer_ext/optimization/offline/lost_part.h"
+#include "cartographer_ext/optimization/offline/parts/lost_part.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {

@@ -10,6 +10,7 @@
 #include "cartographer_ext/common/thread_time.h"
 #include "cartographer_ext/optimization/offline/auto_search.h"
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"
+#include "cartographer_ext/optimization/offline/parts/part_replay.h"
 #include "cartographer_ext/optimization/offline/portfolio.h"
 #include "cartographer_ext/optimization/offline/readmission.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
@@ -119,6 +120,9 @@ absl::Status RunReplay(const PoseGraph& graph, const OptimizeOptions& options,
   ReplayResult replay;
   const absl::Status status = Replay(graph, options.smoother, &replay);
   if (!status.ok()) return status;
+  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  RobustSolver solver(edges);
+  ReplayLostParts(graph, options.smoother, &solver, &replay);
   ReadmitGroups(graph, &replay);
   if (options.estimate_noise) {
     RepeatWithLargerNoise(graph, options.smoother, &replay, result);

@@ -41,11 +41,12 @@
 // so far), and where that does not lead there, with a whole one: where the quick
 // solvers agree but reject loops that agree with each other, and where they do
 // not agree. The search ends where the kernels agree from there, with each other
-// or each with what it has found from the given poses. Where a replay has lost a
-// part of the path (lost_part.h), kernels, a narrower gate and groups forced in
-// are tried one after the other until a map has lost none, and from that the
-// kernels have to agree. Otherwise starts that lead to a folded map are given up
-// after one kernel. With other information matrices the quick solvers alone are
+// or each with what it has found from the given poses. A part of the path that a
+// replay has lost (lost_part.h) is replayed with the rest held (part_replay.h).
+// Where kernels from there do not agree, those from the best of them have to, and
+// before, if that has lost a part, a narrower gate and groups forced in are tried
+// until a map has lost none. Otherwise starts that lead to a folded map are given
+// up after one kernel. With other information matrices the quick solvers alone are
 // added to what is known.
 //
 // A graph of tens of thousands of poses is grown by the loops that are certain
@@ -212,6 +213,8 @@ class Portfolio {
   bool AddReplay(ReplayResult* replay);
   // The same by its epochs alone.
   bool AddShortReplay(ReplayResult* replay);
+  // Parts that a replay has lost, replayed.
+  void AddLostParts(ReplayResult* replay);
   void AddReplays();
   // From the best, kernels as wide as the gate.
   void Soften();
@@ -239,10 +242,11 @@ class Portfolio {
   bool SettleBySupport();
   // The same for the incremental replay: a short one, or else a whole one.
   bool SettleByReplay();
-  // Whether kernels from a start settle the search. If the best map has lost a part
-  // of the path, from the first map that has lost none, of what these kernels, a
-  // narrower gate and groups forced in lead to.
-  bool SettlesFrom(const std::string& start_name, std::vector<Pose2> start);
+  // Whether kernels from a start settle the search, or those from the best of what
+  // they lead to. If that has lost a part of the path, from a map that has lost none,
+  // of what a narrower gate and groups forced in lead to.
+  bool SettlesFrom(const std::string& start_name,
+                   const std::vector<Pose2>& start);
   // Adds what a narrower gate leads to from the quick members, from `first` on, up to
   // the first map that has lost no part of the path.
   void Tighten(size_t first);

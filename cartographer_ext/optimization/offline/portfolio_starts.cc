@@ -11,7 +11,8 @@
 #include "cartographer_ext/optimization/offline/certain_growth.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
-#include "cartographer_ext/optimization/offline/lost_part.h"
+#include "cartographer_ext/optimization/offline/parts/lost_part.h"
+#include "cartographer_ext/optimization/offline/parts/part_replay.h"
 #include "cartographer_ext/optimization/offline/portfolio.h"
 #include "cartographer_ext/optimization/offline/readmission.h"
 #include "cartographer_ext/optimization/offline/starts/joined_trajectories.h"
@@ -72,6 +73,7 @@ bool Portfolio::AddReplay(ReplayResult* const replay) {
   replayed_ = true;
   NoteSolver(replay->poses);
   Add("r_isam", replay->poses);
+  AddLostParts(replay);
   if (Size() <= kMaxRepeatedWork && ReadmitGroups(graph_, replay)) {
     NoteSolver(replay->poses);
     Add("r_isam, readmitted", replay->poses);
@@ -85,11 +87,20 @@ bool Portfolio::AddShortReplay(ReplayResult* const replay) {
   options.max_loops_per_step = 0;
   options.epoch_poses = kShortEpoch;
   options.large_map = 10 * kShortEpoch;
+  options.polish_at_end = false;
   if (!Replay(graph_, options, replay).ok()) return false;
   shortly_replayed_ = true;
   NoteSolver(replay->poses);
   Add("r_isam, short", replay->poses);
+  replay->poses = members_.back().poses;
+  AddLostParts(replay);
   return true;
+}
+
+void Portfolio::AddLostParts(ReplayResult* const replay) {
+  if (!ReplayLostParts(graph_, options_.smoother, &solver_, replay)) return;
+  NoteSolver(replay->poses);
+  Add(absl::StrCat(members_.back().name, ", parts"), replay->poses);
 }
 
 std::vector<double> Portfolio::SupportedLoops() {
@@ -186,27 +197,17 @@ void Portfolio::Tighten(const size_t first) {
 }
 
 bool Portfolio::SettlesFrom(const std::string& start_name,
-                            std::vector<Pose2> start) {
-  std::string name = start_name;
+                            const std::vector<Pose2>& start) {
+  const size_t first = AddKernels(start_name, start, false);
+  if (IsSettled(first)) return true;
   if (LostPart().has_value()) {
-    const size_t first = members_.size();
-    bool lost = true;
-    for (const KernelType type :
-         {KernelType::kDcs, KernelType::kGemanMcClure, KernelType::kAcs}) {
-      AddKernel(name, type, start);
-      lost = LostPart().has_value();
-      if (!lost) break;
-    }
-    if (lost) {
-      if (IsSettled(first)) return true;
-      Tighten(first);
-      Soften();
-      if (!RecoversParts()) return false;
-    }
-    start = best().poses;
-    name = absl::StrCat(best().name, ", ");
+    Tighten(first);
+    Soften();
+    if (!RecoversParts()) return false;
   }
-  return IsSettled(AddKernels(name, start, false));
+  // One of them may have opened what the start has left folded.
+  return IsSettled(AddKernels(absl::StrCat(best().name, ", "),
+                              std::vector<Pose2>(best().poses), false));
 }
 
 absl::optional<PartOfPath> Portfolio::LostPart() const {

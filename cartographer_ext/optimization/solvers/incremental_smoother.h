@@ -107,6 +107,9 @@ struct SmootherOptions {
   // Rounds of deciding and solving (PolishTruncated) after the kernel.
   int polish_rounds = 3;
   int max_hypotheses = 3;  // at the end of an epoch; 0: as in the paper
+  // At the end, solve with wider kernels and polish. Where the poses are a start
+  // for other solvers, these do that.
+  bool polish_at_end = true;
 };
 
 // Cost and result of one step.
@@ -136,9 +139,9 @@ class IncrementalSmoother {
 
   // Ends the current epoch now.
   void EndEpoch();
-  // Call at the end of the data: ends the epoch, then decides and solves
-  // alternately until the decisions no longer change (PolishTruncated). With
-  // late rejection and readmission both off, as in the paper, only ends the
+  // Call at the end of the data: ends the epoch and tries hypotheses, then decides
+  // and solves alternately until the decisions no longer change (PolishTruncated).
+  // With late rejection and readmission both off, as in the paper, only ends the
   // epoch.
   void Finish();
 

@@ -358,6 +358,7 @@ void IncrementalSmoother::Finish() {
     if (!status_.ok()) return;
     UpdateEstimate();
   }
+  if (!options_.polish_at_end) return;
   TryWiderKernels(&batch);
   std::vector<double> weights;
   PolishTruncated(options_.gate, kFinalPolishRounds, &batch, &poses_, &weights);

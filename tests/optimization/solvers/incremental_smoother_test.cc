@@ -386,6 +386,27 @@ TEST(IncrementalSmootherTest, EpochsKeepRightLoopsAmongMoreWrongOnes) {
   EXPECT_GE(accepted, 0.96 * right) << right;
 }
 
+TEST(IncrementalSmootherTest, TheEndNeedNotBePolished) {
+  test::GridWorld world = test::MakeGridWorld(330, 8, 4);
+  test::AddOutliers(test::Outliers(100), &world.graph);
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  SmootherOptions options;
+  options.adaptive_gate = false;
+  ReplayResult polished, rough;
+  ASSERT_TRUE(Replay(world.graph, options, &polished).ok());
+  options.polish_at_end = false;
+  ASSERT_TRUE(Replay(world.graph, options, &rough).ok());
+  EXPECT_GT(TruncatedCost(edges, rough.poses),
+            TruncatedCost(edges, polished.poses));
+  // A start near the same map.
+  EXPECT_LT(AbsoluteTrajectoryError(rough.poses, polished.poses), 0.1);
+  const std::vector<double> decisions =
+      DecideLoops(edges, rough.poses, kChi2Gate);
+  for (size_t i = 0; i != edges.size(); ++i) {
+    EXPECT_EQ(rough.accepted[i], decisions[i] > 0.5) << i;
+  }
+}
+
 TEST(IncrementalSmootherTest, Errors) {
   const SmootherOptions options;
   IncrementalSmoother smoother(options, Pose2(0., 0., 0.));

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cartographer_ext/optimization/offline/loop_growth.h"
-#include "cartographer_ext/optimization/offline/lost_part.h"
+#include "cartographer_ext/optimization/offline/parts/lost_part.h"
 #include "cartographer_ext/optimization/offline/noise/cycle_noise.h"
 #include "cartographer_ext/optimization/offline/noise/map_evidence.h"
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"

@@ -11,8 +11,8 @@
 // All loops between the same two stretches of the path are one piece of evidence, in
 // force if one of them is. Loops within a stretch and between neighbouring ones say
 // nothing, as odometry alone explains them.
-#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOST_PART_H_
-#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOST_PART_H_
+#ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOST_PARTS_LOST_PART_H_
+#define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOST_PARTS_LOST_PART_H_
 
 #include <vector>
 
@@ -38,11 +38,12 @@ struct PartOfPath {
 
 // The part whose loops to the rest are so few in force (weight 1; refused ones have
 // weight 0) as is the least a matter of chance: less than half as often as elsewhere,
-// and as would come about by chance in one of a thousand graphs at most.
+// and as would come about by chance in one of a thousand graphs at most. Its ends are
+// exact to a few poses as far as loops tell.
 absl::optional<PartOfPath> FindLostPart(const std::vector<WhitenedEdge>& edges,
                                         const std::vector<double>& weights);
 
 }  // namespace optimization
 }  // namespace cartographer_ext
 
-#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOST_PART_H_
+#endif  // CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_LOST_PARTS_LOST_PART_H_

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cartographer_ext/optimization/offline/lost_part.h"
+#include "cartographer_ext/optimization/offline/parts/lost_part.h"
 
 #include <random>
 
@@ -67,6 +67,24 @@ TEST(LostPartTest, FindsThePartWithoutLoopsToTheRest) {
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(found->begin, lost.begin);
   EXPECT_EQ(found->end, lost.end);
+}
+
+TEST(LostPartTest, ItsEndsAreThoseOfWhatIsLost) {
+  std::mt19937 random(2);
+  const std::vector<WhitenedEdge> edges = RandomLoops(&random);
+  for (const PartOfPath lost :
+       {PartOfPath{0, 12 * kStretchOfPath},
+        PartOfPath{13 * kStretchOfPath, 21 * kStretchOfPath},
+        PartOfPath{51 * kStretchOfPath, kPoses}}) {
+    std::vector<double> weights;
+    for (const WhitenedEdge& edge : edges) {
+      weights.push_back(lost.IsLeftBy(edge) || random() % 5 == 0 ? 0. : 1.);
+    }
+    const absl::optional<PartOfPath> found = FindLostPart(edges, weights);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_EQ(found->begin, lost.begin);
+    EXPECT_EQ(found->end, lost.end);
+  }
 }
 
 TEST(LostPartTest, LoopsOfTheSameStretchesAreOnePieceOfEvidence) {
