@@ -112,6 +112,13 @@ class Repairer {
   // A map that cannot be judged may miss the loops that would tie it together.
   bool is_sound() const { return best_.consistency.word == "sound"; }
 
+  // The map does not contradict itself, though little may tie it together.
+  bool is_free_of_contradictions() const {
+    const evaluation::SelfConsistency& consistency = best_.consistency;
+    return consistency.word != "unknown" && consistency.places.empty() &&
+           consistency.wrong_turns.empty();
+  }
+
   // Who names loops by hand gets to a sound map in several runs.
   bool is_by_hand() const {
     return !options_.dropped_loops.empty() || !options_.added_loops.empty();
@@ -302,6 +309,7 @@ class Repairer {
 
   void RunLoopClosure(const bool ours) {
     if (is_sound() || !options_.loops ||
+        (!ours && is_free_of_contradictions()) ||
         (ours && !options_.configuration.ours.has_value())) {
       return;
     }
@@ -326,7 +334,7 @@ class Repairer {
     RerunAlong(absl::StrCat(name, ", with odometry where the two differ"),
                mixed, NodeMatching::kFrontEnd, has_gyroscope);
     RerunAlong(name, stored, NodeMatching::kFrontEnd, has_gyroscope);
-    if (is_sound() || best_base_ == nullptr) return;
+    if (is_free_of_contradictions() || best_base_ == nullptr) return;
     CloseLoops(absl::StrCat(best_name_, ", "), best_base_, false);
   }
 

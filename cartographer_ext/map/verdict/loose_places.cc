@@ -28,6 +28,8 @@ using uncertainty::Adjoint;
 // which nothing is known, in metres and radians. They keep matrices invertible.
 constexpr double kLeastStep = 1e-4;
 constexpr double kAnywhere = 1e3;
+// Points that stand for the stretch of path around a place.
+constexpr double kMaxStretchPoints = 24.;
 
 // Of the relative pose (first <- second), by position in the sequence.
 struct Factor {
@@ -82,6 +84,29 @@ class PathTies {
       result.push_back(std::move(kept));
     }
     return result;
+  }
+
+  // Of each of `places`, where the path is nearer to it than to the others, at
+  // distances of no less than `spacing` metres.
+  std::vector<std::vector<Eigen::Vector2d>> Stretches(
+      const std::vector<int>& places, const double spacing) const {
+    std::vector<std::vector<Eigen::Vector2d>> stretches(places.size());
+    for (size_t k = 0; k < places.size(); ++k) {
+      const int begin = k == 0 ? 0 : (places[k - 1] + places[k] + 1) / 2;
+      const int end =
+          k + 1 == places.size() ? size() : (places[k] + places[k + 1] + 1) / 2;
+      double last = -std::numeric_limits<double>::infinity();
+      for (int i = begin; i < end; ++i) {
+        if (ids_[i].trajectory_id != ids_[places[k]].trajectory_id ||
+            std::abs(travelled_[i] - travelled_[places[k]]) > Spacing() ||
+            (i != places[k] && travelled_[i] - last < spacing)) {
+          continue;
+        }
+        last = travelled_[i];
+        stretches[k].push_back(poses_[i].translation());
+      }
+    }
+    return stretches;
   }
 
   int size() const { return static_cast<int>(ids_.size()); }
@@ -183,6 +208,50 @@ double Sigma(const PathTies& path, const std::vector<int>& places,
       adjoint * covariances[k].block<3, 3>(3 * k, 0) * adjoint.transpose());
 }
 
+double LeastDistance(const std::vector<Eigen::Vector2d>& a,
+                     const std::vector<Eigen::Vector2d>& b) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& i : a) {
+    for (const Eigen::Vector2d& k : b) {
+      least = std::min(least, (i - k).squaredNorm());
+    }
+  }
+  return std::sqrt(least);
+}
+
+bool IsOfOnePass(const GraphId& a, const GraphId& b,
+                 const LoosePlaceOptions& options) {
+  return a.trajectory_id == b.trajectory_id &&
+         std::abs(a.index - b.index) < options.min_node_gap;
+}
+
+// What is not known of a place.
+struct LoosePair {
+  size_t other;     // place
+  double sigma;     // metres
+  double distance;  // metres
+  double apart;     // distance beyond that of two visits, in sigmas
+};
+
+// Places without which no pair is left, as few as can be had by leaving out the
+// one in most pairs again and again; in order.
+std::vector<size_t> PlacesToLeaveOut(
+    const std::vector<std::vector<LoosePair>>& pairs) {
+  std::vector<int> counts;
+  for (const auto& own : pairs) counts.push_back(static_cast<int>(own.size()));
+  std::vector<size_t> left_out;
+  while (true) {
+    const auto most = std::max_element(counts.begin(), counts.end());
+    if (most == counts.end() || *most <= 0) break;
+    const size_t place = most - counts.begin();
+    left_out.push_back(place);
+    *most = 0;
+    for (const LoosePair& pair : pairs[place]) --counts[pair.other];
+  }
+  std::sort(left_out.begin(), left_out.end());
+  return left_out;
+}
+
 }  // namespace
 
 std::string DescribeLooseShare(const double share) {
@@ -201,30 +270,34 @@ LoosePlaces FindLoosePlaces(const MapGraph& graph,
   const std::vector<BlockLdlt::Columns> covariances = path.Covariances(places);
   if (covariances.empty()) return result;
   result.looked_at = static_cast<int>(places.size());
-  // A visit may be half a spacing from the place that stands for it.
-  const double visit = options.visit_distance + 0.5 * path.Spacing();
+  const double spacing =
+      std::max(options.min_spacing, path.Spacing() / kMaxStretchPoints);
+  const auto stretches = path.Stretches(places, spacing);
+  // A visit may be half a spacing from the point that stands for it.
+  const double visit = options.visit_distance + 0.5 * spacing;
+  std::vector<std::vector<LoosePair>> pairs(places.size());
   for (size_t i = 0; i < places.size(); ++i) {
-    LoosePlace loose;
-    double nearest = std::numeric_limits<double>::infinity();  // in sigmas
-    for (size_t k = 0; k < places.size(); ++k) {
-      const GraphId& a = path.id(places[i]);
-      const GraphId& b = path.id(places[k]);
-      if (a.trajectory_id == b.trajectory_id &&
-          std::abs(a.index - b.index) < options.min_node_gap) {
+    for (size_t k = 0; k < i; ++k) {
+      if (IsOfOnePass(path.id(places[i]), path.id(places[k]), options)) {
         continue;
       }
       const double sigma = Sigma(path, places, covariances, i, k);
       if (sigma <= options.limit) continue;
-      const double distance = (path.pose(places[i]).translation() -
-                               path.pose(places[k]).translation())
-                                  .norm();
+      const double distance = LeastDistance(stretches[i], stretches[k]);
       const double apart = (distance - visit) / sigma;
-      if (apart < std::min(nearest, options.sigmas)) {
-        nearest = apart;
-        loose = {a, b, sigma, distance};
-      }
+      if (apart >= options.sigmas) continue;
+      pairs[i].push_back({k, sigma, distance, apart});
+      pairs[k].push_back({i, sigma, distance, apart});
     }
-    if (std::isfinite(nearest)) result.places.push_back(loose);
+  }
+  for (const size_t i : PlacesToLeaveOut(pairs)) {
+    const LoosePair& nearest =
+        *std::min_element(pairs[i].begin(), pairs[i].end(),
+                          [](const LoosePair& a, const LoosePair& b) {
+                            return a.apart < b.apart;
+                          });
+    result.places.push_back({path.id(places[i]), path.id(places[nearest.other]),
+                             nearest.sigma, nearest.distance});
   }
   return result;
 }

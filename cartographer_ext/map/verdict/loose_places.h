@@ -19,10 +19,12 @@
 //
 // A tie counts where the robot has come back in between: on a straight way a scan
 // agrees with what was seen a little earlier because local SLAM has aligned both.
-// Its inverse gives the covariance of the relative pose of any two nodes. A
-// place is loose if it is not known how it lies to another part of the path that
-// is within reach: the standard deviation of their relative position is above
-// `limit`, and they are no farther apart in the map than `sigmas` of it.
+// Its inverse gives the covariance of the relative pose of any two nodes. Of two
+// places it is not known how they lie to each other if the standard deviation of
+// their relative position is above `limit`, and they are within reach: no farther
+// apart in the map than `sigmas` of it. Loose are the fewest places without which
+// that is known of all others: if nothing ties a wing to a building, the smaller
+// one of the two.
 //
 // Loops are not used: a wrong one would fix what it has put there. Where it is
 // right, scans agree. Nor does it help where scans agree in the wrong place.
@@ -56,7 +58,7 @@ struct LoosePlaceOptions {
   double min_spacing = 0.5;
 };
 
-// The one of the other places that is the most within reach.
+// `other_id`: the place that is the most within its reach.
 struct LoosePlace {
   GraphId node_id;
   GraphId other_id;

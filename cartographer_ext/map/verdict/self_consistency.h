@@ -19,8 +19,8 @@
 //   (lasting_rotation). Either may be wrong, so this alone means doubtful.
 // * displaced nodes: at least `displaced_share` of the nodes that revisit a place
 //   fit it better some decimetres away (revisit_displacement.h). Doubtful.
-// * loose places: at least `loose_share` of the path may lie elsewhere, on or
-//   beside other parts of the map, without anything showing it (loose_places.h).
+// * loose places: at least `loose_share` of the path may lie elsewhere against
+//   the rest, on or beside it, without anything showing it (loose_places.h).
 //   Doubtful: the map may be right, but it cannot vouch for itself.
 // A map is broken if contradicted path pieces make up `broken_share` of the
 // nodes that come back to a place (of at least `judged_share` of all nodes), or
@@ -59,7 +59,7 @@ struct SelfConsistencyOptions {
   double broken_share = 0.08;
   double doubtful_share = 0.01;
   double displaced_share = 0.07;
-  double loose_share = 0.05;
+  double loose_share = 0.03;
   double judged_share = 0.15;
   double tied_share = 0.5;
 };
