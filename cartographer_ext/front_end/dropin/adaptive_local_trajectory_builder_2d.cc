@@ -87,6 +87,7 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
                  WallFillingFor(
                      extension,
                      options.submaps_options().grid_options_2d().resolution())),
+      beam_order_(options),
       predictor_(extension.prediction),
       matcher_(extension.search, options.ceres_scan_matcher_options()),
       log_(extension.log_directory, "nodes", RecordCsvHead()) {
@@ -157,12 +158,13 @@ std::unique_ptr<AdaptiveLocalTrajectoryBuilder2D::MatchingResult>
 AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
     const std::string& sensor_id,
     const cartographer::sensor::TimedPointCloudData& range_data) {
-  const cartographer::sensor::TimedPointCloudOriginData sweep =
+  cartographer::sensor::TimedPointCloudOriginData sweep =
       range_data_collator_.AddRangeData(sensor_id, range_data);
   if (!CanProcess(sweep)) return nullptr;
 
   const double seconds = Seconds(sweep.time);
   const double interval = has_pose_ ? seconds - last_seconds_ : 0.;
+  beam_order_.SetTimes(range_data, interval, &sweep);
   field_of_view_.Advance(std::max(0., interval));
   for (const auto& range : sweep.ranges) {
     field_of_view_.Add(
@@ -187,6 +189,10 @@ AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
     return nullptr;
   }
   const LocalMatch match = MatchScan(prediction, cloud);
+  if (submaps_.Reference() != nullptr && !match.contested) {
+    beam_order_.Learn(sweep, interval, prediction.motion, alignment, match.pose,
+                      *submaps_.Reference());
+  }
   const OdometryState odometry =
       UpdatePredictor(seconds, prediction, match, cloud);
 

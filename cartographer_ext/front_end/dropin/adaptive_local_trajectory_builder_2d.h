@@ -42,6 +42,7 @@
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/pose_graph_context.h"
 #include "cartographer_ext/common/record_log.h"
+#include "cartographer_ext/front_end/dropin/beam_order.h"
 #include "cartographer_ext/front_end/dropin/local_matcher.h"
 #include "cartographer_ext/front_end/dropin/local_submaps.h"
 #include "cartographer_ext/front_end/dropin/scan_assembler.h"
@@ -136,6 +137,7 @@ class AdaptiveLocalTrajectoryBuilder2D {
   cartographer::mapping::MotionFilter motion_filter_;
   cartographer::mapping::RangeDataCollator range_data_collator_;
   ScanAssembler assembler_;
+  BeamOrderLearner beam_order_;
   MotionPredictor predictor_;
   FieldOfView field_of_view_;
   LocalMatcher matcher_;

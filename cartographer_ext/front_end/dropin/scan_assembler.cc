@@ -30,7 +30,10 @@ ScanAssembler::ScanAssembler(
     const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
         options,
     const WallFillingOptions& filling)
-    : options_(options), filling_(filling) {}
+    : options_(options),
+      filling_(filling),
+      smoother_(0.5 *
+                options.submaps_options().grid_options_2d().resolution()) {}
 
 void ScanAssembler::Add(
     const cartographer::sensor::TimedPointCloudOriginData& sweep,
@@ -41,7 +44,9 @@ void ScanAssembler::Add(
   const Rigid3f levelled = Rigid3f::Rotation(alignment.cast<float>());
   float offset = 0.f;
   Rigid3f pose = ToRigid3f(motion) * levelled;
-  for (const auto& range : sweep.ranges) {
+  const std::vector<float> factors = SmoothingFactors(sweep);
+  for (size_t i = 0; i < sweep.ranges.size(); ++i) {
+    const auto& range = sweep.ranges[i];
     if (range.point_time.time != offset) {
       offset = range.point_time.time;
       const double ratio =
@@ -56,6 +61,7 @@ void ScanAssembler::Add(
     // False for NaN.
     if (!(length >= options_.min_range())) continue;
     if (length <= options_.max_range()) {
+      if (factors[i] != 1.f) hit.position = origin + factors[i] * ray;
       accumulated_.returns.push_back(hit);
     } else if (std::isfinite(length)) {
       // Only the first part of the ray is certainly free.
@@ -69,6 +75,23 @@ void ScanAssembler::Add(
   newest_origin_ = sweep.origins.size() == 1
                        ? (levelled * sweep.origins.front()).eval()
                        : Eigen::Vector3f::Zero().eval();
+}
+
+std::vector<float> ScanAssembler::SmoothingFactors(
+    const cartographer::sensor::TimedPointCloudOriginData& sweep) {
+  std::vector<Eigen::Vector2f> points(sweep.ranges.size(),
+                                      Eigen::Vector2f::Zero());
+  // The beams of several lasers are mixed by their stamps.
+  const bool is_smoothed = sweep.origins.size() == 1;
+  for (size_t i = 0; is_smoothed && i < points.size(); ++i) {
+    const Eigen::Vector2f point =
+        (sweep.ranges[i].point_time.position - sweep.origins.front()).head<2>();
+    const float length = point.norm();
+    if (length >= options_.min_range() && length <= options_.max_range()) {
+      points[i] = point;
+    }
+  }
+  return smoother_.Smooth(points);
 }
 
 AssembledScan ScanAssembler::Take() {

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Assembles the range data of one match from one or more sweeps: corrects the
-// motion distortion, separates returns and misses, aligns them with gravity,
+// Assembles the range data of one match from one or more sweeps: smooths ranges
+// whose noise is half a cell of the grid or more (range_smoother.h), corrects the motion
+// distortion, separates returns and misses, aligns them with gravity,
 // crops and filters them as the stock builder does.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_
@@ -12,6 +13,7 @@
 #include "cartographer/sensor/range_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/point_cloud/range_smoother.h"
 #include "cartographer_ext/front_end/point_cloud/wall_filling.h"
 
 namespace cartographer_ext {
@@ -49,8 +51,13 @@ class ScanAssembler {
   AssembledScan Take();
 
  private:
+  // Of each range of the sweep, see RangeSmoother.
+  std::vector<float> SmoothingFactors(
+      const cartographer::sensor::TimedPointCloudOriginData& sweep);
+
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
   const WallFillingOptions filling_;
+  RangeSmoother smoother_;  // down to half a cell of the grid
   int num_sweeps_ = 0;
   // In the gravity-aligned frame of the last match.
   cartographer::sensor::RangeData accumulated_;

@@ -84,8 +84,9 @@ std::vector<std::string> ScanTiming::Warnings() const {
       warnings.push_back(absl::StrCat(
           "no times of beams on ", entry.first.first,
           " (time_increment is 0): every scan is taken as measured at ",
-          "once; if the laser turns, beams are up to ", Seconds(sensor.period),
-          " old and a moving robot smears them"));
+          "once, unless turns of the robot show that the laser turns once a ",
+          "scan; then beams are up to ", Seconds(sensor.period),
+          " old, and the scans before are smeared"));
     }
   }
   return warnings;

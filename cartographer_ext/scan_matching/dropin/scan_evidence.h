@@ -53,6 +53,9 @@ class PoseEvidence {
   // The same scan at another pose.
   void SetPose(const Pose2& pose) { log_likelihood_ = LogLikelihood(pose, 0); }
 
+  // L(pose); zero without points and in a TSDF.
+  double log_likelihood() const { return log_likelihood_; }
+
   // L(pose) - L(`other`). Zero without points. Infinite in a TSDF, whose
   // distances are not probabilities: there the match is always trusted.
   double Against(const Pose2& other) const;
