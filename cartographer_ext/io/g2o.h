@@ -7,8 +7,8 @@
 //   EDGE_SE2 from to dx dy dtheta I11 I12 I13 I22 I23 I33
 //   FIX id [id ...]
 //
-// Metres and radians; the information matrix is in the frame of `from`, its
-// upper triangle row by row. Comment lines start with '#'. Files compressed by
+// Metres and radians; the information matrix is that of the error z^-1 (from^-1 to),
+// in the frame of `to`, its upper triangle row by row. Comment lines start with '#'. Files compressed by
 // gzip, xz or bzip2 are read transparently.
 //
 // Also read: VERTEX2 and EDGE2 of iSAM, with the same fields, and of TORO (often
@@ -42,7 +42,7 @@ struct G2oEdge {
   int64_t from = 0;
   int64_t to = 0;
   Pose2 measurement;  // (from <- to)
-  // Of (dx, dy, dtheta): 1/m^2, 1/(m rad), 1/rad^2.
+  // In the frame of `to`: 1/m^2, 1/(m rad), 1/rad^2.
   Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
   int64_t line = 0;  // where it was read, from 1; 0 if it was not
 };
