@@ -36,6 +36,7 @@ class ScanHolder {
                     const Pose2& local_from_node, const SubmapCells& cells) {
     ScanConflict result;
     origin_ = local_from_node.translation();
+    crossings_.clear();
     start_ = cells.Cell(origin_);
     start_reach_ = cells.ViewOfCell(start_).reach;
     LookAtEnds(scan, local_from_node, cells, &result);
@@ -45,6 +46,40 @@ class ScanHolder {
     }
     StartRays(scan, local_from_node, cells);
     while (num_rays_ > 0) AdvanceRays(cells, &result);
+    return result;
+  }
+
+  // The same without the rays that contradict the submap within half of
+  // `object_size` of one place: of all places that with the most of them.
+  ScanConflict HoldWithoutObject(const std::vector<Eigen::Vector2d>& scan,
+                                 const Pose2& local_from_node,
+                                 const SubmapCells& cells) {
+    ScanConflict result = Hold(scan, local_from_node, cells);
+    std::vector<Eigen::Vector2d> places = crossings_;
+    for (size_t i = 0; i != scan.size(); ++i) {
+      if (ends_[i].is_free_hit) {
+        places.push_back(cells.Cell(local_from_node * scan[i]));
+      }
+    }
+    const double radius = 0.5 * options_.object_size / cells.resolution();
+    const auto is_near = [&](const size_t i, const size_t k) {
+      return (places[i] - places[k]).squaredNorm() <= radius * radius;
+    };
+    size_t center = 0;
+    int most = 0;
+    for (size_t i = 0; i != places.size(); ++i) {
+      int near = 0;
+      for (size_t k = 0; k != places.size(); ++k) near += is_near(i, k);
+      if (near > most) {
+        most = near;
+        center = i;
+      }
+    }
+    for (size_t i = 0; i != places.size(); ++i) {
+      if (!is_near(center, i)) continue;
+      --result.judged;
+      --(i < crossings_.size() ? result.crossings : result.free_hits);
+    }
     return result;
   }
 
@@ -107,10 +142,12 @@ class ScanHolder {
       // Free space behind it: not just a graze along the wall.
       const bool crosses = ray.in_wall && cell.evidence == CellEvidence::kFree;
       if (crosses) {
-        const End& end = ends_[ray.point];
+        End& end = ends_[ray.point];
         result->judged += !end.is_judged;
         result->free_hits -= end.is_free_hit;
+        end.is_free_hit = false;
         ++result->crossings;
+        crossings_.push_back(start_ + ray.step * ray.direction);
       }
       // Nor is there free space outside.
       const int clear_steps =
@@ -135,7 +172,8 @@ class ScanHolder {
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();  // in the local frame
   Eigen::Vector2d start_ = Eigen::Vector2d::Zero();   // in cells
   double start_reach_ = 0.;
-  std::vector<End> ends_;  // by point; of what was held last
+  std::vector<End> ends_;                   // by point; of what was held last
+  std::vector<Eigen::Vector2d> crossings_;  // cells; of the same
   // Of which it is not known yet whether they go through a wall: the first
   // `num_rays_`. The memory is kept for the next scan.
   std::vector<Ray> rays_;
@@ -149,25 +187,27 @@ double MeanRange(const std::vector<Eigen::Vector2d>& scan) {
 }
 
 // The result that contradicts least of those that errors of the headings of the
-// node and of the node that places the submap explain (scan_contradiction.h).
+// node and of the node that places the submap explain; on one visit without an
+// object (scan_contradiction.h).
 ScanConflict HoldAsPlaced(const std::vector<Eigen::Vector2d>& scan,
                           const Pose2& pose, const PlacedSubmap& submap,
+                          const bool is_one_visit,
                           const ContradictionOptions& options,
                           ScanHolder* const holder) {
   const Anchor& anchor = submap.NearestAnchor(pose.translation());
-  ScanConflict least =
-      holder->Hold(scan, anchor.local_from_map * pose, *submap.cells);
+  Pose2 place = anchor.local_from_map * pose;
+  ScanConflict least = holder->Hold(scan, place, *submap.cells);
   const int min_judged = std::max(options.min_judged, least.judged / 2);
   const double lever =
       (pose.translation() - anchor.place).norm() + MeanRange(scan);
   const double reach =
       std::min(options.heading_sigmas * submap.heading_sigma * lever,
                options.max_displacement);
-  if (least.judged < options.min_judged || reach <= options.precision) {
-    return least;
-  }
+  if (least.judged < options.min_judged) return least;
   const Pose2 about(anchor.place.x(), anchor.place.y(), 0.);
+  const bool may_be_turned = reach > options.precision;
   for (const double share : {0.5, -0.5, 1., -1.}) {
+    if (!may_be_turned) break;
     const Pose2 turn(0., 0., share * reach / lever);
     for (const Pose2& turned :
          {about * turn * about.Inverse() * pose, pose * turn}) {
@@ -176,10 +216,14 @@ ScanConflict HoldAsPlaced(const std::vector<Eigen::Vector2d>& scan,
           holder->Hold(scan, anchor.local_from_map * turned, *submap.cells);
       if (held.judged >= min_judged && held.fraction() < least.fraction()) {
         least = held;
+        place = anchor.local_from_map * turned;
       }
     }
   }
-  return least;
+  if (!is_one_visit || least.fraction() <= options.conflict_fraction) {
+    return least;
+  }
+  return holder->HoldWithoutObject(scan, place, *submap.cells);
 }
 
 // Holds nodes against the submaps of other times.
@@ -203,12 +247,14 @@ class Judge {
     ForEachSubmapOfAnotherTime(
         submaps_, contents_, node_id, pose, options_.min_node_gap,
         [&](const PlacedSubmap& submap) {
-          ScanConflict conflict = HoldAsPlaced(
-              contents_.scans.at(node_id), pose, submap, options_, &holder_);
+          const bool is_one_visit = IsOneVisit(node_id, pose, submap);
+          ScanConflict conflict =
+              HoldAsPlaced(contents_.scans.at(node_id), pose, submap,
+                           is_one_visit, options_, &holder_);
           if (conflict.judged < options_.min_judged) return;
           conflict.node_id = node_id;
           conflict.submap_id = submap.id;
-          conflict.is_one_visit = IsOneVisit(node_id, pose, submap);
+          conflict.is_one_visit = is_one_visit;
           Add(conflict, &node);
           if (conflict.fraction() > options_.conflict_fraction) {
             conflicts->push_back(conflict);

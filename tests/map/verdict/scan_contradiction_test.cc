@@ -138,6 +138,31 @@ TEST(ScanContradictionTest, OneWayThroughIsToldApart) {
   EXPECT_FALSE(revisit.conflicts.front().is_one_visit);
 }
 
+// The last 40 nodes see a person beside the robot, a circle of 0.56 m, 0.3 m away.
+test::BoxWorld WorldWithPerson(const double sway) {
+  constexpr double kAway = 0.3, kRadius = 0.28;
+  test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2(), sway);
+  for (int i = 60; i < 100; ++i) {
+    for (Eigen::Vector2d& point : world.contents.scans.at({0, i})) {
+      const double along = point.normalized().x() * kAway;
+      const double beside = kAway * kAway - along * along;
+      if (along <= 0. || beside >= kRadius * kRadius) continue;
+      point =
+          (along - std::sqrt(kRadius * kRadius - beside)) * point.normalized();
+    }
+  }
+  return world;
+}
+
+TEST(ScanContradictionTest, APersonBesideTheRobotIsNoLostLocalSlam) {
+  const auto found = [](const test::BoxWorld& world) {
+    return FindContradictions(world.graph, world.contents, {});
+  };
+  EXPECT_TRUE(found(WorldWithPerson(0.)).passing_pieces.empty());
+  // On another visit it counts: parts of the map may be in the wrong place.
+  EXPECT_EQ(found(WorldWithPerson(test::kSway)).pieces.size(), 1u);
+}
+
 // What is judged are the poses of the nodes, not where the submap, which may be
 // bent, is drawn.
 TEST(ScanContradictionTest, SubmapsArePlacedByTheirNodes) {
