@@ -18,8 +18,8 @@
 // optimised at full weight: the host's Huber loss limits the force of a single
 // loop and leaves a part of large errors. The steps stop as soon as the map is
 // sound. Stock's loop closure, which takes the longest, is not run either on a map
-// that does not contradict itself any more. The result is the best version, or the input if none may be written
-// (WhyNotWritten).
+// that does not contradict itself any more. The result is the best version, or
+// the input if none may be written (WhyNotWritten).
 #ifndef CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_
 #define CARTOGRAPHER_EXT_REPAIR_MAP_REPAIR_H_
 

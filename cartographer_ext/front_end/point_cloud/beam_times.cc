@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/pose2.h"
 
 namespace cartographer_ext {
@@ -28,12 +29,7 @@ void BeamTimes::AddScan(const std::vector<Eigen::Vector2f>& returns,
                         const double interval) {
   if (interval > 0. && intervals_.size() < kMaxIntervals) {
     intervals_.push_back(interval);
-    if (intervals_.size() >= kMinIntervals) {
-      std::vector<double> sorted = intervals_;
-      const size_t middle = sorted.size() / 2;
-      std::nth_element(sorted.begin(), sorted.begin() + middle, sorted.end());
-      period_ = sorted[middle];
-    }
+    if (intervals_.size() >= kMinIntervals) period_ = UpperMedian(intervals_);
   }
   if (returns.empty()) return;
   double bearing = 0., low = 0., high = 0.;

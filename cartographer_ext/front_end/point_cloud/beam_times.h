@@ -14,8 +14,9 @@
 // map better is taken as soon as the sum of their log-likelihoods is larger by
 // `kMinEvidence` and by `kSignificance` standard deviations of what it scatters by
 // (the test of time_offset.h), each scan clipped so that a failed match does not
-// decide. One that is as much less likely is not asked for any more. Times are relative to the middle of the sweep, so that the pose of a scan
-// does not depend on the answer.
+// decide. One that is as much less likely is not asked for any more. Times are
+// relative to the middle of the sweep, so that the pose of a scan does not depend
+// on the answer.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_BEAM_TIMES_H_
 #define CARTOGRAPHER_EXT_FRONT_END_POINT_CLOUD_BEAM_TIMES_H_
 

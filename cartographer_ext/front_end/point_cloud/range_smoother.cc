@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/pose2.h"
 #include "cartographer_ext/common/squared.h"
 
@@ -111,9 +113,7 @@ double Sort(std::vector<Return>* const returns) {
   for (size_t i = 0; i < begin; ++i) all[i].beam.bearing += 2. * kPi;
   std::rotate(all.begin(), all.begin() + static_cast<int64_t>(begin),
               all.end());
-  const auto middle = steps.begin() + static_cast<int64_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return UpperMedian(std::move(steps));
 }
 
 // 1 / m of the line around a return.

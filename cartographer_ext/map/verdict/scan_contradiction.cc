@@ -186,44 +186,49 @@ double MeanRange(const std::vector<Eigen::Vector2d>& scan) {
   return sum / static_cast<double>(std::max<size_t>(1, scan.size()));
 }
 
+// A scan held against a submap in whose local frame it was put there.
+struct PlacedConflict {
+  Pose2 local_from_node;
+  ScanConflict conflict;
+};
+
 // The result that contradicts least of those that errors of the headings of the
-// node and of the node that places the submap explain; on one visit without an
-// object (scan_contradiction.h).
-ScanConflict HoldAsPlaced(const std::vector<Eigen::Vector2d>& scan,
-                          const Pose2& pose, const PlacedSubmap& submap,
-                          const bool is_one_visit,
-                          const ContradictionOptions& options,
-                          ScanHolder* const holder) {
+// node and of the node that places the submap explain (scan_contradiction.h).
+PlacedConflict HoldAsPlaced(const std::vector<Eigen::Vector2d>& scan,
+                            const Pose2& pose, const PlacedSubmap& submap,
+                            const ContradictionOptions& options,
+                            ScanHolder* const holder) {
   const Anchor& anchor = submap.NearestAnchor(pose.translation());
-  Pose2 place = anchor.local_from_map * pose;
-  ScanConflict least = holder->Hold(scan, place, *submap.cells);
-  const int min_judged = std::max(options.min_judged, least.judged / 2);
+  const auto hold_at = [&](const Pose2& map_from_node) {
+    const Pose2 place = anchor.local_from_map * map_from_node;
+    return PlacedConflict{place, holder->Hold(scan, place, *submap.cells)};
+  };
+  PlacedConflict least = hold_at(pose);
+  const int min_judged =
+      std::max(options.min_judged, least.conflict.judged / 2);
   const double lever =
       (pose.translation() - anchor.place).norm() + MeanRange(scan);
   const double reach =
       std::min(options.heading_sigmas * submap.heading_sigma * lever,
                options.max_displacement);
-  if (least.judged < options.min_judged) return least;
+  if (least.conflict.judged < options.min_judged ||
+      reach <= options.precision) {
+    return least;
+  }
   const Pose2 about(anchor.place.x(), anchor.place.y(), 0.);
-  const bool may_be_turned = reach > options.precision;
   for (const double share : {0.5, -0.5, 1., -1.}) {
-    if (!may_be_turned) break;
     const Pose2 turn(0., 0., share * reach / lever);
     for (const Pose2& turned :
          {about * turn * about.Inverse() * pose, pose * turn}) {
-      if (least.fraction() <= options.conflict_fraction) return least;
-      const ScanConflict held =
-          holder->Hold(scan, anchor.local_from_map * turned, *submap.cells);
-      if (held.judged >= min_judged && held.fraction() < least.fraction()) {
+      if (least.conflict.fraction() <= options.conflict_fraction) return least;
+      const PlacedConflict held = hold_at(turned);
+      if (held.conflict.judged >= min_judged &&
+          held.conflict.fraction() < least.conflict.fraction()) {
         least = held;
-        place = anchor.local_from_map * turned;
       }
     }
   }
-  if (!is_one_visit || least.fraction() <= options.conflict_fraction) {
-    return least;
-  }
-  return holder->HoldWithoutObject(scan, place, *submap.cells);
+  return least;
 }
 
 // Holds nodes against the submaps of other times.
@@ -247,11 +252,19 @@ class Judge {
     ForEachSubmapOfAnotherTime(
         submaps_, contents_, node_id, pose, options_.min_node_gap,
         [&](const PlacedSubmap& submap) {
-          const bool is_one_visit = IsOneVisit(node_id, pose, submap);
-          ScanConflict conflict =
-              HoldAsPlaced(contents_.scans.at(node_id), pose, submap,
-                           is_one_visit, options_, &holder_);
+          const std::vector<Eigen::Vector2d>& scan =
+              contents_.scans.at(node_id);
+          const PlacedConflict placed =
+              HoldAsPlaced(scan, pose, submap, options_, &holder_);
+          ScanConflict conflict = placed.conflict;
           if (conflict.judged < options_.min_judged) return;
+          const bool is_one_visit = IsOneVisit(node_id, pose, submap);
+          if (is_one_visit &&
+              conflict.fraction() > options_.conflict_fraction) {
+            conflict = holder_.HoldWithoutObject(scan, placed.local_from_node,
+                                                 *submap.cells);
+            if (conflict.judged < options_.min_judged) return;
+          }
           conflict.node_id = node_id;
           conflict.submap_id = submap.id;
           conflict.is_one_visit = is_one_visit;

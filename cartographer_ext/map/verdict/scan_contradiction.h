@@ -24,10 +24,10 @@
 // on one way through, local SLAM has aligned both with what lies between. A car
 // that pitches, and sees crowns here and trunks there, contradicts what is 15 m
 // ahead in a map that is right. And a person beside the robot hides half of what
-// it sees, so that most of the rays end in space that was free, or pass where he
+// it sees, so that most of the rays end in space that was free, or pass where they
 // stood, while local SLAM that goes astray is contradicted in many places: on one
-// way through, the rays that contradict a submap around a single place of the size
-// of a person (`object_size`), that with the most of them, do not count.
+// visit, the rays that contradict a submap around a single place of the size of a
+// person (`object_size`), that with the most of them, do not count.
 #ifndef CARTOGRAPHER_EXT_MAP_VERDICT_SCAN_CONTRADICTION_H_
 #define CARTOGRAPHER_EXT_MAP_VERDICT_SCAN_CONTRADICTION_H_
 
