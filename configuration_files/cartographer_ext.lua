@@ -109,6 +109,20 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- none. The folder is created if its parent exists.
     directory = "",
   },
+  range_smoothing = {
+    -- Learn the noise of the ranges of a laser from its scans, and where it
+    -- is half a cell of the grid or more smooth the ranges along straight
+    -- surfaces. Lasers with less noise are not changed. Only with a single
+    -- laser.
+    enabled = true,
+  },
+  beam_order = {
+    -- Where the beams of a scan have no times, find out from the fit of the
+    -- scans in turns whether the laser turns once a scan, and in which
+    -- direction, and correct the distortion accordingly. Off: such beams are
+    -- taken as measured at once.
+    estimate = true,
+  },
 }
 
 -- Scan matching that follows the prediction along degenerate directions.

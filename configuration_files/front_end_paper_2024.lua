@@ -21,5 +21,7 @@ TRAJECTORY_BUILDER_2D.cartographer_ext.calibration.estimate_rotation = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.fault_check.enabled = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.search.enabled = false
 TRAJECTORY_BUILDER_2D.cartographer_ext.wall_filling.enabled = false
+TRAJECTORY_BUILDER_2D.cartographer_ext.range_smoothing.enabled = false
+TRAJECTORY_BUILDER_2D.cartographer_ext.beam_order.estimate = false
 TRAJECTORY_BUILDER_2D.ceres_scan_matcher.cartographer_ext.paper_mode
   .eigenvalue_ratio = true

@@ -26,6 +26,8 @@ FrontEndOptions ToFrontEndOptions(const proto::FrontEndOptions& message) {
   options.search.enabled = message.search().enabled();
   options.log_directory = message.log().directory();
   options.fill_walls = message.wall_filling().enabled();
+  options.smooth_ranges = message.range_smoothing().enabled();
+  options.estimate_beam_order = message.beam_order().estimate();
   options.match_features_only = message.paper_mode().adaptive_features();
   return options;
 }

@@ -54,6 +54,8 @@ struct FrontEndOptions {
   AdaptiveFeatureOptions features;
   bool fill_walls = true;
   WallFillingOptions wall_filling;
+  bool smooth_ranges = true;
+  bool estimate_beam_order = true;
   // Folder of records that are written while the program runs; empty: none.
   std::string log_directory;
 };

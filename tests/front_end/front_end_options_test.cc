@@ -27,6 +27,8 @@ std::map<std::string, double> Values(const FrontEndOptions& options) {
       {"imu.enabled", prediction.imu.enabled},
       {"search.enabled", options.search.enabled},
       {"wall_filling.enabled", WallFillingFor(options, 0.05).max_gap > 0.},
+      {"range_smoothing.enabled", options.smooth_ranges},
+      {"beam_order.estimate", options.estimate_beam_order},
       {"calibration.estimate_odometry_scale",
        prediction.calibration.estimate_odometry_scale},
       {"calibration.estimate_rotation",

@@ -167,6 +167,8 @@ Values LocalSlamOf(const SlamConfiguration& configuration) {
        Text(own.prediction.check.enabled)},
       {"front_end.search.enabled", Text(own.search.enabled)},
       {"front_end.fill_walls", Text(own.fill_walls)},
+      {"front_end.smooth_ranges", Text(own.smooth_ranges)},
+      {"front_end.estimate_beam_order", Text(own.estimate_beam_order)},
       {"scan_matcher.mode",
        matcher.paper_mode().eigenvalue_ratio() ? "eigenvalue ratio" : ""},
       {"scan_matcher.paper_ratio",

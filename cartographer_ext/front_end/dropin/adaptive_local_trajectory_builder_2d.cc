@@ -86,8 +86,9 @@ AdaptiveLocalTrajectoryBuilder2D::AdaptiveLocalTrajectoryBuilder2D(
       assembler_(options,
                  WallFillingFor(
                      extension,
-                     options.submaps_options().grid_options_2d().resolution())),
-      beam_order_(options),
+                     options.submaps_options().grid_options_2d().resolution()),
+                 extension.smooth_ranges),
+      beam_order_(options, extension.estimate_beam_order),
       predictor_(extension.prediction),
       matcher_(extension.search, options.ceres_scan_matcher_options()),
       log_(extension.log_directory, "nodes", RecordCsvHead()) {

@@ -65,14 +65,16 @@ void Stamp(const BeamTimes& beam_times, const BeamOrder order,
 
 BeamOrderLearner::BeamOrderLearner(
     const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
-        options)
+        options,
+    const bool enabled)
     : options_(options),
+      enabled_(enabled),
       matcher_(options.ceres_scan_matcher_options(), Defaults()) {}
 
 void BeamOrderLearner::SetTimes(
     const cartographer::sensor::TimedPointCloudData& scan,
     const double interval, TimedPointCloudOriginData* const sweep) {
-  is_untimed_ = options_.num_accumulated_range_data() <= 1 &&
+  is_untimed_ = enabled_ && options_.num_accumulated_range_data() <= 1 &&
                 sweep->origins.size() == 1 &&
                 sweep->ranges.size() >= kMinBeams && !HasTimes(*sweep);
   if (!is_untimed_) return;
@@ -116,7 +118,7 @@ void BeamOrderLearner::Learn(const TimedPointCloudOriginData& sweep,
   const auto fit = [&](const BeamOrder order) {
     TimedPointCloudOriginData stamped = sweep;
     Stamp(times_, order, &stamped);
-    ScanAssembler assembler(options_, WallFillingOptions());
+    ScanAssembler assembler(options_, WallFillingOptions(), false);
     // The map has the translation of the order in force in it.
     assembler.Add(stamped, interval, Pose2(0., 0., motion.theta), alignment);
     return FitNear(pose,

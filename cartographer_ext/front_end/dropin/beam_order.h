@@ -22,9 +22,11 @@ namespace front_end {
 // Learns sweep by sweep. Not thread-safe.
 class BeamOrderLearner {
  public:
-  explicit BeamOrderLearner(
+  // Not `enabled`: all beams stay as if measured at once.
+  BeamOrderLearner(
       const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
-          options);
+          options,
+      bool enabled);
 
   // Sets the times of the beams of a sweep of one laser in which all are the same.
   // `scan` is what it is made of: the points in the order of the beams. `interval`
@@ -53,6 +55,7 @@ class BeamOrderLearner {
               const cartographer::mapping::Submap2D& submap) const;
 
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
+  const bool enabled_;
   const scan_matching::DegeneracyAwareScanMatcher2D matcher_;
   BeamTimes times_;
   // The last sweep was one of a laser without times.

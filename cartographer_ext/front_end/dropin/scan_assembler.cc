@@ -29,9 +29,10 @@ Rigid3f ToRigid3f(const Pose2& pose) {
 ScanAssembler::ScanAssembler(
     const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
         options,
-    const WallFillingOptions& filling)
+    const WallFillingOptions& filling, const bool smooth_ranges)
     : options_(options),
       filling_(filling),
+      smooth_ranges_(smooth_ranges),
       smoother_(0.5 *
                 options.submaps_options().grid_options_2d().resolution()) {}
 
@@ -79,11 +80,13 @@ void ScanAssembler::Add(
 
 std::vector<float> ScanAssembler::SmoothingFactors(
     const cartographer::sensor::TimedPointCloudOriginData& sweep) {
+  // The beams of several lasers are mixed by their stamps.
+  if (!smooth_ranges_ || sweep.origins.size() != 1) {
+    return std::vector<float>(sweep.ranges.size(), 1.f);
+  }
   std::vector<Eigen::Vector2f> points(sweep.ranges.size(),
                                       Eigen::Vector2f::Zero());
-  // The beams of several lasers are mixed by their stamps.
-  const bool is_smoothed = sweep.origins.size() == 1;
-  for (size_t i = 0; is_smoothed && i < points.size(); ++i) {
+  for (size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2f point =
         (sweep.ranges[i].point_time.position - sweep.origins.front()).head<2>();
     const float length = point.norm();

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Assembles the range data of one match from one or more sweeps: smooths ranges
-// whose noise is half a cell of the grid or more (range_smoother.h), corrects the motion
-// distortion, separates returns and misses, aligns them with gravity,
-// crops and filters them as the stock builder does.
+// whose noise is half a cell of the grid or more (range_smoother.h) where the
+// options say so, corrects the motion distortion, separates returns and misses,
+// aligns them with gravity, crops and filters them as the stock builder does.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_
 #define CARTOGRAPHER_EXT_FRONT_END_DROPIN_SCAN_ASSEMBLER_H_
 
@@ -32,7 +32,7 @@ class ScanAssembler {
   ScanAssembler(
       const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D&
           options,
-      const WallFillingOptions& filling);
+      const WallFillingOptions& filling, bool smooth_ranges);
 
   // Adds a sweep. Points are stamped relative to its end. `interval` is the
   // time since the last match (seconds, positive) and `motion` the motion since
@@ -57,6 +57,7 @@ class ScanAssembler {
 
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
   const WallFillingOptions filling_;
+  const bool smooth_ranges_;
   RangeSmoother smoother_;  // down to half a cell of the grid
   int num_sweeps_ = 0;
   // In the gravity-aligned frame of the last match.

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "Eigen/Geometry"
+#include "absl/memory/memory.h"
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/sensor/range_data.h"
 #include "gtest/gtest.h"
@@ -59,7 +61,7 @@ class BeamOrderTest : public ::testing::Test {
   BeamOrderTest()
       : options_(test::StockOptions()),
         submaps_(options_.submaps_options()),
-        learner_(options_) {
+        learner_(absl::make_unique<BeamOrderLearner>(options_, true)) {
     const Pose2 pose(-0.5, 0.2, 0.);
     for (int i = 0; i < 20; ++i) {
       cartographer::sensor::RangeData range_data;
@@ -80,23 +82,23 @@ class BeamOrderTest : public ::testing::Test {
       const double heading = kRate * time;
       const auto scan = TurningScan(heading, direction, &random_);
       sweep = ToSweep(scan);
-      learner_.SetTimes(scan, kPeriod, &sweep);
-      learner_.Learn(sweep, kPeriod, Pose2(0., 0., kRate * kPeriod),
-                     Eigen::Quaterniond::Identity(), Pose2(-0.5, 0.2, heading),
-                     *submaps_.submaps().front());
+      learner_->SetTimes(scan, kPeriod, &sweep);
+      learner_->Learn(sweep, kPeriod, Pose2(0., 0., kRate * kPeriod),
+                      Eigen::Quaterniond::Identity(), Pose2(-0.5, 0.2, heading),
+                      *submaps_.submaps().front());
     }
     return sweep;
   }
 
   const cartographer::mapping::proto::LocalTrajectoryBuilderOptions2D options_;
   cartographer::mapping::ActiveSubmaps2D submaps_;
-  BeamOrderLearner learner_;
+  std::unique_ptr<BeamOrderLearner> learner_;
   Random random_{4};
 };
 
 TEST_F(BeamOrderTest, OfALaserThatTurnsCounterclockwise) {
   const TimedPointCloudOriginData sweep = Turn(1., 5.);
-  EXPECT_EQ(learner_.order(), BeamOrder::kCounterclockwise);
+  EXPECT_EQ(learner_->order(), BeamOrder::kCounterclockwise);
   // The last beam is the first of the sweep.
   EXPECT_NEAR(sweep.ranges.front().point_time.time, 0.5 * kPeriod, 1e-3);
   EXPECT_NEAR(sweep.ranges.back().point_time.time, -0.5 * kPeriod, 1e-3);
@@ -104,13 +106,20 @@ TEST_F(BeamOrderTest, OfALaserThatTurnsCounterclockwise) {
 
 TEST_F(BeamOrderTest, OfALaserThatTurnsClockwise) {
   const TimedPointCloudOriginData sweep = Turn(-1., 5.);
-  EXPECT_EQ(learner_.order(), BeamOrder::kClockwise);
+  EXPECT_EQ(learner_->order(), BeamOrder::kClockwise);
   EXPECT_NEAR(sweep.ranges.front().point_time.time, -0.5 * kPeriod, 1e-3);
 }
 
 TEST_F(BeamOrderTest, OfALaserThatMeasuresAtOnce) {
   const TimedPointCloudOriginData sweep = Turn(0., 30.);
-  EXPECT_EQ(learner_.order(), BeamOrder::kAtOnce);
+  EXPECT_EQ(learner_->order(), BeamOrder::kAtOnce);
+  EXPECT_EQ(sweep.ranges.front().point_time.time, 0.f);
+}
+
+TEST_F(BeamOrderTest, IsNotLearntWhereTheOptionsSayNo) {
+  learner_ = absl::make_unique<BeamOrderLearner>(options_, false);
+  const TimedPointCloudOriginData sweep = Turn(1., 5.);
+  EXPECT_EQ(learner_->order(), BeamOrder::kAtOnce);
   EXPECT_EQ(sweep.ranges.front().point_time.time, 0.f);
 }
 
@@ -119,14 +128,15 @@ TEST_F(BeamOrderTest, TimesOfTheRecordingStay) {
     auto scan = TurningScan(kRate * time, 1., &random_);
     scan.ranges.front().time = -0.07f;
     TimedPointCloudOriginData sweep = ToSweep(scan);
-    learner_.SetTimes(scan, kPeriod, &sweep);
+    learner_->SetTimes(scan, kPeriod, &sweep);
     EXPECT_EQ(sweep.ranges.back().point_time.time, -0.07f);
     EXPECT_EQ(sweep.ranges.front().point_time.time, 0.f);
-    learner_.Learn(sweep, kPeriod, Pose2(0., 0., kRate * kPeriod),
-                   Eigen::Quaterniond::Identity(),
-                   Pose2(-0.5, 0.2, kRate * time), *submaps_.submaps().front());
+    learner_->Learn(sweep, kPeriod, Pose2(0., 0., kRate * kPeriod),
+                    Eigen::Quaterniond::Identity(),
+                    Pose2(-0.5, 0.2, kRate * time),
+                    *submaps_.submaps().front());
   }
-  EXPECT_EQ(learner_.order(), BeamOrder::kAtOnce);
+  EXPECT_EQ(learner_->order(), BeamOrder::kAtOnce);
 }
 
 }  // namespace
