@@ -22,6 +22,8 @@
 //                  Several right ones that have to come in together follow it,
 //                  each of which alone would cost more than the gate. Of these
 //                  trials the best is kept;
+//                - the loops in force are solved with other windings (windings.h),
+//                  of which the best is kept;
 //                - one group in force is released alone, those first whose
 //                  release saves more chi2 than that of right loops would; if
 //                  nothing better follows, rejected loops are put in force then;
@@ -137,6 +139,8 @@ struct RegrowOptions {
   int max_forced = 2;
   // The same of groups that maps are grown from anew: each takes a whole growth.
   int max_starts = 0;
+  // Windings of the loops in force.
+  int max_windings = 16;
   double max_work = kMaxMoveWork;
 };
 

@@ -11,6 +11,7 @@
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
+#include "cartographer_ext/optimization/offline/starts/windings.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -87,7 +88,8 @@ class Regrower {
       Decided map = start_;
       // The cheap ones first: of what is released with others much grows anew.
       if (!Grow(&map) && !ForceNearest(start_, options_.max_near, &forced_) &&
-          !ReleaseAlone() && !ReleaseWithSmaller() && !StartFromGroup()) {
+          !TryWindings() && !ReleaseAlone() && !ReleaseWithSmaller() &&
+          !StartFromGroup()) {
         break;
       }
       ++kept;
@@ -196,6 +198,26 @@ class Regrower {
       Decided map = start;
       map.weights[loop] = 1.;
       if (GrowChanged(&map)) better = true;
+    }
+    if (better) Forget();
+    return better;
+  }
+
+  // Solves the loops in force with other windings; the best is kept.
+  bool TryWindings() {
+    if (!MayTry()) return false;
+    WindingOptions windings;
+    windings.max_chi2 = lowest_.cost();
+    windings.max_windings = options_.max_windings;
+    bool better = false;
+    for (const Winding& winding :
+         FindWindings(edges_, start_.weights, start_.poses, windings)) {
+      if (!MayTry()) break;
+      Decided map = start_;
+      if (Rewind(edges_, map.weights, winding.turns, &map.poses) &&
+          Grow(&map)) {
+        better = true;
+      }
     }
     if (better) Forget();
     return better;

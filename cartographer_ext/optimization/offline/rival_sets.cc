@@ -10,6 +10,7 @@
 
 #include "Eigen/Cholesky"
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/starts/windings.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -36,6 +37,18 @@ double LargestShift(const std::vector<Pose2>& a, const std::vector<Pose2>& b) {
         result, (a[i].translation() - (motion * b[i]).translation()).norm());
   }
   return result;
+}
+
+// Whether the loops in force in both maps have the same winding there.
+bool AreWoundAlike(const std::vector<WhitenedEdge>& edges,
+                   const std::vector<bool>& ours,
+                   const std::vector<bool>& theirs, const std::vector<Pose2>& a,
+                   const std::vector<Pose2>& b) {
+  std::vector<double> weights(edges.size());
+  for (size_t i = 0; i != edges.size(); ++i) {
+    weights[i] = !edges[i].is_loop || (ours[i] && theirs[i]) ? 1. : 0.;
+  }
+  return HaveSameWinding(edges, weights, a, b);
 }
 
 // By how many of its standard deviations a pose of `theirs` is off `ours`, at
@@ -102,8 +115,11 @@ std::vector<RivalSets> FindRivalSets(
       if (ours[i] && !theirs[i]) rival.only_in_force.push_back(i);
       if (theirs[i] && !ours[i]) rival.only_in_rival.push_back(i);
     }
-    if (static_cast<int>(std::min(rival.only_in_force.size(),
-                                  rival.only_in_rival.size())) < min_loops ||
+    const bool is_near =
+        static_cast<int>(std::min(rival.only_in_force.size(),
+                                  rival.only_in_rival.size())) < min_loops;
+    if ((is_near &&
+         AreWoundAlike(edges, ours, theirs, poses, alternative.poses)) ||
         !seen.insert({rival.only_in_force, rival.only_in_rival}).second) {
       continue;
     }
@@ -114,6 +130,7 @@ std::vector<RivalSets> FindRivalSets(
     }
     rival.moves_map = rival.largest_shift > options.same_place &&
                       rival.deviation > options.same_deviation;
+    if (is_near && !rival.moves_map) continue;
     result.push_back(std::move(rival));
   }
   std::stable_sort(result.begin(), result.end(),

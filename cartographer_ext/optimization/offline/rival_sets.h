@@ -5,7 +5,8 @@
 // well as the one in force, but is incompatible with it. The truncated costs
 // then differ by less than the gate, and no estimator can determine from the
 // graph alone which set is right. That matters where the other set leads to
-// another map; a few loops near the gate often leave the map where it is.
+// another map; a few loops near the gate often leave the map where it is. The same
+// set of loops leads to another map where it is wound otherwise (windings.h).
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_
 
@@ -35,8 +36,8 @@ struct RivalSets {
 // When two sets of loops count as different.
 struct RivalOptions {
   double gate = kChi2Gate;
-  // Sets that differ by fewer loops, on either side, are considered one set
-  // with loops near the gate. If fewer than ten times as many are in force, one
+  // Sets that differ by fewer loops, on either side, and have the same winding are
+  // considered one set with loops near the gate. If fewer than ten times as many are in force, one
   // less is enough.
   int min_loops = 2;
   size_t max_rivals = 5;

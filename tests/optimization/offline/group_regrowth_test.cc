@@ -204,6 +204,30 @@ TEST(GroupRegrowthTest, AReleasedRingUnfolds) {
   }
 }
 
+// What the loops in force have wound, no descent unwinds.
+TEST(GroupRegrowthTest, LoopsInForceAreWoundOtherwise) {
+  const test::GridWorld world = test::MakeWeakRing(1, 0.2);
+  const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  const LoopSupport support =
+      FindLoopSupport(world.graph, LoopSupportOptions());
+  RobustSolver solver(edges);
+  std::vector<Pose2> right = world.truth, start = world.graph.poses;
+  PolishTruncated(kChi2Gate, 30, &solver, &right, nullptr);
+  SolverOptions dcs;
+  dcs.kernel = DefaultKernel(KernelType::kDcs);
+  solver.Solve(dcs, &start);
+  PolishTruncated(kChi2Gate, 30, &solver, &start, nullptr);
+  RegrowOptions options;
+  std::vector<Pose2> poses = start;
+  EXPECT_GT(RegrowGroups(support, options, &solver, &poses, nullptr), 0);
+  EXPECT_LT(TruncatedCost(edges, poses), TruncatedCost(edges, right));
+  options.max_windings = 0;
+  poses = start;
+  RegrowGroups(support, options, &solver, &poses, nullptr);
+  EXPECT_GT(TruncatedCost(edges, poses),
+            TruncatedCost(edges, right) + kChi2Gate);
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext

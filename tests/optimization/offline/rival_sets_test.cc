@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/optimization/offline/rival_sets.h"
 
+#include "cartographer_ext/optimization/offline/starts/windings.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 #include "gmock/gmock.h"
 
@@ -108,6 +109,48 @@ TEST(RivalSetsTest, DearerSetsAreNoRivals) {
                             {{cost + 1.1 * kChi2Gate, rivals.right}},
                             RivalOptions(), &solver)
                   .empty());
+}
+
+// A circle whose end a loop sees at its beginning, and the line back and forth that
+// the same loop makes of it where odometry has turned one turn less.
+TEST(RivalSetsTest, TheSameLoopsWoundOtherwiseAreARival) {
+  std::vector<PoseGraphEdge> list;
+  std::vector<Pose2> circle = {Pose2()};
+  const auto add = [&](const int from, const int to) {
+    PoseGraphEdge edge;
+    edge.from = from;
+    edge.to = to;
+    edge.is_loop = to != from + 1;
+    if (!edge.is_loop) edge.measurement = Pose2(1., 0., kPi / 40.);
+    edge.information = Eigen::Vector3d(100., 100., 2.5).asDiagonal();
+    list.push_back(edge);
+  };
+  for (int i = 0; i != 20; ++i) {
+    add(i, i + 1);
+    circle.push_back(circle.back() * Pose2(1., 0., kPi / 10.));
+  }
+  add(0, 20);
+  const std::vector<WhitenedEdge> edges = Whiten(list);
+  const std::vector<double> all(edges.size(), 1.);
+  RobustSolver solver(edges);
+  solver.Solve(SolverOptions(), &circle);
+  WindingOptions options;
+  options.max_chi2 = 30.;
+  std::vector<Pose2> other = circle;
+  const std::vector<Winding> windings =
+      FindWindings(edges, all, circle, options);
+  ASSERT_FALSE(windings.empty());
+  ASSERT_TRUE(Rewind(edges, all, windings[0].turns, &other));
+  solver.Solve(SolverOptions(), &other);
+  const std::vector<RivalSets> found =
+      FindRivalSets(circle,
+                    {{TruncatedCost(edges, circle), circle},
+                     {TruncatedCost(edges, other), other}},
+                    RivalOptions(), &solver);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].only_in_force.empty());
+  EXPECT_TRUE(found[0].moves_map);
+  EXPECT_GT(found[0].largest_shift, 1.);
 }
 
 }  // namespace

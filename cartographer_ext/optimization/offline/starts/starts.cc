@@ -242,6 +242,15 @@ bool ChordalPoses(const std::vector<WhitenedEdge>& edges,
   return true;
 }
 
+bool PositionsOfHeadings(const std::vector<WhitenedEdge>& edges,
+                         const std::vector<double>& weights,
+                         std::vector<Pose2>* const poses) {
+  if (poses->size() < 2) return true;
+  BlockLdlt factor;
+  factor.Analyze(poses->size() - 1, PairsInForce(edges, weights), {});
+  return SolvePositions(edges, weights, &factor, poses);
+}
+
 bool RobustChordalPoses(const std::vector<WhitenedEdge>& edges,
                         std::vector<Pose2>* const poses) {
   std::vector<double> weights(edges.size(), 1.);

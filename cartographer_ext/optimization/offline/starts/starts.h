@@ -48,6 +48,12 @@ bool ChordalPoses(const std::vector<WhitenedEdge>& edges,
                   const std::vector<double>& weights,
                   std::vector<Pose2>* poses);
 
+// The second of these systems alone, with the rotations of `poses`. Returns false,
+// without effect, if the edges do not determine the positions.
+bool PositionsOfHeadings(const std::vector<WhitenedEdge>& edges,
+                         const std::vector<double>& weights,
+                         std::vector<Pose2>* poses);
+
 // The same with loops that contradict the rest downweighted, in a few rounds of
 // reweighting by the Geman-McClure kernel: robust rotation averaging.
 bool RobustChordalPoses(const std::vector<WhitenedEdge>& edges,
