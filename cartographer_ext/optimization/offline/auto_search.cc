@@ -10,6 +10,7 @@
 
 #include "absl/memory/memory.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
+#include "cartographer_ext/optimization/offline/likeliest_map.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"
@@ -20,6 +21,7 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A map that has lost fewer loops than this is not folded.
 constexpr int kUnfolded = 20;
 // Relative difference of the costs of members that are one and the same.
@@ -28,39 +30,6 @@ constexpr double kSameOptimum = 1e-9;
 constexpr double kBeyondWideGate = 0.001;
 // Loops whose leave-one-out innovation is looked at.
 constexpr size_t kMaxInnovations = 100;
-
-// Where most loops are wrong, one that saves hardly more than what it costs to
-// refuse it is more likely wrong, too: the gate is meant for even odds, and twice
-// the logarithm of the odds is what other odds change.
-double GateOfOdds(const std::vector<WhitenedEdge>& edges,
-                  const std::vector<Pose2>& poses) {
-  double loops = 0., accepted = 0.;
-  for (const WhitenedEdge& edge : edges) {
-    loops += edge.is_loop;
-    accepted += edge.is_loop &&
-                Chi2(edge, poses[edge.from], poses[edge.to]) < kChi2Gate;
-  }
-  const double odds = (accepted + 1.) / (loops - accepted + 1.);
-  return kChi2Gate + std::min(0., 2. * std::log(odds));
-}
-
-// Of the members that cost at most `limit`, that with the lowest cost by the
-// gate of the odds.
-const Portfolio::Member& LikeliestMember(const Portfolio& portfolio,
-                                         const double limit) {
-  const std::vector<WhitenedEdge>& edges = portfolio.edges();
-  const Portfolio::Member* result = &portfolio.best();
-  const double gate = GateOfOdds(edges, result->poses);
-  double lowest = TruncatedCost(edges, result->poses, gate);
-  for (const Portfolio::Member& member : portfolio.members()) {
-    if (member.cost > limit) continue;
-    const double cost = TruncatedCost(edges, member.poses, gate);
-    if (cost >= lowest) continue;
-    lowest = cost;
-    result = &member;
-  }
-  return *result;
-}
 
 // What the result may cost more than the best member, to be nearer to the
 // adapted gate: what separates that from the best single solver. That is known
@@ -97,21 +66,18 @@ void PolishMember(const double gate, const Portfolio::Member& member,
 }
 
 // The members that cost at most `limit` polished with the gate, the lowest cost
-// truncated there; with the whole gate only the likeliest.
+// truncated there.
 void PolishMembers(const double gate, const double limit,
-                   const Portfolio::Member& likeliest,
                    Portfolio* const portfolio, AutoResult* const result) {
-  double lowest = std::numeric_limits<double>::infinity();
+  double lowest = kInfinity;
   std::vector<double> polished;
   for (const Portfolio::Member& member : portfolio->members()) {
-    if (member.cost > limit || (gate == kChi2Gate && &member != &likeliest)) {
-      continue;
-    }
+    if (member.cost > limit) continue;
     const bool again =
         std::any_of(polished.begin(), polished.end(), [&](const double cost) {
           return std::abs(member.cost - cost) <= kSameOptimum * cost;
         });
-    if (again && &member != &likeliest) continue;
+    if (again) continue;
     polished.push_back(member.cost);
     PolishMember(gate, member, portfolio->solver(), &lowest, result);
   }
@@ -134,30 +100,32 @@ bool RejectsRightLoops(const AutoResult& narrower, Portfolio* const portfolio) {
 void Decide(const AutoOptions& options, Portfolio* const portfolio,
             AutoResult* const result) {
   const std::vector<WhitenedEdge>& edges = portfolio->edges();
-  const Portfolio::Member& best = portfolio->best();
+  const std::vector<Pose2> best = portfolio->best().poses;
+  const double lowest = portfolio->best().cost;
   RobustSolver& solver = *portfolio->solver();
-  result->member_cost = best.cost;
+  result->member_cost = lowest;
   const double narrow =
-      options.adaptive_gate ? AdaptiveGate(edges, best.poses) : kChi2Gate;
+      options.adaptive_gate ? AdaptiveGate(edges, best) : kChi2Gate;
   const bool adaptive =
       narrow < kChi2Gate &&
       ClaimTooMuchNoise(LeaveOneOutInnovations(
-          best.poses, DecideLoops(edges, best.poses, kChi2Gate),
-          kMaxInnovations, &solver));
-  const double limit = best.cost + kUnfolded * kChi2Gate;
+          best, DecideLoops(edges, best, kChi2Gate), kMaxInnovations, &solver));
   const double slack = Slack(*portfolio);
-  const double most = best.cost * (1. + kSameOptimum) + slack;
+  const double most = lowest * (1. + kSameOptimum) + slack;
   const Portfolio::Member& likeliest = LikeliestMember(
-      *portfolio,
-      portfolio->ran_all_solvers() ? most : best.cost * (1. + kSameOptimum));
+      !options.lowest_cost           ? kInfinity
+      : portfolio->ran_all_solvers() ? most
+                                     : lowest * (1. + kSameOptimum),
+      portfolio);
   if (adaptive) {
-    PolishMembers(narrow, limit, likeliest, portfolio, result);
+    PolishMembers(narrow, lowest + kUnfolded * kChi2Gate, portfolio, result);
     Count(PolishAdapted(kFullPolishRounds, &solver, &result->poses,
                         &result->weights),
           result);
   }
   if (!adaptive || RejectsRightLoops(*result, portfolio)) {
-    PolishMembers(kChi2Gate, limit, likeliest, portfolio, result);
+    double none = kInfinity;
+    PolishMember(kChi2Gate, likeliest, &solver, &none, result);
     return;
   }
   if (!options.lowest_cost || TruncatedCost(edges, result->poses) <= most) {

@@ -139,8 +139,9 @@ struct RegrowOptions {
   int max_forced = 2;
   // The same of groups that maps are grown from anew: each takes a whole growth.
   int max_starts = 0;
-  // Windings of the loops in force.
-  int max_windings = 16;
+  // Other windings of the loops in force that maps are grown from, those first with
+  // which these cost least.
+  int max_windings = 4;
   double max_work = kMaxMoveWork;
 };
 

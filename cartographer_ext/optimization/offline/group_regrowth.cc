@@ -10,6 +10,7 @@
 #include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/decision_moves.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
+#include "cartographer_ext/optimization/offline/noise/map_evidence.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/offline/starts/windings.h"
 
@@ -109,8 +110,8 @@ class Regrower {
     forced_.clear();
   }
 
-  // Grows the map on; whether that is the lowest.
-  bool Grow(Decided* const map) {
+  // Grows the map on; false where it cannot be solved.
+  bool GrowPolished(Decided* const map, std::vector<Pose2>* const polished) {
     ++trials_;
     GrowthOptions growth;
     growth.gate = options_.gate;
@@ -118,18 +119,44 @@ class Regrower {
                         &map->weights)) {
       return false;
     }
-    std::vector<Pose2> polished = map->poses;
-    PolishTruncated(options_.gate, kFullPolishRounds, &solver_, &polished,
+    *polished = map->poses;
+    PolishTruncated(options_.gate, kFullPolishRounds, &solver_, polished,
                     nullptr);
-    return lowest_.Offer(std::move(polished));
+    return true;
+  }
+
+  // The same; whether that is the lowest.
+  bool Grow(Decided* const map) {
+    std::vector<Pose2> polished;
+    return GrowPolished(map, &polished) && lowest_.Offer(std::move(polished));
+  }
+
+  // Whether there is more evidence for another map than for the lowest. The less
+  // odometry says of headings, the more wrong loops fit with some winding.
+  bool IsLikelier(const std::vector<Pose2>& poses) {
+    const double log_area = LogArea(poses_);
+    const auto evidence_of = [&](const std::vector<Pose2>& map) {
+      const std::vector<double> decisions =
+          DecideLoops(edges_, map, options_.gate);
+      return LogEvidenceOfMap({map, decisions}, support_, edges_, log_area,
+                              &solver_) +
+             LogPriorOfDecisions(decisions, support_, edges_);
+    };
+    return evidence_of(poses) > evidence_of(poses_);
+  }
+
+  // What leads to the map of other loops in force, to grow from.
+  static SolverOptions ChangedOptions(const std::vector<double>& weights) {
+    SolverOptions options;
+    options.edge_weights = weights;
+    options.max_iterations = 30;
+    options.cost_tolerance = 1e-5;
+    return options;
   }
 
   // The same after a change of the loops in force.
   bool GrowChanged(Decided* const map) {
-    SolverOptions options;
-    options.edge_weights = map->weights;
-    options.max_iterations = 30;
-    options.cost_tolerance = 1e-5;
+    const SolverOptions options = ChangedOptions(map->weights);
     std::vector<Pose2> relaxed = map->poses;
     const double cost = solver_.Solve(options, &map->poses).final_cost;
     if (ChordalPoses(edges_, map->weights, &relaxed) &&
@@ -189,6 +216,7 @@ class Regrower {
   // one, so the best is kept.
   bool ForceNearest(const Decided& start, const int max_trials,
                     std::set<int>* const tried) {
+    if (max_trials == 0) return false;
     bool better = false;
     int failures = 0;
     for (const int loop : NearestRejected(start)) {
@@ -203,21 +231,40 @@ class Regrower {
     return better;
   }
 
-  // Solves the loops in force with other windings; the best is kept.
-  bool TryWindings() {
-    if (!MayTry()) return false;
+  // The loops in force solved with other windings, in ascending order of cost.
+  std::vector<std::pair<double, std::vector<Pose2>>> SolveWindings() {
     WindingOptions windings;
     windings.max_chi2 = lowest_.cost();
-    windings.max_windings = options_.max_windings;
-    bool better = false;
+    const SolverOptions options = ChangedOptions(start_.weights);
+    std::vector<std::pair<double, std::vector<Pose2>>> result;
     for (const Winding& winding :
          FindWindings(edges_, start_.weights, start_.poses, windings)) {
-      if (!MayTry()) break;
-      Decided map = start_;
-      if (Rewind(edges_, map.weights, winding.turns, &map.poses) &&
-          Grow(&map)) {
-        better = true;
+      std::vector<Pose2> poses = start_.poses;
+      if (!MayTry() || !Rewind(edges_, start_.weights, winding.turns, &poses)) {
+        continue;
       }
+      const double cost = solver_.Solve(options, &poses).final_cost;
+      result.push_back({cost, std::move(poses)});
+    }
+    std::stable_sort(
+        result.begin(), result.end(),
+        [](const auto& a, const auto& b) { return a.first < b.first; });
+    return result;
+  }
+
+  // The best is kept.
+  bool TryWindings() {
+    if (options_.max_windings == 0 || !MayTry()) return false;
+    bool better = false;
+    int failures = 0;
+    for (auto& solved : SolveWindings()) {
+      if (failures == options_.max_windings || !MayTry()) break;
+      ++failures;
+      Decided map = start_;
+      map.poses = std::move(solved.second);
+      std::vector<Pose2> polished;
+      if (!GrowPolished(&map, &polished) || !IsLikelier(polished)) continue;
+      if (lowest_.Offer(std::move(polished))) better = true;
     }
     if (better) Forget();
     return better;
@@ -226,7 +273,7 @@ class Regrower {
   // The groups by how much more chi2 their release saves than that of right
   // loops would, three each, in standard deviations; the largest first.
   std::vector<int> ByExcess() {
-    if (!MayTry()) return {};
+    if (options_.max_near == 0 || !MayTry()) return {};
     SolverOptions options;
     options.edge_weights = start_.weights;
     options.initial_lambda = 1e-8;

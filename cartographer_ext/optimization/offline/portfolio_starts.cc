@@ -279,8 +279,16 @@ void Portfolio::AddGrowth(const std::vector<Pose2>& start) {
   if (!GrowLoops(support(), GrowthOptions(), &solver_, &poses, &weights)) {
     return;
   }
+  const size_t grown = members_.size();
   Add("growth", poses);
   AddKernel("growth, ", KernelType::kDcs, poses);
+  // What has come in first may have wound the path the wrong way round.
+  RegrowOptions windings;
+  windings.max_near = windings.max_failures = 0;
+  poses = members_[grown].poses;
+  if (RegrowGroups(support(), windings, &solver_, &poses, &alternatives_) > 0) {
+    Add("growth, wound", std::move(poses));
+  }
 }
 
 void Portfolio::AddSolvers(const std::string& start_name,

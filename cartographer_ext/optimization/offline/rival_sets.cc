@@ -107,7 +107,12 @@ std::vector<RivalSets> FindRivalSets(
   std::vector<RivalSets> result;
   std::set<std::pair<std::vector<int>, std::vector<int>>> seen;
   for (const Alternative& alternative : alternatives) {
-    if (alternative.cost > cost + options.gate) continue;
+    // Its own cost is that of the usual gate.
+    const double their_cost =
+        options.gate == kChi2Gate
+            ? alternative.cost
+            : TruncatedCost(edges, alternative.poses, options.gate);
+    if (their_cost > cost + options.gate) continue;
     const std::vector<bool> theirs =
         LoopsInForce(edges, alternative.poses, options.gate);
     RivalSets rival;
@@ -123,7 +128,7 @@ std::vector<RivalSets> FindRivalSets(
         !seen.insert({rival.only_in_force, rival.only_in_rival}).second) {
       continue;
     }
-    rival.cost_difference = alternative.cost - cost;
+    rival.cost_difference = their_cost - cost;
     rival.largest_shift = LargestShift(poses, alternative.poses);
     if (rival.largest_shift > 0.) {
       rival.deviation = Deviation(poses, alternative.poses, ours, solver);

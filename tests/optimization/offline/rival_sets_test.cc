@@ -111,6 +111,20 @@ TEST(RivalSetsTest, DearerSetsAreNoRivals) {
                   .empty());
 }
 
+// The cost of what was found is that of the usual gate, by which a map that rejects
+// more costs less than ours with a wider one.
+TEST(RivalSetsTest, CostsAreComparedWithTheSameGate) {
+  const Rivals rivals = MakeRivals(1., 0);
+  RobustSolver solver(rivals.edges);
+  RivalOptions options;
+  options.gate = 4. * kChi2Gate;
+  const std::vector<RivalSets> found = FindRivalSets(
+      rivals.left, {{TruncatedCost(rivals.edges, rivals.right), rivals.right}},
+      options, &solver);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].cost_difference, 0., 1e-3);
+}
+
 // A circle whose end a loop sees at its beginning, and the line back and forth that
 // the same loop makes of it where odometry has turned one turn less.
 TEST(RivalSetsTest, TheSameLoopsWoundOtherwiseAreARival) {

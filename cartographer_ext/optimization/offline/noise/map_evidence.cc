@@ -48,5 +48,22 @@ double LogEvidenceOfMap(const DecidedMap& map, const LoopSupport& support,
   return result;
 }
 
+double LogPriorOfDecisions(const std::vector<double>& decisions,
+                           const LoopSupport& support,
+                           const std::vector<WhitenedEdge>& edges) {
+  std::set<Part> right, wrong;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (!edges[i].is_loop) continue;
+    (decisions[i] > 0.5 ? right : wrong)
+        .insert(PartOf(edges[i], support.group[i]));
+  }
+  const double all = right.size() + wrong.size();
+  double result = 0.;
+  for (const size_t parts : {right.size(), wrong.size()}) {
+    if (parts > 0) result += parts * std::log(parts / all);
+  }
+  return result;
+}
+
 }  // namespace optimization
 }  // namespace cartographer_ext

@@ -30,6 +30,14 @@ double LogEvidenceOfMap(const DecidedMap& map, const LoopSupport& support,
                         const std::vector<WhitenedEdge>& given, double log_area,
                         RobustSolver* solver);
 
+// The logarithm of the probability of the decisions: all groups of loops are right with
+// one and the same probability, that which makes the decisions likeliest. Where most are
+// in force a rejected one is less likely wrong, and where hardly any is, one in force is
+// less likely right.
+double LogPriorOfDecisions(const std::vector<double>& decisions,
+                           const LoopSupport& support,
+                           const std::vector<WhitenedEdge>& edges);
+
 }  // namespace optimization
 }  // namespace cartographer_ext
 

@@ -59,6 +59,7 @@ class HeadingSystem {
  public:
   HeadingSystem(const std::vector<HeadingEdge>& edges, const int num_poses)
       : edges_(edges), size_(num_poses - 1) {
+    if (size_ == 0) return;
     std::vector<Eigen::Triplet<double>> entries;
     for (const HeadingEdge& edge : edges) {
       const double weight = 1. / edge.variance;
@@ -224,8 +225,9 @@ std::vector<Winding> FindWindings(const std::vector<WhitenedEdge>& edges,
   const std::vector<HeadingEdge> all = HeadingEdges(edges, weights, poses);
   Split(all, poses.size(), &joining, &closing);
   const std::vector<HeadingEdge> chosen = Thinned(closing, options.max_loops);
+  if (chosen.empty()) return {};
   const HeadingSystem chain(joining, poses.size());
-  if (chosen.empty() || !chain.determined()) return {};
+  if (!chain.determined()) return {};
   const int size = chosen.size();
   const Eigen::VectorXd change =
       chain.Solve(std::vector<int>(joining.size(), 0));

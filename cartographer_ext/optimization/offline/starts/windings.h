@@ -34,7 +34,7 @@ struct WindingOptions {
   // What a map may cost. No winding that costs less is left out but for the limits
   // below.
   double max_chi2 = 0.;
-  int max_windings = 16;
+  int max_windings = 30;
   // Choices that are kept while the turns of the loops are chosen one by one, and
   // loops for which they are chosen, evenly thinned. Those of the others follow.
   int max_choices = 100;

@@ -94,6 +94,23 @@ TEST(MapEvidenceTest, AWrongGroupIsWrongOnce) {
   }
 }
 
+// Of four groups three are right: each decides with the share of its kind.
+TEST(MapEvidenceTest, DecisionsAreAsLikelyAsTheirShares) {
+  std::vector<WhitenedEdge> edges(9);
+  LoopSupport support;
+  std::vector<double> decisions(9, 1.);
+  for (int i = 0; i != 9; ++i) {
+    edges[i].is_loop = i > 0;
+    edges[i].from = 0;
+    edges[i].to = i;
+    support.group.push_back(i == 0 ? -1 : (i - 1) / 2);
+  }
+  EXPECT_DOUBLE_EQ(LogPriorOfDecisions(decisions, support, edges), 0.);
+  decisions[7] = decisions[8] = 0.;  // one group
+  EXPECT_DOUBLE_EQ(LogPriorOfDecisions(decisions, support, edges),
+                   3. * std::log(0.75) + std::log(0.25));
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext

@@ -150,6 +150,12 @@ TEST(WindingsTest, ALoopThatJoinsTrajectoriesHasNoOther) {
                   .empty());
 }
 
+TEST(WindingsTest, ASinglePoseHasNone) {
+  std::vector<Pose2> poses(1);
+  EXPECT_TRUE(FindWindings({}, {}, poses, WindingOptions()).empty());
+  EXPECT_FALSE(Rewind({}, {}, {}, &poses));
+}
+
 TEST(WindingsTest, LeadsToAnotherMinimumAndBack) {
   const Circle circle(0.4);
   WindingOptions options;
