@@ -142,6 +142,8 @@ struct RegrowOptions {
   // Other windings of the loops in force that maps are grown from, those first with
   // which these cost least.
   int max_windings = 4;
+  // Nothing but these and growth, and that only where there are any.
+  bool windings_alone = false;
   double max_work = kMaxMoveWork;
 };
 

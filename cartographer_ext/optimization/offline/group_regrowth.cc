@@ -86,13 +86,7 @@ class Regrower {
       start_.weights = DecideLoops(edges_, poses_, options_.gate);
       start_.banned.assign(edges_.size(), false);
       groups_ = ReleasableGroups(support_, start_.weights);
-      Decided map = start_;
-      // The cheap ones first: of what is released with others much grows anew.
-      if (!Grow(&map) && !ForceNearest(start_, options_.max_near, &forced_) &&
-          !TryWindings() && !ReleaseAlone() && !ReleaseWithSmaller() &&
-          !StartFromGroup()) {
-        break;
-      }
+      if (!Move()) break;
       ++kept;
     }
     return kept;
@@ -101,6 +95,17 @@ class Regrower {
  private:
   bool MayTry() const {
     return trials_ < options_.max_trials && solver_.work() < most_work_;
+  }
+
+  // The cheap ones first: of what is released with others much grows anew.
+  bool Move() {
+    Decided map = start_;
+    if (options_.windings_alone) {
+      return !OtherWindings().empty() && (Grow(&map) || TryWindings());
+    }
+    return Grow(&map) || ForceNearest(start_, options_.max_near, &forced_) ||
+           TryWindings() || ReleaseAlone() || ReleaseWithSmaller() ||
+           StartFromGroup();
   }
 
   // What failed before may succeed after progress.
@@ -216,7 +221,6 @@ class Regrower {
   // one, so the best is kept.
   bool ForceNearest(const Decided& start, const int max_trials,
                     std::set<int>* const tried) {
-    if (max_trials == 0) return false;
     bool better = false;
     int failures = 0;
     for (const int loop : NearestRejected(start)) {
@@ -231,14 +235,17 @@ class Regrower {
     return better;
   }
 
+  std::vector<Winding> OtherWindings() const {
+    WindingOptions options;
+    options.max_chi2 = lowest_.cost();
+    return FindWindings(edges_, start_.weights, start_.poses, options);
+  }
+
   // The loops in force solved with other windings, in ascending order of cost.
   std::vector<std::pair<double, std::vector<Pose2>>> SolveWindings() {
-    WindingOptions windings;
-    windings.max_chi2 = lowest_.cost();
     const SolverOptions options = ChangedOptions(start_.weights);
     std::vector<std::pair<double, std::vector<Pose2>>> result;
-    for (const Winding& winding :
-         FindWindings(edges_, start_.weights, start_.poses, windings)) {
+    for (const Winding& winding : OtherWindings()) {
       std::vector<Pose2> poses = start_.poses;
       if (!MayTry() || !Rewind(edges_, start_.weights, winding.turns, &poses)) {
         continue;
@@ -273,7 +280,7 @@ class Regrower {
   // The groups by how much more chi2 their release saves than that of right
   // loops would, three each, in standard deviations; the largest first.
   std::vector<int> ByExcess() {
-    if (options_.max_near == 0 || !MayTry()) return {};
+    if (!MayTry()) return {};
     SolverOptions options;
     options.edge_weights = start_.weights;
     options.initial_lambda = 1e-8;

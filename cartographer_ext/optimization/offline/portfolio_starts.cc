@@ -284,7 +284,7 @@ void Portfolio::AddGrowth(const std::vector<Pose2>& start) {
   AddKernel("growth, ", KernelType::kDcs, poses);
   // What has come in first may have wound the path the wrong way round.
   RegrowOptions windings;
-  windings.max_near = windings.max_failures = 0;
+  windings.windings_alone = true;
   poses = members_[grown].poses;
   if (RegrowGroups(support(), windings, &solver_, &poses, &alternatives_) > 0) {
     Add("growth, wound", std::move(poses));
