@@ -23,8 +23,8 @@
 //      to the scale of the accepted loops, where the matrices claim too much
 //      noise, which in a sparse graph leave-one-out innovations alone show;
 //      the lowest cost truncated there is taken. Where they do not, or where the
-//      narrower gate rejects more than can be wrong (loops_by_chance.h), that of
-//      the members of (4) which the odds of a wrong loop favour;
+//      narrower gate rejects more than can be wrong (loops_by_chance.h), the
+//      likeliest of the members of (4) (likeliest_map.h);
 //   4. where that costs more than the best single solver, the lowest is taken,
 //      brought near to (3) as far as it costs no more (polish_near.h). Where not
 //      every solver has taken part, the limit is the lowest truncated cost, and

@@ -20,7 +20,8 @@
 //           paths and an incremental replay (R-iSAM) as starts of the same
 //           kernels; graduated non-convexity.
 //   Groups  where the rejected loops are within the uncertainty of the map or
-//           the kernels disagree: growth by groups of loops (loop_growth.h), a
+//           the kernels disagree: growth by groups of loops (loop_growth.h),
+//           also from other windings of what it has grown (windings.h), a
 //           spanning tree over the loops in force, groups forced in one by one
 //           (decision_moves.h), in turn with chordal relaxations of what is in
 //           force, as long as that finds loops; then growth from the best
