@@ -277,14 +277,14 @@ std::unique_ptr<Portfolio> Search(const PoseGraph& graph,
   }
   NoiseOfMap map = MeasureNoise(portfolio.get());
   for (const auto find :
-       {&FindLargerNoise, &FindNoiseOfFewLoops, &FindSmallerNoise,
-        &FindNoiseOfCycles, &FindNoiseRatio}) {
+       {&FindLargerNoise, &FindNoiseOfFewLoops, &FindLikelierNoise,
+        &FindSmallerNoise, &FindNoiseOfCycles, &FindNoiseRatio}) {
     NoiseHypothesis noise;
     if (!find(*applied, map, portfolio.get(), &noise)) continue;
     // Only where the matrices claim too little is another map to be expected
     // than those that are known.
-    portfolio = SearchWithNoise(graph, noise, find == &FindLargerNoise, options,
-                                *portfolio);
+    const bool anew = find == &FindLargerNoise || find == &FindLikelierNoise;
+    portfolio = SearchWithNoise(graph, noise, anew, options, *portfolio);
     *applied = noise.metric;
     map = MeasureNoise(portfolio.get());
   }

@@ -18,7 +18,9 @@
 //      the other; the larger of both factors then stays at least one. That is asked
 //      last, as a wrong map shows a wrong ratio. Fewer than ten loops say nothing
 //      about the noise by their residuals, but they may confirm each other far from
-//      where odometry has led;
+//      where odometry has led. In a small graph the evidence of maps with up to eight
+//      times the noise decides besides (FindLikelierNoise): where a gate lets in a
+//      part of the loops only, their residuals say nothing either;
 //   3. the members near the lowest truncated cost polished with a gate adapted
 //      to the scale of the accepted loops, where the matrices claim too much
 //      noise, which in a sparse graph leave-one-out innovations alone show;

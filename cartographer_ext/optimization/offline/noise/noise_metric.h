@@ -86,6 +86,12 @@ bool FindLargerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
 // quarters of them could be.
 bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                          Portfolio* portfolio, NoiseHypothesis* found);
+// Larger, up to eight times, where a map with more loops in force is likelier by odds of
+// 1000 with it (map_evidence.h) than the best one with the given noise. Asked last of a
+// larger noise, in small graphs in which more of the rejected loops would come in with
+// the largest than fit by chance.
+bool FindLikelierNoise(const NoiseMetric& applied, const NoiseOfMap& map,
+                       Portfolio* portfolio, NoiseHypothesis* found);
 // Smaller, where another map than the best is likelier by odds of 1000 with it
 // (map_evidence.h), each with the noise that it shows itself, not more than is
 // claimed. A gate that is too wide lets groups of wrong loops bend odometry that is

@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A smaller noise than claimed, where it decides between maps.
+// Another noise than claimed by the evidence of maps: a smaller one where it decides
+// between maps, a larger one where it brings rejected loops in.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
-#include "cartographer_ext/optimization/offline/parts/lost_part.h"
 #include "cartographer_ext/optimization/offline/noise/cycle_noise.h"
+#include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
 #include "cartographer_ext/optimization/offline/noise/map_evidence.h"
 #include "cartographer_ext/optimization/offline/noise/noise_metric.h"
+#include "cartographer_ext/optimization/offline/parts/lost_part.h"
 #include "cartographer_ext/optimization/offline/readmission.h"
 #include "cartographer_ext/optimization/offline/starts/starts.h"
 #include "cartographer_ext/optimization/solvers/edges_in_force.h"
@@ -28,6 +31,13 @@ constexpr double kLessNoise[] = {0.5, 0.25, 0.125};
 // a factor that ends them.
 constexpr int kMaxRounds = 4;
 constexpr double kSameNoise = 0.05;
+// Factors, of odometry and of loops, with which rejected loops may come in, of graphs of
+// so many loops at least and so many poses times loops at most, and rejected loops that
+// are looked at.
+constexpr double kMoreNoise[] = {1., 2., 4., 8.};
+constexpr int kMinExplained = 5;
+constexpr double kMaxSearched = 2.5e5;
+constexpr size_t kMaxRejected = 300;
 // Logarithm of the odds that another map, or another noise, needs.
 const double kMuchLikelier = std::log(1000.);
 
@@ -58,12 +68,14 @@ std::vector<Pose2> LowestOf(const std::vector<Pose2>& start,
 
 // How a map is explained.
 struct Explanation {
-  NoiseMetric first;  // that is looked for on from here
+  NoiseMetric first;    // that is looked for on from here
+  bool larger = false;  // than claimed, or smaller
   int max_rounds = kMaxRounds;
   bool soft = false;  // with a kernel, which may lead to another map
 };
 
-// The map with the noise that it shows itself, not more than is claimed.
+// The map with the noise that it shows itself, as far as that is less than claimed or, if
+// it may be larger, more.
 ExplainedMap Explain(const std::vector<Pose2>& poses,
                      const Explanation& explanation, const double log_area,
                      Portfolio* const portfolio) {
@@ -85,9 +97,12 @@ ExplainedMap Explain(const std::vector<Pose2>& poses,
     if (last.evidence > result.evidence) result = last;
     if (last.accepted < kMinLoops || round + 1 == explanation.max_rounds) break;
     const NoiseScale noise = EstimateNoiseScale(last.poses, decisions, &solver);
+    const auto limited = [&](const double factor) {
+      return explanation.larger ? std::max(1., factor) : std::min(1., factor);
+    };
     const NoiseMetric next = {
-        std::min(1., last.metric.odometry * noise.odometry.factor),
-        std::min(1., last.metric.loops * noise.loops.factor)};
+        limited(last.metric.odometry * noise.odometry.factor),
+        limited(last.metric.loops * noise.loops.factor)};
     const double change =
         std::max(std::abs(std::log(next.odometry / last.metric.odometry)),
                  std::abs(std::log(next.loops / last.metric.loops)));
@@ -209,6 +224,31 @@ void AddMapsOfLessNoise(const Portfolio& portfolio, const NoiseMetric& metric,
   }
 }
 
+// Whether more of the rejected loops than by chance would be within the gate of a map if
+// all were as noisy as is looked into.
+bool MayBeNoisier(const NoiseOfMap& map, Portfolio* const portfolio) {
+  constexpr double kMost = kMoreNoise[3];
+  const std::vector<WhitenedEdge> edges =
+      WithNoiseScale(portfolio->edges(), kMost, kMost);
+  RobustSolver solver(edges);
+  std::vector<int> rejected;
+  for (size_t i = 0; i != edges.size(); ++i) {
+    if (map.decisions[i] <= 0.5) rejected.push_back(i);
+  }
+  rejected = Thinned(rejected, kMaxRejected);
+  const std::vector<Pose2>& poses = portfolio->best().poses;
+  const double log_area = LogArea(poses);
+  const std::vector<Innovation> innovations =
+      PredictLoops(rejected, map.decisions, poses, &solver);
+  double within = 0., by_chance = 0.;
+  for (size_t k = 0; k != innovations.size(); ++k) {
+    within += innovations[k].chi2 < kChi2Gate;
+    by_chance += ChanceToFit(edges[rejected[k]], log_area, kChi2Gate,
+                             innovations[k].log_determinant);
+  }
+  return within >= MoreThanExpected(by_chance);
+}
+
 // Takes over a map; whether its noise is another.
 bool TakeMap(const NoiseMetric& applied, ExplainedMap* const map,
              NoiseHypothesis* const found) {
@@ -290,6 +330,49 @@ bool FindNoiseOfCycles(const NoiseMetric& applied, const NoiseOfMap& map,
   }
   return found->valid && TakeMap(applied, &likeliest, found) &&
          !LosesRightLoops(applied, map, *found, portfolio);
+}
+
+bool FindLikelierNoise(const NoiseMetric& applied, const NoiseOfMap& map,
+                       Portfolio* const portfolio,
+                       NoiseHypothesis* const found) {
+  if (map.loops < kMinExplained || map.accepted == map.loops ||
+      portfolio->Size() > kMaxSearched || !MayBeNoisier(map, portfolio)) {
+    return false;
+  }
+  const double log_area = LogArea(portfolio->best().poses);
+  Explanation claimed;
+  claimed.max_rounds = 1;
+  ExplainedMap likeliest =
+      Explain(portfolio->best().poses, claimed, log_area, portfolio);
+  const double needed = likeliest.evidence + kMuchLikelier;
+  likeliest.evidence = needed;
+  Explanation explanation;
+  explanation.larger = explanation.soft = true;
+  const auto try_metric = [&](const NoiseMetric& metric, const int rounds,
+                              const std::vector<Pose2>& start) {
+    explanation.first = metric;
+    explanation.max_rounds = rounds;
+    ExplainedMap explained = Explain(start, explanation, log_area, portfolio);
+    if (explained.accepted <= map.accepted ||
+        explained.evidence <= likeliest.evidence) {
+      return;
+    }
+    likeliest = std::move(explained);
+  };
+  for (const double odometry : kMoreNoise) {
+    for (const double loops : kMoreNoise) {
+      if (odometry * loops == 1.) continue;
+      for (const auto* const start :
+           {&portfolio->best().poses, &portfolio->graph().poses}) {
+        try_metric({odometry, loops}, 1, *start);
+      }
+    }
+  }
+  if (likeliest.evidence == needed) return false;
+  const ExplainedMap first = likeliest;
+  try_metric(first.metric, kMaxRounds, first.poses);
+  found->valid = true;
+  return TakeMap(applied, &likeliest, found);
 }
 
 }  // namespace optimization
