@@ -211,6 +211,8 @@ class IncrementalSmoother {
   void SolveWithPredicted(const SolverOptions& options);
   void DecideLoops();
   void RebuildFactor(RobustSolver* batch);
+  // The same, and the estimate by it; false where the factor is lost.
+  bool Relinearize(RobustSolver* batch);
   std::vector<Candidate> FindCandidates(int first_edge, double majority) const;
   std::vector<int> ChooseSeeds(std::vector<Candidate> candidates) const;
   // If the information matrices are realistic, true loops have chi2 around 3;
@@ -230,7 +232,8 @@ class IncrementalSmoother {
   bool MayReturn() const;
   void KeepMap();
   const EarlierMap* MapBeforeRefusals() const;
-  void ReturnTo(const EarlierMap& map, RobustSolver* batch);
+  // False where the factor is lost.
+  bool ReturnTo(const EarlierMap& map, RobustSolver* batch);
   // Hypotheses from the map of an earlier epoch, where loops since then are
   // refused; returns whether one was accepted.
   bool TryEarlierMap(RobustSolver* batch);

@@ -129,16 +129,12 @@ void IncrementalSmoother::TakeOverEpoch() {
   if (batch_ == nullptr) return;
   const std::unique_ptr<RobustSolver> batch = std::move(batch_);
   FinishBatch(batch.get());
-  RebuildFactor(batch.get());
-  if (!status_.ok()) return;
-  UpdateEstimate();
+  if (!Relinearize(batch.get())) return;
   if (TryHypotheses(first_edge_of_epoch_, kEpochMajority, poses_,
                     batch.get()) ||
       TryEarlierMap(batch.get())) {
     DecideLoops();
-    RebuildFactor(batch.get());
-    if (!status_.ok()) return;
-    UpdateEstimate();
+    if (!Relinearize(batch.get())) return;
   }
   KeepMap();
   first_edge_of_epoch_ = edges_.size();
@@ -354,9 +350,7 @@ void IncrementalSmoother::Finish() {
                       TryHypotheses(0, kFinalMajority, poses_, &batch);
        ++round) {
     DecideLoops();
-    RebuildFactor(&batch);
-    if (!status_.ok()) return;
-    UpdateEstimate();
+    if (!Relinearize(&batch)) return;
   }
   if (!options_.polish_at_end) return;
   TryWiderKernels(&batch);
@@ -439,6 +433,12 @@ void IncrementalSmoother::RebuildFactor(RobustSolver* const batch) {
     return;
   }
   factor_.Reset(*factor, rhs);
+}
+
+bool IncrementalSmoother::Relinearize(RobustSolver* const batch) {
+  RebuildFactor(batch);
+  if (status_.ok()) UpdateEstimate();
+  return status_.ok();
 }
 
 }  // namespace optimization

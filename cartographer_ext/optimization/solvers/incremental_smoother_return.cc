@@ -58,7 +58,7 @@ const IncrementalSmoother::EarlierMap* IncrementalSmoother::MapBeforeRefusals()
 }
 
 // The earlier map, continued by odometry, with its loops in force.
-void IncrementalSmoother::ReturnTo(const EarlierMap& map,
+bool IncrementalSmoother::ReturnTo(const EarlierMap& map,
                                    RobustSolver* const batch) {
   const size_t known = map.poses.size();
   std::copy(map.poses.begin(), map.poses.end(), poses_.begin());
@@ -78,8 +78,7 @@ void IncrementalSmoother::ReturnTo(const EarlierMap& map,
     poses_[newest] = edge.to > edge.from ? poses_[edge.from] * motion
                                          : poses_[edge.to] * motion.Inverse();
   }
-  RebuildFactor(batch);
-  if (status_.ok()) UpdateEstimate();
+  return Relinearize(batch);
 }
 
 bool IncrementalSmoother::TryEarlierMap(RobustSolver* const batch) {
@@ -87,8 +86,7 @@ bool IncrementalSmoother::TryEarlierMap(RobustSolver* const batch) {
   const EarlierMap* const map = MapBeforeRefusals();
   if (map == nullptr) return false;
   const EarlierMap present = {poses_, accepted_};
-  ReturnTo(*map, batch);
-  if (!status_.ok()) return false;
+  if (!ReturnTo(*map, batch)) return false;
   const bool improved =
       TryHypotheses(map->accepted.size(), 0., present.poses, batch);
   accepted_ = present.accepted;
@@ -98,8 +96,7 @@ bool IncrementalSmoother::TryEarlierMap(RobustSolver* const batch) {
     return true;
   }
   poses_ = present.poses;
-  RebuildFactor(batch);
-  if (status_.ok()) UpdateEstimate();
+  Relinearize(batch);
   return false;
 }
 
