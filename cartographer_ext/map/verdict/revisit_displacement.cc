@@ -250,6 +250,7 @@ RevisitDisplacements FindDisplacements(const MapGraph& graph,
     Look look;
     look.node.node_id = id;
     look.node.submap_id = submap.id;
+    look.node.is_distinct = seen.is_distinct;
     look.anchor_id = submap.NearestAnchor(pose.translation()).node_id;
     look.shares =
         SharesOf(contents.scans.at(id), submap.LocalFromMap(pose.translation()),
@@ -260,10 +261,11 @@ RevisitDisplacements FindDisplacements(const MapGraph& graph,
   std::vector<PieceNode> displaced;
   for (const NodeDisplacement& node : result.nodes) {
     if (!node.is_judged) continue;
-    ++result.judged_nodes;
+    result.judged_nodes += node.is_distinct;
     if (node.displacement <= options.limit) continue;
-    ++result.displaced_nodes;
-    displaced.push_back({node.node_id, node.submap_id, 0., node.displacement});
+    result.displaced_nodes += node.is_distinct;
+    displaced.push_back({node.node_id, node.submap_id, 0., node.displacement,
+                         node.is_distinct});
   }
   result.pieces = JoinToPieces(graph, displaced, options.pieces);
   result.tied_share = TiedShare(graph, order, result.nodes, options);

@@ -60,6 +60,7 @@ struct NodeDisplacement {
   GraphId submap_id;
   bool is_judged = false;
   double displacement = 0.;  // metres
+  bool is_distinct = true;   // DistinctNodes: it counts
 };
 
 // A node whose scan agrees with a submap of another time.
@@ -74,10 +75,10 @@ struct RevisitTie {
 
 struct RevisitDisplacements {
   std::vector<NodeDisplacement> nodes;  // that were looked at, by id
-  int judged_nodes = 0;
-  int displaced_nodes = 0;
-  std::vector<PathPiece> pieces;  // displaced
-  std::vector<RevisitTie> ties;   // by node
+  int judged_nodes = 0;                 // distinct ones
+  int displaced_nodes = 0;              // of these
+  std::vector<PathPiece> pieces;        // displaced
+  std::vector<RevisitTie> ties;         // by node
   // Nodes of the largest part of the path that is tied together, of all nodes.
   double tied_share = 0.;
   double displaced_share() const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
 
 #include "cartographer_ext/map/verdict/placed_submaps.h"
 
@@ -239,6 +240,7 @@ class Judge {
       : contents_(contents),
         options_(options),
         submaps_(PlaceSubmaps(graph, contents)),
+        distinct_(DistinctNodes(graph, options.distinct)),
         path_(graph),
         holder_(options) {}
 
@@ -248,6 +250,7 @@ class Judge {
     NodeContradiction node;
     node.node_id = node_id;
     node.time = graph_node.time;
+    node.is_distinct = distinct_.count(node_id) > 0;
     const Pose2& pose = graph_node.global_pose;
     ForEachSubmapOfAnotherTime(
         submaps_, contents_, node_id, pose, options_.min_node_gap,
@@ -268,6 +271,7 @@ class Judge {
           conflict.node_id = node_id;
           conflict.submap_id = submap.id;
           conflict.is_one_visit = is_one_visit;
+          conflict.is_distinct = node.is_distinct;
           Add(conflict, &node);
           if (conflict.fraction() > options_.conflict_fraction) {
             conflicts->push_back(conflict);
@@ -306,6 +310,7 @@ class Judge {
   const MapContents& contents_;
   const ContradictionOptions options_;
   const std::vector<PlacedSubmap> submaps_;
+  const std::set<GraphId> distinct_;
   const TravelledPath path_;
   ScanHolder holder_;
 };
@@ -319,7 +324,7 @@ std::vector<PathPiece> PiecesOf(const MapGraph& graph,
   for (const ScanConflict& conflict : conflicts) {
     if (conflict.is_one_visit != one_visit) continue;
     if (nodes.empty() || nodes.back().node_id != conflict.node_id) {
-      nodes.push_back({conflict.node_id, {}, 0., 0.});
+      nodes.push_back({conflict.node_id, {}, 0., 0., conflict.is_distinct});
     }
     if (conflict.fraction() > nodes.back().fraction) {
       nodes.back().submap_id = conflict.submap_id;
@@ -345,8 +350,9 @@ Contradictions FindContradictions(const MapGraph& graph,
   for (const auto& entry : graph.nodes) {
     const NodeContradiction node =
         judge.Look(entry.first, entry.second, &result.conflicts);
-    if (node.judged > 0) ++result.judged_nodes;
-    if (node.is_revisit) ++result.revisit_nodes;
+    result.distinct_nodes += node.is_distinct;
+    result.judged_nodes += node.is_distinct && node.judged > 0;
+    result.revisit_nodes += node.is_distinct && node.is_revisit;
     result.judged_rays += node.judged;
     result.contradicted_rays += node.contradicted;
     result.nodes.push_back(node);

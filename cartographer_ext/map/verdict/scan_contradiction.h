@@ -60,6 +60,7 @@ struct ContradictionOptions {
   double max_displacement = 0.5;
   double object_size = 1.;                 // metres
   double visit_distance = kVisitDistance;  // metres
+  DistinctNodeOptions distinct;
   PathPieceOptions pieces;
 };
 
@@ -71,6 +72,7 @@ struct ScanConflict {
   int free_hits = 0;  // returns in free space
   int crossings = 0;  // rays through walls
   bool is_one_visit = false;
+  bool is_distinct = true;  // the node, DistinctNodes
   double fraction() const {
     return judged == 0 ? 0.
                        : static_cast<double>(free_hits + crossings) / judged;
@@ -93,6 +95,7 @@ struct NodeContradiction {
   bool in_conflict = false;
   // At least one of the submaps is of another visit.
   bool is_revisit = false;
+  bool is_distinct = true;  // DistinctNodes: it counts
 };
 
 struct Contradictions {
@@ -101,7 +104,9 @@ struct Contradictions {
   std::vector<PathPiece> pieces;  // in conflict with submaps of other visits
   // In conflict with submaps of the same visit.
   std::vector<PathPiece> passing_pieces;
-  int64_t judged_nodes = 0;    // nodes that see a place mapped at another time
+  // Numbers of distinct nodes.
+  int64_t distinct_nodes = 0;
+  int64_t judged_nodes = 0;    // that see a place mapped at another time
   int64_t revisit_nodes = 0;   // of these, on another visit
   int64_t conflict_nodes = 0;  // in path pieces of another visit
   int64_t judged_rays = 0;

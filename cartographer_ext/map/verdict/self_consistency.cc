@@ -46,10 +46,11 @@ std::string Place(const Eigen::Vector2d& place) {
   return absl::StrFormat("x = %.1f m, y = %.1f m", place.x(), place.y());
 }
 
-bool HardlyRevisits(const SelfConsistency& result, const size_t num_nodes,
+bool HardlyRevisits(const Contradictions& contradictions,
                     const SelfConsistencyOptions& options) {
-  return static_cast<double>(result.contradictions.judged_nodes) <
-         std::max(1., options.judged_share * static_cast<double>(num_nodes));
+  return static_cast<double>(contradictions.judged_nodes) <
+         std::max(1., options.judged_share *
+                          static_cast<double>(contradictions.distinct_nodes));
 }
 
 std::string DescribeLoosePlaces(const MapGraph& graph,
@@ -78,7 +79,7 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result,
     if (result.contradictions.judged_nodes == 0) {
       return "no place was mapped twice, so consistency cannot be checked";
     }
-    if (HardlyRevisits(result, graph.nodes.size(), options)) {
+    if (HardlyRevisits(result.contradictions, options)) {
       return "hardly any place was mapped twice, so consistency can hardly be "
              "checked";
     }
@@ -215,7 +216,7 @@ void Explain(const MapGraph& graph, const SelfConsistencyOptions& options,
   }
 }
 
-std::string WordOf(const SelfConsistency& result, const size_t num_nodes,
+std::string WordOf(const SelfConsistency& result,
                    const SelfConsistencyOptions& options) {
   const bool turned = !result.wrong_turns.empty();
   const bool contradicts =
@@ -225,7 +226,7 @@ std::string WordOf(const SelfConsistency& result, const size_t num_nodes,
     return "broken";
   }
   if (contradicts || turned) return "doubtful";
-  if (HardlyRevisits(result, num_nodes, options)) return "unknown";
+  if (HardlyRevisits(result.contradictions, options)) return "unknown";
   if (IsDisplaced(result, options)) return "doubtful";
   if (result.displacements.tied_share < options.tied_share) return "unknown";
   return IsLoose(result.loose.share(), options) ? "doubtful" : "sound";
@@ -285,11 +286,11 @@ SelfConsistency Assess(const MapGraph& graph, const MapContents& contents,
   result.motion = CompareMotions(graph, odometry);
   result.cycles = ComputeLoopCycles(graph, options.cycles);
   const Contradictions& found = result.contradictions;
-  const double num_nodes = static_cast<double>(graph.nodes.size());
   result.severe_share =
       ShareOf(TakeSeverePieces(found.pieces, options, &result.places),
               std::max(static_cast<double>(found.revisit_nodes),
-                       options.judged_share * num_nodes));
+                       options.judged_share *
+                           static_cast<double>(found.distinct_nodes)));
   result.severe_passing_share =
       ShareOf(TakeSeverePieces(found.passing_pieces, options, &result.places),
               static_cast<double>(found.judged_nodes));
@@ -310,7 +311,7 @@ SelfConsistency Assess(const MapGraph& graph, const MapContents& contents,
                    [](const MotionStep& a, const MotionStep& b) {
                      return a.odometry_rotation > b.odometry_rotation;
                    });
-  result.word = WordOf(result, graph.nodes.size(), options);
+  result.word = WordOf(result, options);
   Explain(graph, options, &result);
   return result;
 }

@@ -117,6 +117,26 @@ TEST(ScanContradictionTest, NodesMovedAwayContradictTheFirstSubmap) {
   EXPECT_GT(result.node_fraction(), 0.5);
 }
 
+// However long it stands in the wrong place.
+TEST(ScanContradictionTest, ARobotThatStandsIsCountedOnce) {
+  test::BoxWorld world = test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));
+  const Contradictions moving =
+      FindContradictions(world.graph, world.contents, {});
+  for (int i = 61; i < 90; ++i) {
+    world.graph.nodes.at({0, i}).global_pose =
+        world.graph.nodes.at({0, 60}).global_pose;
+    world.contents.scans.at({0, i}) = world.contents.scans.at({0, 60});
+  }
+  const Contradictions standing =
+      FindContradictions(world.graph, world.contents, {});
+  EXPECT_EQ(standing.nodes.size(), moving.nodes.size());
+  EXPECT_EQ(standing.distinct_nodes, moving.distinct_nodes - 29);
+  EXPECT_EQ(standing.judged_nodes, moving.judged_nodes - 29);
+  EXPECT_EQ(standing.revisit_nodes, moving.revisit_nodes - 29);
+  EXPECT_EQ(standing.conflict_nodes, moving.conflict_nodes - 29);
+  EXPECT_EQ(standing.pieces.back().num_nodes, 11);
+}
+
 // On one way through local SLAM has aligned scans and submaps.
 TEST(ScanContradictionTest, OneWayThroughIsToldApart) {
   const Pose2 wrong(1.5, 1.2, DegToRad(20.));
@@ -130,7 +150,8 @@ TEST(ScanContradictionTest, OneWayThroughIsToldApart) {
   EXPECT_EQ(passing.conflict_nodes, 0);
   EXPECT_TRUE(passing.pieces.empty());
   ASSERT_GE(passing.passing_pieces.size(), 1u);
-  EXPECT_EQ(passing.passing_pieces.back().num_nodes, 40);
+  // Of 40, every second one: two steps are more than a degree.
+  EXPECT_EQ(passing.passing_pieces.back().num_nodes, 20);
   EXPECT_TRUE(passing.conflicts.front().is_one_visit);
   EXPECT_GT(revisit.conflict_nodes, 50);
   EXPECT_EQ(revisit.revisit_nodes, revisit.judged_nodes);
