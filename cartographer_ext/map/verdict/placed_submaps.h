@@ -20,10 +20,9 @@ namespace evaluation {
 // Two places this close, in metres, are one.
 constexpr double kVisitDistance = 2.;
 
-// True if the robot has not come back between two poses, but is still on its way
-// through: what it has travelled is less than twice their distance, allowing for
-// `visit_distance`. All in metres. What it sees on one way through is aligned by
-// local SLAM alone: it tells how local SLAM fares (or that the ground is not
+// True if the robot has not come back between two poses: what it has travelled is
+// less than twice their distance, allowing for `visit_distance`. All in metres.
+// What it sees on one visit is aligned by local SLAM alone: it tells how local SLAM fares (or that the ground is not
 // level and things have no clear outline), not whether the parts of the map are
 // in place.
 inline bool IsOneVisit(const double travelled, const double distance,

@@ -13,7 +13,7 @@ namespace cartographer_ext {
 namespace evaluation {
 namespace {
 
-// A ray on its way through a submap, looked at in steps of one cell.
+// A ray through a submap, looked at in steps of one cell.
 struct Ray {
   size_t point;
   Eigen::Vector2d direction;  // of length 1, cells

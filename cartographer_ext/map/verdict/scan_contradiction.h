@@ -21,7 +21,7 @@
 // Scans are not compared with the submaps they were inserted into, nor with
 // those built just before or after, which local SLAM has aligned. What a scan
 // contradicts though the robot has not come back since (IsOneVisit) is told apart:
-// on one way through, local SLAM has aligned both with what lies between. A car
+// on one visit, local SLAM has aligned both with what lies between. A car
 // that pitches, and sees crowns here and trunks there, contradicts what is 15 m
 // ahead in a map that is right. And a person beside the robot hides half of what
 // it sees, so that most of the rays end in space that was free, or pass where they

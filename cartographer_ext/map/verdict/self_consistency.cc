@@ -159,8 +159,8 @@ void Explain(const MapGraph& graph, const SelfConsistencyOptions& options,
   }
   if (result->severe_passing_share >= options.doubtful_share) {
     result->reasons.push_back(absl::StrFormat(
-        "%.1f %% of the nodes contradict what was mapped on the same way "
-        "through, before the robot came back",
+        "%.1f %% of the nodes contradict what was mapped on the same visit, "
+        "before the robot came back",
         100. * result->severe_passing_share));
   }
   if (IsDisplaced(*result, options)) {

@@ -137,8 +137,8 @@ TEST(ScanContradictionTest, ARobotThatStandsIsCountedOnce) {
   EXPECT_EQ(standing.pieces.back().num_nodes, 11);
 }
 
-// On one way through local SLAM has aligned scans and submaps.
-TEST(ScanContradictionTest, OneWayThroughIsToldApart) {
+// On one visit local SLAM has aligned scans and submaps.
+TEST(ScanContradictionTest, OneVisitIsToldApart) {
   const Pose2 wrong(1.5, 1.2, DegToRad(20.));
   const Contradictions passing =
       FindContradictions(test::MakeBoxWorld(60, wrong, 0.).graph,

@@ -77,7 +77,7 @@ TEST(SelfConsistencyTest, ContradictionsOnOneWayThroughAreDoubt) {
               HasSubstr("parts of the map overlap inconsistently at"));
   EXPECT_THAT(
       result.reasons,
-      Contains(HasSubstr("contradict what was mapped on the same way")));
+      Contains(HasSubstr("contradict what was mapped on the same visit")));
   // With a wrong turn the map is broken nevertheless.
   EXPECT_EQ(AssessSelfConsistency(world.graph, world.contents,
                                   Odometry(world.graph, 40, DegToRad(70.)), {})
