@@ -214,6 +214,7 @@ nlohmann::ordered_json RivalReport(const optimization::PoseGraph& graph,
     json.push_back({{"cost_difference", rival.cost_difference},
                     {"largest_shift", rival.largest_shift},
                     {"deviation", rival.deviation},
+                    {"is_likelier", rival.is_likelier},
                     {"only_in_force", ends(rival.only_in_force)},
                     {"only_in_rival", ends(rival.only_in_rival)}});
   }
@@ -240,6 +241,14 @@ void PrintRivals(const std::vector<optimization::RivalSets>& rivals) {
               "each pose where it is, within its uncertainty (at most %.3g m, "
               "%.2g standard deviations)\n",
         count, shift, deviation);
+  }
+  for (const optimization::RivalSets& rival : rivals) {
+    if (!rival.moves_map || !rival.is_likelier) continue;
+    std::cout << absl::StrFormat(
+        "there is more evidence for one of these, which costs %.3g more: "
+        "groups "
+        "of loops fit into the map that costs less which may be wrong\n",
+        rival.cost_difference);
   }
 }
 

@@ -348,6 +348,12 @@ AutoResult SearchAutomatically(const PoseGraph& graph,
   for (const Portfolio::Member& member : portfolio->members()) {
     alternatives.push_back({member.cost, member.poses});
   }
+  const std::vector<Pose2> likelier =
+      FindLikelierMap(result.poses, portfolio.get());
+  if (!likelier.empty()) {
+    alternatives.push_back(
+        {TruncatedCost(portfolio->edges(), likelier), likelier, true});
+  }
   RivalOptions rivals;
   rivals.gate = result.gate;
   result.rivals =

@@ -93,6 +93,8 @@ struct ForceOptions {
 struct Alternative {
   double cost = 0.;  // truncated
   std::vector<Pose2> poses;
+  // Whether there is much more evidence for it than for the one that was kept.
+  bool is_likelier = false;
 };
 
 // The map of lowest truncated cost so far.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -20,6 +21,8 @@ namespace {
 
 // Relative difference of the costs of one and the same map.
 constexpr double kSameOptimum = 1e-9;
+// Logarithm of the odds with which a map is told apart that costs more.
+const double kMuchLikelier = std::log(1000.);
 // Poses times loops of a graph of which each group in force may be released.
 constexpr double kMaxReleaseWork = 2e6;
 // Maps that are compared, those that cost least.
@@ -51,7 +54,7 @@ class LikelyMaps {
         edges_(portfolio->edges()),
         log_area_(LogArea(portfolio->best().poses)) {}
 
-  // The likeliest map.
+  // The likeliest map, after improvements.
   std::vector<Pose2> Find() {
     Portfolio::Member result = Likeliest();
     for (int k = 0; k != kMaxImproved && IsOpen(); ++k) {
@@ -63,28 +66,7 @@ class LikelyMaps {
     return result.poses;
   }
 
- private:
-  // Whether another map than that of the lowest cost may be reported.
-  bool IsOpen() const {
-    return limit_ > portfolio_.best().cost * (1. + kSameOptimum) + kChi2Gate &&
-           portfolio_.Size() <= kMaxReleaseWork;
-  }
-
-  double EvidenceOf(const std::vector<Pose2>& poses,
-                    const std::vector<double>& decisions) {
-    return LogEvidenceOfMap({poses, decisions}, portfolio_.support(), edges_,
-                            log_area_, portfolio_.solver()) +
-           LogPriorOfDecisions(decisions, portfolio_.support(), edges_);
-  }
-  double EvidenceOf(const std::vector<Pose2>& poses) {
-    return EvidenceOf(poses, DecideLoops(edges_, poses, kChi2Gate));
-  }
-
-  bool IsSame(const Portfolio::Member& a, const Portfolio::Member& b) const {
-    return std::abs(a.cost - b.cost) <= kSameOptimum * b.cost;
-  }
-
-  // The likeliest of the members.
+  // The likeliest member.
   Portfolio::Member Likeliest() {
     std::vector<const Portfolio::Member*> order;
     for (const Portfolio::Member& member : portfolio_.members()) {
@@ -112,6 +94,28 @@ class LikelyMaps {
       result = member;
     }
     return *result;
+  }
+
+  double EvidenceOf(const std::vector<Pose2>& poses) {
+    return EvidenceOf(poses, DecideLoops(edges_, poses, kChi2Gate));
+  }
+
+ private:
+  // Whether another map than that of the lowest cost may be reported.
+  bool IsOpen() const {
+    return limit_ > portfolio_.best().cost * (1. + kSameOptimum) + kChi2Gate &&
+           portfolio_.Size() <= kMaxReleaseWork;
+  }
+
+  double EvidenceOf(const std::vector<Pose2>& poses,
+                    const std::vector<double>& decisions) {
+    return LogEvidenceOfMap({poses, decisions}, portfolio_.support(), edges_,
+                            log_area_, portfolio_.solver()) +
+           LogPriorOfDecisions(decisions, portfolio_.support(), edges_);
+  }
+
+  bool IsSame(const Portfolio::Member& a, const Portfolio::Member& b) const {
+    return std::abs(a.cost - b.cost) <= kSameOptimum * b.cost;
   }
 
   void Improve(const Portfolio::Member& map) {
@@ -199,6 +203,18 @@ const Portfolio::Member& LikeliestMember(const double limit,
     result = &member;
   }
   return result == nullptr ? portfolio->best() : *result;
+}
+
+std::vector<Pose2> FindLikelierMap(const std::vector<Pose2>& map,
+                                   Portfolio* const portfolio) {
+  if (portfolio->Size() > kMaxReleaseWork) return {};
+  LikelyMaps maps(std::numeric_limits<double>::infinity(), portfolio);
+  const std::vector<Pose2> likeliest = maps.Likeliest().poses;
+  if (DifferNearGateOnly(portfolio->edges(), map, likeliest) ||
+      maps.EvidenceOf(likeliest) <= maps.EvidenceOf(map) + kMuchLikelier) {
+    return {};
+  }
+  return likeliest;
 }
 
 }  // namespace optimization

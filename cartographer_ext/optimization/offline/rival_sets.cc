@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "Eigen/Cholesky"
@@ -112,7 +113,7 @@ std::vector<RivalSets> FindRivalSets(
         options.gate == kChi2Gate
             ? alternative.cost
             : TruncatedCost(edges, alternative.poses, options.gate);
-    if (their_cost > cost + options.gate) continue;
+    if (!alternative.is_likelier && their_cost > cost + options.gate) continue;
     const std::vector<bool> theirs =
         LoopsInForce(edges, alternative.poses, options.gate);
     RivalSets rival;
@@ -121,6 +122,7 @@ std::vector<RivalSets> FindRivalSets(
       if (theirs[i] && !ours[i]) rival.only_in_rival.push_back(i);
     }
     const bool is_near =
+        !alternative.is_likelier &&
         static_cast<int>(std::min(rival.only_in_force.size(),
                                   rival.only_in_rival.size())) < min_loops;
     if ((is_near &&
@@ -128,6 +130,7 @@ std::vector<RivalSets> FindRivalSets(
         !seen.insert({rival.only_in_force, rival.only_in_rival}).second) {
       continue;
     }
+    rival.is_likelier = alternative.is_likelier;
     rival.cost_difference = their_cost - cost;
     rival.largest_shift = LargestShift(poses, alternative.poses);
     if (rival.largest_shift > 0.) {
@@ -138,12 +141,12 @@ std::vector<RivalSets> FindRivalSets(
     if (is_near && !rival.moves_map) continue;
     result.push_back(std::move(rival));
   }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const RivalSets& a, const RivalSets& b) {
-                     return a.moves_map != b.moves_map
-                                ? a.moves_map
-                                : a.cost_difference < b.cost_difference;
-                   });
+  std::stable_sort(
+      result.begin(), result.end(), [](const RivalSets& a, const RivalSets& b) {
+        return std::make_tuple(!a.moves_map, !a.is_likelier,
+                               a.cost_difference) <
+               std::make_tuple(!b.moves_map, !b.is_likelier, b.cost_difference);
+      });
   if (result.size() > options.max_rivals) result.resize(options.max_rivals);
   return result;
 }

@@ -6,7 +6,8 @@
 // then differ by less than the gate, and no estimator can determine from the
 // graph alone which set is right. That matters where the other set leads to
 // another map; a few loops near the gate often leave the map where it is. The same
-// set of loops leads to another map where it is wound otherwise (windings.h).
+// set of loops leads to another map where it is wound otherwise (windings.h). A map that
+// costs more is a rival, too, if there is much more evidence for it (likeliest_map.h).
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_RIVAL_SETS_H_
 
@@ -24,6 +25,8 @@ namespace optimization {
 struct RivalSets {
   std::vector<int> only_in_force;  // loops in force that the rival rejects
   std::vector<int> only_in_rival;
+  // Whether there is much more evidence for the rival, whatever it costs.
+  bool is_likelier = false;
   double cost_difference = 0.;  // truncated cost of the rival minus ours
   double largest_shift = 0.;    // metres, between the poses of the two maps
   // The same in standard deviations that the loops in force leave a position
@@ -49,7 +52,7 @@ struct RivalOptions {
 };
 
 // Rivals of the map `poses` with the edges of `solver`: those that move the map
-// first, the closest of them first; of several with the same loops only one.
+// first, of them a likelier one, then the closest first; of several with the same loops only one.
 std::vector<RivalSets> FindRivalSets(
     const std::vector<Pose2>& poses,
     const std::vector<Alternative>& alternatives, const RivalOptions& options,

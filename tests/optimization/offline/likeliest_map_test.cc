@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cartographer_ext/optimization/offline/graph_metrics.h"
+#include "cartographer_ext/optimization/offline/rival_sets.h"
 #include "cartographer_ext/optimization/solvers/edges_in_force.h"
 #include "gmock/gmock.h"
 #include "tests/optimization/weak_ring.h"
@@ -83,6 +84,30 @@ TEST(LikeliestMapTest, TakesTheLikelierOfTwo) {
   ASSERT_EQ(portfolio.best().name, "wrong");
   EXPECT_EQ(LikeliestMember(1.1 * portfolio.best().cost, &portfolio).name,
             "right");
+}
+
+// What costs more than may be reported is named.
+TEST(LikeliestMapTest, ALikelierMapIsARivalWhateverItCosts) {
+  const RingWithWrongGroup ring(1.5);
+  Portfolio portfolio(ring.world.graph, PortfolioOptions());
+  portfolio.Add("wrong", ring.wrong);
+  EXPECT_TRUE(FindLikelierMap(ring.wrong, &portfolio).empty());
+  portfolio.Add("right", ring.right);
+  const std::vector<Pose2> likelier = FindLikelierMap(ring.wrong, &portfolio);
+  ASSERT_FALSE(likelier.empty());
+  EXPECT_LT(AbsoluteTrajectoryError(likelier, ring.right), 1e-3);
+  EXPECT_TRUE(FindLikelierMap(ring.right, &portfolio).empty());
+  RivalOptions options;
+  options.same_place = 0.;
+  const double cost = TruncatedCost(ring.edges, ring.wrong) + 1e3;
+  EXPECT_TRUE(
+      FindRivalSets(ring.wrong, {{cost, likelier}}, options, portfolio.solver())
+          .empty());
+  const std::vector<RivalSets> rivals = FindRivalSets(
+      ring.wrong, {{cost, likelier, true}}, options, portfolio.solver());
+  ASSERT_EQ(rivals.size(), 1u);
+  EXPECT_TRUE(rivals[0].is_likelier);
+  EXPECT_GE(rivals[0].only_in_force.size(), 5u);
 }
 
 }  // namespace
