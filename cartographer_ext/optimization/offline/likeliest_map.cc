@@ -14,6 +14,7 @@
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/noise/loops_by_chance.h"
 #include "cartographer_ext/optimization/offline/noise/map_evidence.h"
+#include "cartographer_ext/optimization/solvers/edges_in_force.h"
 
 namespace cartographer_ext {
 namespace optimization {
@@ -21,7 +22,8 @@ namespace {
 
 // Relative difference of the costs of one and the same map.
 constexpr double kSameOptimum = 1e-9;
-// Logarithm of the odds with which a map is told apart that costs more.
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Logarithm of the odds that another map than that of the lowest cost needs.
 const double kMuchLikelier = std::log(1000.);
 // Poses times loops of a graph of which each group in force may be released.
 constexpr double kMaxReleaseWork = 2e6;
@@ -45,11 +47,34 @@ double GateOfOdds(const std::vector<WhitenedEdge>& edges,
   return kChi2Gate + std::min(0., 2. * std::log(odds));
 }
 
+// Of the members that cost at most `limit` and are admitted, that with the lowest cost by
+// the gate of the odds in `map`; the best where there is none.
+template <typename Admit>
+const Portfolio::Member& LowestByOdds(const double limit,
+                                      const std::vector<Pose2>& map,
+                                      const Admit& admit,
+                                      const Portfolio& portfolio) {
+  const double gate = GateOfOdds(portfolio.edges(), map);
+  const Portfolio::Member* result = &portfolio.best();
+  double lowest = kInfinity;
+  for (const Portfolio::Member& member : portfolio.members()) {
+    if (member.cost > limit) continue;
+    const double cost = TruncatedCost(portfolio.edges(), member.poses, gate);
+    if (cost >= lowest || !admit(member)) continue;
+    lowest = cost;
+    result = &member;
+  }
+  return *result;
+}
+
 // Maps by their evidence.
 class LikelyMaps {
  public:
-  LikelyMaps(const double limit, Portfolio* const portfolio)
+  // Another map than the preferred one has to be much likelier.
+  LikelyMaps(const double limit, Portfolio::Member preferred,
+             Portfolio* const portfolio)
       : limit_(limit),
+        preferred_(std::move(preferred)),
         portfolio_(*portfolio),
         edges_(portfolio->edges()),
         log_area_(LogArea(portfolio->best().poses)) {}
@@ -66,7 +91,8 @@ class LikelyMaps {
     return result.poses;
   }
 
-  // The likeliest member.
+  // The likeliest member. One without most of the loops explains nothing: that all
+  // groups are wrong is always likely where odometry says little.
   Portfolio::Member Likeliest() {
     std::vector<const Portfolio::Member*> order;
     for (const Portfolio::Member& member : portfolio_.members()) {
@@ -76,7 +102,7 @@ class LikelyMaps {
                      [](const auto* const a, const auto* const b) {
                        return a->cost < b->cost;
                      });
-    std::vector<const Portfolio::Member*> maps = {&portfolio_.best()};
+    std::vector<const Portfolio::Member*> maps = {&preferred_};
     const Portfolio::Member* result = maps.front();
     double highest = 0.;
     for (const Portfolio::Member* const member : order) {
@@ -85,8 +111,13 @@ class LikelyMaps {
         return IsSame(*member, *map) ||
                DifferNearGateOnly(edges_, member->poses, map->poses);
       };
-      if (std::any_of(maps.begin(), maps.end(), is_known)) continue;
-      if (maps.size() == 1) highest = EvidenceOf(result->poses);
+      if (std::any_of(maps.begin(), maps.end(), is_known) ||
+          2 * LoopsInForce(*member) < LoopsInForce(preferred_)) {
+        continue;
+      }
+      if (maps.size() == 1) {
+        highest = EvidenceOf(result->poses) + kMuchLikelier;
+      }
       maps.push_back(member);
       const double evidence = EvidenceOf(member->poses);
       if (evidence <= highest) continue;
@@ -94,10 +125,6 @@ class LikelyMaps {
       result = member;
     }
     return *result;
-  }
-
-  double EvidenceOf(const std::vector<Pose2>& poses) {
-    return EvidenceOf(poses, DecideLoops(edges_, poses, kChi2Gate));
   }
 
  private:
@@ -112,6 +139,15 @@ class LikelyMaps {
     return LogEvidenceOfMap({poses, decisions}, portfolio_.support(), edges_,
                             log_area_, portfolio_.solver()) +
            LogPriorOfDecisions(decisions, portfolio_.support(), edges_);
+  }
+
+  double EvidenceOf(const std::vector<Pose2>& poses) {
+    return EvidenceOf(poses, DecideLoops(edges_, poses, kChi2Gate));
+  }
+
+  int LoopsInForce(const Portfolio::Member& member) const {
+    return CountLoopsInForce(edges_,
+                             DecideLoops(edges_, member.poses, kChi2Gate));
   }
 
   bool IsSame(const Portfolio::Member& a, const Portfolio::Member& b) const {
@@ -178,6 +214,7 @@ class LikelyMaps {
   }
 
   const double limit_;
+  const Portfolio::Member preferred_;
   Portfolio& portfolio_;
   const std::vector<WhitenedEdge>& edges_;
   const double log_area_;
@@ -187,33 +224,26 @@ class LikelyMaps {
 
 const Portfolio::Member& LikeliestMember(const double limit,
                                          Portfolio* const portfolio) {
-  const std::vector<WhitenedEdge>& edges = portfolio->edges();
-  const std::vector<Pose2> map = LikelyMaps(limit, portfolio).Find();
-  const double gate = GateOfOdds(edges, map);
-  const Portfolio::Member* result = nullptr;
-  double lowest = 0.;
-  for (const Portfolio::Member& member : portfolio->members()) {
-    if (member.cost > limit) continue;
-    const double cost = TruncatedCost(edges, member.poses, gate);
-    if ((result != nullptr && cost >= lowest) ||
-        !DifferNearGateOnly(edges, member.poses, map)) {
-      continue;
-    }
-    lowest = cost;
-    result = &member;
-  }
-  return result == nullptr ? portfolio->best() : *result;
+  const auto any = [](const Portfolio::Member&) { return true; };
+  const Portfolio::Member preferred =
+      LowestByOdds(limit, portfolio->best().poses, any, *portfolio);
+  const std::vector<Pose2> map = LikelyMaps(limit, preferred, portfolio).Find();
+  return LowestByOdds(
+      limit, map,
+      [&](const Portfolio::Member& member) {
+        return DifferNearGateOnly(portfolio->edges(), member.poses, map);
+      },
+      *portfolio);
 }
 
 std::vector<Pose2> FindLikelierMap(const std::vector<Pose2>& map,
                                    Portfolio* const portfolio) {
   if (portfolio->Size() > kMaxReleaseWork) return {};
-  LikelyMaps maps(std::numeric_limits<double>::infinity(), portfolio);
-  const std::vector<Pose2> likeliest = maps.Likeliest().poses;
-  if (DifferNearGateOnly(portfolio->edges(), map, likeliest) ||
-      maps.EvidenceOf(likeliest) <= maps.EvidenceOf(map) + kMuchLikelier) {
-    return {};
-  }
+  const Portfolio::Member ours = {"", map,
+                                  TruncatedCost(portfolio->edges(), map)};
+  std::vector<Pose2> likeliest =
+      LikelyMaps(kInfinity, ours, portfolio).Likeliest().poses;
+  if (DifferNearGateOnly(portfolio->edges(), map, likeliest)) return {};
   return likeliest;
 }
 

@@ -16,8 +16,9 @@
 namespace cartographer_ext {
 namespace optimization {
 
-// Of the members that cost at most `limit`, the likeliest map, and of what differs
-// from it near the gate only the member with the lowest cost by the gate of the odds.
+// Of the members that cost at most `limit`, that with the lowest cost by the gate of the
+// odds, or where another map is likelier by odds of 1000, the same of what differs from
+// that near the gate only.
 // What is found on the way is added to the portfolio: single decisions changed in a
 // map that is not the best, and groups of loops released that speak against a map.
 const Portfolio::Member& LikeliestMember(double limit, Portfolio* portfolio);
