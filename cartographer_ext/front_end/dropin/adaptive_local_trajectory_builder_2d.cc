@@ -173,6 +173,7 @@ AdaptiveLocalTrajectoryBuilder2D::AddRangeData(
             .head<2>());
   }
   predictor_.SetFieldOfView(field_of_view_.angle());
+  matcher_.SetFieldOfView(field_of_view_.angle());
   const MotionPrediction prediction = predictor_.Predict(seconds);
 
   const Eigen::Quaterniond alignment = GravityAlignment();

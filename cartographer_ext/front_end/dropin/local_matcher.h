@@ -51,6 +51,9 @@ class LocalMatcher {
                const cartographer::mapping::scan_matching::proto::
                    CeresScanMatcherOptions2D& matcher_options);
 
+  // As of OdometryContest.
+  void SetFieldOfView(const double angle) { contest_.SetFieldOfView(angle); }
+
   // `last_pose` is (local <- robot) at the scan before. Updates the mean score
   // that later scans are compared with.
   LocalMatch Match(const Pose2& last_pose, const MotionPrediction& prediction,

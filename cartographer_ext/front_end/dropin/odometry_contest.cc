@@ -21,6 +21,10 @@ using scan_matching::Prediction;
 constexpr double kEvidenceKept = 0.5;
 constexpr double kEvidenceOfMotionKept = 0.8;  // if the motion does, too
 
+// A laser that sees no more than this may see hardly anything but one object: one of
+// a metre, a metre ahead, is half of it. Radians.
+constexpr double kFewObjects = 1.85;
+
 // Of the motion of a rival between two matches, square metres and radians.
 const Eigen::Vector3d kRivalVariances(2e-4, 2e-4, 1e-4);
 
@@ -39,7 +43,7 @@ double OdometryContest::FaultOdds(const MotionPrediction& prediction) const {
 
 void OdometryContest::Drop() {
   has_rival_ = false;
-  evidence_ = 0.;
+  evidence_ = evidence_of_rest_ = 0.;
 }
 
 void OdometryContest::Agree() {
@@ -63,20 +67,16 @@ Eigen::Matrix3d OdometryContest::StepCovariance(
   return (variances + kRivalVariances).asDiagonal();
 }
 
-double OdometryContest::BestEvidence(const MotionPrediction& prediction,
-                                     const Prediction& predicted,
-                                     const LocalMatch& consistent,
-                                     const std::vector<Rival>& rivals,
-                                     const PointCloud& cloud,
-                                     const Grid2D& grid,
-                                     const Rival** const best) const {
-  *best = nullptr;
-  if (rivals.empty()) return 0.;
+OdometryContest::Evidence OdometryContest::BestEvidence(
+    const MotionPrediction& prediction, const Prediction& predicted,
+    const LocalMatch& consistent, const std::vector<Rival>& rivals,
+    const PointCloud& cloud, const Grid2D& grid) const {
+  Evidence result;
+  if (rivals.empty()) return result;
   const Pose2 expected =
       has_rival_ ? Expected(prediction.motion) : predicted.pose;
   scan_matching::PoseEvidence of_scan(predicted.pose, cloud, grid,
                                       scan_matching::PosePrecision::kCell);
-  double most = 0.;
   for (const Rival& rival : rivals) {
     const Pose2& pose = rival.match.pose;
     if (rival.match.score <= consistent.score) continue;
@@ -88,11 +88,15 @@ double OdometryContest::BestEvidence(const MotionPrediction& prediction,
       evidence -= rival.log_places +
                   FaultCost(Between(expected, pose), prediction.motion);
     }
-    if (*best != nullptr && evidence <= most) continue;
-    *best = &rival;
-    most = evidence;
+    if (result.best != nullptr && evidence <= result.of_scan) continue;
+    result.best = &rival;
+    result.of_scan = evidence;
   }
-  return most;
+  if (result.best != nullptr && field_of_view_ < kFewObjects) {
+    of_scan.SetPose(result.best->match.pose);
+    result.of_rest = of_scan.AgainstWithoutObject(consistent.pose);
+  }
+  return result;
 }
 
 LocalMatch OdometryContest::Decide(
@@ -100,9 +104,9 @@ LocalMatch OdometryContest::Decide(
     const LocalMatch& consistent, const std::vector<Rival>& rivals,
     const double least_score, const PointCloud& cloud, const Grid2D& grid) {
   const bool was_open = has_rival_;
-  const Rival* best = nullptr;
-  const double of_scan = BestEvidence(prediction, predicted, consistent, rivals,
-                                      cloud, grid, &best);
+  const Evidence found =
+      BestEvidence(prediction, predicted, consistent, rivals, cloud, grid);
+  const Rival* const best = found.best;
   has_rival_ = false;
   LocalMatch result = consistent;
   if (best != nullptr) {
@@ -113,10 +117,12 @@ LocalMatch OdometryContest::Decide(
         ChiSquare(ToPrediction(rival_, prediction.motion,
                                StepCovariance(prediction.covariance)),
                   best->match.pose) > gate_;
-    const double evidence =
-        (is_moving ? kEvidenceOfMotionKept : kEvidenceKept) * evidence_ +
-        of_scan;
-    if (evidence >= FaultOdds(prediction)) {
+    const double kept = is_moving ? kEvidenceOfMotionKept : kEvidenceKept;
+    const double evidence = kept * evidence_ + found.of_scan;
+    evidence_of_rest_ = kept * evidence_of_rest_ + found.of_rest;
+    const bool is_held =
+        field_of_view_ >= kFewObjects || evidence_of_rest_ > 0.;
+    if (evidence >= FaultOdds(prediction) && is_held) {
       Overrule(SeeTheSame(prediction.motion));
       result = best->match;
       result.ends_contest = was_open;
@@ -127,9 +133,9 @@ LocalMatch OdometryContest::Decide(
     has_rival_ = evidence > 0. && SeeTheSame(prediction.motion);
     rival_ = best->match.pose;
     rival_covariance_ = prediction.covariance;
-    result.contested = has_rival_ && result.score < least_score;
+    result.contested = has_rival_ && is_held && result.score < least_score;
   } else {
-    evidence_ = 0.;
+    evidence_ = evidence_of_rest_ = 0.;
   }
   if (!prediction.is_uncertain) {
     is_overruled_ = is_overruled_ && result.score < least_score;

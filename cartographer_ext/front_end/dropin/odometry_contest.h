@@ -14,6 +14,11 @@
 // contested: what they saw must not go into the map, which would then agree
 // with them.
 //
+// One thing alone is not enough for a laser that sees little: somebody who walks ahead of the robot is where
+// they were in the scan before, as if it stood still. So the rest of the scans must
+// speak for the rival, too (PoseEvidence::AgainstWithoutObject); otherwise neither
+// is the odometry overruled nor a scan kept out of the map.
+//
 // Along a corridor a robot that fell behind fits better than one that sees new
 // walls, so a rival must also fit better than the place beyond it
 // (odometry_fault.h).
@@ -46,6 +51,9 @@ class OdometryContest {
   // chi2 beyond which a pose contradicts the odometry.
   explicit OdometryContest(double gate) : gate_(gate) {}
 
+  // How wide the laser sees, radians; all around before it is known.
+  void SetFieldOfView(const double angle) { field_of_view_ = angle; }
+
   // Whether scans spoke for a rival that did not have evidence enough.
   bool is_open() const { return has_rival_; }
   // Where the rival is after `motion`; only while the contest is open.
@@ -76,23 +84,30 @@ class OdometryContest {
                     const cartographer::mapping::Grid2D& grid);
 
  private:
-  // That of the scan for the best rival, which is null if there is none.
-  double BestEvidence(const MotionPrediction& prediction,
-                      const scan_matching::Prediction& predicted,
-                      const LocalMatch& consistent,
-                      const std::vector<Rival>& rivals,
-                      const cartographer::sensor::PointCloud& cloud,
-                      const cartographer::mapping::Grid2D& grid,
-                      const Rival** best) const;
+  // Of a scan for the best rival, and without the object that speaks most for it.
+  struct Evidence {
+    const Rival* best = nullptr;  // null if there is none
+    double of_scan = 0.;
+    double of_rest = 0.;
+  };
+  Evidence BestEvidence(const MotionPrediction& prediction,
+                        const scan_matching::Prediction& predicted,
+                        const LocalMatch& consistent,
+                        const std::vector<Rival>& rivals,
+                        const cartographer::sensor::PointCloud& cloud,
+                        const cartographer::mapping::Grid2D& grid) const;
 
   // Of the odometry since the last scan and of the matches, for a prediction
   // with this covariance.
   Eigen::Matrix3d StepCovariance(const Eigen::Matrix3d& covariance) const;
 
   const double gate_;
+  double field_of_view_ = 2. * kPi;
   bool is_overruled_ = false;
   // Against the odometry, of scans that were not enough by themselves.
   double evidence_ = 0.;
+  // The same without one object in each scan.
+  double evidence_of_rest_ = 0.;
   bool has_rival_ = false;
   Pose2 rival_;                       // (local <- robot) at the last scan
   Eigen::Matrix3d rival_covariance_;  // of the prediction there

@@ -17,6 +17,8 @@ namespace {
 // Side of a patch, metres: walls are straight over more, furniture is as large.
 constexpr double kPatch = 0.25;
 constexpr double kUnseen = 0.5;
+// A person with what they carry or push, metres.
+constexpr double kObjectRadius = 0.5;
 
 using cartographer::mapping::Grid2D;
 
@@ -125,33 +127,68 @@ PoseEvidence::PoseEvidence(const Pose2& pose,
   SetPose(pose);
 }
 
-double PoseEvidence::LogLikelihood(const Pose2& pose,
-                                   const int tolerance) const {
-  double best = -std::numeric_limits<double>::infinity();
+template <typename Function>
+void PoseEvidence::ForEachPart(const Pose2& pose,
+                               const Function& function) const {
+  const Likelihood likelihood(grid_, pose);
+  for (const Point& point : points_) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& place : point.surface) {
+      most = std::max(most, likelihood.Log(place));
+    }
+    function(point.weight * most);
+  }
+}
+
+PoseEvidence::Best PoseEvidence::BestNear(const Pose2& pose,
+                                          const int tolerance) const {
+  const double cell = grid_.limits().resolution();
+  Best best;
+  best.log_likelihood = -std::numeric_limits<double>::infinity();
   for (int ix = -tolerance; ix <= tolerance; ++ix) {
     for (int iy = -tolerance; iy <= tolerance; ++iy) {
-      const double cell = grid_.limits().resolution();
-      const Likelihood likelihood(
-          grid_, Pose2(pose.x + ix * cell, pose.y + iy * cell, pose.theta));
+      const Pose2 near(pose.x + ix * cell, pose.y + iy * cell, pose.theta);
       double sum = 0.;
-      for (const Point& point : points_) {
-        double most = -std::numeric_limits<double>::infinity();
-        for (const Eigen::Vector2d& place : point.surface) {
-          most = std::max(most, likelihood.Log(place));
-        }
-        sum += point.weight * most;
-      }
-      best = std::max(best, sum);
+      ForEachPart(near, [&sum](const double part) { sum += part; });
+      if (sum > best.log_likelihood) best = {near, sum};
     }
   }
   return best;
+}
+
+void PoseEvidence::SetPose(const Pose2& pose) {
+  pose_ = pose;
+  log_likelihood_ = BestNear(pose, 0).log_likelihood;
 }
 
 double PoseEvidence::Against(const Pose2& other) const {
   if (grid_.GetGridType() == cartographer::mapping::GridType::TSDF) {
     return std::numeric_limits<double>::infinity();
   }
-  return log_likelihood_ - LogLikelihood(other, tolerance_);
+  return log_likelihood_ - BestNear(other, tolerance_).log_likelihood;
+}
+
+double PoseEvidence::AgainstWithoutObject(const Pose2& other) const {
+  const double evidence = Against(other);
+  if (!std::isfinite(evidence)) return evidence;
+  std::vector<double> parts;
+  parts.reserve(points_.size());
+  ForEachPart(pose_, [&parts](const double part) { parts.push_back(part); });
+  size_t index = 0;
+  ForEachPart(BestNear(other, tolerance_).pose,
+              [&](const double part) { parts[index++] -= part; });
+  double of_object = 0.;
+  for (const Point& center : points_) {
+    double sum = 0.;
+    for (size_t i = 0; i < parts.size(); ++i) {
+      if ((points_[i].surface.front() - center.surface.front()).squaredNorm() <=
+          kObjectRadius * kObjectRadius) {
+        sum += parts[i];
+      }
+    }
+    of_object = std::max(of_object, sum);
+  }
+  return evidence - of_object;
 }
 
 double ScanEvidence(const Pose2& pose, const Pose2& other,

@@ -51,7 +51,7 @@ class PoseEvidence {
                PosePrecision precision);
 
   // The same scan at another pose.
-  void SetPose(const Pose2& pose) { log_likelihood_ = LogLikelihood(pose, 0); }
+  void SetPose(const Pose2& pose);
 
   // L(pose); zero without points and in a TSDF.
   double log_likelihood() const { return log_likelihood_; }
@@ -60,6 +60,12 @@ class PoseEvidence {
   // distances are not probabilities: there the match is always trusted.
   double Against(const Pose2& other) const;
 
+  // The same without the object that speaks most for the pose: what is within half
+  // a metre of one point. Somebody who walks ahead of the robot, or beside it, is
+  // at one place of its scans, as if it stood still; the other things it sees are
+  // not.
+  double AgainstWithoutObject(const Pose2& other) const;
+
  private:
   struct Point {
     // The point first, then the surface around it.
@@ -67,12 +73,21 @@ class PoseEvidence {
     double weight;  // those of a patch add up to one
   };
 
-  // The largest of the poses up to so many cells off.
-  double LogLikelihood(const Pose2& pose, int tolerance) const;
+  struct Best {
+    Pose2 pose;
+    double log_likelihood = 0.;
+  };
+
+  // Calls `function` with the part of each point in L(pose).
+  template <typename Function>
+  void ForEachPart(const Pose2& pose, const Function& function) const;
+  // Of the poses up to so many cells off, that of the largest L.
+  Best BestNear(const Pose2& pose, int tolerance) const;
 
   const cartographer::mapping::Grid2D& grid_;
   const int tolerance_;  // of the others, cells
   std::vector<Point> points_;
+  Pose2 pose_;
   double log_likelihood_ = 0.;  // at the pose
 };
 

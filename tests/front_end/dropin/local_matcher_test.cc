@@ -293,6 +293,27 @@ TEST_F(LocalMatcherTest, ContradictionsInSuccessionOverruleOdometry) {
   EXPECT_TRUE(later);
 }
 
+// As long as they see one thing only, which may be somebody who walks ahead of the
+// robot, they do not, and the map goes on.
+TEST_F(LocalMatcherTest, ASingleObjectDoesNotContestOdometry) {
+  LocalMatcher matcher(options_, matcher_options_);
+  const auto match = [&](const Pose2& motion, const double degrees) {
+    prediction_.motion = motion;
+    field_of_view_ = DegToRad(degrees);
+    return matcher.Match(Pose2(), prediction_, Cloud(),
+                         *submaps_->submaps().front());
+  };
+  matcher.SetFieldOfView(1.);
+  for (const double degrees : {12., 13., 14.}) {
+    match(Pose2(), 360.);  // what is usual
+    for (int i = 0; i < 20; ++i) {
+      const LocalMatch found = match(Pose2(0.12, 0.12, DegToRad(4.)), degrees);
+      EXPECT_FALSE(found.overrules_odometry) << degrees << " " << i;
+      EXPECT_FALSE(found.contested) << degrees << " " << i;
+    }
+  }
+}
+
 // Where something else than the odometry predicts, there is nothing to contest: its
 // scans are not searched for the sake of a rival, which is forgotten.
 TEST_F(LocalMatcherTest, ARivalOfTheOdometryEndsWithTheOdometry) {

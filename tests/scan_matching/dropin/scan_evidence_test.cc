@@ -63,6 +63,21 @@ TEST_F(ScanEvidenceTest, CountsPatches) {
               1e-6);
 }
 
+// Of two metres of wall a metre may be one object, the evidence of which is left
+// out; what speaks against the pose is not.
+TEST_F(ScanEvidenceTest, WithoutTheObjectThatSpeaksMostForThePose) {
+  const Pose2 before(-0.1, 0., 0.);
+  const auto without = [&](const PointCloud& cloud, const Pose2& pose,
+                           const Pose2& other) {
+    return PoseEvidence(pose, cloud, grid_, PosePrecision::kExact)
+        .AgainstWithoutObject(other);
+  };
+  EXPECT_NEAR(without(Wall(0., 2.), Pose2(), before), 4. * std::log(4.), 0.2);
+  EXPECT_NEAR(without(Wall(0.5, 1.4), Pose2(), before), 0., 1e-6);
+  EXPECT_NEAR(without(Wall(0., 2.), before, Pose2()), -8. * std::log(4.), 1e-3);
+  EXPECT_EQ(without(PointCloud(), Pose2(), before), 0.);
+}
+
 // A cell behind the wall nothing was seen.
 TEST_F(ScanEvidenceTest, APoseIsNotKnownBetterThanToACell) {
   const PointCloud cloud = Wall(0.5, 1.5);
