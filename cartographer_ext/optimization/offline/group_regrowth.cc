@@ -141,11 +141,8 @@ class Regrower {
   bool IsLikelier(const std::vector<Pose2>& poses) {
     const double log_area = LogArea(poses_);
     const auto evidence_of = [&](const std::vector<Pose2>& map) {
-      const std::vector<double> decisions =
-          DecideLoops(edges_, map, options_.gate);
-      return LogEvidenceOfMap({map, decisions}, support_, edges_, log_area,
-                              &solver_) +
-             LogPriorOfDecisions(decisions, support_, edges_);
+      return LogPosteriorOfMap({map, DecideLoops(edges_, map, options_.gate)},
+                               support_, edges_, log_area, &solver_);
     };
     return evidence_of(poses) > evidence_of(poses_);
   }
@@ -263,10 +260,10 @@ class Regrower {
   bool TryWindings() {
     if (options_.max_windings == 0 || !MayTry()) return false;
     bool better = false;
-    int failures = 0;
+    int tries = 0;
     for (auto& solved : SolveWindings()) {
-      if (failures == options_.max_windings || !MayTry()) break;
-      ++failures;
+      if (tries == options_.max_windings || !MayTry()) break;
+      ++tries;
       Decided map = start_;
       map.poses = std::move(solved.second);
       std::vector<Pose2> polished;

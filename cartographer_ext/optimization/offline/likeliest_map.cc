@@ -136,9 +136,8 @@ class LikelyMaps {
 
   double EvidenceOf(const std::vector<Pose2>& poses,
                     const std::vector<double>& decisions) {
-    return LogEvidenceOfMap({poses, decisions}, portfolio_.support(), edges_,
-                            log_area_, portfolio_.solver()) +
-           LogPriorOfDecisions(decisions, portfolio_.support(), edges_);
+    return LogPosteriorOfMap({poses, decisions}, portfolio_.support(), edges_,
+                             log_area_, portfolio_.solver());
   }
 
   double EvidenceOf(const std::vector<Pose2>& poses) {

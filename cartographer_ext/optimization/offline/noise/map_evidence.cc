@@ -65,5 +65,12 @@ double LogPriorOfDecisions(const std::vector<double>& decisions,
   return result;
 }
 
+double LogPosteriorOfMap(const DecidedMap& map, const LoopSupport& support,
+                         const std::vector<WhitenedEdge>& edges,
+                         const double log_area, RobustSolver* const solver) {
+  return LogEvidenceOfMap(map, support, edges, log_area, solver) +
+         LogPriorOfDecisions(map.decisions, support, edges);
+}
+
 }  // namespace optimization
 }  // namespace cartographer_ext

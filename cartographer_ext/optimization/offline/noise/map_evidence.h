@@ -38,6 +38,11 @@ double LogPriorOfDecisions(const std::vector<double>& decisions,
                            const LoopSupport& support,
                            const std::vector<WhitenedEdge>& edges);
 
+// The sum of both, for edges with the noise that is given.
+double LogPosteriorOfMap(const DecidedMap& map, const LoopSupport& support,
+                         const std::vector<WhitenedEdge>& edges,
+                         double log_area, RobustSolver* solver);
+
 }  // namespace optimization
 }  // namespace cartographer_ext
 

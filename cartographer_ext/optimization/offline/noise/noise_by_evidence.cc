@@ -112,6 +112,14 @@ ExplainedMap Explain(const std::vector<Pose2>& poses,
   return result;
 }
 
+// The best map with the noise that is claimed.
+ExplainedMap ExplainBestAsClaimed(const double log_area,
+                                  Portfolio* const portfolio) {
+  Explanation claimed;
+  claimed.max_rounds = 1;
+  return Explain(portfolio->best().poses, claimed, log_area, portfolio);
+}
+
 // What the logarithm of the density may gain where the noise is changed to the one
 // that the residuals show.
 double GainOf(const ScaleEstimate& scale) {
@@ -314,9 +322,7 @@ bool FindNoiseOfCycles(const NoiseMetric& applied, const NoiseOfMap& map,
   AddMapsOfLessNoise(*portfolio, explanation.first, &maps);
   maps.push_back(best);
   const double log_area = LogArea(best);
-  Explanation claimed;
-  claimed.max_rounds = 1;
-  ExplainedMap likeliest = Explain(best, claimed, log_area, portfolio);
+  ExplainedMap likeliest = ExplainBestAsClaimed(log_area, portfolio);
   likeliest.evidence += kMuchLikelier;
   found->valid = false;
   for (const std::vector<Pose2>& other : maps) {
@@ -340,10 +346,7 @@ bool FindLikelierNoise(const NoiseMetric& applied, const NoiseOfMap& map,
     return false;
   }
   const double log_area = LogArea(portfolio->best().poses);
-  Explanation claimed;
-  claimed.max_rounds = 1;
-  ExplainedMap likeliest =
-      Explain(portfolio->best().poses, claimed, log_area, portfolio);
+  ExplainedMap likeliest = ExplainBestAsClaimed(log_area, portfolio);
   const double needed = likeliest.evidence + kMuchLikelier;
   likeliest.evidence = needed;
   Explanation explanation;
