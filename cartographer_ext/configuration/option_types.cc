@@ -61,6 +61,16 @@ std::string KeyOf(const FieldDescriptor& field) {
   return std::string(absl::StripSuffix(absl::StripSuffix(name, "_2d"), "_3d"));
 }
 
+// One of our blocks may be there.
+bool HasExtensionBlock(const Descriptor& message) {
+  for (const char* const name :
+       {"ConstraintBuilderOptions", "OptimizationProblemOptions",
+        "LocalTrajectoryBuilderOptions2D", "CeresScanMatcherOptions2D"}) {
+    if (message.name() == name) return true;
+  }
+  return false;
+}
+
 std::string SimilarKey(const Descriptor& message, const std::string& key) {
   std::vector<std::string> names;
   for (int i = 0; i != message.field_count(); ++i) {
@@ -117,7 +127,9 @@ std::vector<UnknownKey> FindUnknownKeys(const json& table,
                                         const std::string& path) {
   std::vector<UnknownKey> unknown;
   for (const auto& item : table.items()) {
-    if (item.key() == "cartographer_ext") continue;
+    if (item.key() == "cartographer_ext" && HasExtensionBlock(message)) {
+      continue;
+    }
     const FieldDescriptor* const field = FindOptionField(message, item.key());
     if (field == nullptr) {
       unknown.push_back({path, item.key(), SimilarKey(message, item.key())});

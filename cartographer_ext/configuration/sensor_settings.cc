@@ -45,19 +45,21 @@ void ReadSensorSettings(LuaParameterDictionary* const dictionary,
   if (dictionary->HasKey("odometry_source")) {
     settings->odometry_source = dictionary->GetString("odometry_source");
     const std::set<std::string> known = OdometrySources();
-    CHECK(known.count(settings->odometry_source) > 0)
+    LOG_IF(FATAL, known.count(settings->odometry_source) == 0)
         << "sensors.odometry_source is \"" << settings->odometry_source
         << "\", must be one of " << absl::StrJoin(known, ", ");
   }
   if (dictionary->HasKey("min_range")) {
     settings->min_range = dictionary->GetDouble("min_range");
-    CHECK_GE(settings->min_range, 0.)
-        << "sensors.min_range must not be negative";
+    LOG_IF(FATAL, !(settings->min_range >= 0.))
+        << "sensors.min_range is " << settings->min_range
+        << ", must not be negative";
   }
   if (dictionary->HasKey("max_range")) {
     settings->max_range = dictionary->GetDouble("max_range");
-    CHECK_GT(settings->max_range, settings->min_range)
-        << "sensors.max_range must be above sensors.min_range";
+    LOG_IF(FATAL, !(settings->max_range > settings->min_range))
+        << "sensors.max_range is " << settings->max_range
+        << ", must be above sensors.min_range";
   }
   if (dictionary->HasKey("tracking_frame")) {
     settings->tracking_frame = dictionary->GetString("tracking_frame");

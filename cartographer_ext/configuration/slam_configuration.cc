@@ -56,6 +56,11 @@ const char* const kRosNumbers[] = {"num_laser_scans",
                                    "imu_sampling_ratio",
                                    "landmarks_sampling_ratio"};
 
+constexpr char kTablesOfBlocks[] =
+    "; blocks of that name belong to POSE_GRAPH.constraint_builder, "
+    "POSE_GRAPH.optimization_problem, TRAJECTORY_BUILDER_2D and "
+    "TRAJECTORY_BUILDER_2D.ceres_scan_matcher";
+
 // Reads the keys that the configuration of a ROS node has at its top level; the
 // dictionary requires every key to be read.
 void ReadRosKeys(LuaParameterDictionary* const dictionary,
@@ -105,8 +110,8 @@ std::string ReadOrDie(const std::vector<std::string>& directories,
 
 // Creates the objects that check their options more closely than the reader.
 void ConstructOrDie(const SlamConfiguration& configuration) {
-  CHECK(configuration.map_builder_options.use_trajectory_builder_2d())
-      << "map_builder.use_trajectory_builder_2d must be true: this is 2D SLAM";
+  LOG_IF(FATAL, !configuration.map_builder_options.use_trajectory_builder_2d())
+      << "MAP_BUILDER.use_trajectory_builder_2d must be true: this is 2D SLAM";
   auto* const map_builder =
       cartographer::mapping::CreateMapBuilder(configuration.map_builder_options)
           .release();
@@ -133,10 +138,36 @@ std::vector<Part> Parts() {
 
 // The name that users write: MAP_BUILDER.pose_graph is POSE_GRAPH.
 std::string InLuaFile(const std::string& text) {
-  return absl::StrReplaceAll(text,
-                             {{"MAP_BUILDER.pose_graph.", "POSE_GRAPH."},
-                              {"TRAJECTORY_BUILDER.trajectory_builder_2d.",
-                               "TRAJECTORY_BUILDER_2D."}});
+  return absl::StrReplaceAll(text, {{"MAP_BUILDER.pose_graph", "POSE_GRAPH"},
+                                    {"TRAJECTORY_BUILDER.trajectory_builder_2d",
+                                     "TRAJECTORY_BUILDER_2D"}});
+}
+
+// What every configuration returns.
+absl::Status CheckParts(const nlohmann::json& table) {
+  for (const Part& part : Parts()) {
+    if (table.is_object() && table.count(part.key) > 0) continue;
+    return absl::InvalidArgumentError(absl::StrCat(
+        "returns no ", part.key, ": ",
+        table.is_object() && table.count("parameters") > 0
+            ? "it is a search file of cartographer_ext_tune"
+            : "a configuration ends with return { map_builder = MAP_BUILDER, "
+              "trajectory_builder = TRAJECTORY_BUILDER }; a file without that "
+              "is for being included"));
+  }
+  const auto& map_builder = table["map_builder"];
+  if (!map_builder.is_object()) return absl::OkStatus();
+  for (const bool is_2d : {true, false}) {
+    const auto found = map_builder.find(is_2d ? "use_trajectory_builder_2d"
+                                              : "use_trajectory_builder_3d");
+    if (found == map_builder.end() || !found->is_boolean() || *found == is_2d) {
+      continue;
+    }
+    return absl::InvalidArgumentError(
+        absl::StrCat("MAP_BUILDER.", found.key(), " must be ",
+                     is_2d ? "true" : "false", ": this is 2D SLAM"));
+  }
+  return absl::OkStatus();
 }
 
 // Errors that the host's reader ignores, or for which it ends the program
@@ -147,9 +178,10 @@ absl::Status CheckValues(const nlohmann::json& table,
   for (const Part& part : Parts()) {
     const auto found = table.find(part.key);
     if (found == table.end() || !found->is_object()) continue;
-    absl::Status good = CheckOptionTypes(*found, *part.message, part.key);
-    if (!good.ok()) return good;
-    good = CheckOptionRanges(*found, *part.message, part.lua_name, warnings);
+    absl::Status good = CheckOptionTypes(*found, *part.message, part.lua_name);
+    if (good.ok()) {
+      good = CheckOptionRanges(*found, *part.message, part.lua_name, warnings);
+    }
     if (!good.ok()) {
       return absl::Status(good.code(), InLuaFile(std::string(good.message())));
     }
@@ -157,31 +189,60 @@ absl::Status CheckValues(const nlohmann::json& table,
   return absl::OkStatus();
 }
 
-// Names the key of `sensors` that does not exist, if that is what was said.
-absl::Status SuggestSensorSetting(const absl::Status& status,
-                                  const absl::string_view said,
-                                  const nlohmann::json& table) {
-  const auto found = table.find("sensors");
-  if (found == table.end() || !found->is_object()) return status;
-  std::vector<std::string> known;
-  for (const auto& setting : DescribeSensorSettings()) {
-    known.push_back(setting.key);
+// The host's message without the table that it lists after a missing key, and
+// the key as in Lua files.
+absl::Status InOneLine(const absl::Status& status) {
+  std::string message(status.message());
+  const size_t table = message.find("; the table is:\n");
+  if (table == std::string::npos) return status;
+  message.resize(table);
+  for (const Part& part : Parts()) {
+    absl::StrReplaceAll({{absl::StrCat("'", part.key, "."),
+                          absl::StrCat("'", part.lua_name, ".")}},
+                        &message);
   }
-  for (const auto& item : found->items()) {
+  return absl::Status(status.code(), InLuaFile(message));
+}
+
+// What is said of a key that does not exist; empty unless `said` is about one
+// of `table`.
+std::string SayUnknownKey(const absl::string_view said,
+                          const nlohmann::json& table,
+                          const std::string& prefix,
+                          const std::vector<std::string>& known) {
+  if (!table.is_object()) return "";
+  for (const auto& item : table.items()) {
     if (std::count(known.begin(), known.end(), item.key()) > 0 ||
         !absl::StrContains(said, absl::StrCat(item.key(), "'"))) {
       continue;
     }
-    return absl::InvalidArgumentError(
-        absl::StrCat("sensors.", item.key(), " is not an option",
-                     DidYouMean(SimilarWord(item.key(), known))));
+    return absl::StrCat(prefix, item.key(), " is not an option",
+                        DidYouMean(SimilarWord(item.key(), known)));
   }
-  return status;
+  return "";
+}
+
+std::vector<std::string> KeysOfSensors() {
+  std::vector<std::string> keys;
+  for (const auto& setting : DescribeSensorSettings()) {
+    keys.push_back(setting.key);
+  }
+  return keys;
+}
+
+std::vector<std::string> KeysOfResult() {
+  std::vector<std::string> keys = {"map_builder", "trajectory_builder",
+                                   "sensors", "use_odometry", "tracking_frame"};
+  keys.insert(keys.end(), std::begin(kRosStrings), std::end(kRosStrings));
+  keys.insert(keys.end(), std::begin(kRosBools), std::end(kRosBools));
+  keys.insert(keys.end(), std::begin(kRosNumbers), std::end(kRosNumbers));
+  return keys;
 }
 
 // The host's message and, if an unknown name is the cause, the one that was
 // probably meant.
 absl::Status Suggest(const absl::Status& status, const nlohmann::json& table) {
+  if (!table.is_object()) return InOneLine(status);
   // The host quotes the key; in the lines that follow, the table it missed.
   const absl::string_view said =
       status.message().substr(0, status.message().find('\n'));
@@ -194,17 +255,25 @@ absl::Status Suggest(const absl::Status& status, const nlohmann::json& table) {
     for (const UnknownKey& unknown :
          FindUnknownKeys(*found, *part.message, part.lua_name)) {
       if (!is_meant(unknown.key) && !is_meant(unknown.similar)) continue;
-      return absl::InvalidArgumentError(
-          absl::StrCat(InLuaFile(absl::StrCat(unknown.table, ".", unknown.key)),
-                       " is not an option", DidYouMean(unknown.similar)));
+      return absl::InvalidArgumentError(absl::StrCat(
+          InLuaFile(absl::StrCat(unknown.table, ".", unknown.key)),
+          " is not an option",
+          unknown.key == "cartographer_ext" ? kTablesOfBlocks
+                                            : DidYouMean(unknown.similar)));
     }
   }
-  return SuggestSensorSetting(status, said, table);
+  const std::string of_sensors =
+      SayUnknownKey(said, table.value("sensors", nlohmann::json()), "sensors.",
+                    KeysOfSensors());
+  const std::string text = of_sensors.empty()
+                               ? SayUnknownKey(said, table, "", KeysOfResult())
+                               : of_sensors;
+  return text.empty() ? InOneLine(status) : absl::InvalidArgumentError(text);
 }
 
-// The table that the code returns; not an object if the error is left to the
-// host. The code runs in a child process first, because code that calls one
-// function for hours cannot be interrupted.
+// What the code returns; discarded if the error is left to the host. The code
+// runs in a child process first, because code that calls one function for hours
+// cannot be interrupted.
 absl::StatusOr<nlohmann::json> Evaluate(
     const std::vector<std::string>& directories, const std::string& name,
     const std::string& code) {
@@ -217,7 +286,7 @@ absl::StatusOr<nlohmann::json> Evaluate(
       table.status().code() == absl::StatusCode::kResourceExhausted) {
     return table;
   }
-  return nlohmann::json();
+  return nlohmann::json(nlohmann::json::value_t::discarded);
 }
 
 absl::Status Explain(const absl::Status& status, const std::string& name,
@@ -277,7 +346,9 @@ absl::StatusOr<SlamConfiguration> ParseSlamConfiguration(
   const auto table = Evaluate(directories, name, code);
   if (!table.ok()) return Explain(table.status(), name, directories);
   std::vector<std::string> warnings;
-  absl::Status valid = CheckValues(*table, &warnings);
+  absl::Status valid =
+      table->is_discarded() ? absl::OkStatus() : CheckParts(*table);
+  if (valid.ok()) valid = CheckValues(*table, &warnings);
   if (!valid.ok()) return Explain(valid, name, directories);
   // Restricted code is not run again by the host, which opens all libraries.
   const std::string& host_code = IsLuaRestricted() ? ToLuaCode(*table) : code;

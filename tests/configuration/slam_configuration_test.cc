@@ -147,6 +147,60 @@ TEST(SlamConfigurationTest, MisspeltStockKeysAreRecognised) {
   ExpectError(Parse("POSE_GRAPH.zzz = 3"), "zzz");
 }
 
+TEST(SlamConfigurationTest, UnknownKeysOfTheResultAndMisplacedBlocks) {
+  ExpectError(Parse("", "sensor = {}"),
+              "): sensor is not an option, did you mean 'sensors'?");
+  ExpectError(Parse("POSE_GRAPH.cartographer_ext = {}"),
+              "): POSE_GRAPH.cartographer_ext is not an option; blocks of that "
+              "name belong to POSE_GRAPH.constraint_builder,");
+}
+
+TEST(SlamConfigurationTest, MessagesSpeakOfTheFileAndNotOfTheCode) {
+  for (const char* const changes :
+       {"POSE_GRAPH.constraint_builder.cartographer_ext = { fusion = { "
+        "min_final_score = 'high' } }",
+        "POSE_GRAPH.constraint_builder.cartographer_ext = { fusion = { "
+        "min_final_score = 7 } }",
+        "POSE_GRAPH.constraint_builder.cartographer_ext = { search = { "
+        "max_searches_per_node = 1.5 } }",
+        "POSE_GRAPH.constraint_builder.cartographer_ext = { fusion = { "
+        "enabled = 1 } }",
+        "POSE_GRAPH.constraint_builder.cartographer_ext = { fusion = 1 }",
+        "POSE_GRAPH.constraint_builder.cartographer_ext = 1"}) {
+    ExpectError(Parse(changes),
+                "): POSE_GRAPH.constraint_builder.cartographer_ext");
+  }
+  ExpectError(Parse("", "sensors = { odometry_source = \"both?\" }"),
+              "): sensors.odometry_source is \"both?\", must be one of");
+  ExpectError(Parse("", "sensors = { min_range = 0 / 0 }"),
+              "): sensors.min_range is ");
+  ExpectError(Parse("", "sensors = { max_range = -1. }"),
+              "): sensors.max_range is -1, must be above");
+  ExpectError(Parse("POSE_GRAPH.constraint_builder.min_score = true"),
+              "): POSE_GRAPH.constraint_builder.min_score is true, must be a "
+              "number");
+  ExpectError(Parse("MAP_BUILDER.use_trajectory_builder_2d = false"),
+              "): MAP_BUILDER.use_trajectory_builder_2d must be true");
+  ExpectError(Parse("MAP_BUILDER.use_trajectory_builder_3d = true"),
+              "): MAP_BUILDER.use_trajectory_builder_3d must be false");
+  const auto missing = Parse("TRAJECTORY_BUILDER_2D.max_range = nil");
+  ExpectError(missing, "Key 'TRAJECTORY_BUILDER_2D.max_range' is missing");
+  EXPECT_THAT(std::string(missing.status().message()),
+              testing::Not(HasSubstr("\n")));
+}
+
+TEST(SlamConfigurationTest, OtherFilesAreNoConfigurations) {
+  const auto parse = [](const std::string& code) {
+    return ParseSlamConfiguration({"configuration_files"}, "test.lua", code);
+  };
+  ExpectError(parse("x = 1"), "): returns no map_builder: a configuration ");
+  ExpectError(parse("return 3"), "): returns no map_builder: ");
+  ExpectError(parse("return { map_builder = {} }"),
+              "): returns no trajectory_builder: ");
+  ExpectError(parse("return { parameters = {} }"),
+              "is a search file of cartographer_ext_tune");
+}
+
 TEST(SlamConfigurationTest, ValuesOutOfRangeNameTheKeyOfTheFile) {
   ExpectError(Parse("TRAJECTORY_BUILDER_2D.max_range = -1"),
               "TRAJECTORY_BUILDER_2D.max_range is -1, must be above 0");

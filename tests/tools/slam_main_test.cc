@@ -400,7 +400,7 @@ TEST_F(LuaTest, MissingInclude) {
 }
 
 TEST_F(LuaTest, NotATable) {
-  ExpectRefused("return 3\n", "): The Lua code does not return a table");
+  ExpectRefused("return 3\n", "): returns no map_builder");
 }
 
 TEST_F(LuaTest, LocalisationNeedsAMap) {

@@ -43,6 +43,12 @@ std::string FormerKey(const pb::Descriptor& descriptor,
              : "";
 }
 
+// Ends the program, as Cartographer does where a configuration is wrong, but
+// without the condition that CHECK would show to the user.
+void Require(const bool condition, const std::string& message) {
+  if (!condition) LOG(FATAL) << message;
+}
+
 std::string AllowedNumbers(const FieldDescriptor& field) {
   const std::string range = RangeText(field);
   return range.empty() ? "a finite number" : range;
@@ -51,30 +57,28 @@ std::string AllowedNumbers(const FieldDescriptor& field) {
 // Fatal unless the literal has the type of the field.
 void CheckType(const std::string& path, const FieldDescriptor& field,
                const LuaLiteral& literal) {
+  const std::string is = absl::StrCat(path, ": ", literal.text, " is not ");
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_MESSAGE:
-      CHECK(literal.kind == LuaKind::TABLE)
-          << path << ": " << literal.text << " is not a table, allowed: "
-          << absl::StrJoin(KnownKeys(*field.message_type()), ", ");
+      Require(
+          literal.kind == LuaKind::TABLE,
+          absl::StrCat(is, "a table, allowed: ",
+                       absl::StrJoin(KnownKeys(*field.message_type()), ", ")));
       return;
     case FieldDescriptor::CPPTYPE_BOOL:
-      CHECK(literal.kind == LuaKind::BOOLEAN)
-          << path << ": " << literal.text
-          << " is not a boolean, allowed: true, false";
+      Require(literal.kind == LuaKind::BOOLEAN,
+              absl::StrCat(is, "a boolean, allowed: true, false"));
       return;
     case FieldDescriptor::CPPTYPE_ENUM:
-      CHECK(literal.kind == LuaKind::STRING)
-          << path << ": " << literal.text << " is not a string, "
-          << RangeText(field);
+      Require(literal.kind == LuaKind::STRING,
+              absl::StrCat(is, "a string, ", RangeText(field)));
       return;
     case FieldDescriptor::CPPTYPE_STRING:
-      CHECK(literal.kind == LuaKind::STRING)
-          << path << ": " << literal.text << " is not a string";
+      Require(literal.kind == LuaKind::STRING, absl::StrCat(is, "a string"));
       return;
     default:
-      CHECK(literal.kind == LuaKind::NUMBER)
-          << path << ": " << literal.text
-          << " is not a number, allowed: " << AllowedNumbers(field);
+      Require(literal.kind == LuaKind::NUMBER,
+              absl::StrCat(is, "a number, allowed: ", AllowedNumbers(field)));
   }
 }
 
@@ -97,18 +101,18 @@ void ReadField(const std::string& path, const FieldDescriptor& field,
     case FieldDescriptor::CPPTYPE_DOUBLE: {
       const double value = table->GetDouble(key);
       const std::string error = CheckNumber(field, value);
-      CHECK(error.empty()) << path << ": " << error;
+      Require(error.empty(), absl::StrCat(path, ": ", error));
       reflection->SetDouble(options, &field, value);
       return;
     }
     case FieldDescriptor::CPPTYPE_INT32: {
       // Read as a number: GetInt turns 2.5 silently into something else.
       const double value = table->GetDouble(key);
-      CHECK(value == std::floor(value) && std::abs(value) < 2e9)
-          << path << ": " << value
-          << " is not an integer, allowed: " << AllowedNumbers(field);
+      Require(value == std::floor(value) && std::abs(value) < 2e9,
+              absl::StrCat(path, ": ", value, " is not an integer, allowed: ",
+                           AllowedNumbers(field)));
       const std::string error = CheckNumber(field, value);
-      CHECK(error.empty()) << path << ": " << error;
+      Require(error.empty(), absl::StrCat(path, ": ", error));
       reflection->SetInt32(options, &field, static_cast<int>(value));
       return;
     }
@@ -121,8 +125,9 @@ void ReadField(const std::string& path, const FieldDescriptor& field,
     case FieldDescriptor::CPPTYPE_ENUM: {
       const std::string name = table->GetString(key);
       const pb::EnumValueDescriptor* const choice = FindChoice(field, name);
-      CHECK(choice != nullptr) << path << ": \"" << name
-                               << "\" is not allowed, " << RangeText(field);
+      Require(choice != nullptr,
+              absl::StrCat(path, ": \"", name, "\" is not allowed, ",
+                           RangeText(field)));
       reflection->SetEnum(options, &field, choice);
       return;
     }
@@ -162,8 +167,10 @@ bool ReadExtension(const std::string& stock_path,
   const std::map<std::string, LuaLiteral> literals =
       LuaLiterals(stock->ToString());
   const auto literal = literals.find(kExtensionKey);
-  CHECK(literal == literals.end() || literal->second.kind == LuaKind::TABLE)
-      << path << ": " << literal->second.text << " is not a table";
+  if (literal != literals.end()) {
+    Require(literal->second.kind == LuaKind::TABLE,
+            absl::StrCat(path, ": ", literal->second.text, " is not a table"));
+  }
   SetDefaults(options);
   const std::unique_ptr<LuaParameterDictionary> table =
       stock->GetDictionary(kExtensionKey);
