@@ -308,6 +308,10 @@ absl::StatusOr<OccupancyMap> ReadOccupancyMap(
           ? yaml->image
           : absl::StrCat(FolderName(yaml_filename), yaml->image);
   const auto pgm = ReadPgm(image);
+  if (pgm.status().code() == absl::StatusCode::kNotFound) {
+    return absl::NotFoundError(
+        absl::StrCat(yaml_filename, ": the image: ", pgm.status().message()));
+  }
   if (!pgm.ok()) return pgm.status();
   OccupancyMap map = OccupancyMap::Make(pgm->width, pgm->height,
                                         yaml->resolution, yaml->origin);

@@ -241,6 +241,8 @@ absl::Status CheckDistinct(const std::vector<std::string>& outputs,
           output,
           ": two files of the command have this name, one of them an output",
           flags.empty() ? "" : " (-", absl::StrJoin(flags, ", -"),
+          flags.size() == 1 ? ", and one that is written beside another output"
+                            : "",
           flags.empty() ? "" : ")"));
     }
   }

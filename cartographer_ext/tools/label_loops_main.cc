@@ -175,6 +175,7 @@ struct DecidedMap {
 
 absl::StatusOr<DecidedMap> RunOrReadMap() {
   DecidedMap map;
+  std::string source = FLAGS_configuration_basename;
   if (FLAGS_pbstream_filename.empty()) {
     const auto run = RunWith(FLAGS_configuration_basename);
     if (!run.ok()) return run.status();
@@ -186,14 +187,19 @@ absl::StatusOr<DecidedMap> RunOrReadMap() {
     const auto pbstream = io::ReadPbstream(FLAGS_pbstream_filename);
     if (!pbstream.ok()) return pbstream.status();
     map.graph = evaluation::MakeMapGraph(*pbstream);
-    auto records = evaluation::ReadDecisions(
-        evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename));
+    source = evaluation::DecisionRecordsFilename(FLAGS_pbstream_filename);
+    auto records = evaluation::ReadDecisions(source);
+    if (records.status().code() == absl::StatusCode::kNotFound) {
+      return absl::NotFoundError(absl::StrCat(
+          FLAGS_pbstream_filename, ": the decision records, ", source,
+          ", are not beside the map: cartographer_ext_slam writes them"));
+    }
     if (!records.ok()) return records.status();
     map.decisions = *std::move(records);
   }
   if (map.decisions.empty()) {
     return absl::InvalidArgumentError(
-        absl::StrCat(FLAGS_configuration_basename,
+        absl::StrCat(source,
                      ": no loop candidates: the recording returns to no place, "
                      "or POSE_GRAPH.constraint_builder.cartographer_ext is not "
                      "set"));

@@ -16,6 +16,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
@@ -264,6 +265,16 @@ tools::SlamWork WorkOf(const io::SensorSourceInfo& info,
   return work;
 }
 
+// Names the recording, unless it is the map to start from that is wrong.
+absl::Status OfRecording(const absl::Status& status) {
+  if (!FLAGS_load_state_filename.empty() &&
+      absl::StrContains(status.message(), FLAGS_load_state_filename)) {
+    return status;
+  }
+  return absl::Status(status.code(), absl::StrCat(FLAGS_input_filename, ": ",
+                                                  status.message()));
+}
+
 absl::Status Run(const std::string& command_line) {
   auto state = ReadStartingState();
   if (!state.ok()) return state.status();
@@ -305,9 +316,7 @@ absl::Status Run(const std::string& command_line) {
   auto run = evaluation::RunSlam(*configuration, source->get(), run_options);
   progress.reset();
   if (!run.ok()) {
-    return absl::Status(
-        run.status().code(),
-        absl::StrCat(FLAGS_input_filename, ": ", run.status().message()));
+    return OfRecording(run.status());
   }
   tools::PrintNotes(run->warnings);
   AtomicFileSet files;

@@ -115,6 +115,10 @@ TEST(OccupancyMapTest, Errors) {
   EXPECT_THAT(message(yaml, "P5 3 3 255 x"), HasSubstr("truncated"));
   EXPECT_THAT(message(yaml, "P5 999999 999999 255 x"), HasSubstr("size"));
   EXPECT_THAT(message(yaml, "P5 1 1 65535 xx"), HasSubstr("8 bit"));
+  std::remove(file.pgm().c_str());
+  const auto absent = ReadOccupancyMap(file.yaml());
+  EXPECT_THAT(std::string(absent.status().message()),
+              HasSubstr(file.yaml() + ": the image: "));
   EXPECT_FALSE(WriteOccupancyMap(OccupancyMap(), file.stem()).ok());
   EXPECT_FALSE(WriteOccupancyMap(MakeMap(), "/nonexistent/map").ok());
   EXPECT_FALSE(ReadOccupancyMap("/nonexistent/map.yaml").ok());

@@ -49,6 +49,17 @@ class EvaluateMainTest : public testing::Test {
 
 TemporaryFolder* EvaluateMainTest::folder_ = nullptr;
 
+TEST_F(EvaluateMainTest, FilesBesideTheReportAreOutputsToo) {
+  const CommandResult result =
+      RunCommand("evaluate", {File("room.pbstream"), "-report_filename",
+                              File("r.html"), "-json", File("r.json")});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error,
+              HasSubstr("r.json: two files of the command have this name, one "
+                        "of them an output (-json, and one that is written "
+                        "beside another output)"));
+}
+
 TEST_F(EvaluateMainTest, WritesRelationsOfASoundMap) {
   const std::string own = File("own.relations");
   const CommandResult result =

@@ -61,6 +61,18 @@ TEST(LabelLoopsMainTest, LabelsTheCandidatesOfARun) {
   }
   EXPECT_THAT(ReadFile(folder / "loops.csv"), HasSubstr("label,"));
   EXPECT_THAT(ReadFile(folder / "loops.svg"), HasSubstr("<svg"));
+
+  const std::vector<std::string> again = {
+      "-pbstream_filename", folder / "map.pbstream",
+      "-reference_trajectory_filename", folder / "truth.tum"};
+  WriteFile(folder / "map.loops.pb", "");
+  const CommandResult empty = RunCommand("label_loops", again);
+  EXPECT_EQ(empty.exit_code, 1);
+  EXPECT_THAT(empty.error, HasSubstr("map.loops.pb: no loop candidates"));
+  std::remove((folder / "map.loops.pb").c_str());
+  const CommandResult without = RunCommand("label_loops", again);
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_THAT(without.error, HasSubstr("map.pbstream: the decision records, "));
 }
 
 TEST(LabelLoopsMainTest, TruthOfAnotherRecordingIsAnError) {
