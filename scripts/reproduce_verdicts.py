@@ -70,7 +70,8 @@ def chosen(options):
     """(name, case) of the cases that the user wants."""
     result = []
     wide = any(kind in WIDE_KINDS for kind in options.kinds.split(","))
-    for case in cases(options.runs or 300, *((WIDE_KINDS, SEED + 1000) if wide else ())):
+    seed = options.first_seed or (SEED + 1000 if wide else SEED)
+    for case in cases(options.runs or 300, WIDE_KINDS if wide else KINDS, seed):
         wanted = zip((options.kinds, options.lasers, options.odometry), case)
         if all(not words or own in words.split(",") for words, own in wanted):
             result.append(("%s.%s.%s.%d.%s" % case, case))
