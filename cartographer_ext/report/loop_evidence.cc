@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
+#include <tuple>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
@@ -18,19 +18,17 @@ namespace cartographer_ext {
 namespace report {
 namespace {
 
-using evaluation::GraphId;
+using evaluation::LoopPair;
 using evaluation::LoopVerdict;
 
 constexpr double kLargeResidual = 0.5;  // metres
 
-using Key = std::pair<GraphId, GraphId>;
+}  // namespace
 
-Key KeyOf(const proto::LoopDecision& decision) {
+LoopPair PairOf(const proto::LoopDecision& decision) {
   return {{decision.submap_trajectory_id(), decision.submap_index()},
           {decision.node_trajectory_id(), decision.node_index()}};
 }
-
-}  // namespace
 
 bool LoopEvidence::suspicious() const {
   if (truth != LoopVerdict::kUnknown) return truth == LoopVerdict::kWrong;
@@ -44,9 +42,9 @@ double LoopEvidence::badness() const {
 
 std::vector<LoopEvidence> CollectEvidence(
     const ReportRun& run, const evaluation::MapContents& contents) {
-  std::map<Key, const proto::LoopDecision*> decisions;
+  std::map<LoopPair, const proto::LoopDecision*> decisions;
   for (const proto::LoopDecision& decision : run.decisions()) {
-    decisions[KeyOf(decision)] = &decision;
+    decisions[PairOf(decision)] = &decision;
   }
   std::vector<LoopEvidence> result;
   const std::vector<double> scores =
@@ -88,8 +86,7 @@ std::vector<LoopEvidence> CollectEvidence(
       continue;
     }
     LoopEvidence evidence;
-    evidence.submap_id = KeyOf(decision).first;
-    evidence.node_id = KeyOf(decision).second;
+    std::tie(evidence.submap_id, evidence.node_id) = PairOf(decision);
     evidence.accepted = false;
     evidence.relative_pose =
         Pose2(decision.search().refined().x(), decision.search().refined().y(),

@@ -9,9 +9,13 @@
 #include <vector>
 
 #include "cartographer_ext/report/report_data.h"
+#include "cartographer_ext/rerun/loop_outcome.h"
 
 namespace cartographer_ext {
 namespace report {
+
+// Submap and node of a candidate.
+evaluation::LoopPair PairOf(const proto::LoopDecision& decision);
 
 // A loop of the graph, or a rejected candidate.
 struct LoopEvidence {

@@ -17,6 +17,7 @@ namespace report {
 namespace {
 
 using evaluation::GraphId;
+using evaluation::LoopPair;
 using evaluation::LoopVerdict;
 
 // Lines in one figure; of more loops the good ones are thinned out.
@@ -147,9 +148,8 @@ void AddLoopFigure(const ReportData& data, const ReportRun& run,
   page->Close();
 }
 
-std::set<std::pair<GraphId, GraphId>> LoopPairs(
-    const evaluation::MapGraph& graph) {
-  std::set<std::pair<GraphId, GraphId>> pairs;
+std::set<LoopPair> LoopPairs(const evaluation::MapGraph& graph) {
+  std::set<LoopPair> pairs;
   for (const auto& constraint : graph.constraints) {
     if (constraint.is_loop) {
       pairs.emplace(constraint.submap_id, constraint.node_id);
@@ -161,11 +161,9 @@ std::set<std::pair<GraphId, GraphId>> LoopPairs(
 // What became, in `other`, of the loops of `run` that it does not have.
 void AddOutcomes(const ReportRun& run, const ReportRun& other,
                  Markup* const page) {
-  std::map<std::pair<GraphId, GraphId>, const proto::LoopDecision*> decisions;
+  std::map<LoopPair, const proto::LoopDecision*> decisions;
   for (const auto& decision : other.decisions()) {
-    decisions[{{decision.submap_trajectory_id(), decision.submap_index()},
-               {decision.node_trajectory_id(), decision.node_index()}}] =
-        &decision;
+    decisions[PairOf(decision)] = &decision;
   }
   if (decisions.empty()) return;
   const auto others = LoopPairs(other.graph);

@@ -8,6 +8,7 @@
 
 #include "absl/memory/memory.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_ext/simulation/random_faults.h"
 
 namespace cartographer_ext {
 namespace simulation {

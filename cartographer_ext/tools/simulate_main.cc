@@ -17,7 +17,7 @@
 #include "cartographer_ext/common/atomic_file.h"
 #include "cartographer_ext/common/progress.h"
 #include "cartographer_ext/simulation/buildings/building.h"
-#include "cartographer_ext/simulation/sensors/odometry_model.h"
+#include "cartographer_ext/simulation/random_faults.h"
 #include "cartographer_ext/simulation/sensors/presets.h"
 #include "cartographer_ext/simulation/simulation_output.h"
 #include "cartographer_ext/simulation/world_parser.h"

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
+#include "cartographer_ext/simulation/random_faults.h"
+
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "cartographer_ext/simulation/drive.h"
-#include "cartographer_ext/simulation/sensors/odometry_model.h"
 #include "cartographer_ext/simulation/world_parser.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"

@@ -9,6 +9,7 @@
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/common/squared.h"
+#include "cartographer_ext/front_end/dropin/sweep_returns.h"
 #include "cartographer_ext/options/option_description.h"
 #include "cartographer_ext/scan_matching/dropin/scan_evidence.h"
 #include "glog/logging.h"
@@ -49,13 +50,8 @@ bool HasTimes(const TimedPointCloudOriginData& sweep) {
 
 void Stamp(const BeamTimes& beam_times, const BeamOrder order,
            TimedPointCloudOriginData* const sweep) {
-  std::vector<Eigen::Vector2f> returns;
-  returns.reserve(sweep->ranges.size());
-  for (const auto& range : sweep->ranges) {
-    returns.push_back(
-        (range.point_time.position - sweep->origins.front()).head<2>());
-  }
-  const std::vector<float> times = beam_times.Times(order, returns);
+  const std::vector<float> times =
+      beam_times.Times(order, PlanarReturns(*sweep));
   for (size_t i = 0; i < times.size(); ++i) {
     sweep->ranges[i].point_time.time = times[i];
   }
@@ -78,12 +74,7 @@ void BeamOrderLearner::SetTimes(
                 sweep->origins.size() == 1 &&
                 sweep->ranges.size() >= kMinBeams && !HasTimes(*sweep);
   if (!is_untimed_) return;
-  std::vector<Eigen::Vector2f> returns;
-  returns.reserve(scan.ranges.size());
-  for (const auto& point : scan.ranges) {
-    returns.push_back((point.position - scan.origin).head<2>());
-  }
-  times_.AddScan(returns, interval);
+  times_.AddScan(PlanarReturns(scan), interval);
   if (order() != BeamOrder::kAtOnce) Stamp(times_, order(), sweep);
 }
 

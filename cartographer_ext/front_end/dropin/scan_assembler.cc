@@ -8,6 +8,7 @@
 
 #include "cartographer/sensor/internal/voxel_filter.h"
 #include "cartographer/transform/rigid_transform.h"
+#include "cartographer_ext/front_end/dropin/sweep_returns.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -84,14 +85,11 @@ std::vector<float> ScanAssembler::SmoothingFactors(
   if (!smooth_ranges_ || sweep.origins.size() != 1) {
     return std::vector<float>(sweep.ranges.size(), 1.f);
   }
-  std::vector<Eigen::Vector2f> points(sweep.ranges.size(),
-                                      Eigen::Vector2f::Zero());
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2f point =
-        (sweep.ranges[i].point_time.position - sweep.origins.front()).head<2>();
+  std::vector<Eigen::Vector2f> points = PlanarReturns(sweep);
+  for (Eigen::Vector2f& point : points) {
     const float length = point.norm();
-    if (length >= options_.min_range() && length <= options_.max_range()) {
-      points[i] = point;
+    if (!(length >= options_.min_range() && length <= options_.max_range())) {
+      point.setZero();
     }
   }
   return smoother_.Smooth(points);

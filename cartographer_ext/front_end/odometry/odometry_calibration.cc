@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "cartographer_ext/common/order_statistics.h"
 #include "cartographer_ext/common/squared.h"
 
 namespace cartographer_ext {
@@ -101,10 +102,9 @@ void OdometryCalibration::Discard(const double time) {
 bool OdometryCalibration::IsGap(const double interval) {
   if (interval <= kMaxInterval) return false;
   if (intervals_.size() < kNumIntervals) return true;
-  std::vector<double> sorted(intervals_.begin(), intervals_.end());
-  const auto median = sorted.begin() + kNumIntervals / 2;
-  std::nth_element(sorted.begin(), median, sorted.end());
-  return interval > kUsualIntervals * *median;
+  return interval >
+         kUsualIntervals * UpperMedian(std::vector<double>(intervals_.begin(),
+                                                           intervals_.end()));
 }
 
 double OdometryCalibration::TranslationVariance(const double length) const {

@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_ext/simulation/drive.h"
-#include "cartographer_ext/simulation/sensors/odometry_model.h"
+#include "cartographer_ext/simulation/random_faults.h"
 
 namespace cartographer_ext {
 namespace simulation {
