@@ -11,6 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/lua_value.h"
 #include "cartographer_ext/configuration/option_blocks.h"
 #include "cartographer_ext/options/option_description.h"
@@ -51,36 +52,11 @@ bool IsInBlock(const std::vector<std::string>& path) {
   return std::find(path.begin(), path.end(), kBlockName) != path.end();
 }
 
-// The name that has the longest common start with `wanted`, of at least half
-// its length; empty when there is none.
-std::string Similar(const std::string& wanted,
-                    const std::vector<std::string>& names) {
-  std::string best;
-  size_t best_length = (wanted.size() + 1) / 2;
-  for (const std::string& name : names) {
-    size_t length = 0;
-    while (length < std::min(name.size(), wanted.size()) &&
-           name[length] == wanted[length]) {
-      ++length;
-    }
-    if (length >= best_length && !(name == wanted)) {
-      best = name;
-      best_length = length + 1;
-    }
-  }
-  return best;
-}
-
 absl::Status NoSuchKey(const std::string& key, const std::string& missing,
                        const std::vector<std::string>& names) {
-  const std::string similar = Similar(missing, names);
   return absl::InvalidArgumentError(
-      absl::StrCat("the configuration has no key ", key,
-                   similar.empty() ? ""
-                                   : absl::StrCat(": '", missing,
-                                                  "' is unknown, did you "
-                                                  "mean '",
-                                                  similar, "'?")));
+      absl::StrCat("the configuration has no key ", key, ": '", missing,
+                   "' is unknown", DidYouMean(SimilarWord(missing, names))));
 }
 
 std::vector<std::string> Names(const nlohmann::json& table) {

@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
+#include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/lua_value.h"
 
 namespace cartographer_ext {
@@ -49,12 +50,12 @@ class EntryParser {
 
   absl::StatusOr<Parameter> Parse() {
     if (!entry_.is_object()) return Error("is not a table");
-    static const std::set<std::string> known = {
+    static const std::vector<std::string> known = {
         "key", "include", "range", "scale", "integer", "steps", "choices"};
     for (const auto& item : entry_.items()) {
-      if (known.count(item.key()) == 0) {
-        return Error(absl::StrCat("has the unknown key '", item.key(), "'"));
-      }
+      if (std::count(known.begin(), known.end(), item.key()) > 0) continue;
+      return Error(absl::StrCat("has the unknown key '", item.key(), "'",
+                                DidYouMean(SimilarWord(item.key(), known))));
     }
     const char* const name = Has("include") ? "include" : "key";
     if (Has("key") && Has("include")) return Error("has key and include");

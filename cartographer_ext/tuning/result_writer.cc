@@ -27,6 +27,19 @@ std::string Change(const double before, const double after) {
   return absl::StrFormat("%+.1f %%", 100. * (after / before - 1.));
 }
 
+// The names of the journal tell by their sizes whether files are still the same:
+// "run.clf@48213+run.tum@1034" is "run.clf".
+std::string ShownName(const std::string& name) {
+  for (size_t at = name.find('@'); at != std::string::npos;
+       at = name.find('@', at + 1)) {
+    const size_t end = name.find_first_not_of("0123456789", at + 1);
+    if (end != at + 1 && (end == std::string::npos || name[end] == '+')) {
+      return name.substr(0, at);
+    }
+  }
+  return name;
+}
+
 absl::optional<double> ObjectiveOf(const absl::optional<Trial>& trial) {
   if (!trial.has_value() || !trial->ok) return absl::nullopt;
   return trial->objective;
@@ -122,9 +135,9 @@ std::string ToLuaFile(const TuneResult& result, const ResultContext& context) {
       Change(result.baseline.objective, result.best.objective);
   absl::StrAppend(&text, change.empty() ? "" : " (" + change + ")", "\n");
   for (size_t i = 0; i < context.inputs.size(); ++i) {
-    absl::StrAppendFormat(&text, "--   %s: %.6g -> %.6g\n",
-                          context.inputs[i].name, result.baseline.objectives[i],
-                          result.best.objectives[i]);
+    absl::StrAppendFormat(
+        &text, "--   %s: %.6g -> %.6g\n", ShownName(context.inputs[i].name),
+        result.baseline.objectives[i], result.best.objectives[i]);
   }
   const auto before = ObjectiveOf(result.baseline_holdout);
   const auto after = ObjectiveOf(result.best_holdout);
@@ -189,8 +202,9 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
       Change(result.baseline.objective, result.best.objective));
   for (size_t i = 0; i < context.inputs.size(); ++i) {
     absl::StrAppendFormat(
-        &text, "           %-40s %.6g -> %.6g  %s\n", context.inputs[i].name,
-        result.baseline.objectives[i], result.best.objectives[i],
+        &text, "           %-40s %.6g -> %.6g  %s\n",
+        ShownName(context.inputs[i].name), result.baseline.objectives[i],
+        result.best.objectives[i],
         Change(result.baseline.objectives[i], result.best.objectives[i]));
   }
   if (result.best_holdout.has_value()) {
@@ -210,7 +224,7 @@ std::string ToText(const TuneResult& result, const ResultContext& context) {
     absl::StrAppendFormat(&text, "Fold       %.6g -> %.6g  %s on", fold.before,
                           fold.after, Change(fold.before, fold.after));
     for (const std::string& name : fold.held_out) {
-      absl::StrAppend(&text, " ", name);
+      absl::StrAppend(&text, " ", ShownName(name));
     }
     absl::StrAppend(&text, "\n");
   }

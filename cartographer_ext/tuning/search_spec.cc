@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "cartographer_ext/common/similar_word.h"
 #include "cartographer_ext/configuration/lua_value.h"
 
 namespace cartographer_ext {
@@ -42,17 +44,19 @@ absl::StatusOr<std::vector<std::string>> ParseTexts(const nlohmann::json& value,
 }
 
 absl::Status ParseInto(const nlohmann::json& table, SearchSpec* const spec) {
-  static const std::set<std::string> known = {
+  static const std::vector<std::string> known = {
       "configuration", "parameters",     "objective", "aggregation",
       "target_recall", "no_input_worse", "inputs",    "holdout"};
   if (!table.is_object()) {
     return absl::InvalidArgumentError("does not return a table with names");
   }
   for (const auto& item : table.items()) {
-    if (known.count(item.key()) == 0) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("unknown key '", item.key(), "'"));
-    }
+    if (std::count(known.begin(), known.end(), item.key()) > 0) continue;
+    return absl::InvalidArgumentError(
+        item.key() == "map_builder"
+            ? "is a configuration, not a search file, which names parameters"
+            : absl::StrCat("unknown key '", item.key(), "'",
+                           DidYouMean(SimilarWord(item.key(), known))));
   }
   if (!table.contains("parameters")) {
     return absl::InvalidArgumentError("parameters is missing");

@@ -139,6 +139,9 @@ TEST_F(BaseConfigurationTest, BadKeysAreNamed) {
   EXPECT_THAT(
       ErrorOf(stock, Range("POSE_GRAPH.constraint_builder.min_scor", 0., 1.)),
       HasSubstr("did you mean 'min_score'"));
+  EXPECT_THAT(
+      ErrorOf(stock, Range("POSE_GRAPH.constraint_builder.minscore", 0., 1.)),
+      HasSubstr("did you mean 'min_score'"));
   EXPECT_THAT(ErrorOf(stock, Range("POSEGRAPH.x", 0., 1.)),
               HasSubstr("no key POSEGRAPH.x"));
   EXPECT_THAT(ErrorOf(stock, Range("POSE_GRAPH.constraint_builder", 0., 1.)),

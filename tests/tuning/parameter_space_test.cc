@@ -125,7 +125,7 @@ TEST(ParameterSpaceTest, ErrorsNameEntryAndKey) {
   EXPECT_THAT(ErrorOf("{ key = 'a', choices = { 1, 1 } }"), HasSubstr("twice"));
   EXPECT_THAT(ErrorOf("{ key = 'a', choices = { {} } }"), HasSubstr("choice"));
   EXPECT_THAT(ErrorOf("{ key = 'a', range = { 0, 1 }, rang = 1 }"),
-              HasSubstr("unknown key 'rang'"));
+              HasSubstr("unknown key 'rang', did you mean 'range'?"));
   EXPECT_THAT(
       ErrorOf("{ key='a', range={ 0, 1 } }, { key='a', range={ 0, 1 } }"),
       HasSubstr("listed twice"));

@@ -37,8 +37,8 @@ ResultContext Context() {
   context.parameters[1].high = 100.;
   context.parameters[1].log_scale = true;
   context.inputs.resize(2);
-  context.inputs[0].name = "one";
-  context.inputs[1].name = "two";
+  context.inputs[0].name = "one.clf@12+one.tum@345";
+  context.inputs[1].name = "t@2wo.world#3@67";
   return context;
 }
 
@@ -68,6 +68,9 @@ TuneResult Result() {
 TEST(ResultWriterTest, TheLuaFileSetsTheKeys) {
   const std::string text = ToLuaFile(Result(), Context());
   EXPECT_THAT(text, HasSubstr("relations, 2 -> 0.5 (-75.0 %)"));
+  // Without the sizes that the journal has.
+  EXPECT_THAT(text, HasSubstr("--   one.clf: 1 -> 0.5\n"));
+  EXPECT_THAT(text, HasSubstr("--   t@2wo.world#3: 3 -> 0.5\n"));
   EXPECT_THAT(text, HasSubstr("Held out: 8 -> 6"));
   EXPECT_THAT(text, HasSubstr("Before: 0.5; gain 0.25 (50.0 % of the result), "
                               "better on 2 of 2 recordings; confidence: "

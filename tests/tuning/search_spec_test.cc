@@ -49,7 +49,10 @@ TEST(SearchSpecTest, ErrorsNameFileAndKey) {
   const auto with = [&](const std::string& more) {
     return error(std::string("return { ") + kParameters + ", " + more + " }");
   };
-  EXPECT_THAT(with("paramters = 1"), HasSubstr("unknown key 'paramters'"));
+  EXPECT_THAT(with("paramters = 1"),
+              HasSubstr("unknown key 'paramters', did you mean 'parameters'?"));
+  EXPECT_THAT(error("return { map_builder = {} }"),
+              HasSubstr("is a configuration, not a search file"));
   EXPECT_THAT(with("objective = 'joy'"), HasSubstr("unknown objective"));
   EXPECT_THAT(with("aggregation = 'sum'"), HasSubstr("aggregation"));
   EXPECT_THAT(with("target_recall = 0"), HasSubstr("target_recall"));
