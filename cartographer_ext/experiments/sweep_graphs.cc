@@ -120,6 +120,11 @@ absl::StatusOr<SweepGraph> LoadSweepGraph(const SweepOptions& options,
         absl::StrCat(options.data_directory, "/", dataset, suffix);
     if (!Exists(filename) && Exists(candidate)) filename = candidate;
   }
+  if (!Exists(filename)) {
+    return absl::NotFoundError(
+        absl::StrCat("data set ", dataset, ": there is no such file, and none ",
+                     "of that name in ", options.data_directory));
+  }
   auto graph = ReadPoseGraph(filename);
   if (!graph.ok()) return graph.status();
   SweepGraph result;

@@ -151,6 +151,16 @@ TEST(SweepGraphsTest, TheLikeliestMapGivesTheNoise) {
   EXPECT_LT(result->applied_odometry_scale, 0.5);
 }
 
+TEST(SweepGraphsTest, AMissingDataSetIsNamedWithItsFolder) {
+  SweepOptions options;
+  options.data_directory = "/nonexistent";
+  const auto loaded = LoadSweepGraph(options, "intel");
+  EXPECT_EQ(loaded.status().code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(loaded.status().message()),
+              testing::AllOf(testing::HasSubstr("intel"),
+                             testing::HasSubstr("/nonexistent")));
+}
+
 }  // namespace
 }  // namespace experiments
 }  // namespace cartographer_ext

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/slam/open_recording.h"
 
+#include <cstdio>
+#include <fstream>
+
+#include "cartographer_ext/io/pbstream/pbstream_records.h"
 #include "gtest/gtest.h"
 #include "tests/test_data.h"
 
@@ -23,6 +27,16 @@ TEST(OpenRecordingTest, OpensLogsAndWorlds) {
 TEST(OpenRecordingTest, MissingFilesAreErrors) {
   EXPECT_FALSE(OpenRecording("/nowhere/run.clf", {}, 0).ok());
   EXPECT_FALSE(OpenRecording("/nowhere/run.world", {}, 0).ok());
+}
+
+TEST(OpenRecordingTest, AFinishedMapIsNoRecording) {
+  const std::string filename = testing::TempDir() + "open_recording_test.clf";
+  std::ofstream(filename, std::ios::binary) << io::PbstreamMagic();
+  const auto map = OpenRecording(filename, {}, 0);
+  std::remove(filename.c_str());
+  ASSERT_FALSE(map.ok());
+  EXPECT_EQ(map.status().message(),
+            filename + ": a finished map, not a recording");
 }
 
 TEST(OpenRecordingTest, FilesAreNamedAfterTheRecording) {

@@ -297,6 +297,16 @@ class SplitContainer : public RosContainer {
   size_t at_ = 0;
 };
 
+// What the files of one recording have in common: "run_9.db3" and "run_10.db3"
+// are "run.db3".
+std::string WithoutNumber(const std::string& name) {
+  const size_t dot = name.rfind('.');
+  const size_t underscore = name.find_last_not_of("0123456789", dot - 1);
+  return underscore < dot - 1 && name[underscore] == '_'
+             ? name.substr(0, underscore) + name.substr(dot)
+             : name;
+}
+
 // "run_10.db3" comes after "run_9.db3".
 bool BeforeByNumber(const std::string& a, const std::string& b) {
   return a.size() != b.size() ? a.size() < b.size() : a < b;
@@ -320,8 +330,11 @@ absl::StatusOr<std::unique_ptr<RosContainer>> OpenRosbag2Folder(
                                                       &closedir);
   if (directory == nullptr)
     return absl::InvalidArgumentError(absl::StrCat(folder, ": cannot be read"));
+  bool has_metadata = false;
   while (const dirent* entry = readdir(directory.get())) {
     const std::string name = entry->d_name;
+    if (name.front() == '.') continue;  // of the system
+    has_metadata |= name == "metadata.yaml";
     if (absl::EndsWith(name, ".db3") || absl::EndsWith(name, ".mcap"))
       names.push_back(name);
     if (absl::EndsWith(name, ".zstd")) compressed.push_back(name);
@@ -337,6 +350,14 @@ absl::StatusOr<std::unique_ptr<RosContainer>> OpenRosbag2Folder(
         ": a folder without .db3 and .mcap files, so not a rosbag2 recording"));
   }
   std::sort(names.begin(), names.end(), BeforeByNumber);
+  for (const std::string& name : names) {
+    if (has_metadata || WithoutNumber(name) == WithoutNumber(names.front())) {
+      continue;
+    }
+    return absl::InvalidArgumentError(absl::StrCat(
+        folder, ": a folder with several recordings (", names.front(), ", ",
+        name, "), and without metadata.yaml; name one of them"));
+  }
   std::vector<std::unique_ptr<RosContainer>> parts;
   std::vector<std::string> warnings;
   absl::Status first_problem;

@@ -75,6 +75,21 @@ TEST(Rosbag2ReaderTest, FoldersWithoutARecordingAreRefused) {
       HasSubstr("unzstd"));
 }
 
+TEST(Rosbag2ReaderTest, AFolderOfSeveralRecordingsIsRefused) {
+  Folder folder;
+  test::WriteRos2Sample(folder.Add("run_9.db3"), Rosbag2Storage::kDb3, "none");
+  test::WriteRos2Sample(folder.Add("run_10.db3"), Rosbag2Storage::kDb3, "none");
+  test::WriteBytes(folder.Add("._run_9.db3"), "left by another system");
+  const auto split = OpenSensorSource(folder.path(), {});
+  ASSERT_TRUE(split.ok()) << split.status();
+  EXPECT_EQ((*split)->info().num_scans, 20);
+  test::WriteRos2Sample(folder.Add("walk_10.db3"), Rosbag2Storage::kDb3,
+                        "none");
+  EXPECT_THAT(
+      std::string(OpenSensorSource(folder.path(), {}).status().message()),
+      HasSubstr("several recordings (run_9.db3, walk_10.db3)"));
+}
+
 TEST(Rosbag2ReaderTest, OtherDatabasesAreRefused) {
   test::TemporaryFile file(".db3");
   sqlite3* database = nullptr;
