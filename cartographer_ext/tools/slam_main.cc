@@ -275,6 +275,32 @@ absl::Status OfRecording(const absl::Status& status) {
                                                   status.message()));
 }
 
+// Flags that are set and have no effect on a recording of this format.
+std::vector<std::string> NotesOnFlags(const std::string& format) {
+  const bool is_log = format == "carmen", is_world = format == "world";
+  struct Use {
+    const char* flag;
+    bool is_set;
+    bool has_effect;
+    const char* recordings;
+  };
+  std::vector<std::string> notes;
+  for (const Use& use : {Use{"scan_topic", !FLAGS_scan_topic.empty(),
+                             !is_log && !is_world, "ROS recordings"},
+                         Use{"odometry_topic", !FLAGS_odometry_topic.empty(),
+                             !is_log && !is_world, "ROS recordings"},
+                         Use{"imu_topic", !FLAGS_imu_topic.empty(),
+                             !is_log && !is_world, "ROS recordings"},
+                         Use{"odometry_source", !FLAGS_odometry_source.empty(),
+                             is_log, "CARMEN logs"},
+                         Use{"seed", FLAGS_seed != 0, is_world, "worlds"}}) {
+    if (!use.is_set || use.has_effect) continue;
+    notes.push_back(absl::StrCat("-", use.flag, " has no effect: it is for ",
+                                 use.recordings));
+  }
+  return notes;
+}
+
 absl::Status Run(const std::string& command_line) {
   auto state = ReadStartingState();
   if (!state.ok()) return state.status();
@@ -295,6 +321,7 @@ absl::Status Run(const std::string& command_line) {
   // If the JSON goes to standard output, nothing else may.
   std::ostream& out = FLAGS_json == "-" ? std::cerr : std::cout;
   PrintRecording((*source)->info(), out);
+  tools::PrintNotes(NotesOnFlags((*source)->info().format));
   tools::PrintNotes((*source)->info().warnings);
 
   auto progress = std::make_unique<tools::SlamProgressLine>(

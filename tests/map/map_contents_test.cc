@@ -14,32 +14,15 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/io/pbstream/pbstream_example.h"
+#include "tests/map/probability_grid.h"
 
 namespace cartographer_ext {
 namespace evaluation {
 namespace {
 
 using cartographer::mapping::proto::Grid2D;
-
-// Ten by six cells of 0.1 m in x and y, corner at (2, 3): x from 1 to 2, y from
-// 2.4 to 3. Cell (ix, iy) is ix from the top and iy from the right.
-Grid2D FreeGrid() {
-  Grid2D grid;
-  grid.mutable_limits()->set_resolution(0.1);
-  grid.mutable_limits()->mutable_max()->set_x(2.);
-  grid.mutable_limits()->mutable_max()->set_y(3.);
-  grid.mutable_limits()->mutable_cell_limits()->set_num_x_cells(6);
-  grid.mutable_limits()->mutable_cell_limits()->set_num_y_cells(10);
-  grid.mutable_probability_grid_2d();
-  grid.set_min_correspondence_cost(0.1f);
-  grid.set_max_correspondence_cost(0.9f);
-  for (int i = 0; i < 60; ++i) grid.add_cells(32767);
-  return grid;
-}
-
-void Set(const int ix, const int iy, const int value, Grid2D* const grid) {
-  grid->set_cells(6 * iy + ix, value);
-}
+using cartographer_ext::test::FreeGrid;
+using cartographer_ext::test::SetCell;
 
 // A node whose robot is turned by `yaw` in the local frame, while its cloud
 // keeps to the frame that gravity alignment leaves.
@@ -130,7 +113,7 @@ TEST(MapContentsTest, ReadsAFileInPieces) {
 // Of a map that is to be painted alone.
 TEST(MapContentsTest, TakesTheGrids) {
   Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);
+  SetCell(2, 1, 1, &grid);
   MapContents contents;
   contents.submaps.emplace(GraphId{0, 3},
                            SubmapCells(*SubmapGrid::Make(grid), 0.1));
@@ -156,7 +139,7 @@ TEST(MapContentsTest, TakesTheGrids) {
 
 TEST(MapContentsTest, PaintsWhatGraphAndContentsShare) {
   Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);
+  SetCell(2, 1, 1, &grid);
   MapContents contents;
   for (const int i : {0, 1}) {
     contents.submaps.emplace(GraphId{0, i},
@@ -180,7 +163,7 @@ TEST(MapContentsTest, PaintsWhatGraphAndContentsShare) {
 
 TEST(MapContentsTest, LoopsAreScoredAtTheirOwnPose) {
   Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);
+  SetCell(2, 1, 1, &grid);
   MapContents contents;
   contents.submaps.emplace(GraphId{0, 0},
                            SubmapCells(*SubmapGrid::Make(grid), 0.1));

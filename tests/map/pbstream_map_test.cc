@@ -7,6 +7,7 @@
 
 #include "cartographer_ext/map/host_types.h"
 #include "gtest/gtest.h"
+#include "tests/map/probability_grid.h"
 #include "tests/test_data.h"
 
 namespace cartographer_ext {
@@ -35,16 +36,8 @@ io::Pbstream OneNode() {
   *submap->mutable_local_pose() = PoseProto(1., 0.);
   submap->set_finished(true);
   submap->set_num_range_data(180);
-  auto* const grid = submap->mutable_grid();
-  grid->mutable_limits()->set_resolution(1.);
-  grid->mutable_limits()->mutable_max()->set_x(4.);
-  grid->mutable_limits()->mutable_max()->set_y(1.);
-  grid->mutable_limits()->mutable_cell_limits()->set_num_x_cells(1);
-  grid->mutable_limits()->mutable_cell_limits()->set_num_y_cells(1);
-  grid->mutable_probability_grid_2d();
-  grid->set_min_correspondence_cost(0.1f);
-  grid->set_max_correspondence_cost(0.9f);
-  grid->add_cells(1);
+  *submap->mutable_grid() =
+      cartographer_ext::test::ProbabilityGrid(1., 4., 1., 1, 1, 1);
   auto* const node = trajectory->add_node();
   node->set_node_index(5);
   *node->mutable_pose() = PoseProto(12., 2.);

@@ -7,6 +7,7 @@
 
 #include "cartographer_ext/io/pbstream/pbstream_reader.h"
 #include "cartographer_ext/map/host_types.h"
+#include "tests/map/probability_grid.h"
 
 namespace cartographer_ext {
 namespace evaluation {
@@ -33,15 +34,8 @@ inline io::Pbstream SmallState() {
   *submap->mutable_local_pose() = PoseProto(0.);
   submap->set_finished(true);
   submap->set_num_range_data(3);
-  auto* const grid = submap->mutable_grid();
-  grid->mutable_limits()->set_resolution(0.05);
-  grid->mutable_limits()->mutable_max()->set_x(1.);
-  grid->mutable_limits()->mutable_cell_limits()->set_num_x_cells(1);
-  grid->mutable_limits()->mutable_cell_limits()->set_num_y_cells(1);
-  grid->mutable_probability_grid_2d();
-  grid->set_min_correspondence_cost(0.1f);
-  grid->set_max_correspondence_cost(0.9f);
-  grid->add_cells(1);
+  *submap->mutable_grid() =
+      cartographer_ext::test::ProbabilityGrid(0.05, 1., 0., 1, 1, 1);
   for (int i = 0; i < 3; ++i) {
     const int64_t ticks = cartographer::common::ToUniversal(
         ToHostTime((1000 + i) * 1000000000LL));

@@ -8,32 +8,15 @@
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "tests/map/probability_grid.h"
 
 namespace cartographer_ext {
 namespace evaluation {
 namespace {
 
 using cartographer::mapping::proto::Grid2D;
-
-// Ten by six cells of 0.1 m in x and y, corner at (2, 3): x from 1 to 2, y from
-// 2.4 to 3. Cell (ix, iy) is ix from the top and iy from the right.
-Grid2D FreeGrid() {
-  Grid2D grid;
-  grid.mutable_limits()->set_resolution(0.1);
-  grid.mutable_limits()->mutable_max()->set_x(2.);
-  grid.mutable_limits()->mutable_max()->set_y(3.);
-  grid.mutable_limits()->mutable_cell_limits()->set_num_x_cells(6);
-  grid.mutable_limits()->mutable_cell_limits()->set_num_y_cells(10);
-  grid.mutable_probability_grid_2d();
-  grid.set_min_correspondence_cost(0.1f);
-  grid.set_max_correspondence_cost(0.9f);
-  for (int i = 0; i < 60; ++i) grid.add_cells(32767);
-  return grid;
-}
-
-void Set(const int ix, const int iy, const int value, Grid2D* const grid) {
-  grid->set_cells(6 * iy + ix, value);
-}
+using cartographer_ext::test::FreeGrid;
+using cartographer_ext::test::SetCell;
 
 SubmapCells CellsOf(const Grid2D& grid, const double margin) {
   return SubmapCells(*SubmapGrid::Make(grid), margin);
@@ -41,9 +24,9 @@ SubmapCells CellsOf(const Grid2D& grid, const double margin) {
 
 TEST(SubmapCellsTest, CellsSayWhatIsSure) {
   Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);      // x 1.8 to 1.9, y 2.7 to 2.8: occupied
-  Set(2, 5, 16384, &grid);  // x 1.4 to 1.5: as likely as not
-  Set(2, 8, 0, &grid);      // x 1.1 to 1.2: unknown
+  SetCell(2, 1, 1, &grid);      // x 1.8 to 1.9, y 2.7 to 2.8: occupied
+  SetCell(2, 5, 16384, &grid);  // x 1.4 to 1.5: as likely as not
+  SetCell(2, 8, 0, &grid);      // x 1.1 to 1.2: unknown
   const SubmapCells cells = CellsOf(grid, 0.1);
   EXPECT_EQ(cells.resolution(), 0.1);
   EXPECT_EQ(cells.grid().num_x(), 6);
@@ -74,7 +57,7 @@ TEST(SubmapCellsTest, CellsSayWhatIsSure) {
 
 TEST(SubmapCellsTest, WithoutMarginEveryCellStandsForItself) {
   Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);
+  SetCell(2, 1, 1, &grid);
   const SubmapCells cells = CellsOf(grid, 0.);
   EXPECT_EQ(cells.At({1.75, 2.75}), CellEvidence::kFree);
   EXPECT_FALSE(cells.NearOccupied({1.75, 2.75}));
@@ -91,8 +74,8 @@ TEST(SubmapCellsTest, NoWallIsWithinReach) {
   for (int round = 0; round < 300; ++round) {
     Grid2D grid = FreeGrid();
     for (int i = round % 4; i > 0; --i) {
-      Set(static_cast<int>(uniform(0., 6.)), static_cast<int>(uniform(0., 10.)),
-          1, &grid);
+      SetCell(static_cast<int>(uniform(0., 6.)),
+              static_cast<int>(uniform(0., 10.)), 1, &grid);
     }
     const SubmapCells cells = CellsOf(grid, 0.1);
     const Eigen::Vector2d from(uniform(0., 3.), uniform(1.5, 4.));
@@ -118,8 +101,8 @@ TEST(SubmapCellsTest, NoWallIsWithinReach) {
 
 TEST(SubmapCellsTest, ScoresAreMeansOfProbabilities) {
   Grid2D grid = FreeGrid();
-  Set(2, 1, 1, &grid);      // 0.9
-  Set(2, 5, 16384, &grid);  // 0.5
+  SetCell(2, 1, 1, &grid);      // 0.9
+  SetCell(2, 5, 16384, &grid);  // 0.5
   const SubmapCells cells = CellsOf(grid, 0.1);
   const Pose2 at_corner(1., 2.4, 0.);
   EXPECT_EQ(cells.Score({}, at_corner), 0.);

@@ -126,6 +126,26 @@ TEST(WrongValuesTest, NothingIsWrittenUnderAnotherEnding) {
   EXPECT_THAT(folder.Names(), IsEmpty());
 }
 
+// A flag of another kind of recording is no error, but it is said.
+TEST(WrongValuesTest, FlagsWithoutEffectAreNamed) {
+  const TemporaryFolder folder;
+  WriteRoomLog(folder / "room.clf", 30);
+  const std::vector<std::string> command = {
+      folder / "room.clf", "-trajectory_filename", folder / "room.tum"};
+  std::vector<std::string> wrong = command;
+  wrong.insert(wrong.end(), {"-scan_topic", "/scan", "-seed", "3",
+                             "-odometry_source", "scan"});
+  const CommandResult result = RunCommand("slam", wrong);
+  EXPECT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.error, HasSubstr("note: -scan_topic has no effect: it is "
+                                      "for ROS recordings\n"));
+  EXPECT_THAT(result.error,
+              HasSubstr("note: -seed has no effect: it is for worlds\n"));
+  EXPECT_THAT(result.error, testing::Not(HasSubstr("-odometry_source")));
+  EXPECT_THAT(RunCommand("slam", command).error,
+              testing::Not(HasSubstr("no effect")));
+}
+
 }  // namespace
 }  // namespace test
 }  // namespace cartographer_ext
