@@ -284,6 +284,9 @@ absl::Status Run() {
     if (!status.ok()) return status;
     summary.files.push_back(FLAGS_picture_filename);
   }
+  if (!FLAGS_world_output_filename.empty()) {
+    summary.files.push_back(FLAGS_world_output_filename);
+  }
   const double cpu_seconds =
       static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   const nlohmann::ordered_json report =

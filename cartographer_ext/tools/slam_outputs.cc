@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 #include <vector>
 
@@ -213,6 +214,16 @@ void PrintSlamOutputs(std::ostream& out) {
   if (!FLAGS_map_filestem.empty()) {
     names.push_back(FLAGS_map_filestem + ".yaml");
     names.push_back(FLAGS_map_filestem + ".pgm");
+  }
+  // Without loops or records of local SLAM there is none of these.
+  for (const std::string& beside :
+       {evaluation::DecisionCsvFilename(FLAGS_pbstream_filename),
+        evaluation::MatchCsvFilename(FLAGS_pbstream_filename)}) {
+    std::error_code error;
+    if (!FLAGS_pbstream_filename.empty() &&
+        std::filesystem::exists(beside, error)) {
+      names.push_back(beside);
+    }
   }
   names.erase(std::remove(names.begin(), names.end(), ""), names.end());
   names.erase(std::remove(names.begin(), names.end(), "-"), names.end());

@@ -56,6 +56,7 @@ TEST(SimulateMainTest, GeneratedWorldReadsBack) {
                    "-output_filestem", folder / "first", "-truth_map=false",
                    "-world_output_filename", folder / "office.world"});
   ASSERT_EQ(first.exit_code, 0) << first.error;
+  EXPECT_THAT(first.out, HasSubstr(folder / "office.world"));
   const CommandResult second = RunCommand(
       "simulate", {folder / "office.world", "-seed", "4", "-output_filestem",
                    folder / "second", "-truth_map=false"});

@@ -108,7 +108,8 @@ TEST(SlamMainTest, ARecordingAloneGivesEverything) {
                                    "room.nodes.pb", "room.nodes.csv"));
   EXPECT_THAT(result.out, testing::ContainsRegex("Verdict: .*\nMemory   "));
   EXPECT_THAT(result.out, HasSubstr("Written    room.pbstream, room.png, "
-                                    "room.html, room.yaml, room.pgm"));
+                                    "room.html, room.yaml, room.pgm, "
+                                    "room.nodes.csv\n"));
   EXPECT_THAT(ReadFile(folder / "room.html"), HasSubstr("<title>"));
   EXPECT_THAT(ReadFile(folder / "room.yaml"), HasSubstr("room.pgm"));
 
@@ -397,10 +398,6 @@ TEST_F(LuaTest, ErrorsNameFileAndLine) {
 
 TEST_F(LuaTest, MissingInclude) {
   ExpectRefused("include \"nowhere.lua\"" + tail_, "nowhere.lua");
-}
-
-TEST_F(LuaTest, NotATable) {
-  ExpectRefused("return 3\n", "): returns no map_builder");
 }
 
 TEST_F(LuaTest, LocalisationNeedsAMap) {
