@@ -131,7 +131,8 @@ TEST(WrongValuesTest, FlagsWithoutEffectAreNamed) {
   const TemporaryFolder folder;
   WriteRoomLog(folder / "room.clf", 30);
   const std::vector<std::string> command = {
-      folder / "room.clf", "-trajectory_filename", folder / "room.tum"};
+      "-input_filename", folder / "room.clf", "-trajectory_filename",
+      folder / "room.tum"};
   std::vector<std::string> wrong = command;
   wrong.insert(wrong.end(), {"-scan_topic", "/scan", "-seed", "3",
                              "-odometry_source", "scan"});
