@@ -83,7 +83,9 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   if (IsOdometryDead()) return prediction;
   if (IntegrateOdometry(last_time_, time, &odometry)) {
     PredictByOdometry(time, odometry, has_imu, &prediction);
-    if (!odometry_.has_moved()) {
+    if (prediction.source == PredictionSource::kOdometry &&
+        !odometry_.has_moved()) {
+      prediction.wheels_never_moved = true;
       prediction.covariance += WideCovariance(interval);
     }
   } else {
