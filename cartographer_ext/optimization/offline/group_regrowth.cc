@@ -101,11 +101,12 @@ class Regrower {
   bool Move() {
     Decided map = start_;
     if (options_.windings_alone) {
-      return !OtherWindings().empty() && (Grow(&map) || TryWindings());
+      const std::vector<Winding> windings = OtherWindings();
+      return !windings.empty() && (Grow(&map) || TryWindings(windings));
     }
     return Grow(&map) || ForceNearest(start_, options_.max_near, &forced_) ||
-           TryWindings() || ReleaseAlone() || ReleaseWithSmaller() ||
-           StartFromGroup();
+           TryWindings(OtherWindings()) || ReleaseAlone() ||
+           ReleaseWithSmaller() || StartFromGroup();
   }
 
   // What failed before may succeed after progress.
@@ -233,16 +234,18 @@ class Regrower {
   }
 
   std::vector<Winding> OtherWindings() const {
+    if (options_.max_windings == 0 || !MayTry()) return {};
     WindingOptions options;
     options.max_chi2 = lowest_.cost();
     return FindWindings(edges_, start_.weights, start_.poses, options);
   }
 
   // The loops in force solved with other windings, in ascending order of cost.
-  std::vector<std::pair<double, std::vector<Pose2>>> SolveWindings() {
+  std::vector<std::pair<double, std::vector<Pose2>>> SolveWindings(
+      const std::vector<Winding>& windings) {
     const SolverOptions options = ChangedOptions(start_.weights);
     std::vector<std::pair<double, std::vector<Pose2>>> result;
-    for (const Winding& winding : OtherWindings()) {
+    for (const Winding& winding : windings) {
       std::vector<Pose2> poses = start_.poses;
       if (!MayTry() || !Rewind(edges_, start_.weights, winding.turns, &poses)) {
         continue;
@@ -257,11 +260,10 @@ class Regrower {
   }
 
   // The best is kept.
-  bool TryWindings() {
-    if (options_.max_windings == 0 || !MayTry()) return false;
+  bool TryWindings(const std::vector<Winding>& windings) {
     bool better = false;
     int tries = 0;
-    for (auto& solved : SolveWindings()) {
+    for (auto& solved : SolveWindings(windings)) {
       if (tries == options_.max_windings || !MayTry()) break;
       ++tries;
       Decided map = start_;

@@ -71,14 +71,12 @@ void RunGnc(const std::vector<WhitenedEdge>& edges,
 }
 
 // Puts right loops in force that lie just beyond the gate, as `auto` does.
-void AcceptNearLoops(const PoseGraph& graph, ReplayResult* const replay,
+void AcceptNearLoops(RobustSolver* const solver, ReplayResult* const replay,
                      OptimizeResult* const result) {
-  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
-  RobustSolver solver(edges);
   AutoResult wide;
   wide.poses = replay->poses;
   wide.weights.assign(replay->accepted.begin(), replay->accepted.end());
-  if (!AcceptNearLoops({{"r_isam", replay->poses, 0.}}, &solver, &wide)) return;
+  if (!AcceptNearLoops({{"r_isam", replay->poses, 0.}}, solver, &wide)) return;
   replay->poses = std::move(wide.poses);
   for (size_t i = 0; i != wide.weights.size(); ++i) {
     replay->accepted[i] = wide.weights[i] > 0.5;
@@ -102,14 +100,16 @@ void RepeatWithLargerNoise(const PoseGraph& graph,
   }
   const PoseGraph scaled =
       WithNoiseScale(graph, noise.metric.odometry, noise.metric.loops);
+  std::vector<WhitenedEdge> edges = Whiten(scaled.edges);
+  RobustSolver solver(edges);
   ReplayResult again;
   if (!Replay(scaled, options, &again).ok()) return;
-  ReadmitGroups(scaled, &again);
+  ReadmitGroups(scaled, &edges, &solver, &again);
   if (CountLoopsInForce(graph.edges, again.accepted) <=
       CountLoopsInForce(graph.edges, replay->accepted)) {
     return;
   }
-  AcceptNearLoops(scaled, &again, result);
+  AcceptNearLoops(&solver, &again, result);
   *replay = std::move(again);
   result->applied_odometry_scale = noise.metric.odometry;
   result->applied_loop_scale = noise.metric.loops;
@@ -120,10 +120,10 @@ absl::Status RunReplay(const PoseGraph& graph, const OptimizeOptions& options,
   ReplayResult replay;
   const absl::Status status = Replay(graph, options.smoother, &replay);
   if (!status.ok()) return status;
-  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  std::vector<WhitenedEdge> edges = Whiten(graph.edges);
   RobustSolver solver(edges);
   ReplayLostParts(graph, options.smoother, &solver, &replay);
-  ReadmitGroups(graph, &replay);
+  ReadmitGroups(graph, &edges, &solver, &replay);
   if (options.estimate_noise) {
     RepeatWithLargerNoise(graph, options.smoother, &replay, result);
   }

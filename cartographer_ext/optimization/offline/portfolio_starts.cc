@@ -74,7 +74,8 @@ bool Portfolio::AddReplay(ReplayResult* const replay) {
   NoteSolver(replay->poses);
   Add("r_isam", replay->poses);
   AddLostParts(replay);
-  if (Size() <= kMaxRepeatedWork && ReadmitGroups(graph_, replay)) {
+  if (Size() <= kMaxRepeatedWork &&
+      ReadmitGroups(graph_, &edges_, &solver_, replay)) {
     NoteSolver(replay->poses);
     Add("r_isam, readmitted", replay->poses);
   }

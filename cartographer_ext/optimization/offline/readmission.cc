@@ -60,35 +60,35 @@ bool HasLostNearlyAll(const LoopSupport& support,
 
 }  // namespace
 
-bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
-  std::vector<WhitenedEdge> edges = Whiten(graph.edges);
-  const double loops = CountLoops(edges);
+bool ReadmitGroups(const PoseGraph& graph,
+                   std::vector<WhitenedEdge>* const edges,
+                   RobustSolver* const solver, ReplayResult* const replay) {
+  const double loops = CountLoops(*edges);
   const bool large = graph.poses.size() * loops > kMaxGrowthWork;
   if (large &&
-      CountLoopsInForce(edges, replay->accepted) >= kHardlyAny * loops) {
+      CountLoopsInForce(*edges, replay->accepted) >= kHardlyAny * loops) {
     return false;
   }
-  RobustSolver solver(edges);
   const LoopSupport support = FindLoopSupport(graph, LoopSupportOptions());
   if (large ? !HasLostNearlyAll(support, replay->accepted)
             : !MayHaveLostLoops(support, replay->accepted, replay->poses,
-                                &solver)) {
+                                solver)) {
     return false;
   }
-  const double limit = TruncatedCost(edges, replay->poses) - 2. * kChi2Gate;
+  const double limit = TruncatedCost(*edges, replay->poses) - 2. * kChi2Gate;
   std::vector<Pose2> best = replay->poses, poses = ChainOdometry(graph);
   double lowest = std::numeric_limits<double>::infinity();
   const auto offer = [&] {
-    PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &poses, nullptr);
-    const double cost = TruncatedCost(edges, poses);
+    PolishTruncated(kChi2Gate, kFullPolishRounds, solver, &poses, nullptr);
+    const double cost = TruncatedCost(*edges, poses);
     if (cost >= lowest) return;
     lowest = cost;
     best = poses;
   };
   std::vector<double> weights;
-  if (large ? GrowCertainLoops(graph, CertainGrowthOptions(), &solver, &poses,
+  if (large ? GrowCertainLoops(graph, CertainGrowthOptions(), solver, &poses,
                                &weights) > 0
-            : GrowLoops(support, GrowthOptions(), &solver, &poses, &weights)) {
+            : GrowLoops(support, GrowthOptions(), solver, &poses, &weights)) {
     offer();
   }
   for (const KernelType type : {KernelType::kDcs, KernelType::kGemanMcClure}) {
@@ -96,7 +96,7 @@ bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
     soft.kernel = DefaultKernel(type);
     soft.kernel.parameter = kChi2Gate;
     poses = best;
-    solver.Solve(soft, &poses);
+    solver->Solve(soft, &poses);
     offer();
   }
   ForceOptions force;
@@ -104,13 +104,13 @@ bool ReadmitGroups(const PoseGraph& graph, ReplayResult* const replay) {
   force.min_members = kMinForcedGroup;
   force.relax = !large;  // two more factorisations a trial
   poses = best;
-  if (ForceGroups(support, force, &edges, &solver, &poses, nullptr) > 0) {
+  if (ForceGroups(support, force, edges, solver, &poses, nullptr) > 0) {
     offer();
   }
   if (lowest > limit) return false;
-  weights = DecideLoops(edges, best, kChi2Gate);
+  weights = DecideLoops(*edges, best, kChi2Gate);
   replay->poses = std::move(best);
-  for (size_t i = 0; i != edges.size(); ++i) {
+  for (size_t i = 0; i != edges->size(); ++i) {
     replay->accepted[i] = weights[i] > 0.5;
   }
   return true;

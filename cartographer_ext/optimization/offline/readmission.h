@@ -14,15 +14,20 @@
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_READMISSION_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_OFFLINE_READMISSION_H_
 
+#include <vector>
+
 #include "cartographer_ext/optimization/graph/pose_graph.h"
 #include "cartographer_ext/optimization/solvers/incremental_smoother.h"
+#include "cartographer_ext/optimization/solvers/robust_solver.h"
 
 namespace cartographer_ext {
 namespace optimization {
 
 // Replaces poses and decisions of `replay` and returns true if there is such a
 // map. Does nothing if no loop can have been lost, or too few of a large graph.
-bool ReadmitGroups(const PoseGraph& graph, ReplayResult* replay);
+// `edges` are those of the graph and of `solver`, as for ForceGroups.
+bool ReadmitGroups(const PoseGraph& graph, std::vector<WhitenedEdge>* edges,
+                   RobustSolver* solver, ReplayResult* replay);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

@@ -15,7 +15,8 @@ namespace {
 TEST(ReadmissionTest, BringsBackWhatAReplayHasLost) {
   for (const uint64_t seed : {1, 2, 3}) {
     const test::GridWorld world = test::MakeWeakRing(seed);
-    const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+    std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+    RobustSolver solver(edges);
     ReplayResult replay;
     replay.poses = world.graph.poses;
     replay.accepted.assign(edges.size(), false);
@@ -25,7 +26,7 @@ TEST(ReadmissionTest, BringsBackWhatAReplayHasLost) {
       replay.accepted[i] = !edges[i].is_loop;
     }
     const double before = TruncatedCost(edges, replay.poses);
-    ASSERT_TRUE(ReadmitGroups(world.graph, &replay)) << seed;
+    ASSERT_TRUE(ReadmitGroups(world.graph, &edges, &solver, &replay)) << seed;
     const double after = TruncatedCost(edges, replay.poses);
     EXPECT_LT(after, 0.5 * before) << seed;
     size_t accepted = 0;
@@ -55,7 +56,9 @@ TEST(ReadmissionTest, BringsBackWhatALargeGraphHasLost) {
     right += is_loop && i < first_outlier;
   }
   ASSERT_GT(world.graph.poses.size() * loops, 4e6);
-  ASSERT_TRUE(ReadmitGroups(world.graph, &replay));
+  std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  ASSERT_TRUE(ReadmitGroups(world.graph, &edges, &solver, &replay));
   size_t right_in_force = 0, wrong_in_force = 0;
   for (size_t i = 0; i != world.graph.edges.size(); ++i) {
     if (!world.graph.edges[i].is_loop || !replay.accepted[i]) continue;
@@ -71,7 +74,9 @@ TEST(ReadmissionTest, LeavesAMapAloneThatHasLostNothing) {
   ASSERT_TRUE(Replay(world.graph, SmootherOptions(), &replay).ok());
   const std::vector<Pose2> poses = replay.poses;
   const std::vector<bool> accepted = replay.accepted;
-  EXPECT_FALSE(ReadmitGroups(world.graph, &replay));
+  std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+  RobustSolver solver(edges);
+  EXPECT_FALSE(ReadmitGroups(world.graph, &edges, &solver, &replay));
   EXPECT_EQ(replay.accepted, accepted);
   for (size_t i = 0; i != poses.size(); ++i) {
     EXPECT_EQ(replay.poses[i].x, poses[i].x);

@@ -5,6 +5,7 @@
 // between maps, a larger one where it brings rejected loops in.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -212,7 +213,7 @@ void AddMapsOfLessNoise(const Portfolio& portfolio, const NoiseMetric& metric,
   const std::vector<Pose2> chained = ChainOdometry(portfolio.graph());
   const PoseGraph graph =
       WithNoiseScale(portfolio.graph(), metric.odometry, metric.loops);
-  const std::vector<WhitenedEdge> edges = Whiten(graph.edges);
+  std::vector<WhitenedEdge> edges = Whiten(graph.edges);
   RobustSolver solver(edges);
   const auto add = [&](std::vector<Pose2> poses) {
     PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &poses, nullptr);
@@ -221,7 +222,7 @@ void AddMapsOfLessNoise(const Portfolio& portfolio, const NoiseMetric& metric,
   ReplayResult replay;
   if (Replay(graph, SmootherOptions(), &replay).ok()) {
     add(replay.poses);
-    if (ReadmitGroups(graph, &replay)) add(replay.poses);
+    if (ReadmitGroups(graph, &edges, &solver, &replay)) add(replay.poses);
   }
   for (const KernelType type : {KernelType::kDcs, KernelType::kGemanMcClure}) {
     SolverOptions options;
@@ -267,6 +268,32 @@ bool TakeMap(const NoiseMetric& applied, ExplainedMap* const map,
   return IsAnother(applied, &found->metric);
 }
 
+// Explains poses, or gives them up in view of the likeliest map so far (no evidence).
+using ExplainAgainst =
+    std::function<ExplainedMap(const std::vector<Pose2>&, const ExplainedMap&)>;
+
+// Takes over the likeliest of `maps` if it is likelier than the best one by odds of
+// 1000, has another noise and loses no right loops to that.
+bool TakeLikeliest(const NoiseMetric& applied, const NoiseOfMap& map,
+                   const std::vector<std::vector<Pose2>>& maps,
+                   ExplainedMap best, const ExplainAgainst& explain,
+                   Portfolio* const portfolio, NoiseHypothesis* const found) {
+  ExplainedMap likeliest = std::move(best);
+  likeliest.evidence += kMuchLikelier;
+  found->valid = false;
+  for (const std::vector<Pose2>& poses : maps) {
+    ExplainedMap explained = explain(poses, likeliest);
+    if (explained.evidence <= likeliest.evidence ||
+        explained.accepted < kMinLoops) {
+      continue;
+    }
+    likeliest = std::move(explained);
+    found->valid = true;
+  }
+  return found->valid && TakeMap(applied, &likeliest, found) &&
+         !LosesRightLoops(applied, map, *found, portfolio);
+}
+
 }  // namespace
 
 bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
@@ -289,22 +316,18 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
     }
   }
   const double log_area = LogArea(best);
-  ExplainedMap likeliest = Explain(best, {}, log_area, portfolio);
-  likeliest.evidence += kMuchLikelier;
-  found->valid = false;
-  for (const std::vector<Pose2>& other : others) {
-    if (IsHopeless(other, likeliest, log_area, portfolio)) continue;
-    ExplainedMap explained = Explain(other, {}, log_area, portfolio);
-    if (explained.evidence <= likeliest.evidence ||
-        explained.accepted < kMinLoops ||
-        DifferNearGateOnly(edges, explained.poses, best)) {
-      continue;
+  const auto explain = [&](const std::vector<Pose2>& other,
+                           const ExplainedMap& likeliest) {
+    if (IsHopeless(other, likeliest, log_area, portfolio)) {
+      return ExplainedMap();
     }
-    likeliest = std::move(explained);
-    found->valid = true;
-  }
-  return found->valid && TakeMap(applied, &likeliest, found) &&
-         !LosesRightLoops(applied, map, *found, portfolio);
+    ExplainedMap explained = Explain(other, {}, log_area, portfolio);
+    return DifferNearGateOnly(edges, explained.poses, best) ? ExplainedMap()
+                                                            : explained;
+  };
+  return TakeLikeliest(applied, map, others,
+                       Explain(best, {}, log_area, portfolio), explain,
+                       portfolio, found);
 }
 
 bool FindNoiseOfCycles(const NoiseMetric& applied, const NoiseOfMap& map,
@@ -322,20 +345,13 @@ bool FindNoiseOfCycles(const NoiseMetric& applied, const NoiseOfMap& map,
   AddMapsOfLessNoise(*portfolio, explanation.first, &maps);
   maps.push_back(best);
   const double log_area = LogArea(best);
-  ExplainedMap likeliest = ExplainBestAsClaimed(log_area, portfolio);
-  likeliest.evidence += kMuchLikelier;
-  found->valid = false;
-  for (const std::vector<Pose2>& other : maps) {
-    ExplainedMap explained = Explain(other, explanation, log_area, portfolio);
-    if (explained.evidence <= likeliest.evidence ||
-        explained.accepted < kMinLoops) {
-      continue;
-    }
-    likeliest = std::move(explained);
-    found->valid = true;
-  }
-  return found->valid && TakeMap(applied, &likeliest, found) &&
-         !LosesRightLoops(applied, map, *found, portfolio);
+  const auto explain = [&](const std::vector<Pose2>& other,
+                           const ExplainedMap&) {
+    return Explain(other, explanation, log_area, portfolio);
+  };
+  return TakeLikeliest(applied, map, maps,
+                       ExplainBestAsClaimed(log_area, portfolio), explain,
+                       portfolio, found);
 }
 
 bool FindLikelierNoise(const NoiseMetric& applied, const NoiseOfMap& map,
