@@ -7,8 +7,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <utility>
 
+#include "absl/memory/memory.h"
 #include "cartographer_ext/common/thinned.h"
 #include "cartographer_ext/optimization/offline/loop_growth.h"
 #include "cartographer_ext/optimization/offline/noise/cycle_noise.h"
@@ -128,24 +130,49 @@ double GainOf(const ScaleEstimate& scale) {
   return 0.5 * scale.degrees_of_freedom * (variance - 1. - std::log(variance));
 }
 
-// Whether a map with the noise of a `likelier` one is that much less likely, by odds
-// of 1000 beside what is asked for, that no other noise makes up for it: a folded map,
-// which need not be explained. What differs in a few loops may become one with that.
-bool IsHopeless(const std::vector<Pose2>& map, const ExplainedMap& likelier,
-                const double log_area, Portfolio* const portfolio) {
-  const std::vector<WhitenedEdge> edges = WithNoiseScale(
-      portfolio->edges(), likelier.metric.odometry, likelier.metric.loops);
-  RobustSolver solver(edges);
-  std::vector<Pose2> poses = map;
-  std::vector<double> decisions;
-  PolishTruncated(kChi2Gate, kFullPolishRounds, &solver, &poses, &decisions);
-  const double evidence =
-      LogEvidenceOfMap({poses, decisions}, portfolio->support(),
-                       portfolio->edges(), log_area, &solver);
-  const NoiseScale noise = EstimateNoiseScale(poses, decisions, &solver);
-  return evidence + GainOf(noise.odometry) + GainOf(noise.loops) <
-         likelier.evidence - 2. * kMuchLikelier;
-}
+// Tells folded maps, which need not be explained.
+class HopelessMaps {
+ public:
+  HopelessMaps(const double log_area, Portfolio* const portfolio)
+      : log_area_(log_area), portfolio_(*portfolio) {}
+
+  // Whether a map with the noise of a `likelier` one is that much less likely, by odds
+  // of 1000 beside what is asked for, that no other noise makes up for it. What differs
+  // in a few loops may become one with that.
+  bool Contain(const std::vector<Pose2>& map, const ExplainedMap& likelier) {
+    UseNoise(likelier.metric);
+    std::vector<Pose2> poses = map;
+    std::vector<double> decisions;
+    PolishTruncated(kChi2Gate, kFullPolishRounds, solver_.get(), &poses,
+                    &decisions);
+    const double evidence =
+        LogEvidenceOfMap({poses, decisions}, portfolio_.support(),
+                         portfolio_.edges(), log_area_, solver_.get());
+    const NoiseScale noise =
+        EstimateNoiseScale(poses, decisions, solver_.get());
+    return evidence + GainOf(noise.odometry) + GainOf(noise.loops) <
+           likelier.evidence - 2. * kMuchLikelier;
+  }
+
+ private:
+  // The memory of one solver serves all maps that are judged with the same noise.
+  void UseNoise(const NoiseMetric& metric) {
+    if (solver_ != nullptr && metric.odometry == metric_.odometry &&
+        metric.loops == metric_.loops) {
+      return;
+    }
+    metric_ = metric;
+    solver_.reset();
+    edges_ = WithNoiseScale(portfolio_.edges(), metric.odometry, metric.loops);
+    solver_ = absl::make_unique<RobustSolver>(edges_);
+  }
+
+  const double log_area_;
+  Portfolio& portfolio_;
+  NoiseMetric metric_;
+  std::vector<WhitenedEdge> edges_;
+  std::unique_ptr<RobustSolver> solver_;
+};
 
 // Whether cycles of loops show less noise than is claimed, by odds of a thousand, and
 // how much, not more than claimed. Not asked where all solvers agree on a map, but in
@@ -316,14 +343,16 @@ bool FindSmallerNoise(const NoiseMetric& applied, const NoiseOfMap& map,
     }
   }
   const double log_area = LogArea(best);
+  HopelessMaps hopeless(log_area, portfolio);
   const auto explain = [&](const std::vector<Pose2>& other,
                            const ExplainedMap& likeliest) {
-    if (IsHopeless(other, likeliest, log_area, portfolio)) {
-      return ExplainedMap();
-    }
+    if (hopeless.Contain(other, likeliest)) return ExplainedMap();
     ExplainedMap explained = Explain(other, {}, log_area, portfolio);
-    return DifferNearGateOnly(edges, explained.poses, best) ? ExplainedMap()
-                                                            : explained;
+    // Without evidence there are no poses.
+    return explained.evidence <= likeliest.evidence ||
+                   DifferNearGateOnly(edges, explained.poses, best)
+               ? ExplainedMap()
+               : explained;
   };
   return TakeLikeliest(applied, map, others,
                        Explain(best, {}, log_area, portfolio), explain,
