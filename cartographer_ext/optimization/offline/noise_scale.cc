@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "Eigen/Cholesky"
@@ -128,6 +129,12 @@ bool IsLikeChi2(const std::vector<double>& values) {
   const double low = share_below(k5th), middle = share_below(kMedian);
   return low < 0.05 + 0.03 + 2.5 * std::sqrt(0.05 * 0.95 / n) &&
          std::abs(middle - 0.5) < 0.1 + 2.5 * std::sqrt(0.25 / n);
+}
+
+bool IsBelowChi2(const std::vector<double>& values) {
+  constexpr double kOnceInAThousand = -3.09;
+  return std::accumulate(values.begin(), values.end(), 0.) <
+         2. * Chi2Quantile(1.5 * values.size(), kOnceInAThousand);
 }
 
 bool IsCutByGate(const std::vector<double>& values, const double gate) {

@@ -64,6 +64,11 @@ std::vector<double> LeaveOneOutInnovations(const std::vector<Pose2>& poses,
 // ten.
 bool IsLikeChi2(const std::vector<double>& values);
 
+// Whether values are less than chi2 with three degrees of freedom, by chance once in a
+// thousand times. A loop and the one that predicts it say the same, so that two values
+// count as one.
+bool IsBelowChi2(const std::vector<double>& values);
+
 // Whether many values lie just inside the gate, as where a gate cuts through
 // the right loops.
 bool IsCutByGate(const std::vector<double>& values, double gate);

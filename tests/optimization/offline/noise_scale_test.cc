@@ -99,6 +99,15 @@ TEST(NoiseScaleTest, InnovationsAreChi2ForHonestMatricesOnly) {
   EXPECT_FALSE(IsLikeChi2({1., 2., 3.}));
 }
 
+TEST(NoiseScaleTest, TellsWhatIsLessThanChi2) {
+  EXPECT_TRUE(IsBelowChi2(std::vector<double>(9, 0.25)));
+  // As they are in the mean, half of that, and too few of them.
+  EXPECT_FALSE(IsBelowChi2(std::vector<double>(9, 3.)));
+  EXPECT_FALSE(IsBelowChi2(std::vector<double>(9, 1.5)));
+  EXPECT_FALSE(IsBelowChi2({0.25, 0.25}));
+  EXPECT_FALSE(IsBelowChi2({}));
+}
+
 // Loops across stretches of odometry that gives way to them: whatever noise the
 // loops have, little of it is left in their chi2.
 TEST(NoiseScaleTest, ChiSquaredOfASparseGraphDoesNotShowTheNoise) {

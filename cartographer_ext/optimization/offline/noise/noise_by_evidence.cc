@@ -387,7 +387,8 @@ bool FindLikelierNoise(const NoiseMetric& applied, const NoiseOfMap& map,
                        Portfolio* const portfolio,
                        NoiseHypothesis* const found) {
   if (map.loops < kMinExplained || map.accepted == map.loops ||
-      portfolio->Size() > kMaxSearched || !MayBeNoisier(map, portfolio)) {
+      map.agree_closely || portfolio->Size() > kMaxSearched ||
+      !MayBeNoisier(map, portfolio)) {
     return false;
   }
   const double log_area = LogArea(portfolio->best().poses);

@@ -70,7 +70,7 @@ bool LieBehindGate(const std::vector<double>& weights, const int accepted,
 // Whether the noise may be larger than the matrices say.
 bool IsSuspicious(const NoiseOfMap& map, Portfolio* const portfolio) {
   if (map.loops < kMinLoops) return false;
-  if (map.accepted < kMinLoops) return true;
+  if (map.accepted < kMinLoops) return !map.agree_closely;
   return map.scale.odometry.low > kDoubtful ||
          map.scale.loops.low > kDoubtful ||
          LieBehindGate(map.decisions, map.accepted, portfolio) ||
@@ -323,7 +323,11 @@ NoiseOfMap MeasureNoise(Portfolio* const portfolio) {
   result.decisions = DecideLoops(edges, poses, kChi2Gate);
   result.accepted = CountLoopsInForce(edges, result.decisions);
   result.loops = CountLoops(edges);
-  if (result.accepted < kMinLoops) return result;
+  if (result.accepted < kMinLoops) {
+    result.agree_closely = IsBelowChi2(LeaveOneOutInnovations(
+        poses, result.decisions, kMaxInnovations, portfolio->solver()));
+    return result;
+  }
   result.scale =
       EstimateNoiseScale(poses, result.decisions, portfolio->solver());
   return result;

@@ -49,6 +49,9 @@ struct NoiseOfMap {
   int loops = 0;
   int accepted = 0;
   NoiseScale scale;  // where ten loops are accepted
+  // Fewer are, and agree so closely that the noise is not larger than claimed: with a
+  // larger one wrong loops would come in.
+  bool agree_closely = false;
 };
 
 // Rounds a metric, so that two searches of the same graph measure alike, and

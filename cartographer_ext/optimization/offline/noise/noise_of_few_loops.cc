@@ -74,7 +74,7 @@ bool FindNoiseOfFewLoops(const NoiseMetric& applied, const NoiseOfMap& map,
                          Portfolio* const portfolio,
                          NoiseHypothesis* const found) {
   if (map.loops < 2 || map.loops > kFewAccepted || map.accepted >= kMinLoops ||
-      map.accepted == map.loops) {
+      map.accepted == map.loops || map.agree_closely) {
     return false;
   }
   const bool few = map.loops < kMinLoops;

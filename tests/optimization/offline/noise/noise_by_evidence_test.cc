@@ -52,6 +52,27 @@ TEST(NoiseByEvidenceTest, WrongLoopsDoNotMakeTheNoiseLarger) {
                                  &portfolio, &found));
 }
 
+// With a larger noise wrong loops would fit beside them.
+TEST(NoiseByEvidenceTest, LoopsThatAgreeCloselyKeepTheNoiseAsClaimed) {
+  PoseGraph graph = MakeFewLoops(0.1, 0.1);
+  const int right = CountLoops(graph.edges);
+  OutlierOptions outliers;
+  outliers.count = 10;
+  const auto wrong = GenerateOutliers(graph, outliers);
+  ASSERT_TRUE(wrong.ok());
+  graph.edges.insert(graph.edges.end(), wrong->begin(), wrong->end());
+  Portfolio portfolio(graph, PortfolioOptions());
+  portfolio.Run();
+  NoiseOfMap map = MeasureNoise(&portfolio);
+  ASSERT_GE(map.accepted, right);
+  ASSERT_LT(map.accepted, 10);
+  EXPECT_TRUE(map.agree_closely);
+  NoiseHypothesis found;
+  EXPECT_FALSE(FindLargerNoise(NoiseMetric(), map, &portfolio, &found));
+  EXPECT_FALSE(FindNoiseOfFewLoops(NoiseMetric(), map, &portfolio, &found));
+  EXPECT_FALSE(FindLikelierNoise(NoiseMetric(), map, &portfolio, &found));
+}
+
 }  // namespace
 }  // namespace optimization
 }  // namespace cartographer_ext
