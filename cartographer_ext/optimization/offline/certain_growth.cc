@@ -17,6 +17,11 @@ namespace cartographer_ext {
 namespace optimization {
 namespace {
 
+// Rounds of growth by groups between those by certain loops: a few groups do not yet
+// make others certain. And how often in turn at most.
+constexpr int kRoundsOfGroups = 20;
+constexpr int kMaxTurns = 20;
+
 // Odds against any wrong loop in a round: a hundred to one while that brings
 // loops in, then ten to one, then one to one.
 const double kFirstLogOdds = std::log(100.);
@@ -326,6 +331,28 @@ int GrowMoreCertainLoops(const PoseGraph& graph,
                          std::vector<Pose2>* const poses,
                          std::vector<double>* const weights) {
   return CertainGrowth(graph, options, solver, poses, weights).Continue();
+}
+
+bool GrowCertainLoopsAndGroups(const PoseGraph& graph,
+                               const LoopSupport& support,
+                               RobustSolver* const solver,
+                               std::vector<Pose2>* const poses,
+                               std::vector<double>* const weights) {
+  const CertainGrowthOptions certain;
+  GrowthOptions groups;
+  groups.max_rounds = kRoundsOfGroups;
+  const std::vector<bool> none_banned(solver->edges().size(), false);
+  int before = 0;
+  int in_force = GrowCertainLoops(graph, certain, solver, poses, weights);
+  if (in_force == 0) return false;
+  for (int turn = 0; turn != kMaxTurns && in_force > before; ++turn) {
+    before = in_force;
+    if (!ContinueGrowth(support, groups, none_banned, solver, poses, weights)) {
+      return false;
+    }
+    in_force = GrowMoreCertainLoops(graph, certain, solver, poses, weights);
+  }
+  return true;
 }
 
 }  // namespace optimization

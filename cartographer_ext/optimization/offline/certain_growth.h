@@ -33,6 +33,7 @@
 
 #include "Eigen/Core"
 #include "cartographer_ext/optimization/graph/pose_graph.h"
+#include "cartographer_ext/optimization/offline/loop_support.h"
 #include "cartographer_ext/optimization/solvers/kernels.h"
 #include "cartographer_ext/optimization/solvers/robust_solver.h"
 
@@ -72,6 +73,16 @@ int GrowMoreCertainLoops(const PoseGraph& graph,
                          const CertainGrowthOptions& options,
                          RobustSolver* solver, std::vector<Pose2>* poses,
                          std::vector<double>* weights);
+
+// Replaces `poses`, chained odometry, by a solution with the certain loops and groups
+// of others (loop_growth.h) in turn, until neither brings any in: where headings are
+// lost after some steps, few loops are certain, but with a few groups in force others
+// are, and the fewer groups come in one by one, the fewer wrong ones do. False if no
+// loop is certain or odometry is not a chain.
+bool GrowCertainLoopsAndGroups(const PoseGraph& graph,
+                               const LoopSupport& support, RobustSolver* solver,
+                               std::vector<Pose2>* poses,
+                               std::vector<double>* weights);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

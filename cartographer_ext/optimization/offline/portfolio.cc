@@ -193,6 +193,14 @@ bool Portfolio::EndsAsFromGivenPoses(const size_t first) const {
   return true;
 }
 
+bool Portfolio::AllAreFolded(const size_t first) const {
+  const auto begin = members_.begin() + first;
+  return std::all_of(begin, begin + kQuickKernels,
+                     [this](const Member& member) {
+                       return member.cost > best().cost + kFolded * kChi2Gate;
+                     });
+}
+
 bool Portfolio::IsSettled(const size_t first) {
   double highest = 0.;
   for (size_t i = first; i != first + kQuickKernels; ++i) {
@@ -215,6 +223,9 @@ bool Portfolio::IsSettled(const size_t first) {
        (most_were_rejected && WrongByChance() >= kFewByChance))) {
     return false;
   }
+  // Where odometry is weak, all kernels may reject nearly all loops from any start. Of a
+  // graph of ordinary size groups of loops show that.
+  if (Size() > kMaxGrowthWork && AllAreFolded(first)) return false;
   if (!RejectedContradict()) return false;
   // Of a smaller graph other starts show whether that is another map.
   if (continued_ || Size() <= options_.large_search) return true;
@@ -243,6 +254,10 @@ double Portfolio::FitsByChance() const {
 
 bool Portfolio::ExplainsNothing() const {
   return num_loops_ - CountRejected() <= FitsByChance();
+}
+
+bool Portfolio::HasLostNearlyAll() {
+  return ShareInForce(SupportedLoops()) < kHardlyAny;
 }
 
 bool Portfolio::FindsLostGroup(const absl::optional<PartOfPath>& part) {
@@ -360,10 +375,10 @@ void Portfolio::Run() {
   RunStarts(!continued_ && CanKeepAllLoops() &&
             ((!settled && size <= kMaxGrowthWork) ||
              CountRejected() <= 0.25 * num_loops_));
-  if (!settled && (size <= kMaxGrowthWork || ExplainsNothing())) {
+  if (!settled && (size <= kMaxGrowthWork || ExplainsNothing() ||
+                   (!AddCertain() && HasLostNearlyAll()))) {
     RunGroups();
   } else {
-    if (!settled) AddCertain();
     Graduate(kNear);
     Graduate(kFar);
     // Kernels agree on what they reject alike, too.

@@ -21,7 +21,8 @@
 //           kernels; graduated non-convexity.
 //   Groups  where the rejected loops are within the uncertainty of the map or
 //           the kernels disagree: growth by groups of loops (loop_growth.h),
-//           also from other windings of what it has grown (windings.h), a
+//           and by certain ones and groups in turn (certain_growth.h), also from
+//           other windings of what that has grown (windings.h), a
 //           spanning tree over the loops in force, groups forced in one by one
 //           (decision_moves.h), in turn with chordal relaxations of what is in
 //           force, as long as that finds loops; then growth from the best
@@ -42,7 +43,10 @@
 // so far), and where that does not lead there, with a whole one: where the quick
 // solvers agree but reject loops that agree with each other, and where they do
 // not agree. The search ends where the kernels agree from there, with each other
-// or each with what it has found from the given poses. A part of the path that a
+// or each with what it has found from the given poses, unless all cost far more than
+// the best map: that they reject nearly all loops alike settles nothing. Where a
+// search has lost nearly all loops that agree and none is certain, that by groups
+// follows. A part of the path that a
 // replay has lost (lost_part.h) is replayed with the rest held (part_replay.h).
 // Where kernels from there do not agree, those from the best of them have to, and
 // before, if that has lost a part, a narrower gate and groups forced in are tried
@@ -143,6 +147,8 @@ class Portfolio {
   static constexpr double kMostlyWrong = 0.6;
   // Gates that a folded map costs more than the best: the loops that it loses.
   static constexpr double kFolded = 20.;
+  // Share of the loops that others agree with which a folded map keeps at most.
+  static constexpr double kHardlyAny = 0.1;
   // Kernels that have to agree.
   static constexpr size_t kQuickKernels = 3;
   // Multiplications of one factorisation that are worth it while the search is
@@ -154,8 +160,10 @@ class Portfolio {
   // Whether each of the kernels ends, from `first` on, where it has ended from
   // the given poses, up to a few loops near the gate.
   bool EndsAsFromGivenPoses(size_t first) const;
+  // Whether each of them is a folded map compared with the best.
+  bool AllAreFolded(size_t first) const;
   // Whether the quick members, from `first` on, agree with each other or, one by
-  // one, with those from the given poses.
+  // one, with those from the given poses, and do not cost far more than the best.
   bool IsSettled(size_t first);
   // Whether they differ from the best in loops near the gate only.
   bool DecideAlike(size_t first) const;
@@ -166,6 +174,8 @@ class Portfolio {
   double FitsByChance() const;
   // Whether the best map keeps no more loops than would fit by chance.
   bool ExplainsNothing() const;
+  // Whether hardly any of the loops that others agree with is in force.
+  bool HasLostNearlyAll();
   // Whether one of the largest groups of rejected loops that agree with each
   // other, forced in, leads to a map that costs less; of all, or of those that lead
   // out of a part of the path.
@@ -251,7 +261,10 @@ class Portfolio {
   // Adds what a narrower gate leads to from the quick members, from `first` on, up to
   // the first map that has lost no part of the path.
   void Tighten(size_t first);
-  void AddGrowth(const std::vector<Pose2>& start);
+  // Growth by groups, and by certain loops and groups in turn.
+  void AddGrowth();
+  // A grown map, and what it leads to.
+  void AddGrown(const std::string& name, std::vector<Pose2> poses);
   // Work of one factorisation with these edges and with all, in
   // multiplications.
   double WorkOf(const std::vector<double>& weights) const;

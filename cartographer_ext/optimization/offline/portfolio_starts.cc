@@ -274,21 +274,30 @@ bool Portfolio::AddCertain() {
   return true;
 }
 
-void Portfolio::AddGrowth(const std::vector<Pose2>& start) {
-  std::vector<Pose2> poses = start;
+void Portfolio::AddGrowth() {
+  const std::vector<Pose2> chained = ChainOdometry(graph_);
+  std::vector<Pose2> poses = chained;
   std::vector<double> weights;
-  if (!GrowLoops(support(), GrowthOptions(), &solver_, &poses, &weights)) {
-    return;
+  if (GrowLoops(support(), GrowthOptions(), &solver_, &poses, &weights)) {
+    AddGrown("growth", std::move(poses));
   }
+  poses = chained;
+  if (GrowCertainLoopsAndGroups(graph_, support(), &solver_, &poses,
+                                &weights)) {
+    AddGrown("certain growth", std::move(poses));
+  }
+}
+
+void Portfolio::AddGrown(const std::string& name, std::vector<Pose2> poses) {
   const size_t grown = members_.size();
-  Add("growth", poses);
-  AddKernel("growth, ", KernelType::kDcs, poses);
+  Add(name, poses);
+  AddKernel(absl::StrCat(name, ", "), KernelType::kDcs, poses);
   // What has come in first may have wound the path the wrong way round.
   RegrowOptions windings;
   windings.windings_alone = true;
   poses = members_[grown].poses;
   if (RegrowGroups(support(), windings, &solver_, &poses, &alternatives_) > 0) {
-    Add("growth, wound", std::move(poses));
+    Add(absl::StrCat(name, ", wound"), std::move(poses));
   }
 }
 
@@ -330,7 +339,7 @@ void Portfolio::RunStarts(const bool with_full_kernels) {
 
 void Portfolio::RunGroups() {
   starts_alone_ = false;
-  AddGrowth(ChainOdometry(graph_));
+  AddGrowth();
   AddKernel("tree, ", KernelType::kGemanMcClure,
             SpanningTree(graph_, DecideLoops(edges_, best().poses, kChi2Gate)));
   const std::vector<double> supported = SupportedLoops();

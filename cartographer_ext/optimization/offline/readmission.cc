@@ -76,7 +76,8 @@ bool ReadmitGroups(const PoseGraph& graph,
     return false;
   }
   const double limit = TruncatedCost(*edges, replay->poses) - 2. * kChi2Gate;
-  std::vector<Pose2> best = replay->poses, poses = ChainOdometry(graph);
+  const std::vector<Pose2> chained = ChainOdometry(graph);
+  std::vector<Pose2> best = replay->poses, poses = chained;
   double lowest = std::numeric_limits<double>::infinity();
   const auto offer = [&] {
     PolishTruncated(kChi2Gate, kFullPolishRounds, solver, &poses, nullptr);
@@ -89,6 +90,11 @@ bool ReadmitGroups(const PoseGraph& graph,
   if (large ? GrowCertainLoops(graph, CertainGrowthOptions(), solver, &poses,
                                &weights) > 0
             : GrowLoops(support, GrowthOptions(), solver, &poses, &weights)) {
+    offer();
+  }
+  poses = chained;
+  if (!large &&
+      GrowCertainLoopsAndGroups(graph, support, solver, &poses, &weights)) {
     offer();
   }
   for (const KernelType type : {KernelType::kDcs, KernelType::kGemanMcClure}) {

@@ -4,9 +4,9 @@
 // What R-iSAM does at the end of the data, where odometry was too weak to
 // accept a loop by itself: a map that costs less than the replay's by more than
 // the gate's own doubt replaces it. It is grown by groups of loops
-// (loop_growth.h), solved by kernels as wide as the gate, which see what has
-// ended up just behind it, and then lost groups are forced in
-// (decision_moves.h).
+// (loop_growth.h) or by certain loops and groups in turn (certain_growth.h),
+// solved by kernels as wide as the gate, which see what has ended up just behind
+// it, and then lost groups are forced in (decision_moves.h).
 //
 // On a graph that is too large for growth by groups all that only happens where
 // the replay has lost nearly all loops that agree with others, and the map is

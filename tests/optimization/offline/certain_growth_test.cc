@@ -121,6 +121,42 @@ TEST(CertainGrowthTest, GoesOnFromAMapWithLoopsInForce) {
             0.9 * counts.right_in_force);
 }
 
+// Headings are lost after ten steps: few loops are certain, and groups alone let more
+// wrong ones in, or fewer right ones.
+TEST(CertainGrowthTest, GrowsInTurnWithGroupsWhereHeadingsAreLost) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    const double sigma = 0.1;
+    test::GridWorld world = test::MakeGridWorld(800, 10, seed);
+    Random random(seed);
+    for (PoseGraphEdge& edge : world.graph.edges) {
+      if (edge.is_loop) continue;
+      edge.measurement =
+          edge.measurement * Pose2(0., 0., random.Normal(0., sigma));
+      edge.information(2, 2) = 1. / (sigma * sigma + 1e-4);
+    }
+    const size_t clean = world.graph.edges.size();
+    test::AddOutliers(test::Outliers(clean - 799, OutlierType::kRandom, seed),
+                      &world.graph);
+    const std::vector<WhitenedEdge> edges = Whiten(world.graph.edges);
+    RobustSolver solver(edges);
+    const LoopSupport support =
+        FindLoopSupport(world.graph, LoopSupportOptions());
+    const std::vector<Pose2> chained = DeadReckoning(world.graph);
+    std::vector<Pose2> poses = chained;
+    std::vector<double> weights;
+    GrowCertainLoops(world.graph, CertainGrowthOptions(), &solver, &poses,
+                     &weights);
+    const int certain = test::CountLoops(edges, clean, weights).right_in_force;
+    poses = chained;
+    ASSERT_TRUE(GrowCertainLoopsAndGroups(world.graph, support, &solver, &poses,
+                                          &weights));
+    const test::LoopCounts counts = test::CountLoops(edges, clean, weights);
+    EXPECT_GE(counts.right_in_force, 0.9 * counts.right) << certain;
+    EXPECT_GT(counts.right_in_force, certain);
+    EXPECT_LE(counts.wrong_in_force, 0.02 * counts.right);
+  }
+}
+
 TEST(CertainGrowthTest, NeedsAChain) {
   test::GridWorld world = GridWithOutliers(1, 0);
   world.graph.edges.erase(world.graph.edges.begin() +
@@ -134,6 +170,9 @@ TEST(CertainGrowthTest, NeedsAChain) {
                              &poses, &weights),
             0);
   EXPECT_EQ(poses[100].x, before);
+  EXPECT_FALSE(GrowCertainLoopsAndGroups(
+      world.graph, FindLoopSupport(world.graph, LoopSupportOptions()), &solver,
+      &poses, &weights));
 }
 
 }  // namespace
