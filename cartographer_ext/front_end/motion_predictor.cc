@@ -83,9 +83,7 @@ MotionPrediction MotionPredictor::Predict(const double time) const {
   if (IsOdometryDead()) return prediction;
   if (IntegrateOdometry(last_time_, time, &odometry)) {
     PredictByOdometry(time, odometry, has_imu, &prediction);
-    if (prediction.source == PredictionSource::kOdometry &&
-        !odometry_.has_moved()) {
-      prediction.wheels_never_moved = true;
+    if (!odometry_.has_moved()) {
       prediction.covariance += WideCovariance(interval);
     }
   } else {

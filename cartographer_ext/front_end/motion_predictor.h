@@ -79,8 +79,6 @@ struct MotionPrediction {
   double search_angle = 0.;
   // Of odometry alone, without a gyroscope.
   bool heading_by_wheels = false;
-  // Of odometry that has repeated its first pose ever since: that the robot stands.
-  bool wheels_never_moved = false;
   // By dead reckoning over metres without a scan; the covariance is the error of
   // that.
   bool bridges_gap = false;

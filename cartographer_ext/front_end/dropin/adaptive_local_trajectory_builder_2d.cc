@@ -15,7 +15,6 @@
 #include "cartographer_ext/common/dropin/pose_conversion.h"
 #include "cartographer_ext/front_end/dropin/front_end_metrics.h"
 #include "cartographer_ext/front_end/dropin/matched_motion.h"
-#include "cartographer_ext/front_end/dropin/wheels_at_rest.h"
 #include "cartographer_ext/front_end/insertion_count.h"
 #include "cartographer_ext/front_end/match_record.h"
 #include "cartographer_ext/match_record.pb.h"
@@ -244,12 +243,11 @@ LocalMatch AdaptiveLocalTrajectoryBuilder2D::MatchScan(
     match.pose = pose_ * prediction.motion;
     return match;
   }
-  const LocalMatch match = matcher_.Match(
-      pose_, prediction,
-      extension_.match_features_only ? FeaturePoints(extension_.features, cloud)
-                                     : cloud,
-      *submap);
-  return UnlessAtRest(pose_, prediction, match, cloud, *submap->grid());
+  return matcher_.Match(pose_, prediction,
+                        extension_.match_features_only
+                            ? FeaturePoints(extension_.features, cloud)
+                            : cloud,
+                        *submap);
 }
 
 OdometryState AdaptiveLocalTrajectoryBuilder2D::UpdatePredictor(

@@ -32,8 +32,6 @@ struct LocalMatch {
   // another one that the odometry contradicts fits better: the scan should not
   // go into the map.
   bool contested = false;
-  // The pose is that of wheels that have never moved, whatever the scan fits.
-  bool at_rest = false;
 };
 
 // Of a motion from `last_pose`, (local <- robot), with its covariance in the

@@ -90,7 +90,7 @@ MatchInnovation InnovationOf(const Pose2& last_pose,
   MatchInnovation innovation;
   const scan_matching::DegeneracyResult& degeneracy = match.report.degeneracy;
   if (prediction.source != PredictionSource::kOdometry ||
-      prediction.is_uncertain || match.at_rest ||
+      prediction.is_uncertain ||
       (match.searched && match.report.mahalanobis > gate)) {
     return innovation;
   }

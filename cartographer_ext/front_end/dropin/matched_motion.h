@@ -23,8 +23,7 @@ MatchedMotion ToMatchedMotion(const Pose2& last_pose,
 // Along the direction of translation that the scan determines best, and of the
 // heading where only wheels predicted it; nothing where the scan determines none,
 // or where a search (of which there is one for every scan where they are far
-// apart) was left with a match beyond `gate`. Nor of a robot that is held at rest, where
-// the covariance is that of no sensor.
+// apart) was left with a match beyond `gate`.
 MatchInnovation InnovationOf(const Pose2& last_pose,
                              const MotionPrediction& prediction,
                              const LocalMatch& match, double gate);

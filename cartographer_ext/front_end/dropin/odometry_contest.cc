@@ -94,7 +94,7 @@ OdometryContest::Evidence OdometryContest::BestEvidence(
   }
   if (result.best != nullptr && field_of_view_ < kFewObjects) {
     of_scan.SetPose(result.best->match.pose);
-    result.of_rest = of_scan.ConflictWithoutObject(consistent.pose);
+    result.of_rest = of_scan.AgainstWithoutObject(consistent.pose);
   }
   return result;
 }

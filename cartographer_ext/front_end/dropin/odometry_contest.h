@@ -16,7 +16,7 @@
 //
 // One thing alone is not enough for a laser that sees little: somebody who walks ahead of the robot is where
 // they were in the scan before, as if it stood still. So the rest of the scans must
-// speak for the rival, too (PoseEvidence::ConflictWithoutObject); otherwise neither
+// speak for the rival, too (PoseEvidence::AgainstWithoutObject); otherwise neither
 // is the odometry overruled nor a scan kept out of the map.
 //
 // Along a corridor a robot that fell behind fits better than one that sees new

@@ -28,22 +28,7 @@ std::pair<int, int> PatchOf(const Eigen::Vector2f& point) {
           static_cast<int>(std::floor(p.y() / kPatch))};
 }
 
-double Sum(const std::vector<double>& parts) {
-  double sum = 0.;
-  for (const double part : parts) sum += part;
-  return sum;
-}
-
-std::vector<double> Difference(std::vector<double> a,
-                               const std::vector<double>& b) {
-  for (size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
-  return a;
-}
-
-}  // namespace
-
-// ln p of points of a scan at one pose.
-class PoseEvidence::Likelihood {
+class Likelihood {
  public:
   Likelihood(const Grid2D& grid, const Pose2& pose)
       : grid_(grid),
@@ -62,30 +47,10 @@ class PoseEvidence::Likelihood {
     return std::log1p(-grid_.GetCorrespondenceCost(cell));
   }
 
-  // The same of a place that the map does not know: unless the beam would have gone
-  // through a wall on its way from the robot, and not along it.
-  double LogBehindWalls(const Eigen::Vector2d& point) const {
-    const double cell = grid_.limits().resolution();
-    const double range = point.norm();
-    const Eigen::Vector2d ahead = point / range;
-    const Eigen::Vector2d beside(-ahead.y(), ahead.x());
-    double least = 1.;
-    for (const double shift : {-cell, 0., cell}) {
-      double most = kUnseen;
-      for (double along = cell; along < range - 2. * cell; along += cell) {
-        most = std::max(most, std::exp(Log(along * ahead + shift * beside)));
-      }
-      least = std::min(least, most);
-    }
-    return std::log1p(-least);
-  }
-
  private:
   const Grid2D& grid_;
   const double c_, s_, x_, y_;
 };
-
-namespace {
 
 // What the beams to both sides of one leave between them belongs to the same
 // surface, half of it to each, up to this distance: metres.
@@ -162,22 +127,17 @@ PoseEvidence::PoseEvidence(const Pose2& pose,
   SetPose(pose);
 }
 
-double PoseEvidence::LogOf(const Point& point, const Likelihood& likelihood) {
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector2d& place : point.surface) {
-    most = std::max(most, likelihood.Log(place));
-  }
-  return most;
-}
-
-std::vector<double> PoseEvidence::Parts(const Pose2& pose) const {
+template <typename Function>
+void PoseEvidence::ForEachPart(const Pose2& pose,
+                               const Function& function) const {
   const Likelihood likelihood(grid_, pose);
-  std::vector<double> parts;
-  parts.reserve(points_.size());
   for (const Point& point : points_) {
-    parts.push_back(point.weight * LogOf(point, likelihood));
+    double most = -std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& place : point.surface) {
+      most = std::max(most, likelihood.Log(place));
+    }
+    function(point.weight * most);
   }
-  return parts;
 }
 
 PoseEvidence::Best PoseEvidence::BestNear(const Pose2& pose,
@@ -188,7 +148,8 @@ PoseEvidence::Best PoseEvidence::BestNear(const Pose2& pose,
   for (int ix = -tolerance; ix <= tolerance; ++ix) {
     for (int iy = -tolerance; iy <= tolerance; ++iy) {
       const Pose2 near(pose.x + ix * cell, pose.y + iy * cell, pose.theta);
-      const double sum = Sum(Parts(near));
+      double sum = 0.;
+      ForEachPart(near, [&sum](const double part) { sum += part; });
       if (sum > best.log_likelihood) best = {near, sum};
     }
   }
@@ -207,21 +168,16 @@ double PoseEvidence::Against(const Pose2& other) const {
   return log_likelihood_ - BestNear(other, tolerance_).log_likelihood;
 }
 
-std::vector<double> PoseEvidence::Conflicts(const Pose2& pose) const {
-  const Likelihood likelihood(grid_, pose);
-  const double unseen = std::log(kUnseen);
-  std::vector<double> conflicts;
-  conflicts.reserve(points_.size());
-  for (const Point& point : points_) {
-    double log = LogOf(point, likelihood);
-    if (log == unseen) log = likelihood.LogBehindWalls(point.surface.front());
-    conflicts.push_back(point.weight * std::max(0., unseen - log));
-  }
-  return conflicts;
-}
-
-double PoseEvidence::OfBestObject(const std::vector<double>& parts) const {
-  double best = 0.;
+double PoseEvidence::AgainstWithoutObject(const Pose2& other) const {
+  const double evidence = Against(other);
+  if (!std::isfinite(evidence)) return evidence;
+  std::vector<double> parts;
+  parts.reserve(points_.size());
+  ForEachPart(pose_, [&parts](const double part) { parts.push_back(part); });
+  size_t index = 0;
+  ForEachPart(BestNear(other, tolerance_).pose,
+              [&](const double part) { parts[index++] -= part; });
+  double of_object = 0.;
   for (const Point& center : points_) {
     double sum = 0.;
     for (size_t i = 0; i < parts.size(); ++i) {
@@ -230,25 +186,9 @@ double PoseEvidence::OfBestObject(const std::vector<double>& parts) const {
         sum += parts[i];
       }
     }
-    best = std::max(best, sum);
+    of_object = std::max(of_object, sum);
   }
-  return best;
-}
-
-double PoseEvidence::AgainstWithoutObject(const Pose2& other) const {
-  const double evidence = Against(other);
-  if (!std::isfinite(evidence)) return evidence;
-  return evidence - OfBestObject(Difference(
-                        Parts(pose_), Parts(BestNear(other, tolerance_).pose)));
-}
-
-double PoseEvidence::ConflictWithoutObject(const Pose2& other) const {
-  if (grid_.GetGridType() == cartographer::mapping::GridType::TSDF) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const std::vector<double> parts =
-      Difference(Conflicts(BestNear(other, tolerance_).pose), Conflicts(pose_));
-  return Sum(parts) - OfBestObject(parts);
+  return evidence - of_object;
 }
 
 double ScanEvidence(const Pose2& pose, const Pose2& other,

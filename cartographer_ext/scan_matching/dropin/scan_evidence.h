@@ -66,13 +66,6 @@ class PoseEvidence {
   // not.
   double AgainstWithoutObject(const Pose2& other) const;
 
-  // How much more `other` is in conflict with the map than the pose, again without
-  // the object that speaks most for the pose: the sum as in L of ln(0.5 / p) where p
-  // is less. What the map does not know, or knows less well, is in conflict with
-  // nothing, or a robot held back among known walls would always be likelier than one
-  // that sees new ones. But beams do not go through walls.
-  double ConflictWithoutObject(const Pose2& other) const;
-
  private:
   struct Point {
     // The point first, then the surface around it.
@@ -85,15 +78,9 @@ class PoseEvidence {
     double log_likelihood = 0.;
   };
 
-  class Likelihood;
-
-  // ln p of the likeliest place on the surface around the point.
-  static double LogOf(const Point& point, const Likelihood& likelihood);
-  // Of each point in L(pose), and in the conflict of a pose with the map.
-  std::vector<double> Parts(const Pose2& pose) const;
-  std::vector<double> Conflicts(const Pose2& pose) const;
-  // The largest sum of parts within half a metre of one point.
-  double OfBestObject(const std::vector<double>& parts) const;
+  // Calls `function` with the part of each point in L(pose).
+  template <typename Function>
+  void ForEachPart(const Pose2& pose, const Function& function) const;
   // Of the poses up to so many cells off, that of the largest L.
   Best BestNear(const Pose2& pose, int tolerance) const;
 

@@ -48,24 +48,6 @@ TEST(DeadOdometryTest, IsUsedOnceItMoves) {
   EXPECT_EQ(result.records.back().source(), proto::MatchRecord::ODOMETRY);
 }
 
-// Somebody passes a robot that has not driven yet and sees nothing else: that it is
-// the robot that turns is what the scans alone would say.
-TEST(DeadOdometryTest, IsNotToldFromASinglePasser) {
-  RunOptions options;
-  options.walls.clear();
-  options.passing = [](const double t) {
-    const double y = 0.7 * t - 1.5;
-    return std::vector<test::Wall>{{{2.5, y - 0.2}, {2.4, y}},
-                                   {{2.4, y}, {2.5, y + 0.2}}};
-  };
-  options.path = options.odometry = [](const double) { return Pose2(); };
-  options.seconds = 4.;
-  const RunResult result = RunDrive(options);
-  EXPECT_GT(result.matched, 35);
-  EXPECT_LT(result.max_error, 0.01);
-  EXPECT_LT(result.max_turn_error, 0.01);
-}
-
 }  // namespace
 }  // namespace front_end
 }  // namespace cartographer_ext

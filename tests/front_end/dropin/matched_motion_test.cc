@@ -85,17 +85,6 @@ TEST(MatchedMotionTest, InnovationsAreAcrossTheCorridorAndOfTheHeading) {
   EXPECT_NEAR(innovation.heading.prediction_variance, 0.0025, 1e-12);
 }
 
-// The covariance of its prediction is that of no sensor: beside it every match would
-// show that the odometry is far better.
-TEST(MatchedMotionTest, NothingIsLearntFromARobotThatIsHeldAtRest) {
-  LocalMatch match = InCorridor(Pose2(1.3, 0.2, 0.05));
-  match.at_rest = true;
-  const MatchInnovation innovation =
-      InnovationOf(Pose2(), ByWheels(Pose2(1., 0., 0.)), match, 10.);
-  EXPECT_EQ(innovation.along.prediction_variance, 0.);
-  EXPECT_EQ(innovation.heading.prediction_variance, 0.);
-}
-
 TEST(MatchedMotionTest, NothingIsLearntFromOtherPredictionsAndDoubtfulMatches) {
   const auto squared = [](const MotionPrediction& prediction,
                           const LocalMatch& match) {

@@ -64,10 +64,6 @@ struct RunResult {
 
 struct RunOptions {
   std::vector<Wall> walls = Room();
-  // What moves.
-  std::function<std::vector<Wall>(double)> passing = [](double) {
-    return std::vector<Wall>();
-  };
   std::function<Pose2(double)> path = Path;
   std::function<Pose2(double)> odometry = Path;
   std::function<bool(double)> has_scan = [](double) { return true; };
@@ -104,9 +100,8 @@ inline RunResult RunDrive(const RunOptions& options) {
       next_odometry += 0.05;
     }
     if (!options.has_scan(t)) continue;
-    std::vector<Wall> walls = options.walls;
-    for (const Wall& wall : options.passing(t)) walls.push_back(wall);
-    auto scan = Scan(walls, t, options.path(t), options.max_range, &random);
+    auto scan =
+        Scan(options.walls, t, options.path(t), options.max_range, &random);
     if (options.is_crowded(t)) {
       for (auto& point : scan.ranges) {
         const bool is_wall = random.Uniform(0., 1.) < 0.2;

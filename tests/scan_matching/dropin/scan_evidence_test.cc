@@ -78,27 +78,6 @@ TEST_F(ScanEvidenceTest, WithoutTheObjectThatSpeaksMostForThePose) {
   EXPECT_EQ(without(PointCloud(), Pose2(), before), 0.);
 }
 
-// New walls, or some that the map knows less well, are in conflict with nothing, which
-// is what a robot sees that drives on. Free space is, and what is behind a wall.
-TEST_F(ScanEvidenceTest, WhatIsNotKnownIsInConflictWithNothing) {
-  const PointCloud cloud = Wall(0., 2.);
-  const PoseEvidence evidence(Pose2(), cloud, grid_, PosePrecision::kExact);
-  const Pose2 ahead(0., 2., 0.);
-  EXPECT_GT(evidence.AgainstWithoutObject(ahead), 1.);
-  EXPECT_NEAR(evidence.ConflictWithoutObject(ahead), 0., 1e-6);
-  EXPECT_NEAR(evidence.ConflictWithoutObject(Pose2(-0.1, 0., 0.)),
-              4. * std::log(2.5), 0.2);
-  // Some beams pass the end of the wall.
-  EXPECT_NEAR(evidence.ConflictWithoutObject(Pose2(0.2, 0., 0.)),
-              4. * std::log(2.5), 0.4);
-  EXPECT_NEAR(
-      PoseEvidence(Pose2(-0.1, 0., 0.), cloud, grid_, PosePrecision::kExact)
-          .ConflictWithoutObject(Pose2()),
-      -8. * std::log(2.5), 1e-3);
-  for (double y = 0.025; y < 2.; y += 0.05) Set(1.525, y, 0.6f);
-  EXPECT_NEAR(evidence.ConflictWithoutObject(Pose2(0.5, 0., 0.)), 0., 1e-6);
-}
-
 // A cell behind the wall nothing was seen.
 TEST_F(ScanEvidenceTest, APoseIsNotKnownBetterThanToACell) {
   const PointCloud cloud = Wall(0.5, 1.5);
