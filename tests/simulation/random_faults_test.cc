@@ -113,6 +113,8 @@ TEST(RandomFaultsTest, MistakesAreNamed) {
   EXPECT_THAT(message("slip:1:2"), HasSubstr("expected slip:N"));
   EXPECT_THAT(message("slip:1.5"), HasSubstr("the count must be whole"));
   EXPECT_THAT(message("slip:-1"), HasSubstr("the count must be whole"));
+  EXPECT_THAT(message("slip:1e9"), HasSubstr("the count must be whole"));
+  EXPECT_THAT(message("offset:nan"), HasSubstr("offset:nan"));
   EXPECT_THAT(message("offset:11"), HasSubstr("seconds outside [-10, 10]"));
   EXPECT_THAT(message("jump:200"), HasSubstr("is too short for so many"));
 }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/simulation/sensors/odometry_model.h"
 
-#include <cmath>
 #include <string>
 
 #include "cartographer_ext/simulation/world_parser.h"
@@ -235,46 +234,6 @@ TEST(OdometryFaultTest, OffsetShowsTheFuture) {
                "fault offset seconds=-0.1\nodometry rate=20");
   EXPECT_NEAR(ReportedAt(late, 10.).x, late.drive.PoseAt(9.9).x, 1e-6);
   EXPECT_EQ(late.odometry.readings.front().pose.x, 0.);
-}
-
-TEST(RandomFaultsTest, MakesWhatIsAskedFor) {
-  auto world = ParseWorld("start 0 0 0\ngoto 200 0", "t");
-  const auto drive = Drive::Plan(*world, 0);
-  const auto faults =
-      RandomFaults("stale:3,jump:2,slip:4,reverse,offset:0.12", *drive, 5);
-  ASSERT_TRUE(faults.ok()) << faults.status();
-  ASSERT_EQ(faults->size(), 11);
-  std::vector<double> times;
-  for (const OdometryFault& fault : *faults) {
-    if (fault.kind == Kind::kReverse || fault.kind == Kind::kOffset) continue;
-    for (const double other : times) {
-      EXPECT_GE(std::abs(other - fault.start), 10.);
-    }
-    times.push_back(fault.start);
-    EXPECT_GT(drive->At(fault.start).speed, 0.1);
-    if (fault.kind == Kind::kJump) {
-      EXPECT_GE(std::abs(fault.distance), 0.5);
-      EXPECT_LE(std::abs(fault.distance), 1.);
-    }
-  }
-  EXPECT_EQ(faults->back().seconds, 0.12);
-  // The same seed again, another seed.
-  EXPECT_EQ((*RandomFaults("stale:3", *drive, 5))[0].start,
-            (*RandomFaults("stale:3", *drive, 5))[0].start);
-  EXPECT_NE((*RandomFaults("stale:3", *drive, 5))[0].start,
-            (*RandomFaults("stale:3", *drive, 6))[0].start);
-}
-
-TEST(RandomFaultsTest, RefusesNonsense) {
-  auto world = ParseWorld("start 0 0 0\ngoto 40 0", "t");
-  const auto drive = Drive::Plan(*world, 0);
-  for (const std::string text :
-       {"melt:3", "stale:x", "stale:1:2", "jump:-1", "jump:0.5", "slip:1e9",
-        "offset:nan", "offset:99", "stale:500"}) {
-    const auto faults = RandomFaults(text, *drive, 0);
-    EXPECT_FALSE(faults.ok()) << text;
-  }
-  EXPECT_TRUE(RandomFaults("", *drive, 0)->empty());
 }
 
 }  // namespace
