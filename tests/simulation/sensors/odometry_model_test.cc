@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cartographer_ext/simulation/sensors/odometry_model.h"
 
+#include <cmath>
 #include <string>
 
 #include "cartographer_ext/simulation/world_parser.h"
