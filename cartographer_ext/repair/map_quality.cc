@@ -123,6 +123,18 @@ std::string WhyNotBetter(const MapQuality& current,
         evaluation::DescribeLooseShare(candidate.loose_share),
         100. * current.loose_share);
   }
+  const double came_loose =
+      candidate.loose_share > current.loose_share + kSameLoose
+          ? (candidate.loose_share - current.loose_share) * compared
+          : 0.;
+  if (gain > same && gain < came_loose) {
+    return absl::StrFormat(
+        "more came loose than agrees: %s, before %.1f %%, and %d nodes agree "
+        "with scans of another time, before %d",
+        evaluation::DescribeLooseShare(candidate.loose_share),
+        100. * current.loose_share, candidate.num_agreeing(),
+        current.num_agreeing());
+  }
   if (candidate.verdict == "unknown" && current.verdict != "unknown") {
     return absl::StrFormat(
         "it tears the map apart: hardly any place is mapped twice, only %d "

@@ -25,6 +25,8 @@
 // A version of which more may lie elsewhere without contradicting anything
 // (loose_places.h) is not better either if it rests on fewer nodes that see a
 // place of another time: what it no longer compares is not known to lie apart.
+// Otherwise it must gain more nodes than came loose, because of those nothing
+// tells whether they agree at the right place.
 //
 // Versions of equal evidence are compared by the measures of the verdict: the
 // share of severely contradicted nodes, contradicted rays, open cycles of loops,

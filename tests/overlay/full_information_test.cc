@@ -148,6 +148,17 @@ TEST_P(FullInformationSwapTest, RelaxedStepsHaveHubersCost) {
   EXPECT_NEAR(cost(10., 2.), 0.1, 1e-12);
 }
 
+TEST_P(FullInformationSwapTest, RelaxedStepsMayBeWeighedLess) {
+  // The error of above with weights of 2 and 8, times 0.5 and 0.25: 1, -2 and 1.
+  Constraint::Pose pose = MakePose(Rigid2d({3., -5.}, 0.), 2.);
+  pose.rotation_weight = 8.;
+  const cartographer_ext::optimization::ScopedRelaxation scope(
+      {1., 2., 8., 100., 0.5, 0.25}, nullptr, nullptr);
+  EXPECT_NEAR(CostOf(*std::unique_ptr<ceres::CostFunction>(GetParam()(pose)),
+                     kStart, kEnd),
+              3., 1e-12);
+}
+
 TEST_P(FullInformationSwapTest, RelaxedConstraintsAreDivided) {
   const Constraint::Pose pose = MakePose(Rigid2d({3., -5.}, 0.), 10.);
   const Constraint::Pose other = pose;

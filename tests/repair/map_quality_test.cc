@@ -131,6 +131,26 @@ TEST(MapQualityTest, AMapTornApartIsNotBetter) {
   EXPECT_THAT(WhyNotBetter(Broken(), torn), HasSubstr("apart"));
 }
 
+// The best version so far of a library with equal aisles, and one that agrees at
+// some nodes more because more of it hangs free.
+TEST(MapQualityTest, AVersionOfWhichMoreCameLooseIsNotBetter) {
+  MapQuality tied;
+  tied.verdict = "doubtful";
+  Judge(0, 1018, false, &tied);
+  Judge(1018, 1048, true, &tied);
+  tied.loose_share = 0.033;
+  MapQuality loose = tied;
+  Judge(1018, 1022, false, &loose);  // worth 16 nodes
+  EXPECT_EQ(WhyNotBetter(tied, loose), "");
+  loose.loose_share = 0.04;
+  EXPECT_EQ(WhyNotBetter(tied, loose), "");
+  loose.loose_share = 0.083;  // 52 nodes more
+  EXPECT_THAT(WhyNotBetter(tied, loose),
+              HasSubstr("more came loose than agrees: 8.3 % of the path"));
+  Judge(1018, 1033, false, &loose);  // 60 nodes
+  EXPECT_EQ(WhyNotBetter(tied, loose), "");
+}
+
 // What agrees may be the smaller part.
 TEST(MapQualityTest, AVersionThatRestsOnFewerRevisitsIsNotBetter) {
   MapQuality loose = Broken();

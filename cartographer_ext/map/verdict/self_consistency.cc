@@ -94,7 +94,12 @@ std::string Headline(const MapGraph& graph, const SelfConsistency& result,
            "together to vouch for it";
   }
   if (result.word == "sound") {
-    return "the map is self-consistent: places that were mapped twice coincide";
+    return result.contradictions.revisit_nodes > 0
+               ? "the map is self-consistent: places that were mapped twice "
+                 "coincide"
+               : "the map is self-consistent: places coincide as they were "
+                 "seen "
+                 "from near and far on one visit; none was visited twice";
   }
   std::string sentence;
   if (!result.places.empty()) {
@@ -151,7 +156,7 @@ void Explain(const MapGraph& graph, const SelfConsistencyOptions& options,
   const io::TimeNs start = StartTime(graph);
   result->reasons.push_back(Headline(graph, *result, options));
   const Contradictions& contradictions = result->contradictions;
-  if (contradictions.judged_nodes > 0) {
+  if (contradictions.revisit_nodes > 0) {
     result->reasons.push_back(absl::StrFormat(
         "%.1f %% of the %d nodes that revisit a place have most of their scan "
         "in free space or behind walls mapped there at another time",

@@ -4,6 +4,7 @@
 // Only where the swap is selected; see the overlay.
 #include "cartographer_ext/swaps.h"
 #ifdef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -26,6 +27,7 @@ constexpr int64_t kLeastOff = 5;
 constexpr double kShareOff = 0.02;
 constexpr double kShareStillOff = 0.1;
 constexpr double kStillOffOfThese = 0.25;
+constexpr double kMostLoops = 0.5;
 constexpr double kFarOffMetres = 0.5;
 constexpr double kFarOffRadians = 0.3;
 
@@ -47,6 +49,13 @@ bool IsOffMap(const Constraint& loop, const Nodes& nodes,
               const double radians) {
   return IsOff(loop, submaps.at(loop.submap_id).global_pose,
                nodes.at(loop.node_id).global_pose_2d, metres, radians);
+}
+
+// Whether enough loops are in force after the problem was relaxed.
+bool IsInForce(const LoopsOffMap& before, const LoopsOffMap& after) {
+  return after.off <= kStillOffOfThese * before.off &&
+         (after.off <= kShareStillOff * after.loops ||
+          before.off > kMostLoops * before.loops);
 }
 
 }  // namespace
@@ -93,26 +102,48 @@ std::vector<LoopId> TakeOutFarOff(const Nodes& nodes, const Submaps& submaps,
   return taken;
 }
 
-Relaxation RelaxationOf(
-    const mapping::optimization::proto::OptimizationProblemOptions& options) {
-  return Relaxation{kPullOfLoops, options.local_slam_pose_translation_weight(),
-                    options.local_slam_pose_rotation_weight(), kStepHuberScale};
+std::vector<Relaxation> RelaxationsOf(
+    const mapping::optimization::proto::OptimizationProblemOptions& options,
+    const std::vector<Constraint>& constraints) {
+  Relaxation single;
+  single.pull_of_loops = kPullOfLoops;
+  single.step_translation_weight = options.local_slam_pose_translation_weight();
+  single.step_rotation_weight = options.local_slam_pose_rotation_weight();
+  single.step_huber_scale = kStepHuberScale;
+  std::vector<Relaxation> relaxations{single};
+  const auto insertion = std::find_if(
+      constraints.begin(), constraints.end(), [](const Constraint& constraint) {
+        return constraint.tag == Constraint::INTRA_SUBMAP;
+      });
+  if (insertion == constraints.end() || single.step_translation_weight <= 0. ||
+      single.step_rotation_weight <= 0.) {
+    return relaxations;
+  }
+  Relaxation all = single;
+  all.step_translation_factor = std::min(
+      1., insertion->pose.translation_weight / single.step_translation_weight);
+  all.step_rotation_factor = std::min(
+      1., insertion->pose.rotation_weight / single.step_rotation_weight);
+  relaxations.push_back(all);
+  return relaxations;
 }
 
 LoopsPutInForce PutLoopsInForce(
     const std::function<void(const Relaxation*)>& solve,
-    const std::function<LoopsOffMap()>& count, const Relaxation& relaxation) {
+    const std::function<LoopsOffMap()>& count,
+    const std::vector<Relaxation>& relaxations) {
   LoopsPutInForce result;
   result.before = count();
   result.after = result.before;
   result.tried = result.before.off >= kLeastOff &&
                  result.before.off >= kShareOff * result.before.loops;
   if (!result.tried) return result;
-  solve(&relaxation);
-  result.after = count();
-  result.relaxed = result.after.off <= kShareStillOff * result.after.loops &&
-                   result.after.off <= kStillOffOfThese * result.before.off;
-  if (result.relaxed) return result;
+  for (const Relaxation& relaxation : relaxations) {
+    solve(&relaxation);
+    result.after = count();
+    result.relaxed = IsInForce(result.before, result.after);
+    if (result.relaxed) return result;
+  }
   solve(nullptr);
   result.after = count();
   return result;

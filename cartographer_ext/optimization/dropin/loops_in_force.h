@@ -6,11 +6,14 @@
 // Cartographer's problem may end with many of its loops far from the map
 // although they agree with each other: a step that local SLAM took wrongly
 // holds the map apart. Then the relaxed problem
-// (optimization/graph/relaxation.h) is solved. Its result is kept only if
+// (optimization/graph/relaxation.h) is solved, in which single steps give way,
+// and if that is not enough, as where local SLAM drifts all along the path, one
+// in which all steps are as weak as scans in submaps. Its result is kept only if
 // nearly all loops are in force in it: where they contradict each other that
 // cannot be, and the stiff problem is the safer one, since it follows wrong
-// loops less. For the same reason nothing is done where many matches of the run
-// were wrong (uncertainty/loop_ambiguity.h).
+// loops less, unless it contradicts most of them itself. For the same reason
+// nothing is done where many matches of the run were wrong
+// (uncertainty/loop_ambiguity.h).
 //
 // A loop that is far off even so, where nearly all others hold, is wrong and taken
 // back, so that what is accepted is in force. If many are, the map may be wrong
@@ -66,19 +69,26 @@ std::vector<LoopId> TakeOutFarOff(
     std::vector<cartographer::mapping::PoseGraphInterface::Constraint>*
         constraints);
 
-// The relaxed problem of these options: loops pull thirty times as hard, and
-// steps have a loss of 300, 3 mm with the stock weights.
-Relaxation RelaxationOf(const cartographer::mapping::optimization::proto::
-                            OptimizationProblemOptions& options);
+// The relaxed problems of these options, in the order in which they are tried.
+// In both, loops pull thirty times as hard, and steps have a loss of 300, 3 mm
+// with the stock weights, so that single steps give way. In the second, which
+// needs insertions among the constraints, all steps have at most the weights of an
+// insertion besides.
+std::vector<Relaxation> RelaxationsOf(
+    const cartographer::mapping::optimization::proto::
+        OptimizationProblemOptions& options,
+    const std::vector<cartographer::mapping::PoseGraphInterface::Constraint>&
+        constraints);
 
 // `solve` optimises, relaxed or (null) not, from the current poses; `count`
 // counts the loops that are off. The problem has just been solved not relaxed.
-// If five loops and a fiftieth of all are off, it is relaxed. The result is
-// kept if at most a tenth of all and a quarter of these are off then; otherwise
-// the problem is solved again as it was.
+// If five loops and a fiftieth of all are off, it is relaxed. The first result is
+// kept in which at most a quarter of these are off, and a tenth of all, unless more
+// than half of all were; without any the problem is solved again as it was.
 LoopsPutInForce PutLoopsInForce(
     const std::function<void(const Relaxation*)>& solve,
-    const std::function<LoopsOffMap()>& count, const Relaxation& relaxation);
+    const std::function<LoopsOffMap()>& count,
+    const std::vector<Relaxation>& relaxations);
 
 }  // namespace optimization
 }  // namespace cartographer_ext

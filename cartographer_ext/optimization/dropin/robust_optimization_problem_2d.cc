@@ -161,16 +161,16 @@ void RobustOptimizationProblem2D::SolveWhole(
     StockSolve(kept, trajectories_state, landmark_nodes, context, nullptr,
                &stock_);
   }
-  bool is_relaxed = false;
+  absl::optional<Relaxation> relaxation;
 #ifdef CARTOGRAPHER_EXT_SWAP_FULL_INFORMATION
   if (is_final_ && extension_.loops_in_force() && landmark_nodes.empty() &&
       !HasFixedFrames() && AreLoopsUnambiguous(context)) {
-    is_relaxed = PutInForce(kept, trajectories_state, context);
+    relaxation = PutInForce(kept, trajectories_state, context);
   }
 #endif
   if (context == nullptr) return;
   if (is_final_ && extension_.loops_in_force()) {
-    TakeBack(is_relaxed, trajectories_state, landmark_nodes, context, kept);
+    TakeBack(relaxation, trajectories_state, landmark_nodes, context, kept);
   }
   context->Get<SwitchedLoopRecorder>()->Record(
       loops, std::move(off), selected - start, ThreadCpuSeconds() - selected);
@@ -185,12 +185,15 @@ bool RobustOptimizationProblem2D::HasFixedFrames() const {
   return false;
 }
 
-bool RobustOptimizationProblem2D::PutInForce(
+absl::optional<Relaxation> RobustOptimizationProblem2D::PutInForce(
     const std::vector<Constraint>& constraints,
     const std::map<int, TrajectoryState>& trajectories_state,
     PoseGraphContext* const context) {
+  absl::optional<Relaxation> last;
   const LoopsPutInForce result = PutLoopsInForce(
       [&](const Relaxation* const relaxation) {
+        last = relaxation == nullptr ? absl::nullopt
+                                     : absl::make_optional(*relaxation);
         StockSolve(constraints, trajectories_state, {}, context, relaxation,
                    &stock_);
       },
@@ -199,22 +202,21 @@ bool RobustOptimizationProblem2D::PutInForce(
                                 stock_.submap_data(),
                                 kOffSigmas * extension_.loop_sigma());
       },
-      RelaxationOf(options_));
+      RelaxationsOf(options_, constraints));
   LOG_IF(INFO, result.tried)
       << result.before.off << " of " << result.before.loops
       << " loops were off the map, "
       << (result.relaxed ? "relaxed" : "relaxed in vain") << ": "
       << result.after.off;
   context->Get<SwitchedLoopRecorder>()->Record(result);
-  return result.relaxed;
+  return last;
 }
 
 void RobustOptimizationProblem2D::TakeBack(
-    const bool is_relaxed,
+    const absl::optional<Relaxation>& relaxation,
     const std::map<int, TrajectoryState>& trajectories_state,
     const std::map<std::string, LandmarkNode>& landmark_nodes,
     PoseGraphContext* const context, std::vector<Constraint> constraints) {
-  const Relaxation relaxation = RelaxationOf(options_);
   std::set<LoopId> taken;
   for (int i = 0; i < kMostTimesTakenBack; ++i) {
     const std::vector<LoopId> off =
@@ -222,7 +224,7 @@ void RobustOptimizationProblem2D::TakeBack(
     if (off.empty()) break;
     taken.insert(off.begin(), off.end());
     StockSolve(constraints, trajectories_state, landmark_nodes, context,
-               is_relaxed ? &relaxation : nullptr, &stock_);
+               relaxation.has_value() ? &*relaxation : nullptr, &stock_);
   }
   for (const LoopId& loop : taken) context->Get<WithdrawnLoops>()->Add(loop);
   LOG_IF(INFO, !taken.empty())

@@ -21,9 +21,11 @@
 #include <string>
 #include <vector>
 
+#include "absl/types/optional.h"
 #include "cartographer/mapping/internal/optimization/optimization_problem_2d.h"
 #include "cartographer_ext/common/loop_id.h"
 #include "cartographer_ext/common/pose_graph_context.h"
+#include "cartographer_ext/optimization/graph/relaxation.h"
 #include "cartographer_ext/optimization/graph/slam_pose_graph.h"
 #include "cartographer_ext/optimization/selection/loop_selection.h"
 #include "cartographer_ext/optimization/selection/switched_loops.h"
@@ -178,14 +180,15 @@ class RobustOptimizationProblem2D
                   PoseGraphContext* context);
   bool HasFixedFrames() const;
   // At the end of a run: with loops that the map contradicts put in force; returns
-  // whether the problem was relaxed for that.
-  bool PutInForce(const std::vector<Constraint>& constraints,
-                  const std::map<int, PoseGraphInterface::TrajectoryState>&
-                      trajectories_state,
-                  PoseGraphContext* context);
+  // how the problem was relaxed for that, if it was.
+  absl::optional<Relaxation> PutInForce(
+      const std::vector<Constraint>& constraints,
+      const std::map<int, PoseGraphInterface::TrajectoryState>&
+          trajectories_state,
+      PoseGraphContext* context);
 
   // At the end of a run: withdraws loops that the map contradicts even so.
-  void TakeBack(bool is_relaxed,
+  void TakeBack(const absl::optional<Relaxation>& relaxation,
                 const std::map<int, PoseGraphInterface::TrajectoryState>&
                     trajectories_state,
                 const std::map<std::string, LandmarkNode>& landmark_nodes,

@@ -23,6 +23,10 @@
 // others; here all residuals are divided by k, which divides the sum by k^2,
 // and those of steps bring their loss of scale b / k along. Landmarks have
 // residuals of their own, which would not be divided.
+//
+// A step may be weighted less besides. Scans in submaps say the same about the
+// motion of local SLAM as steps do, once more and far more softly: where it drifts
+// everywhere, and not in a few steps, the steps hold it against any loop.
 #ifndef CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_RELAXATION_H_
 #define CARTOGRAPHER_EXT_OPTIMIZATION_GRAPH_RELAXATION_H_
 
@@ -35,6 +39,9 @@ struct Relaxation {
   double step_translation_weight = 0.;
   double step_rotation_weight = 0.;
   double step_huber_scale = 0.;  // b, > 0
+  // Factors on the weights of steps, in (0, 1].
+  double step_translation_factor = 1.;
+  double step_rotation_factor = 1.;
 };
 
 // Relaxes the optimisation on this thread during the lifetime of the scope.
@@ -54,6 +61,7 @@ class ScopedRelaxation {
   // The innermost scope of this thread, or null.
   static const ScopedRelaxation* Current();
 
+  const Relaxation& relaxation() const { return relaxation_; }
   // 1 / k.
   double factor() const { return 1. / relaxation_.pull_of_loops; }
   // b / k for the pose of a step at this address, 0 for others.

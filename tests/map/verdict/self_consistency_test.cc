@@ -44,6 +44,19 @@ TEST(SelfConsistencyTest, RightMapIsSound) {
   EXPECT_THAT(result.reasons.front(), HasSubstr("the map is self-consistent"));
 }
 
+// Nothing is said of places visited twice where there are none.
+TEST(SelfConsistencyTest, ARightMapOfOneVisitSaysSo) {
+  const test::BoxWorld world = test::MakeBoxWorld(kNever, Pose2(), 0.);
+  const SelfConsistency result =
+      AssessSelfConsistency(world.graph, world.contents, {}, {});
+  EXPECT_EQ(result.word, "sound");
+  EXPECT_GT(result.contradictions.judged_nodes, 0);
+  EXPECT_EQ(result.contradictions.revisit_nodes, 0);
+  EXPECT_THAT(result.reasons.front(), HasSubstr("none was visited twice"));
+  EXPECT_THAT(result.reasons,
+              testing::Not(Contains(HasSubstr("nodes that revisit a place"))));
+}
+
 TEST(SelfConsistencyTest, FoldedMapIsBrokenAndNamesThePlace) {
   const test::BoxWorld world =
       test::MakeBoxWorld(60, Pose2(1.5, 1.2, DegToRad(20.)));

@@ -83,62 +83,97 @@ TEST(TakeOutFarOffTest, TakesTheLoopsThatThePosesContradict) {
   EXPECT_TRUE(TakeOutFarOff(nodes, submaps, &constraints).empty());
 }
 
-// What is solved, where so many of a hundred loops are off before, relaxed, and
-// solved again.
+// What is solved, where so many of a hundred loops are off before, with single
+// steps that give way, with weak ones, and solved again.
 struct Solutions {
-  std::vector<bool> relaxed;  // of each solution
+  // Of each solution the factor on the weights of steps, 0 if it is not relaxed.
+  std::vector<double> factors;
   LoopsPutInForce result;
 };
 
-Solutions PutInForce(const int before, const int relaxed, const int again) {
+Solutions PutInForce(const int before, const int single, const int weak,
+                     const int again) {
   Solutions run;
   int off = before;
-  const Relaxation relaxation = {30., 1., 1., 300.};
   run.result = PutLoopsInForce(
       [&](const Relaxation* const given) {
-        EXPECT_TRUE(given == nullptr || given->pull_of_loops == 30.);
-        run.relaxed.push_back(given != nullptr);
-        off = given != nullptr ? relaxed : again;
+        run.factors.push_back(
+            given == nullptr ? 0. : given->step_translation_factor);
+        off = given == nullptr
+                  ? again
+                  : (given->step_translation_factor == 1. ? single : weak);
       },
       [&] {
         return LoopsOffMap{100, off};
       },
-      relaxation);
+      {Relaxation{30., 1., 1., 300.},
+       Relaxation{30., 1., 1., 300., 0.01, 0.1}});
   return run;
 }
 
 TEST(PutLoopsInForceTest, AFewLoopsThatAreOffStayOff) {
-  const Solutions run = PutInForce(4, 0, 4);
-  EXPECT_TRUE(run.relaxed.empty());
+  const Solutions run = PutInForce(4, 0, 0, 4);
+  EXPECT_TRUE(run.factors.empty());
   EXPECT_FALSE(run.result.tried);
   EXPECT_EQ(run.result.after.off, 4);
 }
 
 TEST(PutLoopsInForceTest, TheRelaxedResultIsKeptIfNearlyAllAreInForce) {
-  const Solutions run = PutInForce(40, 10, 40);
-  EXPECT_EQ(run.relaxed, std::vector<bool>{true});
+  const Solutions run = PutInForce(40, 10, 0, 40);
+  EXPECT_EQ(run.factors, std::vector<double>{1.});
   EXPECT_TRUE(run.result.relaxed);
   EXPECT_EQ(run.result.before.off, 40);
   EXPECT_EQ(run.result.after.off, 10);
 }
 
+TEST(PutLoopsInForceTest, WeakStepsFollowWhereSingleOnesAreNotEnough) {
+  const Solutions run = PutInForce(40, 11, 5, 40);
+  EXPECT_EQ(run.factors, (std::vector<double>{1., 0.01}));
+  EXPECT_TRUE(run.result.relaxed);
+  EXPECT_EQ(run.result.after.off, 5);
+}
+
+TEST(PutLoopsInForceTest, AMapThatContradictsMostLoopsIsNoSafer) {
+  EXPECT_FALSE(PutInForce(50, 12, 12, 50).result.relaxed);
+  const Solutions run = PutInForce(51, 13, 12, 51);
+  EXPECT_EQ(run.factors, (std::vector<double>{1., 0.01}));
+  EXPECT_TRUE(run.result.relaxed);
+}
+
 TEST(PutLoopsInForceTest, OtherwiseTheProblemIsSolvedAsItWas) {
   // More than a tenth of all, more than a quarter of those before.
-  for (const Solutions& run : {PutInForce(60, 11, 59), PutInForce(20, 6, 20)}) {
-    EXPECT_EQ(run.relaxed, (std::vector<bool>{true, false}));
+  for (const Solutions& run :
+       {PutInForce(45, 11, 11, 44), PutInForce(60, 16, 16, 59),
+        PutInForce(20, 6, 7, 20)}) {
+    EXPECT_EQ(run.factors, (std::vector<double>{1., 0.01, 0.}));
     EXPECT_TRUE(run.result.tried);
     EXPECT_FALSE(run.result.relaxed);
     EXPECT_GE(run.result.after.off, 20);
   }
 }
 
-TEST(RelaxationOfTest, TakesTheWeightsOfLocalSlam) {
+TEST(RelaxationsOfTest, TakesTheWeightsOfLocalSlamAndOfInsertions) {
   cartographer::mapping::optimization::proto::OptimizationProblemOptions
       options;
   options.set_local_slam_pose_translation_weight(2.);
   options.set_local_slam_pose_rotation_weight(3.);
-  EXPECT_EQ(RelaxationOf(options).step_translation_weight, 2.);
-  EXPECT_EQ(RelaxationOf(options).step_rotation_weight, 3.);
+  std::vector<Constraint> constraints = {Loop(0, 0, Rigid2d({3., 1.}, 0.5))};
+  const std::vector<Relaxation> without = RelaxationsOf(options, constraints);
+  ASSERT_EQ(without.size(), 1u);
+  EXPECT_EQ(without[0].step_translation_weight, 2.);
+  EXPECT_EQ(without[0].step_rotation_weight, 3.);
+  EXPECT_EQ(without[0].step_translation_factor, 1.);
+  constraints.push_back(
+      Loop(0, 0, Rigid2d({3., 1.}, 0.5), Constraint::INTRA_SUBMAP));
+  constraints.back().pose.translation_weight = 0.5;
+  constraints.back().pose.rotation_weight = 30.;
+  const std::vector<Relaxation> both = RelaxationsOf(options, constraints);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].pull_of_loops, 30.);
+  EXPECT_EQ(both[1].pull_of_loops, 30.);
+  EXPECT_EQ(both[1].step_translation_weight, 2.);  // by which steps are known
+  EXPECT_EQ(both[1].step_translation_factor, 0.25);
+  EXPECT_EQ(both[1].step_rotation_factor, 1.);  // not stiffer than before
 }
 
 }  // namespace

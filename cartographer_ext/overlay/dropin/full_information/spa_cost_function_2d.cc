@@ -128,14 +128,14 @@ ceres::CostFunction* Create(ceres::CostFunction* (*const stock)(const Pose&),
   if (relaxation == nullptr) return stock(pose);
   weighted.translation_weight *= factor;
   weighted.rotation_weight *= factor;
-  std::unique_ptr<ceres::CostFunction> result(stock(weighted));
   const double step_scale = relaxation->StepScale(
       &pose, pose.translation_weight, pose.rotation_weight);
-  if (step_scale > 0.) {
-    result =
-        absl::make_unique<HuberCostFunction>(std::move(result), step_scale);
-  }
-  return result.release();
+  if (step_scale == 0.) return stock(weighted);
+  weighted.translation_weight *=
+      relaxation->relaxation().step_translation_factor;
+  weighted.rotation_weight *= relaxation->relaxation().step_rotation_factor;
+  return new HuberCostFunction(
+      std::unique_ptr<const ceres::CostFunction>(stock(weighted)), step_scale);
 }
 
 }  // namespace
