@@ -61,10 +61,10 @@ CARTOGRAPHER_EXT.trajectory_builder_2d = {
     -- Detect when odometry is stale, jumps, has the wrong sign or slips;
     -- predict without it in these cases, and report them. [basic]
     enabled = true,
-    -- Where the translation is not observable (a blank corridor), an
-    -- acceleration of the odometry above this is reported as slip. Set it
-    -- above the acceleration that the robot can reach. [> 0 and <= 1000,
-    -- m/s^2]
+    -- Where the translation is not observable (a blank corridor), wheels that
+    -- become faster by more than this are reported as slipping, and not
+    -- followed if the robot has never been seen as fast. Set it above the
+    -- acceleration that the robot can reach. [> 0 and <= 1000, m/s^2]
     max_acceleration = 1.5,
   },
   imu = {

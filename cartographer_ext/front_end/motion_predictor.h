@@ -188,6 +188,8 @@ class MotionPredictor {
   bool IsStationary(double time, const Pose2& match) const;
 
   OdometryState CheckOdometry(double time, const MatchedMotion& matched);
+  // Of the wheels, over short parts of the interval; none without odometry.
+  std::vector<WheelSpeed> SpeedsBetween(double from, double to) const;
   // Compares odometry with `uncompared_`, up to `time`.
   OdometryState Compare(double time, bool has_odometry,
                         const std::function<double(const Pose2&)>& evidence);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_ext authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a match that ends a contest with the odometry tells of the velocity, and
-// what follows a jump.
+// What a match that ends a contest with the odometry tells of the velocity, what
+// follows a jump, and what follows wheels that slip unseen.
 #include "cartographer_ext/front_end/motion_predictor.h"
 #include "gtest/gtest.h"
 
@@ -45,6 +45,32 @@ TEST(MotionPredictorContestTest, AJumpMayBeALateScan) {
   EXPECT_NEAR(prediction.motion.theta, 0.1, 1e-9);
   ASSERT_FALSE(prediction.alternatives.empty());
   EXPECT_NEAR(prediction.alternatives[0].theta, 0.8, 1e-9);
+}
+
+// In a corridor without features the match follows the wheels, which spin from 5 s
+// to 7 s: 0.9 m/s instead of 0.5.
+TEST(MotionPredictorContestTest, TheVelocityBeforeTheWheelsSlipped) {
+  MotionPredictor predictor((MotionPredictorOptions()));
+  double odometry = 0.;
+  MotionPrediction prediction;
+  for (int i = 0; i <= 70; ++i) {
+    const double speed = i > 50 ? 0.9 : 0.5;
+    odometry += i == 0 ? 0. : 0.1 * speed;
+    predictor.AddOdometry(0.1 * i, Pose2(odometry, 0., 0.));
+    prediction = predictor.Predict(0.1 * i);
+    MatchedMotion matched;
+    matched.motion = prediction.motion;
+    if (i > 0 && i <= 40) matched.motion = Pose2(0.05, 0., 0.);
+    matched.translation_observable = i <= 40;
+    matched.covariance = prediction.covariance;
+    matched.from_velocity =
+        prediction.source == PredictionSource::kConstantVelocity;
+    predictor.AddMatch(0.1 * i, matched);
+    if (i <= 52) continue;  // it has to last
+    EXPECT_EQ(predictor.odometry_state(), OdometryState::kSlipping) << i;
+    EXPECT_EQ(prediction.source, PredictionSource::kConstantVelocity) << i;
+    EXPECT_NEAR(prediction.motion.x, 0.05, 1e-3) << i;
+  }
 }
 
 }  // namespace

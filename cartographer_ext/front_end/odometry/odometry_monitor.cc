@@ -20,8 +20,6 @@ constexpr double kExitRatio = 0.4;
 // It goes on while scans are this much evidence of it: it is as likely as not,
 // but where scans say nothing, odometry is all there is.
 constexpr double kEvidenceInFault = 1.;
-// A suspicion of slip expires after this time, seconds.
-constexpr double kSuspicionTime = 5.;
 // Bound of the window at any rate of scans.
 constexpr size_t kMaxEntries = 200;
 
@@ -48,7 +46,7 @@ bool IsWrong(const OdometryState state) {
 }
 
 OdometryMonitor::OdometryMonitor(const OdometryCheckOptions& options)
-    : options_(options) {
+    : options_(options), suspicion_(options.max_acceleration) {
   Restart(0.);
 }
 
@@ -128,8 +126,9 @@ OdometryState OdometryMonitor::CheckWindow(
   const Pose2 odometry =
       Between(window_.front().odometry, window_.back().odometry);
   const Pose2 match = Between(window_.front().match, window_.back().match);
-  const bool in_fault =
-      state_ == OdometryState::kWrongSign || state_ == OdometryState::kSlipping;
+  const bool in_fault = state_ == OdometryState::kWrongSign ||
+                        state_ == OdometryState::kSlipping ||
+                        suspicion_.is_likely();
   const double gate = in_fault ? kExitRatio * options_.gate : options_.gate;
   if (ChiSquare(odometry, match) <= gate ||
       !IsEvident(comparison, odometry, match,
@@ -143,29 +142,6 @@ OdometryState OdometryMonitor::CheckWindow(
     return OdometryState::kWrongSign;
   }
   return OdometryState::kSlipping;
-}
-
-bool OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
-  const double speed = comparison.odometry.x / comparison.interval;
-  const double change = has_speed_ ? speed - speed_ : 0.;
-  speed_ = speed;
-  has_speed_ = true;
-  // The IMU measures how much of the change is real motion.
-  const double own = comparison.has_inertial
-                         ? std::abs(change - comparison.inertial_speed_change)
-                         : std::abs(change);
-  const double limit = (comparison.has_inertial ? 0.5 : 1.) *
-                       options_.max_acceleration * comparison.interval;
-  if (own > limit) {
-    const bool ends = excess_speed_ * change < 0.;
-    excess_speed_ = ends ? 0. : excess_speed_ + change;
-    suspected_since_ = comparison.time;
-  }
-  if (comparison.translation_observable ||
-      comparison.time - suspected_since_ > kSuspicionTime) {
-    excess_speed_ = 0.;
-  }
-  return excess_speed_ != 0.;
 }
 
 OdometryState OdometryMonitor::Add(const MotionComparison& given) {
@@ -195,15 +171,38 @@ OdometryState OdometryMonitor::Judge(const MotionComparison& given) {
   }
   if (!comparison.has_odometry) {
     Restart(comparison.time);
-    has_speed_ = false;
+    suspicion_.Interrupt();
     state_ = OdometryState::kAbsent;
     return state_;
   }
-  const bool slip_suspected = SuspectSlip(comparison);
+  SuspectSlip(comparison);
+  if (suspicion_.is_believed()) {
+    Restart(comparison.time);
+    state_ = OdometryState::kSlipping;
+  } else {
+    state_ = Decide(comparison);
+    suspicion_.Learn(IsWrong(state_));
+  }
+  return state_;
+}
+
+void OdometryMonitor::SuspectSlip(const MotionComparison& comparison) {
+  std::vector<WheelSpeed> speeds = comparison.speeds;
+  if (speeds.empty()) {
+    speeds.push_back({comparison.interval,
+                      comparison.odometry.x / comparison.interval,
+                      absl::nullopt});
+  }
+  suspicion_.Add(speeds,
+                 {comparison.time, comparison.match.x / comparison.interval,
+                  comparison.translation_observable});
+}
+
+OdometryState OdometryMonitor::Decide(const MotionComparison& comparison) {
   Entry entry;
   entry.time = comparison.time;
   entry.odometry = window_.back().odometry * comparison.odometry;
-  entry.match = window_.back().match * match;
+  entry.match = window_.back().match * comparison.match;
   window_.push_back(entry);
   while (window_.size() > 2 &&
          (window_[1].time <= comparison.time - options_.window ||
@@ -218,28 +217,20 @@ OdometryState OdometryMonitor::Judge(const MotionComparison& given) {
         state_ == OdometryState::kStale &&
         ChiSquare(Between(last_agreed_.odometry, entry.odometry),
                   Between(last_agreed_.match, entry.match)) <= options_.gate;
-    state_ = caught_up ? OdometryState::kStale : OdometryState::kJumping;
-    const OdometryState result = state_;
     jump_ = MissedBy(entry);
     Restart(comparison.time);
-    return result;
+    return caught_up ? OdometryState::kStale : OdometryState::kJumping;
   }
-  if (interval == OdometryState::kStale) {
-    state_ = OdometryState::kStale;
-    return state_;
-  }
+  if (interval == OdometryState::kStale) return OdometryState::kStale;
   if (state_ == OdometryState::kStale) {
     // Odometry moves again. The missed motion is either caught up with or lost.
     Restart(comparison.time);
-    state_ = OdometryState::kOk;
-    return state_;
+    return OdometryState::kOk;
   }
-  state_ = CheckWindow(comparison);
-  if (state_ == OdometryState::kOk) {
-    last_agreed_ = entry;
-    if (slip_suspected) state_ = OdometryState::kSlipSuspected;
-  }
-  return state_;
+  const OdometryState state = CheckWindow(comparison);
+  if (state != OdometryState::kOk) return state;
+  last_agreed_ = entry;
+  return suspects_slip() ? OdometryState::kSlipSuspected : OdometryState::kOk;
 }
 
 Pose2 OdometryMonitor::MissedMotion() const {

@@ -24,15 +24,18 @@
 //
 // Where the translation is not observable in the scan, its match is the
 // prediction itself, and only rotations are compared. A speed that changes
-// faster than the robot can accelerate (wheels that lose or regain grip) is
-// then the only evidence; it is reported as a suspicion without consequences.
+// faster than the robot can accelerate is then the only evidence; it is reported
+// as a suspicion, and as slip where it is believed (slip_suspicion.h). Elsewhere
+// it is a prior: the window then decides as within a fault.
 #ifndef CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_MONITOR_H_
 #define CARTOGRAPHER_EXT_FRONT_END_ODOMETRY_ODOMETRY_MONITOR_H_
 
 #include <deque>
 #include <functional>
+#include <vector>
 
 #include "cartographer_ext/common/pose2.h"
+#include "cartographer_ext/front_end/odometry/slip_suspicion.h"
 
 namespace cartographer_ext {
 namespace front_end {
@@ -93,9 +96,8 @@ struct MotionComparison {
   bool makes_up = false;
   // Whether the scan determines the translation along the direction of motion.
   bool translation_observable = true;
-  // Change of forward speed by an IMU, m/s; only with has_inertial.
-  bool has_inertial = false;
-  double inertial_speed_change = 0.;
+  // Over consecutive parts of the interval, for suspicions of slip. None: the mean.
+  std::vector<WheelSpeed> speeds;
   // By how much more likely (natural logarithm) the scan is at its match than
   // displaced by an error of odometry, (robot by the match <- robot by
   // odometry). Not given: matches are beyond doubt.
@@ -116,6 +118,10 @@ class OdometryMonitor {
   OdometryState Add(const MotionComparison& given);
 
   OdometryState state() const { return state_; }
+  // Whether the wheels may slip where the scan does not tell, whatever the state.
+  bool suspects_slip() const { return suspicion_.is_suspected(); }
+  // Of the wheels before that, m/s.
+  double speed_before_slip() const { return suspicion_.speed_before(); }
   // Whether predictions should use odometry. A jump is over once detected.
   bool IsTrusted() const {
     return state_ == OdometryState::kOk || state_ == OdometryState::kJumping ||
@@ -145,6 +151,8 @@ class OdometryMonitor {
   static constexpr double kPriorMetres = 200.;
 
   OdometryState Judge(const MotionComparison& given);
+  void SuspectSlip(const MotionComparison& comparison);
+  OdometryState Decide(const MotionComparison& comparison);
   double ChiSquare(const Pose2& odometry, const Pose2& match) const;
   OdometryState CheckInterval(const MotionComparison& comparison) const;
   OdometryState CheckWindow(const MotionComparison& comparison) const;
@@ -152,7 +160,6 @@ class OdometryMonitor {
   static bool IsEvident(const MotionComparison& comparison,
                         const Pose2& odometry, const Pose2& match,
                         double min_evidence);
-  bool SuspectSlip(const MotionComparison& comparison);
   // Since the last agreement up to `entry`, see MissedMotion.
   Pose2 MissedBy(const Entry& entry) const;
   void Restart(double time);
@@ -165,11 +172,7 @@ class OdometryMonitor {
   Pose2 jump_;  // the motion that was missed in a jump
   int num_faults_ = 0;
   double metres_ = 0.;  // driven by the matches
-  // For the suspicion of slip.
-  bool has_speed_ = false;
-  double speed_ = 0.;         // by odometry, m/s
-  double excess_speed_ = 0.;  // of a suspected slip, m/s
-  double suspected_since_ = 0.;
+  SlipSuspicion suspicion_;
 };
 
 }  // namespace front_end

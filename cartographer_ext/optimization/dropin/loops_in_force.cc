@@ -6,6 +6,7 @@
 #ifdef CARTOGRAPHER_EXT_SWAP_OPTIMIZATION_PROBLEM
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "cartographer/transform/transform.h"
@@ -27,7 +28,6 @@ constexpr int64_t kLeastOff = 5;
 constexpr double kShareOff = 0.02;
 constexpr double kShareStillOff = 0.1;
 constexpr double kStillOffOfThese = 0.25;
-constexpr double kMostLoops = 0.5;
 constexpr double kFarOffMetres = 0.5;
 constexpr double kFarOffRadians = 0.3;
 
@@ -51,11 +51,31 @@ bool IsOffMap(const Constraint& loop, const Nodes& nodes,
                nodes.at(loop.node_id).global_pose_2d, metres, radians);
 }
 
-// Whether enough loops are in force after the problem was relaxed.
+void CountSteps(const Nodes& nodes, const double metres, const double radians,
+                LoopsOffMap* const result) {
+  for (const int trajectory_id : nodes.trajectory_ids()) {
+    const auto trajectory = nodes.trajectory(trajectory_id);
+    if (trajectory.begin() == trajectory.end()) continue;
+    for (auto last = trajectory.begin(), next = std::next(last);
+         next != trajectory.end(); last = next, ++next) {
+      const transform::Rigid2d by_local_slam =
+          last->data.local_pose_2d.inverse() * next->data.local_pose_2d;
+      const transform::Rigid2d error =
+          by_local_slam.inverse() *
+          (last->data.global_pose_2d.inverse() * next->data.global_pose_2d);
+      ++result->steps;
+      result->steps_off += error.translation().norm() > metres ||
+                           std::abs(error.normalized_angle()) > radians;
+    }
+  }
+}
+
+// Whether enough loops are in force after the problem was relaxed, and not by
+// steps that follow any loop.
 bool IsInForce(const LoopsOffMap& before, const LoopsOffMap& after) {
-  return after.off <= kStillOffOfThese * before.off &&
-         (after.off <= kShareStillOff * after.loops ||
-          before.off > kMostLoops * before.loops);
+  return after.off <= kShareStillOff * after.loops &&
+         after.off <= kStillOffOfThese * before.off &&
+         after.steps_off - before.steps_off <= kShareOff * after.steps;
 }
 
 }  // namespace
@@ -79,6 +99,7 @@ LoopsOffMap CountLoopsOffMap(const std::vector<Constraint>& constraints,
     ++result.loops;
     result.off += IsOffMap(constraint, nodes, submaps, distance, kOffRadians);
   }
+  CountSteps(nodes, distance, kOffRadians, &result);
   return result;
 }
 

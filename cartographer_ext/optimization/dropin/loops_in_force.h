@@ -11,9 +11,8 @@
 // in which all steps are as weak as scans in submaps. Its result is kept only if
 // nearly all loops are in force in it: where they contradict each other that
 // cannot be, and the stiff problem is the safer one, since it follows wrong
-// loops less, unless it contradicts most of them itself. For the same reason
-// nothing is done where many matches of the run were wrong
-// (uncertainty/loop_ambiguity.h).
+// loops less. For the same reason nothing is done where many matches of the run
+// were wrong (uncertainty/loop_ambiguity.h).
 //
 // A loop that is far off even so, where nearly all others hold, is wrong and taken
 // back, so that what is accepted is in force. If many are, the map may be wrong
@@ -83,8 +82,9 @@ std::vector<Relaxation> RelaxationsOf(
 // `solve` optimises, relaxed or (null) not, from the current poses; `count`
 // counts the loops that are off. The problem has just been solved not relaxed.
 // If five loops and a fiftieth of all are off, it is relaxed. The first result is
-// kept in which at most a quarter of these are off, and a tenth of all, unless more
-// than half of all were; without any the problem is solved again as it was.
+// kept in which at most a tenth of all and a quarter of these are off, and no more
+// than a fiftieth of the steps besides: weak steps follow contradictory loops back
+// and forth. Without any the problem is solved again as it was.
 LoopsPutInForce PutLoopsInForce(
     const std::function<void(const Relaxation*)>& solve,
     const std::function<LoopsOffMap()>& count,

@@ -28,10 +28,13 @@ struct SwitchedLoop : LoopId {
 };
 
 // How many loops the poses contradict: by more than three standard deviations of
-// a loop (`loop_sigma`) or by more than 0.1 rad.
+// a loop (`loop_sigma`) or by more than 0.1 rad; and how many of the motions by
+// local SLAM between consecutive nodes (steps), by the same.
 struct LoopsOffMap {
   int64_t loops = 0;
   int64_t off = 0;
+  int64_t steps = 0;
+  int64_t steps_off = 0;
 };
 
 // What putting loops in force at the end of a run has come to

@@ -138,11 +138,28 @@ TEST(OdometryMonitorTest, SuddenSpeedInABlankCorridorIsReported) {
   const Pose2 slow(0.03, 0., 0.), fast(0.06, 0., 0.);
   // The match follows the prediction, as it must where nothing is seen.
   for (int i = 0; i < 20; ++i) drive.Step(slow, slow, false, false);
+  EXPECT_FALSE(drive.monitor()->suspects_slip());
+  EXPECT_EQ(drive.Step(fast, fast, false, false), OdometryState::kOk);
   EXPECT_EQ(drive.Step(fast, fast, false, false),
             OdometryState::kSlipSuspected);
   EXPECT_TRUE(drive.monitor()->IsTrusted());
-  EXPECT_EQ(drive.Step(fast, fast, false, false),
-            OdometryState::kSlipSuspected);
+  EXPECT_EQ(drive.Step(slow, slow, false, false), OdometryState::kOk);
+}
+
+TEST(OdometryMonitorTest, WheelsThatSpinInABlankCorridorAreNotFollowed) {
+  OdometryCheckOptions options;
+  options.max_acceleration = 1.;
+  Drive drive(options);
+  const Pose2 slow(0.03, 0., 0.), fast(0.06, 0., 0.);
+  for (int i = 0; i < 100; ++i) drive.Step(slow, slow);
+  for (int i = 0; i < 20; ++i) drive.Step(slow, slow, false, false);
+  EXPECT_EQ(drive.Step(fast, fast, false, false), OdometryState::kOk);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(drive.Step(fast, fast, false, false), OdometryState::kSlipping);
+    EXPECT_TRUE(drive.monitor()->suspects_slip());
+    EXPECT_NEAR(drive.monitor()->speed_before_slip(), 0.03 / kInterval, 1e-3);
+  }
+  EXPECT_FALSE(drive.monitor()->IsTrusted());
   EXPECT_EQ(drive.Step(slow, slow, false, false), OdometryState::kOk);
 }
 
@@ -162,17 +179,19 @@ TEST(OdometryMonitorTest, AnImuClearsTheRobotsOwnAcceleration) {
   MotionComparison comparison;
   comparison.interval = kInterval;
   comparison.translation_observable = false;
-  comparison.has_inertial = true;
   comparison.odometry = comparison.match = Pose2(0.03, 0., 0.);
+  comparison.speeds = {{kInterval, 0.03 / kInterval, 0.}};
   comparison.time = 0.1;
   monitor.Add(comparison);
   comparison.odometry = comparison.match = Pose2(0.06, 0., 0.);
-  comparison.inertial_speed_change = 0.3;
+  comparison.speeds = {{kInterval, 0.06 / kInterval, 0.3}};
   comparison.time = 0.2;
   EXPECT_EQ(monitor.Add(comparison), OdometryState::kOk);
-  comparison.inertial_speed_change = 0.;
+  comparison.speeds = {{kInterval, 0.09 / kInterval, 0.}};
   comparison.odometry = comparison.match = Pose2(0.09, 0., 0.);
   comparison.time = 0.3;
+  EXPECT_EQ(monitor.Add(comparison), OdometryState::kOk);
+  comparison.time = 0.4;  // it lasts
   EXPECT_EQ(monitor.Add(comparison), OdometryState::kSlipSuspected);
 }
 
